@@ -41,16 +41,28 @@ class Tile(Handle):
     hidden: Field[bool] = Field(doc="Filtered out.", dtype=bool)
 
 
+class Reading(Handle):
+    """A result, to be read beside what is set."""
+
+    __slots__ = ()
+    table, noun = "readings", "reading"
+
+    section: Field[str] = Field(dtype=str, doc="The heading that it stands under.")
+    title: Field[str] = Field(dtype=str, doc="What it is.")
+    text: Field[str] = Field(dtype=str, doc="Its value with its unit.")
+    explanation: Field[str] = Field(dtype=str, doc="Shown while the pointer is over it.")
+
+
 class Form(World):
-    """The boxes and tiles of one screen.
+    """The boxes, readings and tiles of one screen.
 
     They are entities of a world of their own, apart from the undo log and the run of the model.
-    check: why a box's text is refused, or "".
+    check: why a box's text is refused, or "". accept: the title of the button that does what Return does; "": none.
     """
 
-    def __init__(self, text: str, check: Callable[[Box], str] = lambda box: "") -> None:
-        super().__init__((Heading, Box, Tile))
-        self.check = check
+    def __init__(self, text: str, check: Callable[[Box], str] = lambda box: "", accept: str = "") -> None:
+        super().__init__((Heading, Box, Tile, Reading))
+        self.check, self.accept = check, accept
         self.heading.text = text
 
     @property
@@ -60,6 +72,10 @@ class Form(World):
     @property
     def boxes(self) -> Table[Box]:
         return self.tables["boxes"]
+
+    @property
+    def readings(self) -> Table[Reading]:
+        return self.tables["readings"]
 
     @property
     def tiles(self) -> Table[Tile]:

@@ -30,6 +30,19 @@ class Snapshot:
         arrays = [world.tables[table].storage(*group).copy() for table, group in layout]
         return cls(layout, tuple(arrays), world.orders)
 
+    @classmethod
+    def initial(cls, world: World) -> Snapshot:
+        """The state in which nothing has moved and no time has passed."""
+        layout = world.layout(Role.STATE, ())
+        arrays = [
+            fields[group[0]].allocate(world.tables[table].count)
+            if len(group) == 1
+            else np.array([fields[name].stored(fields[name].default) for name in group], dtype=np.float64)
+            for table, group in layout
+            for fields in (world.tables[table].fields,)
+        ]
+        return cls(layout, tuple(arrays), world.orders)
+
     @cached_property
     def columns(self) -> dict[str, Column]:
         """The columns, by "table.field"."""

@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 from components.camera import Camera, Viewport
 from components.field import Vector
 from components.kind import all_points
+from components.menu import Menu
 from components.model import Model
 from components.slider import Place, SliderStack, under
 from components.toolbar import Toolbar
@@ -22,6 +23,10 @@ COMFORTABLE_HEIGHT, LEAST_HEIGHT = 480.0, 240.0  # points that are left in a win
 BETWEEN = " " * 5  # the steps of a hint
 MARGIN = 110.0  # points around a fitted model, room for supports, diagrams and labels
 COLUMN, COLUMN_SHARE, WIDEST_COLUMN = 306.0, 0.34, 340.0  # points, share of the canvas: the column of panels
+SIDE, LEAST_MODEL = (
+    332.0,
+    240.0,
+)  # points: boxes to type into; what the model keeps beside them, or they take all
 LEAST_BESIDE, LEAST_ABOVE = 520.0, 300.0  # points of a canvas's width or height that is shared with panels
 
 
@@ -125,7 +130,7 @@ class Shape:
 class View:
     """How one model is shown in one viewport.
 
-    heading: the word top left in red ("Pause"), or "". all_diagrams: force diagrams of all elements.
+    heading: the word top left ("Pause"), or "". all_diagrams: force diagrams of all elements.
     legend: show the meaning of colours. help: the page of keys that is shown, from 1; 0: none. keys: its lines
     (key, meaning). more_keys: there is another page.
     pointer: the pixel under the mouse, or None outside. pixel_ratio: device pixels per point (HiDPI).
@@ -135,12 +140,15 @@ class View:
     preview: what is being drawn. toolbar: what can be clicked at the left edge; hidden with the legend.
     flashes: points (m) where particles collided just now, shape (k, 2).
     sliders: what can be moved at the lower left; none with the legend hidden.
+    menu: the list of what can be done somewhere, while it is open.
     theme: the name of its colours. readouts: panels at the right edge; hidden with the legend.
     shape: a mechanism or mode that is drawn over the model, with its title below the caption.
+    largest_force: that (kN) of pictures beside this one, with which its arrows share a scale; 0: none.
     theory, energy: show theory beside the run, and its energy account, among them.
     fitted: the camera shows the whole model, and follows the size of the window until a person zooms or pans.
     shares: the model is fitted beside the panels; else panels may cover it. since: by title, the rank in which each
     panel appeared.
+    aside: the part of the window, at its left or right, that boxes to type into take; None: none.
     """
 
     camera: Camera = field(default_factory=Camera)
@@ -161,14 +169,17 @@ class View:
     page: Page | None = None
     toolbar: Toolbar = field(default_factory=Toolbar)
     sliders: SliderStack = field(default_factory=SliderStack)
+    menu: Menu | None = None
     theme: str = "light"
     readouts: tuple[Readout, ...] = ()
     since: dict[str, int] = field(default_factory=dict)
+    largest_force: float = 0.0
     theory: bool = False
     energy: bool = False
     shape: Shape | None = None
     fitted: bool = False
     shares: bool = False
+    aside: Viewport | None = None
 
     def fit(self, model: Model) -> None:
         """Let the camera show the whole model."""
@@ -177,10 +188,14 @@ class View:
 
     def follow(self, model: Model) -> None:
         """Fit the model anew if it has left the picture, unless somebody looks closer."""
+        if self.fitted and not self.shows(model):
+            self.fit(model)
+
+    def shows(self, model: Model) -> bool:
+        """True if nothing of the model lies outside the room for it."""
         room, (x, y) = self.room, self.camera.to_pixels(drawn_places(model)).T
         across = (x >= room.left) & (x <= room.left + room.width)
-        if self.fitted and not (across & (y >= room.top) & (y <= room.top + room.height)).all():
-            self.fit(model)
+        return bool((across & (y >= room.top) & (y <= room.top + room.height)).all())
 
     def share(self, model: Model, *, shares: bool) -> None:
         """Leave room for panels, or not, and fit the model into what is left, unless somebody looks closer."""
@@ -201,7 +216,24 @@ class View:
     def canvas(self) -> Viewport:
         """The part of the viewport that is left for the model."""
         window, taken = self.camera.viewport, self.strip.width
-        return Viewport(window.left + taken, window.top, window.width - taken, window.height)
+        left, right = window.left + taken, window.left + window.width
+        if self.aside is not None and self.aside.left > left:
+            right = self.aside.left
+        elif self.aside is not None:
+            left = self.aside.left + self.aside.width
+        return Viewport(left, window.top, right - left, window.height)
+
+    def beside(self, *, at_left: bool) -> Viewport | None:
+        """Where boxes to type into stand beside the model; None where they would leave too little of it."""
+        c, width = self.canvas, round(SIDE * self.pixel_ratio)
+        if c.width - width < LEAST_MODEL * self.pixel_ratio:
+            return None
+        return replace(c, left=c.left if at_left else c.left + c.width - width, width=width)
+
+    def covers(self, pixel: Vector) -> bool:
+        """True if the toolbar, a slider or boxes to type into are at a pixel of the window, not the model."""
+        taken = self.strip.contains(pixel) or under(self.slider_places, pixel) is not None
+        return taken or (self.aside is not None and self.aside.contains(pixel))
 
     @property
     def slider_places(self) -> list[Place]:
@@ -211,10 +243,6 @@ class View:
         return self.sliders.places(
             c if beside else replace(c, height=c.height - panels.height), self.pixel_ratio
         )
-
-    def covers(self, pixel: Vector) -> bool:
-        """True if the toolbar or a slider lies over the model there."""
-        return self.strip.contains(pixel) or under(self.slider_places, pixel) is not None
 
     @property
     def panels(self) -> Viewport:

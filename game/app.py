@@ -8,6 +8,7 @@ import itertools
 import os
 import sys
 import time
+from collections.abc import Sequence
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
@@ -25,7 +26,13 @@ from components.view import MAGNIFICATIONS, MARGIN, Plot, View, drawn_places, ma
 from game.documents import library, models
 from game.documents.autosave import Autosave, unkept
 from game.documents.open_documents import ModelFile, OpenDocument
-from game.documents.preferences import DEFAULT_THEME, preferred_magnification, preferred_theme, remember
+from game.documents.preferences import (
+    DEFAULT_THEME,
+    preferred_magnification,
+    preferred_place,
+    preferred_theme,
+    remember,
+)
 from game.editor.frame import Frame
 from game.editor.scenes.load import Load
 from game.interrupts import closed_by_signals
@@ -48,12 +55,14 @@ from systems.render.theme import load_theme
 
 FRAME_RATE = 60  # Hz
 FIRST_SIZE = (1000, 720)  # points
+FRAME = (16, 80)  # points that the frame of a window and the bars of a desktop take at least beside it
 SMALLEST_SIZE = (320, 240)
 SELDOM = 1_000_000  # new objects, after which the garbage collector runs even while a person works
 MANY_NEW = 20_000  # new objects, from which on it runs while nothing happens
 DISPLAYS = ("DISPLAY", "WAYLAND_DISPLAY")  # where Linux says what to draw on
 UNSEEN = ("offscreen", "dummy")  # drivers of SDL without a visible window
 
+Place = tuple[int, int, int, int]  # left, top, width and height of a window (points)
 Points = NDArray[np.float64]
 Colours = NDArray[np.uint8]
 
@@ -78,7 +87,8 @@ def open_window(
     """
     path, source = record
     autosave, trouble = _autosave()
-    app = App(model, file, autosave, theme or preferred_theme(), Preparation(), preferred_magnification())
+    magnification, place = preferred_magnification(), preferred_place()
+    app = App(model, file, autosave, theme or preferred_theme(), Preparation(), magnification, place)
     app.session.lesson = lesson
     app.session.notice = trouble or app.session.notice
     if path is not None:
@@ -114,8 +124,31 @@ def _find_display() -> None:
         raise NoDisplay("the display cannot be reached")
 
 
+def place_on(
+    displays: Sequence[tuple[int, int]], place: Place | None, *, seen: bool = True
+) -> tuple[tuple[int, int], tuple[int, int] | None]:
+    """Size and position (None: wherever the desktop wants it) of a window that opens (points).
+
+    displays: sizes, the first with the main menu. place: where it was last. seen: it has a frame and bars beside it.
+    On a single display the window opens inside it; where several are relative to each other is not known.
+    """
+    (width, height), first = displays[0], magnified(float(displays[0][1]), float(displays[0][1]), 1.0)
+    beside = FRAME if seen else (0, 0)
+    most = max(width - beside[0], SMALLEST_SIZE[0]), max(height - beside[1], SMALLEST_SIZE[1])
+    if place is None:
+        return (min(round(first * FIRST_SIZE[0]), most[0]), min(round(first * FIRST_SIZE[1]), most[1])), None
+    left, top, wide, high = place
+    wide, high = max(wide, SMALLEST_SIZE[0]), max(high, SMALLEST_SIZE[1])
+    if len(displays) > 1:
+        across, down = sum(w for w, _ in displays), sum(h for _, h in displays)
+        there = -across < left < across and -down < top < down
+        return (min(wide, across), min(high, down)), (left, top) if there else None
+    wide, high = min(wide, width), min(high, height)
+    return (wide, high), (min(max(left, 0), width - wide), min(max(top, 0), height - high))
+
+
 class App:
-    """The window and its session. preparation: compiles in another process; without it, compiling stops the frames."""
+    """The window and its session. place: where it was last. preparation: compiles in another process; without it, compiling stops the frames."""
 
     def __init__(
         self,
@@ -125,14 +158,16 @@ class App:
         theme: str = DEFAULT_THEME,
         preparation: Preparation | None = None,
         magnification: float = 1.0,
+        place: Place | None = None,
     ) -> None:
         os.environ.setdefault("SDL_WINDOWS_DPI_AWARENESS", "permonitorv2")
         try:
             _find_display()
-            self._display_height = float(pygame.display.get_desktop_sizes()[0][1])
-            first = magnified(self._display_height, self._display_height, 1.0)
-            size = round(first * FIRST_SIZE[0]), round(first * FIRST_SIZE[1])
-            self.window = pygame.Window("Pinjoint", size, resizable=True, allow_high_dpi=True)
+            displays = pygame.display.get_desktop_sizes()
+            self._display_height = float(displays[0][1])
+            size, position = place_on(displays, place, seen=pygame.display.get_driver() not in UNSEEN)
+            at = {} if position is None else {"position": position}
+            self.window = pygame.Window("Pinjoint", size, resizable=True, allow_high_dpi=True, **at)
         except pygame.error as error:
             raise NoDisplay(str(error)) from None
         self.window.minimum_size = SMALLEST_SIZE
@@ -171,12 +206,18 @@ class App:
                         failures += Performance(self, lesson).play()
         finally:
             gc.set_threshold(*thresholds)
+        self._remember_place()
         if self.autosave is not None:
             self.autosave.close(self.session.documents)
         if self.preparation is not None:
             self.preparation.close()
         self.close()
         return failures
+
+    def _remember_place(self) -> None:
+        """Keep where the window is for the next time, if somebody saw it and it does not fill the screen."""
+        if not self._full_screen and pygame.display.get_driver() not in UNSEEN:
+            remember("window", [*self.window.position, *self.window.size])
 
     def close(self) -> None:
         """Close the window at once; the garbage collector would do so later, together with the display of the next one."""

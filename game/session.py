@@ -22,22 +22,28 @@ from components.table import Table
 from components.view import View
 from components.wording import quoted
 from game.documents import models
+from game.documents.document import ModelError
 from game.documents.open_documents import ModelFile, Source, file_of
 from game.editor.actions import ACTIONS, WHILE_DRAWING
 from game.editor.context import FAULTS, Context, Stage
+from game.editor.dropping import open_dropped
 from game.editor.frame import Actions, Frame, HeadlessFrame, ShowView
+from game.editor.menu import IN_MENU
+from game.editor.routing import Layer, for_tools, layer, meaning
 from game.editor.scenes import all_scenes, scene_systems
+from game.editor.scenes.files import FileScene
 from game.editor.sliders import slider_stack
 from game.editor.toolbar import toolbar_of
 from game.editor.view_model import show
 from game.mods import load_all
 from game.mods.heeding import blamed_on_mod, heeding_mods
 from game.scripts.expectation import expect
+from game.scripts.script import ScriptError
 from systems.base import EVENT_INTERVAL, Phase, StopReason, System
 from systems.catalogue import SYSTEMS, step_systems
 from systems.edit import Refusal
 from systems.edit.pull import Pull
-from systems.input.bindings import FORMS, TEXT, action_for, key_named
+from systems.input.bindings import FILES, FORMS, TEXT, key_named
 from systems.run.simulation import Simulation
 from systems.run.system import Time
 from systems.run.watch import watched
@@ -47,14 +53,6 @@ if TYPE_CHECKING:  # they import scipy
     from systems.statics.path import Curve
     from systems.statics.verify import Comparison
 
-CLICKS = ("click", "ctrl+click", "drag", "ctrl+drag")  # the pointer may slip a little in a click on a button
-ON_TOOLBAR = (*CLICKS, "wheel up", "wheel down")
-ON_SLIDER = {
-    **dict.fromkeys(("click", "ctrl+click"), "click slider"),
-    **dict.fromkeys(("drag", "ctrl+drag"), "drag slider"),
-    "wheel up": "slider up",
-    "wheel down": "slider down",
-}
 FARTHEST = 1e9  # pixels from the corner of the window to which a click may be
 LARGEST_SIDE, LARGEST_RATIO = 65_536, 64.0  # of a window, in pixels, and in pixels per point
 DEFAULT_LIMIT = 60.0  # s of simulated time in which a model is expected to come to rest
@@ -88,6 +86,7 @@ class Session(Context):
             None  # called with every press; set by a recorder
         )
         self.on_resize: Callable[[], None] | None = None  # called after every change of size; set by a recorder
+        self._clicked: Layer | None = None  # what the last click was for
         self._blank = Model()  # what the footer is drawn over
         self.offer_tools()
         self.begin_document()
@@ -162,6 +161,8 @@ class Session(Context):
         limit: float = DEFAULT_LIMIT,
     ) -> str:
         """Let time pass: until "rest" (at most `limit` s of simulated time), by `time` s, or by `steps`.
+
+        Exactly so many steps are taken unless the run ends; the part of one up to an impact counts as a step.
 
         Returns "at rest", "time reached", "limit reached" or "diverged"; `message` says more. Raises ValueError, and
         ModError if a mod fails meanwhile: the run stops where it did, and a further one goes on without the mod. An
@@ -264,6 +265,8 @@ class Session(Context):
             raise ValueError(missing("actions", name, ACTIONS))
         if name not in WHILE_DRAWING:
             self.leave_gesture()
+        if name not in IN_MENU:
+            self.view.menu = None
         self.exaggerate()
         try:
             ACTIONS[name](self, pixel if pixel is not None else self.pointer)
@@ -274,9 +277,9 @@ class Session(Context):
         self.make_room()
 
     def offer_tools(self) -> None:
-        """Let the toolbar and the sliders show what can be done now; behind a panel they stay as they were."""
+        """Let toolbar and sliders show what can be done now; where they are not seen they stay as they were."""
         view = self.view
-        if self.scene not in FORMS:
+        if not self.scenes.active.covers(self):
             room = view.room
             view.toolbar, view.sliders = toolbar_of(self), slider_stack(self)
             if view.room != room and view.fitted:
@@ -294,32 +297,66 @@ class Session(Context):
         if key.startswith(TEXT):
             self.type(key.removeprefix(TEXT))
             return
+        if key.startswith(FILES):
+            self.notice = ""
+            if self.on_press is not None:
+                self.on_press(key, pixel)
+            self.open_files(key.removeprefix(FILES).splitlines())
+            return
         pixel = self.pointer if pixel is None else _near(pixel)
-        name = self._action_at(key, pixel)
+        if key in ("click", "double click") and self._slipped(key, pixel):
+            return
+        (name, at), pressed = meaning(self, key, pixel), pixel
         if key == "escape" and self.fault and self.scene not in FORMS:
             self.faults_seen = len(FAULTS)
         elif name is not None:
             self.notice = ""
             if self.on_press is not None:
-                self.on_press(key, pixel)
+                self.on_press(key, pressed)
             if self.time_passes:
                 self.get_ready()
-            self.act(name, pixel)
+            left = self._left_for_tools() if for_tools(self, key, pixel) else ""
+            if name != left:  # the tool that opens a scene closes it, too
+                self.act(name, at)
 
-    def _action_at(self, key: str, pixel: Vector) -> str | None:
-        """The action of a key or button with the pointer at a pixel; clicks on toolbar and sliders are for those.
+    def _left_for_tools(self) -> str:
+        """Leave a scene in which tools do not act, for the one in which they do; returns its name, or ""."""
+        scene, tools = self.scene, self.scenes.active.tools
+        if tools == scene:
+            return ""
+        self.scenes.request(*dict.fromkeys(("pause", tools)))
+        self.scenes.apply(self)
+        self.offer_tools()
+        return scene
 
-        Where the keys are listed, Escape leaves the list and nothing else.
+    def _slipped(self, key: str, pixel: Vector) -> bool:
+        """True for the second click of a double click whose first one led elsewhere: it is not meant for what is there."""
+        first, self._clicked = self._clicked, layer(self, pixel)
+        return key == "double click" and first not in (None, self._clicked)
+
+    def open_files(self, paths: Iterable[str | Path]) -> None:
+        """Open model files and play recorded sessions, as when they are dropped on the window; undo goes back.
+
+        What is wrong with a file is said in `notice`, and the others are opened.
         """
-        if key == "escape" and self.view.help:
-            return "close help"
-        if key not in ON_TOOLBAR or self.scene in FORMS or not self.view.covers(pixel):
-            return action_for(self.scene, key)
-        if not self.view.strip.contains(pixel):
-            return ON_SLIDER[key]
-        buttons = self.view.toolbar.buttons(self.view.camera.viewport, self.view.pixel_ratio)
-        hit = (button.tool for button in buttons if button.contains(pixel))
-        return next((tool.action for tool in hit if tool.enabled and key in CLICKS), None)
+        self.view.menu = None
+        opened, problems = [], []
+        for path in map(Path, paths):
+            try:
+                open_dropped(self, path)
+            except (ModelError, ScriptError) as error:
+                problems.append(str(error))
+            else:
+                opened.append(path.stem)
+        if opened and self.scene != "pause":  # not even one that its keys would lead back to
+            self.scenes.request("pause")
+            self.scenes.apply(self)
+        said = [f"Opened {' and '.join(opened)}; Ctrl+Z goes back."] if opened else []
+        self.notice = " ".join([*problems, *said])
+        scene = self.scenes.active
+        if isinstance(scene, FileScene):
+            scene.say(self.notice)
+        self.offer_tools()
 
     def resize(self, width: int, height: int, pixel_ratio: float = 1.0) -> None:
         """Adapt to a new size of the window, in pixels, with `pixel_ratio` pixels per point. Raises ValueError."""
@@ -370,7 +407,7 @@ class Session(Context):
         return x, y
 
     def click(self, x: float, y: float, button: str = "click") -> None:
-        """Click at a point of the model (m); `button` may be "ctrl+click"."""
+        """Click at a point of the model (m); `button` may be "ctrl+click", "double click" or "right click"."""
         self.press(button, self.point(x, y))
 
     def drag(self, start: Vector, end: Vector, button: str = "click") -> None:
@@ -409,7 +446,7 @@ class Session(Context):
     def stages(self) -> Sequence[Stage]:
         """All that is drawn: models and forms of the active scene, each in its view, toolbar and footer."""
         stages = list(self.scenes.active.stages(self))
-        if self.scene not in FORMS:
+        if not self.scenes.active.covers(self):
             stages.append((self.view.toolbar, self.view))
         if self.footer is not None:
             stages.append((self._blank, self.footer))

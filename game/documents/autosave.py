@@ -1,4 +1,4 @@
-"""Autosave: unsaved work is written to recovery files every few seconds, so that a crash loses little."""
+"""Autosave: unsaved work is written to recovery files every few seconds, and stays in them when a window closes."""
 
 from __future__ import annotations
 
@@ -26,7 +26,6 @@ from systems.base import Phase, System
 
 INTERVAL = 2.0  # s between recovery files of the same model, at least
 SHARE = 0.2  # of one core at most is spent on writing them; 10⁵ rods take less than 0.1 s
-LAST_SESSION = "last session"  # the model that keeps edits that nobody saved
 
 
 def recovered_name(path: Path) -> str:
@@ -43,7 +42,7 @@ def unkept(folder: Path, error: OSError) -> str:
 
 
 class Autosave(System):
-    """Writes the unsaved work of a window to files that only a crash leaves behind.
+    """Writes the unsaved work of a window to files that outlive it, until somebody saves or discards what is in them.
 
     The folder holds, for every running program, a lock "ID.lock" that its end releases, however it ends,
     and its recovery files "ID.NUMBER.NAME.json".
@@ -70,7 +69,7 @@ class Autosave(System):
         self._locks = [lock] if lock is not None else []
         self._left = self._orphans()
 
-    # --- what a crash left behind --------------------------------------------------------------------
+    # --- what other windows left ---------------------------------------------------------------------
 
     def _orphans(self) -> list[Path]:
         """Recovery files of programs that are not running any more, the newest first; they are ours now."""
@@ -85,7 +84,7 @@ class Autosave(System):
         return library.newest_first(path for path in files if path.name.partition(".")[0] in ours)
 
     def left(self) -> list[Path]:
-        """The recovery files that a crash left behind."""
+        """The recovery files that windows left behind which are gone now, the newest first."""
         return [path for path in self._left if path.exists()]
 
     def take_over(self, path: Path, opened: OpenDocument) -> None:
@@ -96,7 +95,7 @@ class Autosave(System):
         self._written[opened] = -1
 
     def discard(self) -> None:
-        """Delete the recovery files that a crash left behind."""
+        """Delete the recovery files that windows left behind."""
         for path in self._left:
             _delete(path)
         self._left = []
@@ -117,8 +116,8 @@ class Autosave(System):
         for opened in itertools.islice(changed, 1):
             self._write(opened)
 
-    def _write(self, opened: OpenDocument) -> None:
-        """Take the model as it is now; a thread puts it into the file."""
+    def _write(self, opened: OpenDocument) -> threading.Thread:
+        """Take the model as it is now; a thread, which is returned, puts it into the file."""
         if opened.recovery is None:
             self._count += 1
             name = opened.file.name.encode()[: library.MOST_BYTES].decode(errors="ignore")
@@ -127,6 +126,7 @@ class Autosave(System):
         still = _Still(opened.model)
         self._thread = threading.Thread(target=self._put, args=(opened.recovery, still), daemon=True)
         self._thread.start()
+        return self._thread
 
     def _put(self, path: Path, still: _Still) -> None:
         began = time.monotonic()
@@ -146,15 +146,14 @@ class Autosave(System):
             opened.recovery = None
 
     def close(self, open_ones: Iterable[OpenDocument]) -> None:
-        """A clean end: no recovery file stays. Edits that nobody saved are kept as the model "last session"."""
+        """A clean end: of every model with edits that nobody saved the recovery file stays, and no other."""
         if self._thread is not None:
             self._thread.join()
         edited = [opened for opened in open_ones if opened.edited and opened.model.particles.count]
-        with contextlib.suppress(models.ModelError, OSError):
-            for opened in edited[-1:]:
-                library.models_folder().mkdir(parents=True, exist_ok=True)
-                models.save(opened.model, library.path_of(LAST_SESSION))
-        for opened in tuple(self._written):
+        for opened in edited:
+            if self._written.get(opened) != opened.newest:
+                self._write(opened).join()
+        for opened in self._written.keys() - set(edited):
             self._remove(opened)
         for lock in self._locks:
             path = Path(lock.name)

@@ -70,7 +70,8 @@ def without_mods(status: str, left_out: Sequence[str]) -> tuple[str, str]:
 class OpenDocument:
     """A model and all that belongs to it while it is open.
 
-    beginning: the state from which time began to pass. saved: the revision of what its file holds.
+    beginning: the state from which time began to pass. undeformed: that in which it was neither run nor settled yet;
+    None until then, or if its file does not say. saved: the revision of what its file holds.
     recovery: the file that keeps unsaved work against a crash.
     """
 
@@ -82,6 +83,7 @@ class OpenDocument:
         self.history = History(model, self.simulation, on_change=self._changed)
         self.live = RealTimeRunner(self.simulation)
         self.beginning: Snapshot | None = None
+        self.undeformed: Snapshot | None = None
         self.assessment = Assessment(model, self.simulation)
         self.shapes = Shapes(model)
         self.exaggeration = Exaggeration(model)
@@ -104,23 +106,58 @@ class OpenDocument:
         """True if no time has passed, or restarting took it back."""
         return self.beginning is None or not self.simulation.passed_since(self.beginning)
 
+    @property
+    def is_undeformed(self) -> bool:
+        """True if it was neither run nor settled, or that was taken back."""
+        if self.undeformed is None:
+            return bool(self.model.clock.time == 0.0)
+        if self.simulation.passed_since(self.undeformed):
+            return False
+        names = ("particles.displacement", "rods.plastic_strain")
+        return all(
+            np.array_equal(self.undeformed.column(self.model, name), self.model.column(name)) for name in names
+        )
+
+    def _note_undeformed(self) -> None:
+        """Time is about to pass, or the structure to settle."""
+        if self.is_undeformed:
+            self.undeformed = self.simulation.present()
+
     def note_beginning(self) -> None:
         """Time is about to pass: if none has passed yet, it begins at the present state."""
+        self._note_undeformed()
         if self.at_beginning:
             self.beginning = self.simulation.present()
             self.assessment.begin(self.beginning)
 
     def restart(self) -> None:
-        """Go back to the beginning of time, keeping all edits; the log ends the run."""
-        assert self.beginning is not None
+        """Go back to before the first run and the first settling, keeping all edits; the log ends the run.
+
+        Where the file does not say how that was, to the original positions, at rest.
+        """
         self.history.end_run()
+        begun = self.undeformed or Snapshot.initial(self.model)
+        if self.model.clock.time == begun.columns["clock.time"][0]:
+            self._unsettle(begun)
+            return
         self.history.begin_run()
-        self.beginning.restore(self.model)
+        begun.restore(self.model)
         particles = self.model.particles
         self.model.writable("particles.velocity")[particles.fixed] = 0.0  # supported since
         self.simulation.start_anew()
         self.timeline.clear()
         self.history.end_run()
+
+    def _unsettle(self, begun: Snapshot) -> None:
+        """Take back what settling did while no time has passed: an edit, since a run is entered by its time."""
+        model = self.model
+        with model.transaction("restart"):
+            for name in ("particles.displacement", "rods.plastic_strain"):
+                model.give(name, begun.column(model, name))
+            velocity = begun.column(model, "particles.velocity").copy()
+            velocity[model.particles.fixed] = 0.0
+            model.give("particles.velocity", velocity)
+            model.clock.collision_state = begun.columns["clock.collision_state"][0]
 
     def settle(self, factors: Sequence[float] | float) -> tuple[str, str]:
         """Go to the static equilibrium at each load factor; returns its status and the account of the way there.
@@ -129,6 +166,7 @@ class OpenDocument:
         """
         from systems.statics.settle import settle  # scipy
 
+        self._note_undeformed()
         model, clock = self.model, self.model.clock
         found, strain = settle(model, factors), model.rods.plastic_strain.copy()
         with model.transaction("settle"):
@@ -199,8 +237,8 @@ class OpenDocuments:
         """The document in use."""
         return self._documents[self._at]
 
-    def add(self, model: Model, file: ModelFile) -> None:
-        """Open a model; the document in use until now stays open if it has unsaved work.
+    def add(self, model: Model, file: ModelFile, *, keep: bool = False) -> None:
+        """Open a model; the document in use until now stays open if it has unsaved work, or is to be kept.
 
         What could be repeated in that one is forgotten, as by any edit. Work in later documents, from which undo
         came back, is repeated, and they stand before the new one.
@@ -210,7 +248,7 @@ class OpenDocuments:
         earlier, later = self._documents[: self._at], self._documents[self._at + 1 :]
         for document in later:
             document.history.redo_all()
-        here = [self.current] if self.current.unsaved else []
+        here = [self.current] if keep or self.current.unsaved else []
         self._documents = [*earlier, *later, *here, OpenDocument(model, self._schedule, self._pull, file)]
         self._at = len(self._documents) - 1
 

@@ -16,6 +16,7 @@ from systems.render.theme import theme_names
 
 CONFIG_VARIABLE = "PINJOINT_CONFIG"  # names another folder than the system's own
 DEFAULT_THEME = "light"
+FARTHEST = 100_000  # points that a window is away from a corner of the display, or wide, at most
 PUT_ASIDE = "settings-unreadable.json"
 
 
@@ -52,8 +53,19 @@ def preferred_magnification() -> float:
     return float(factor) if factor in MAGNIFICATIONS else 1.0
 
 
-def remember(entry: str, choice: str | float) -> None:
-    """Keep a choice, the "theme" or the "magnification"; where nothing can be written, it is not kept.
+def preferred_place() -> tuple[int, int, int, int] | None:
+    """Left, top, width and height of the window (points) when it was closed last; None where that cannot be read."""
+    place = _read().get("window")
+    if not isinstance(place, list) or len(place) != 4:
+        return None
+    if not all(type(number) is int and abs(number) <= FARTHEST for number in place):
+        return None
+    left, top, width, height = place
+    return left, top, width, height
+
+
+def remember(entry: str, choice: str | float | list[int]) -> None:
+    """Keep a choice, the "theme", the "magnification" or the place of the "window"; where nothing can be written, it is not kept.
 
     A file that cannot be read, such as one with a slip in keys written by hand, is put aside.
     """

@@ -8,7 +8,7 @@ from __future__ import annotations
 import operator
 from collections.abc import Callable, Iterator, Sequence
 from pathlib import Path
-from typing import ClassVar
+from typing import ClassVar, TypeVar
 
 from components.camera import Viewport
 from components.field import Vector
@@ -38,6 +38,8 @@ from systems.run.simulation import Simulation
 from systems.run.system import Time
 from systems.schedule import Schedule
 from systems.statics.events import Event
+
+H = TypeVar("H", bound=Handle)
 
 Stage = tuple[Model | Form | Toolbar, View]  # what is shown, and how
 
@@ -108,7 +110,7 @@ class SceneError(ValueError):
 class Scene:
     """One mode. Systems say by their `scenes` in which they are active; keys are in input/bindings.py.
 
-    heading: the word shown top left in red. targets: scenes that may follow. sources: further scenes that
+    heading: the word shown top left. targets: scenes that may follow. sources: further scenes that
     this one may follow, which need not know it. systems: names, or patterns such as "physics.*", of systems that
     are active in it although they do not name it; PHYSICS lists those that let time pass.
     mod: the mod that brought it, if one did; set by the program.
@@ -120,6 +122,11 @@ class Scene:
     sources: ClassVar[tuple[str, ...]] = ()
     systems: ClassVar[tuple[str, ...]] = ()
     mod: Mod | None = None
+
+    @property
+    def tools(self) -> str:
+        """The scene whose tools the toolbar offers; one in which they do not act is left when one is clicked."""
+        return self.name
 
     @property
     def message(self) -> str:
@@ -151,6 +158,10 @@ class Scene:
     def fit(self, context: Context) -> None:
         """Show everything."""
         context.view.fit(context.model)
+
+    def covers(self, context: Context) -> bool:
+        """True if boxes or pictures of models take the whole window, the toolbar included."""
+        return False
 
     def helped(self, context: Context) -> Viewport:
         """The part of the window for the list of keys."""
@@ -303,10 +314,10 @@ class Context:
         else:
             self.adopt(models.load(source), file_of(source))
 
-    def adopt(self, model: Model, file: ModelFile = ModelFile()) -> None:  # noqa: B008
-        """Open a model. A document with unsaved work stays open, and undo goes back to it."""
+    def adopt(self, model: Model, file: ModelFile = ModelFile(), *, keep: bool = False) -> None:  # noqa: B008
+        """Open a model. A document with unsaved work, or any to `keep`, stays open, and undo goes back to it."""
         self.leave_gesture()
-        self.documents.add(model, file)
+        self.documents.add(model, file, keep=keep)
         self.begin_document()
 
     def begin_document(self) -> None:
@@ -403,8 +414,8 @@ class Context:
         return status
 
     def restart(self) -> None:
-        """Go back to the beginning of time, keeping all edits. Can be undone."""
-        if not self.at_beginning:
+        """Go back to before it was run or settled, keeping all edits. Can be undone."""
+        if not self.document.is_undeformed:
             self.document.restart()
             self._go_on()
 
@@ -504,6 +515,10 @@ class Context:
     def selected(self) -> list[Handle]:
         """The selected elements, in order of creation."""
         return self.model.tagged(Selected)
+
+    def selected_of(self, *kinds: type[H]) -> list[H]:
+        """Those of the selected elements that are of these kinds."""
+        return [handle for handle in self.selected if isinstance(handle, kinds)]
 
     @property
     def has_selected(self) -> bool:

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from typing import TYPE_CHECKING
 
+from components import written
 from components.field import FieldError
 from components.handle import Handle
 from components.particle import Particle
@@ -34,7 +35,7 @@ def own_readouts(context: Context) -> Iterator[Readout]:
 
 def _energy(context: Context) -> Readout:
     rows = [
-        (name.replace("_", " "), f"{value:.5g} J".replace("-", "−"))
+        (name.replace("_", " "), f"{written.given(value, 5)} J")
         for name, value in context.energy.as_dict().items()
     ]
     error = None if context.busy else context.document.assessment.error()  # which takes a run of its own
@@ -119,7 +120,7 @@ def _beside(comparison: Comparison, quantity: str, place: tuple[int, ...]) -> Re
     rows = []
     for way, title in _WAYS.items():
         value, error = getattr(row, way), getattr(row, f"{way}_error", None)
-        clear = 0.0 if value is None or abs(value) <= nothing else factor * value
-        shown = "—" if value is None else f"{clear:.7g} {unit}".replace("-", "−")
+        clear = 0.0 if value is not None and abs(value) <= nothing else value
+        shown = "—" if clear is None else f"{written.given(factor * clear, 7)} {unit}"
         rows.append((title if error is None else f"{title}, error {error:.1e}", shown))
     return Readout(row.title[:1].upper() + row.title[1:], tuple(rows))

@@ -1,10 +1,12 @@
-"""Toolbar: the buttons of the active scene, from the table of keys."""
+"""Toolbar: the buttons of the active scene, from the table of keys; what is on, and what would do something now."""
 
 from __future__ import annotations
 
 from collections.abc import Callable
 from typing import Any
 
+from components.particle import Particle
+from components.rod import Rod
 from components.tags import DiagramShown
 from components.toolbar import Tool, Toolbar
 from game.editor.context import Context
@@ -16,16 +18,19 @@ Condition = Callable[[Context], bool]
 
 def toolbar_of(context: Context) -> Toolbar:
     """The buttons of the active scene; those whose keys would do nothing now are not enabled."""
-    groups = toolbar(context.scene)
-    return Toolbar(tuple(tuple(_tool(context, binding) for binding in group) for group in groups))
+    groups = toolbar(context.scenes.active.tools)
+    return Toolbar(tuple(tuple(tool(context, binding) for binding in group) for group in groups))
 
 
-def _tool(context: Context, binding: Binding) -> Tool:
+def tool(context: Context, binding: Binding, title: str = "") -> Tool:
+    """What a button or an entry of a menu says of an action now; title: where that of the table does not fit."""
     action = binding.action
     pressed = action == _in_hand(context) or (action in _PRESSED and _PRESSED[action](context))
-    enabled = context.scene in binding.scenes and (action not in _NEEDS or _NEEDS[action](context))
+    enabled = context.scenes.active.tools in binding.scenes and (
+        action not in _NEEDS or _NEEDS[action](context)
+    )
     icon = "pause" if action == "toggle run" and pressed else action
-    return Tool(action, binding.title, binding.key, icon, pressed, enabled)
+    return Tool(action, title or binding.title, binding.key, icon, pressed, enabled)
 
 
 def _in_hand(context: Context) -> str:
@@ -33,7 +38,25 @@ def _in_hand(context: Context) -> str:
     return context.gesture.tool if isinstance(context.gesture, Drawing) else context.view.tool
 
 
+def _held(*fixed: bool) -> Condition:
+    """Whether all selected particles have a support."""
+
+    def holds(context: Context) -> bool:
+        particles = context.selected_of(Particle)
+        return bool(particles) and all(particle.fixed == fixed for particle in particles)
+
+    return holds
+
+
+def _are_cables(context: Context) -> bool:
+    rods = context.selected_of(Rod)
+    return bool(rods) and all(rod.tension_only for rod in rods)
+
+
 def _shows_diagrams(context: Context) -> bool:
+    if context.has_selected:
+        shown = {handle.entity for handle in context.model.tagged(DiagramShown)}
+        return {handle.entity for handle in context.selected_of(Particle, Rod)} <= shown
     return context.view.all_diagrams or context.model.any_tagged(DiagramShown)
 
 
@@ -49,11 +72,18 @@ def _guided(condition: Callable[[Any], bool]) -> Condition:
 
 # By action that switches something: whether it is on.
 _PRESSED: dict[str, Condition] = {
-    "toggle run": lambda context: context.scene == "simulation",
+    "toggle run": lambda context: context.scenes.active.tools == "simulation",
     "toggle diagrams": _shows_diagrams,
     "toggle diagrams of sets": _shows_diagrams,
+    "properties": lambda context: context.scene == "properties",
     "toggle theory": lambda context: context.view.theory,
     "toggle energy": lambda context: context.view.energy,
+    "next shape": lambda context: context.view.shape is not None,
+    "free": _held(False, False),
+    "pin": _held(True, True),
+    "hold y": _held(False, True),
+    "hold x": _held(True, False),
+    "toggle cable": _are_cables,
     "toggle help": lambda context: context.view.help > 0,
 }
 # By action: whether it would do something now.
@@ -62,7 +92,7 @@ _NEEDS: dict[str, Condition] = {
     "redo": lambda context: context.can_redo,
     **dict.fromkeys(("copy", "duplicate", "delete"), lambda context: context.has_selected),
     "step back": lambda context: context.timeline.first < context.model.clock.steps,
-    "restart": lambda context: not context.at_beginning,
+    "restart": lambda context: not context.document.is_undeformed,
     **dict.fromkeys(
         ("settle", "support", "force", "velocity"), lambda context: context.model.particles.count > 0
     ),

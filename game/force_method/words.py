@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import TYPE_CHECKING, overload
 
+from components import written
 from components.view import BETWEEN
 from game.force_method import PARTS
 
@@ -156,6 +157,7 @@ class Superposition(Sequence[tuple[str, ...]]):
         total = solution.superposed.axial_force
         real, base = solution.real.axial_force, solution.base.axial_force
         self._names, self._forces, self._residual = names, (real, base, total - base), total - real
+        self._rounding = written.ROUNDING * float(abs(real).max(initial=0.0))
 
     def __len__(self) -> int:
         return 1 + len(self._names)
@@ -173,16 +175,16 @@ class Superposition(Sequence[tuple[str, ...]]):
             return ("kN", "set 1", "= set 2", "+ set 3", "residual")
         rod = place - 1
         forces = (signed(column[rod]) for column in self._forces)
-        return (self._names[rod], *forces, _power(float(self._residual[rod])))
-
-
-def _power(number: float) -> str:
-    return "0" if number == 0.0 else f"{number:.0e}".replace("-", "−")
+        return (
+            self._names[rod],
+            *forces,
+            written.number(float(self._residual[rod]), 1, nothing=self._rounding),
+        )
 
 
 def _mm(metres: float, *, bracket: bool = False) -> str:
     """Metres as millimetres to four digits; a negative number in brackets, if it stands behind a sign."""
-    text = f"{1000.0 * metres:.4g}".replace("-", "−")
+    text = written.given(1000.0 * metres, 4)
     return f"({text})" if bracket and text.startswith("−") else text
 
 

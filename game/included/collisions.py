@@ -17,6 +17,14 @@ MANY = 100  # particles without rods from which on their speeds are shown by def
 BINS = 16
 RANGE = 2.5  # times the root mean square speed, that the bars cover
 
+ICON = (
+    ("line", (-8.5, 8, 8.5, 8)),
+    *(
+        ("area", (x, 8, x, 8 - high, x + 2.6, 8 - high, x + 2.6, 8))
+        for x, high in ((-7, 5), (-3.5, 12), (0, 15), (3.5, 7))
+    ),
+)
+
 Array = NDArray[np.float64]
 
 _asked: weakref.WeakKeyDictionary[Context, bool] = weakref.WeakKeyDictionary()
@@ -90,6 +98,5 @@ def _speeds(speed: Array, mean_square: float, revision: int) -> Readout:
 def plugin(app: App) -> None:
     """Register the panels and the key."""
     app.panel(panels)
-    app.action(
-        "collisions.speeds", key="u", scenes=("simulation", "pause"), title="speeds beside Rayleigh's curve"
-    )(toggle_speeds)
+    live, title = ("simulation", "pause"), "speeds beside Rayleigh's curve"
+    app.action("collisions.speeds", key="u", scenes=live, title=title, icon=ICON)(toggle_speeds)

@@ -32,6 +32,11 @@ OF_PARTICLE = (
     ("velocity.y", "displacement.y"),
 )
 
+ICON = (
+    ("line", (-8, -8.5, -8, 8, 8.5, 8)),
+    ("line", (-7, 5, -4.5, -1, -2, -5, 0.5, -4, 2.5, 0, 4.5, 2.5, 8, 1)),
+)
+
 
 @dataclass
 class Probe:
@@ -260,7 +265,7 @@ def plugin(app: App) -> None:
     app.panel(panels)
     app.command("plot", run, "write or draw what a run does, against time or another quantity")
     live = ("simulation", "pause")
-    app.action("probes.plot", key="o", scenes=live, title="plot of the selection")(plot_next)
+    app.action("probes.plot", key="o", scenes=live, title="plot of the selection", icon=ICON)(plot_next)
     app.action("probes.save", key="ctrl+e", scenes=live, title="plots as CSV and PNG")(save)
     for name, key, factor in (("longer", "[", 2.0), ("shorter", "]", 0.5)):
         title = f"{name} plots"

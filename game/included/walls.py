@@ -13,9 +13,10 @@ from components.tags import Hovered
 from game.mods import App
 from systems.render.clip import bounds, clip_segments
 from systems.render.labels import STRONG, Label, half_size
-from systems.render.marks import Discs, Mark, Strokes
-from systems.render.sheet import Sheet
-from systems.render.theme import faded
+from systems.render.marks import Discs, Mark, Points, Strokes
+from systems.render.sheet import Rows, Sheet
+from systems.render.structure import HALO_OPACITY
+from systems.render.theme import Colour, faded
 
 WIDTH = 4.0  # points, of the line that is drawn
 
@@ -64,18 +65,27 @@ def draw(sheet: Sheet) -> Iterator[Mark]:
     start, end, rows = clip_segments(ends[:, 0], ends[:, 1], low - 2 * width, high + 2 * width)
     sheet.occupancy.line(start, end, STRONG)
     selected, hovered = (sheet.tagged(tag, "walls") for tag in (Selected, Hovered))
-    layers = [(selected, sheet.theme.selected), (hovered, sheet.theme.hover)]
-    for colour, chosen in sheet.colours_of(rows, layers, sheet.theme.ink):
-        yield Strokes(start[chosen], end[chosen], width, colour)
-        caps = np.concatenate([start[chosen], end[chosen]])
-        yield Discs(caps, np.full(len(caps), 0.5 * width), colour, colour)
+    for marked, halo in ((hovered, sheet.theme.hover), (selected, sheet.theme.selected)):
+        chosen = sheet.chosen(marked, rows)
+        glow = faded(halo, HALO_OPACITY)
+        yield from _thick(start[chosen], end[chosen], 3.5 * width, glow, rows[chosen])
+    yield from _thick(start, end, width, sheet.theme.ink, rows)
     for row in np.union1d(selected, hovered).tolist():
-        name_wall(sheet, walls.names[row], *ends[row])
+        name_wall(sheet, row, *ends[row])
 
 
-def name_wall(sheet: Sheet, name: str, start: NDArray[np.float64], end: NDArray[np.float64]) -> None:
+def _thick(start: Points, end: Points, width: float, colour: Colour, rows: Rows) -> Iterator[Mark]:
+    """Lines with round ends."""
+    if len(start):
+        yield Strokes(start, end, width, colour, ("walls", rows))
+        caps = np.concatenate([start, end])
+        radius = np.full(len(caps), 0.5 * width)
+        yield Discs(caps, radius, colour, colour, of=("walls", np.tile(rows, 2)))
+
+
+def name_wall(sheet: Sheet, row: int, start: NDArray[np.float64], end: NDArray[np.float64]) -> None:
     """Place the name of a wall beside its middle, where there is room."""
-    size = sheet.font(12.0)
+    size, name = sheet.font(12.0), sheet.model.tables["walls"].names[row]
     half = half_size(name, size, "semibold", sheet.unit)
     along = (end - start) / max(float(np.hypot(*(end - start))), 1e-9)
     reach = abs(along[1]) * half[0] + abs(along[0]) * half[1] + WIDTH * sheet.unit
@@ -85,7 +95,8 @@ def name_wall(sheet: Sheet, name: str, start: NDArray[np.float64], end: NDArray[
         for side in (-1.0, 1.0)
     ]
     backing = faded(sheet.theme.background, 0.86)
-    sheet.labels.append(Label(name, places, size, sheet.theme.text, -1e12, "semibold", backing))
+    label = Label(name, places, size, sheet.theme.text, -1e12, "semibold", backing, of=("walls", row))
+    sheet.labels.append(label)
 
 
 def plugin(app: App) -> None:

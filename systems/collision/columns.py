@@ -67,7 +67,7 @@ class Grid(NamedTuple):
     boxes: left, bottom, right, top, shape (n, 4), m. layer: of each disc, shape (n,). levels: the cells of
     layer k have the size cell × 2^levels[k], ascending, shape (64,); inverse: one by that size, 1/m. heads: first entry
     of each bucket; the number of buckets is a power of two. after, before: the next entry in the same bucket and the one
-    before, shape (capacity,). found: the discs that searches find, shape (2 n + 2,); times: of impacts with them, s.
+    before, shape (8 n × layers,). found: the discs that searches find, shape (2 n + 2,); times: of impacts with them, s.
     """
 
     boxes: Floats
@@ -90,8 +90,8 @@ class Grid(NamedTuple):
             levels=np.zeros(64, dtype=np.int64),
             inverse=np.zeros(64),
             heads=np.full(buckets, NONE, dtype=np.int32),
-            after=np.zeros(2 * n * layers, dtype=np.int32),
-            before=np.zeros(2 * n * layers, dtype=np.int32),
+            after=np.zeros(8 * n * layers, dtype=np.int32),
+            before=np.zeros(8 * n * layers, dtype=np.int32),
             found=np.zeros(2 * n + 2, dtype=np.int64),
             times=np.zeros(2 * n + 2),
         )
@@ -253,7 +253,8 @@ class Pile(NamedTuple):
     contacts; shape (p,) both. ends: the two discs of a contact, one disc twice where the other is held, shape (p, 2).
     contacts: shape (p, len(PileContact)). scale: square root of the compliances, 1/√kg, shape (p,). contacts_of, shape
     (2 p,): those of disc i from first[i] to first[i + 1]. queue: contacts still to be relaxed; queued: 1 for these;
-    shape (p,) both.
+    shape (p,) both. part: the first of the discs that push one another, with it among them, shape (n,); parts: shape
+    (len(Part), n).
     """
 
     motion: Floats
@@ -270,6 +271,8 @@ class Pile(NamedTuple):
     contacts_of: NDArray[np.int32]
     queue: NDArray[np.int32]
     queued: NDArray[np.int32]
+    part: NDArray[np.int32]
+    parts: Floats
 
     @classmethod
     def empty(cls, n: int, pairs: int) -> Pile:
@@ -289,6 +292,8 @@ class Pile(NamedTuple):
             contacts_of=np.zeros(2 * pairs, dtype=np.int32),
             queue=np.zeros(pairs, dtype=np.int32),
             queued=np.zeros(pairs, dtype=np.int32),
+            part=np.zeros(n, dtype=np.int32),
+            parts=np.zeros((len(Part), n)),
         )
 
 
@@ -334,6 +339,19 @@ class Travel(IntEnum):
     FASTEST = 1  # fastest relative speed of a disc that it may meet, m/s
     NEAR = 2  # 1: it is near another at the end of the step; 2: another pushed it
     PULL = 3  # acceleration without contacts, m/s²
+
+
+class Part(IntEnum):
+    """Rows of `Pile.parts`. LAW: of each disc; the others: of a part, in the column of its first disc."""
+
+    LAW = 0  # of the contacts of the disc in this step, see kernels/pile_energy.py
+    GAIN = 1  # energy that the step supplies, J
+    ENERGY = 2  # by which the round-off of GAIN is measured, J
+    PUSHED_OUT = 3  # energy that pushing discs out of one another takes, J
+    BOUNCED = 4  # 1: a contact in which discs bounce pushes
+    CHANGE = 5  # twice the energy of the change of velocities by impulses, J
+    WORK = 6  # of the impulses beyond what the biases demand, J
+    SHARE = 7  # of the impulses, that is kept
 
 
 class Report(NamedTuple):

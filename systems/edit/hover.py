@@ -35,14 +35,14 @@ class Hover(System):
         """Move the mark if the pointer is over something else now."""
         model, view = frame.session.focus
         pointer = frame.session.view.pointer
-        if self._looked == (model.context, model.revision, view.camera, view.strip, view.sliders, pointer):
+        shown = view.canvas, pointer, view.menu, view.sliders
+        if self._looked == (model.context, model.revision, view.camera, *shown):
             return
         self._mark(model, view, pointer)
-        now = replace(view.camera), view.strip, view.sliders, pointer
-        self._looked = (model.context, model.revision, *now)
+        self._looked = (model.context, model.revision, replace(view.camera), *shown)
 
     def _mark(self, model: Model, view: View, pointer: Vector | None) -> None:
         hit = None
-        if pointer is not None and view.camera.viewport.contains(pointer):
+        if pointer is not None and view.menu is None and view.camera.viewport.contains(pointer):
             hit = pick(model, view, pointer)
         model.tag_only([] if hit is None else [hit], Hovered)

@@ -38,10 +38,10 @@ class Grip:
 
 
 def pick(model: Model, view: View, pixel: Vector) -> Handle | None:
-    """The particle, else the rod, the element of a mod or the shown grid under a pixel; None if there is nothing."""
+    """The particle, else the rod or the element of a mod under a pixel; None if there is nothing."""
     if view.covers(pixel):
         return None
-    return pick_particle(model, view, pixel) or pick_line(model, view, pixel) or _grid_at(model, view, pixel)
+    return pick_particle(model, view, pixel) or pick_line(model, view, pixel)
 
 
 def pick_line(model: Model, view: View, pixel: Vector) -> Handle | None:
@@ -50,7 +50,7 @@ def pick_line(model: Model, view: View, pixel: Vector) -> Handle | None:
 
 
 def pick_particle(model: Model, view: View, pixel: Vector) -> Particle | None:
-    """The particle within reach of a pixel, the nearest relative to its reach; None under the toolbar and sliders."""
+    """The particle within reach of a pixel, the nearest relative to its reach; None under the toolbar."""
     if model.particles.count == 0 or view.covers(pixel):
         return None
     x, y = (view.camera.to_pixels(drawn_positions(model)) - pixel).T
@@ -109,8 +109,11 @@ def pick_point(model: Model, view: View, pixel: Vector, besides: Handle | None =
     return found
 
 
-def _grid_at(model: Model, view: View, pixel: Vector) -> Grid | None:
+def pick_grid(model: Model, view: View, pixel: Vector) -> Grid | None:
+    """The shown grid, if one of its lines is within reach of a pixel."""
     reach = GRID_REACH * view.pixel_ratio
+    if view.strip.contains(pixel):
+        return None
     for row in np.flatnonzero(model.grids.shown).tolist():
         grid = model.grids[row]
         point = view.camera.to_model(pixel)

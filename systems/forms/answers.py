@@ -52,14 +52,20 @@ def _name_problem(model: Model, box: Box) -> str:
     return ""
 
 
-def apply(form: Form, model: Model) -> list[str]:
-    """Assign all changed boxes to the model, as one edit; returns the sentences about refused ones."""
+def apply(form: Form, model: Model, *, typing: bool = False) -> list[str]:
+    """Assign all changed boxes to the model, as one edit; returns the sentences about refused ones.
+
+    typing: also the box that is still typed into. What one box refuses because of another is tried again each time.
+    """
     refused = []
     with model.transaction(f"properties of {form.heading.text}"):
         for box in form.boxes:
-            elements = [handle for handle in box.elements if handle.exists] if box.changed else []
+            if not box.changed or (box is form.selected and box.words != YES_NO and not typing):
+                continue
+            elements = [handle for handle in box.elements if handle.exists]
             if not elements:
                 continue
+            box.problem = problem(model, box)
             if box.problem:
                 refused.append(f"{box.section}, {box.title}: {box.problem}; the old value stays.")
                 continue
@@ -67,6 +73,7 @@ def apply(form: Form, model: Model) -> list[str]:
                 _assign(model, box, elements)
             except FieldError as error:
                 refused.append(str(error))
+                box.problem = str(error).removeprefix(f"{box.section}: ")
     return refused
 
 

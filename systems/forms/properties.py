@@ -57,16 +57,20 @@ def heading(model: Model, selected: Sequence[Handle]) -> str:
 
 
 def subjects(model: Model, selected: Sequence[Handle]) -> list[Subject]:
-    """The selected elements by kind, the loads on a single particle, and the settings of all of a kind."""
+    """The selected elements by kind, the loads on a single particle, and the settings of all of a kind.
+
+    Without any, the environment and the shown grid.
+    """
     kinds = dict.fromkeys(map(type, selected))
     groups: list[list[Handle]] = [[h for h in selected if type(h) is kind] for kind in kinds]
     found = [_subject(model, heading(model, group), group) for group in groups]
     if not selected:
         found = [_subject(model, heading(model, []), [model.environment])]
+        found += [_subject(model, model.describe(grid), [grid]) for grid in model.grids if grid.shown]
     found += [_subject(model, model.describe(load), [load]) for load in _loads_on(model, selected)]
     for section, kind, of_rods in (("All particles", Particle, False), ("All rods", Rod, True)):
         if not selected or kind in kinds:
-            fields = model.tables[Settings.table].fields.values()
+            fields = model.tables[Settings.table].fields_in(*SAVED)
             chosen = tuple(field for field in fields if (field.name in _OF_RODS) is of_rods)
             found.append(Subject(section, (model.settings,), np.zeros(1, dtype=np.intp), chosen))
     return found
@@ -95,10 +99,28 @@ def _subject(model: Model, section: str, elements: Sequence[Handle]) -> Subject:
 def fill(form: Form, model: Model, selected: Sequence[Handle]) -> None:
     """Create the boxes: in each section alphabetical by title, vectors as two, x and y."""
     form.delete(list(form.boxes))
+    for boxes in _sections(model, selected):
+        form.create(Box, len(boxes), **{key: [box[key] for box in boxes] for key in boxes[0]})
+
+
+def refresh(form: Form, model: Model, selected: Sequence[Handle]) -> None:
+    """Let the boxes say what the model has now, except what is typed into them and what was refused."""
+    wanted = [box for boxes in _sections(model, selected) for box in boxes]
+    if [box["target"] for box in wanted] != [box.target for box in form.boxes]:  # a load has another history
+        fill(form, model, selected)
+        return
+    for box, now in zip(form.boxes, wanted, strict=True):
+        kept = box is form.selected or box.problem
+        box.opened, box.note, box.section = now["opened"], now["note"], now["section"]
+        if not kept:
+            box.text = now["text"]
+            box.caret = len(box.text)
+
+
+def _sections(model: Model, selected: Sequence[Handle]) -> Iterator[list[dict[str, Any]]]:
     for subject in subjects(model, selected):
         boxes = [box for field in subject.fields for box in _boxes(model, subject, field)]
-        boxes.sort(key=lambda box: str(box["title"]).casefold())
-        form.create(Box, len(boxes), **{key: [box[key] for box in boxes] for key in boxes[0]})
+        yield sorted(boxes, key=lambda box: str(box["title"]).casefold())
 
 
 def _boxes(model: Model, subject: Subject, field: Field[Any]) -> Iterator[dict[str, Any]]:

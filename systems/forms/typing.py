@@ -35,12 +35,18 @@ def select(form: Form, box: Box | None) -> None:
         form.tag(box, Selected)
 
 
-def restore(form: Form) -> None:
-    """Restore the former text of the selected box, and deselect it."""
+def restore(form: Form) -> str:
+    """Restore the former text of the selected box, and deselect it; returns the sentence that says what was given up."""
     box = form.selected
-    if box is not None:
-        _set(form, box, box.held, len(box.held))
-        select(form, None)
+    if box is None:
+        return ""
+    typed = box.text
+    _set(form, box, box.held, len(box.held))
+    select(form, None)
+    if typed in ("", box.held):
+        return ""
+    again = f"it is {box.held} as before" if box.held else "it is as before"
+    return f"“{typed}” was not taken for the {box.title}; {again}. Return takes what is typed."
 
 
 def accept(form: Form) -> bool:

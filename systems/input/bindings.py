@@ -12,8 +12,10 @@ PROPERTIES, SAVE, LOAD, FORCE_METHOD = "properties", "save", "load", "force meth
 LIVE = (SIMULATION, PAUSE)
 FORMS = (PROPERTIES, SAVE, LOAD)
 EVERY = (*LIVE, *FORMS, FORCE_METHOD)
+MENU = "menu"  # no scene: the keys while a menu is open
 
 TEXT = "text "  # prefix of the "key" of typed text, such as "text a"
+FILES = "files "  # prefix of the "key" of files dropped on the window: their paths, a line each
 
 MODIFIERS = {"ctrl+": "ctrl+", "control+": "ctrl+", "cmd+": "ctrl+", "shift+": "shift+"}
 ALSO_CALLED = {"esc": "escape", "enter": "return", "del": "delete", "spacebar": "space", " ": "space"}
@@ -27,7 +29,8 @@ class Binding:
 
     Key names are lower case: "escape", "return", "space", "a", "+", "left", "f1"; modifiers come first,
     in the order ctrl, shift: "ctrl+z", "ctrl+shift+z". "drag" begins a drag, "drag to" and "drop" follow.
-    title: for the help; "" leaves the key out of it. repeats: the action is repeated while the key is held.
+    title: for the help, tips and menus; "" leaves the key out of the help. repeats: the action is repeated while the
+    key is held. group: the purpose under which the help lists it.
     """
 
     key: str
@@ -35,113 +38,164 @@ class Binding:
     scenes: tuple[str, ...]
     title: str
     repeats: bool = False
+    group: str = "More"
 
 
+# By purpose, in the order in which the help lists them. The keys of an open menu go before those of its scene.
+_BY_PURPOSE: dict[str, tuple[Binding, ...]] = {
+    "Time": (
+        Binding("space", "toggle run", LIVE, "run / pause"),
+        Binding("right", "arrow right", (PAUSE,), "single step", repeats=True),
+        Binding("left", "arrow left", (PAUSE,), "step back", repeats=True),
+        Binding("shift+right", "far arrow right", (PAUSE,), "skip ahead", repeats=True),
+        Binding("shift+left", "far arrow left", (PAUSE,), "skip back", repeats=True),
+        Binding(".", "step", (PAUSE,), "single step", repeats=True),
+        Binding(",", "step back", (PAUSE,), "step back", repeats=True),
+        Binding("r", "restart", LIVE, "restart from the undeformed beginning"),
+        Binding("e", "settle", LIVE, "settle: go to the equilibrium at once"),
+        Binding("+", "faster", LIVE, "faster", repeats=True),
+        Binding("-", "slower", LIVE, "slower", repeats=True),
+        Binding("0", "natural pace", LIVE, "pace that suits the model"),
+    ),
+    "Draw": (
+        Binding("p", "place", LIVE, "new particle under the pointer"),
+        Binding("l", "rod", LIVE, "rod from one particle to another"),
+        Binding("c", "support", LIVE, "support: next, or drag to its ground"),
+        Binding("f", "force", LIVE, "force, as an arrow from a particle"),
+        Binding("v", "velocity", LIVE, "velocity, as an arrow from a particle"),
+        Binding("g", "new grid", (PAUSE,), "new grid"),
+        Binding("h", "next grid", (PAUSE,), "next grid"),
+    ),
+    "Select and edit": (
+        Binding("click", "select", LIVE, "select"),
+        Binding("ctrl+click", "add to selection", LIVE, "add to the selection"),
+        Binding("double click", "open", LIVE, "properties of what is clicked"),
+        Binding("right click", "open menu", (*LIVE, FORCE_METHOD), "menu of what is under the pointer"),
+        Binding("menu", "open menu", (*LIVE, FORCE_METHOD), "menu of what is under the pointer"),
+        Binding("shift+f10", "open menu", (*LIVE, FORCE_METHOD), ""),
+        Binding("drag", "drag", (PAUSE,), "move it; or select in a box"),
+        Binding("drag", "drag", (SIMULATION,), "pull it; or select in a box"),
+        Binding("ctrl+drag", "drag to add", LIVE, "add what is in a box"),
+        Binding("drag to", "drag to", LIVE, ""),
+        Binding("drop", "drop", LIVE, ""),
+        Binding("escape", "escape", (SIMULATION,), "put the tool away, or pause"),
+        Binding("escape", "escape", (PAUSE,), "drop tool or selection"),
+        Binding("return", "properties", LIVE, "properties of the selected elements"),
+        Binding("delete", "delete", LIVE, "delete the selection"),
+        Binding("backspace", "delete", LIVE, "delete the selection"),
+        Binding("up", "arrow up", (PAUSE,), "before a run, like left and right: move it", repeats=True),
+        Binding("down", "arrow down", (PAUSE,), "before a run, like left and right: move it", repeats=True),
+        Binding("shift+up", "far arrow up", (PAUSE,), "the same, by the grid", repeats=True),
+        Binding("shift+down", "far arrow down", (PAUSE,), "the same, by the grid", repeats=True),
+        *(
+            Binding(f"ctrl+{shift}{way}", f"move {far}{way}", (PAUSE,), title, repeats=True)
+            for shift, far, title in (("", "", "move the selection"), ("shift+", "far ", "move it by the grid"))
+            for way in ("left", "right", "up", "down")
+        ),
+        Binding("ctrl+z", "undo", LIVE, "undo", repeats=True),
+        Binding("ctrl+y", "redo", LIVE, "redo", repeats=True),
+        Binding("ctrl+shift+z", "redo", LIVE, "redo", repeats=True),
+        Binding("ctrl+a", "select all", LIVE, "select all"),
+        Binding("ctrl+c", "copy", LIVE, "copy the selection"),
+        Binding("ctrl+x", "cut", LIVE, "cut the selection"),
+        Binding("ctrl+v", "paste", LIVE, "paste at the pointer"),
+        Binding("ctrl+d", "duplicate", LIVE, "duplicate the selection"),
+    ),
+    "Results": (
+        Binding("i", "toggle diagrams", LIVE, "force diagrams on / off"),
+        Binding("m", "toggle theory", LIVE, "theory beside the run, on / off"),
+        Binding("j", "toggle energy", LIVE, "energy account on / off"),
+        Binding("b", "next shape", LIVE, "mechanisms, natural modes, none"),
+        Binding("n", "new slider", LIVE, "slider for the force or stiffness selected"),
+        Binding("k", "force method", (PAUSE,), "force method"),
+    ),
+    "Force method": (
+        Binding("k", "next part", (FORCE_METHOD,), "next part"),
+        Binding("click", "pick unknown", (FORCE_METHOD,), "pick the static unknown in set 1"),
+        Binding("n", "release another", (FORCE_METHOD,), "release another unknown as well"),
+        Binding("x", "release x", (FORCE_METHOD,), "release the horizontal constraint"),
+        Binding("y", "release y", (FORCE_METHOD,), "release the vertical constraint"),
+        Binding("i", "toggle diagrams of sets", (FORCE_METHOD,), "force diagrams on / off"),
+        Binding("escape", "back", (FORCE_METHOD,), "back to pause"),
+    ),
+    "Boxes": (
+        Binding("return", "accept", (PROPERTIES,), "accept the box; without one, go back"),
+        Binding("return", "accept", (SAVE,), "save"),
+        Binding("return", "accept", (LOAD,), "open"),
+        Binding("escape", "cancel", (PROPERTIES,), "restore the box; without one, apply all and go back"),
+        Binding("escape", "cancel", (SAVE, LOAD), "restore the box; without one, go back"),
+        Binding("tab", "next box", FORMS, "next box", repeats=True),
+        Binding("shift+tab", "previous box", FORMS, "previous box", repeats=True),
+        Binding("click", "click form", (PROPERTIES,), "select a box, turn a switch; elsewhere, accept"),
+        Binding("click", "click form", (SAVE, LOAD), "choose"),
+        Binding("up", "go up", (PROPERTIES,), "box above, or the previous choice", repeats=True),
+        Binding("down", "go down", (PROPERTIES,), "box below, or the next choice", repeats=True),
+        Binding("left", "go left", (PROPERTIES,), "caret to the left", repeats=True),
+        Binding("right", "go right", (PROPERTIES,), "caret to the right", repeats=True),
+        Binding("up", "go up", (SAVE, LOAD), "choose a picture", repeats=True),
+        Binding("down", "go down", (SAVE, LOAD), "choose a picture", repeats=True),
+        Binding("left", "go left", (SAVE, LOAD), "choose a picture", repeats=True),
+        Binding("right", "go right", (SAVE, LOAD), "choose a picture", repeats=True),
+        Binding("home", "to the beginning", FORMS, ""),
+        Binding("end", "to the end", FORMS, ""),
+        Binding("backspace", "erase", FORMS, "erase", repeats=True),
+        Binding("delete", "erase after", FORMS, "erase after the caret", repeats=True),
+        Binding("ctrl+a", "mark all", FORMS, "mark all"),
+        Binding("ctrl+c", "copy text", FORMS, "copy"),
+        Binding("ctrl+x", "cut text", FORMS, "cut"),
+        Binding("ctrl+v", "paste text", FORMS, "paste"),
+        Binding("wheel up", "scroll up", FORMS, "scroll up"),
+        Binding("wheel down", "scroll down", FORMS, "scroll down"),
+        Binding("page up", "page up", FORMS, "", repeats=True),
+        Binding("page down", "page down", FORMS, "", repeats=True),
+    ),
+    "View": (
+        Binding("wheel up", "zoom in", (*LIVE, FORCE_METHOD), "zoom in at the pointer"),
+        Binding("wheel down", "zoom out", (*LIVE, FORCE_METHOD), "zoom out"),
+        Binding("drag middle", "pan", (*LIVE, FORCE_METHOD), "move the view (or right button)"),
+        Binding("home", "fit", (*LIVE, FORCE_METHOD), "fit the view"),
+        Binding("tab", "toggle legend", LIVE, "legend and toolbar on / off"),
+        Binding("t", "next theme", (*LIVE, FORCE_METHOD), "light, dark, colour-blind themes"),
+        Binding("ctrl++", "larger", EVERY, "larger or smaller type", repeats=True),
+        Binding("ctrl+shift++", "larger", EVERY, "", repeats=True),
+        Binding("ctrl+-", "smaller", EVERY, "larger or smaller type", repeats=True),
+        Binding("ctrl+0", "usual size", EVERY, "usual size of type"),
+        Binding("f1", "toggle help", EVERY, "these keys"),
+        Binding("f11", "toggle full screen", EVERY, "full screen"),
+        Binding("f12", "screenshot", EVERY, "save a picture"),
+    ),
+    "Files": (
+        Binding("s", "save", (PAUSE,), "save as"),
+        Binding("ctrl+shift+s", "save", LIVE, "save as"),
+        Binding("ctrl+s", "save again", LIVE, "save under the same name"),
+        Binding("d", "load", (PAUSE,), "load"),
+        Binding("ctrl+o", "load", LIVE, "load"),
+        Binding("ctrl+n", "new", LIVE, "new, empty model"),
+    ),
+    "Menu": (
+        Binding("up", "menu up", (MENU,), "entry above", repeats=True),
+        Binding("down", "menu down", (MENU,), "entry below", repeats=True),
+        Binding("left", "menu left", (MENU,), "column to the left", repeats=True),
+        Binding("right", "menu right", (MENU,), "column to the right", repeats=True),
+        Binding("return", "choose entry", (MENU,), "choose the entry"),
+        Binding("click", "choose entry", (MENU,), "choose the entry; beside the menu, close it"),
+        Binding("escape", "close menu", (MENU,), "close the menu"),
+    ),
+}
 BINDINGS: list[Binding] = [
-    Binding("escape", "escape", (SIMULATION,), "put the tool away, or pause"),
-    Binding("escape", "escape", (PAUSE,), "drop tool or selection, else run"),
-    Binding("escape", "back", (FORCE_METHOD,), "back to pause"),
-    Binding("space", "toggle run", LIVE, "run / pause"),
-    Binding("right", "arrow right", (PAUSE,), "single step; or move the selection", repeats=True),
-    Binding("left", "arrow left", (PAUSE,), "step back; or move the selection", repeats=True),
-    Binding("up", "arrow up", (PAUSE,), "move the selection", repeats=True),
-    Binding("down", "arrow down", (PAUSE,), "move the selection", repeats=True),
-    Binding("shift+right", "far arrow right", (PAUSE,), "skip ahead; or move the selection far", repeats=True),
-    Binding("shift+left", "far arrow left", (PAUSE,), "skip back; or move the selection far", repeats=True),
-    Binding("shift+up", "far arrow up", (PAUSE,), "move the selection by the grid", repeats=True),
-    Binding("shift+down", "far arrow down", (PAUSE,), "move the selection by the grid", repeats=True),
-    Binding(".", "step", (PAUSE,), "single step", repeats=True),
-    Binding(",", "step back", (PAUSE,), "step back", repeats=True),
-    Binding("return", "properties", LIVE, "properties of the selected elements"),
-    Binding("s", "save", (PAUSE,), "save"),
-    Binding("ctrl+s", "save again", LIVE, "save under the same name"),
-    Binding("d", "load", (PAUSE,), "load"),
-    Binding("ctrl+o", "load", LIVE, "load"),
-    Binding("ctrl+n", "new", LIVE, "new, empty model"),
-    Binding("k", "force method", (PAUSE,), "force method"),
-    Binding("i", "toggle diagrams", LIVE, "force diagrams on / off"),
-    Binding("i", "toggle diagrams of sets", (FORCE_METHOD,), "force diagrams on / off"),
-    Binding("k", "next part", (FORCE_METHOD,), "next part"),
-    Binding("click", "pick unknown", (FORCE_METHOD,), "pick the static unknown in set 1"),
-    Binding("n", "release another", (FORCE_METHOD,), "release another unknown as well"),
-    Binding("x", "release x", (FORCE_METHOD,), "release the horizontal constraint"),
-    Binding("y", "release y", (FORCE_METHOD,), "release the vertical constraint"),
-    Binding("p", "place", LIVE, "new particle under the pointer"),
-    Binding("l", "rod", LIVE, "rod from one particle to another"),
-    Binding("c", "support", LIVE, "support: next, or drag to its ground"),
-    Binding("f", "force", LIVE, "force, as an arrow from a particle"),
-    Binding("v", "velocity", LIVE, "velocity, as an arrow from a particle"),
-    Binding("delete", "delete", LIVE, "delete the selection"),
-    Binding("backspace", "delete", LIVE, "delete the selection"),
-    Binding("g", "new grid", (PAUSE,), "new grid"),
-    Binding("h", "next grid", (PAUSE,), "next grid"),
-    Binding("r", "restart", LIVE, "restart from the beginning"),
-    Binding("e", "settle", LIVE, "settle: go to the equilibrium at once"),
-    Binding("+", "faster", LIVE, "faster", repeats=True),
-    Binding("-", "slower", LIVE, "slower", repeats=True),
-    Binding("0", "natural pace", LIVE, "pace that suits the model"),
-    Binding("ctrl+z", "undo", LIVE, "undo", repeats=True),
-    Binding("ctrl+y", "redo", LIVE, "redo", repeats=True),
-    Binding("ctrl+shift+z", "redo", LIVE, "redo", repeats=True),
-    Binding("ctrl+a", "select all", LIVE, "select all"),
-    Binding("ctrl+c", "copy", LIVE, "copy the selection"),
-    Binding("ctrl+x", "cut", LIVE, "cut the selection"),
-    Binding("ctrl+v", "paste", LIVE, "paste at the pointer"),
-    Binding("ctrl+d", "duplicate", LIVE, "duplicate the selection"),
-    Binding("m", "toggle theory", LIVE, "theory beside the run, on / off"),
-    Binding("j", "toggle energy", LIVE, "energy account on / off"),
-    Binding("n", "new slider", LIVE, "slider for the force or stiffness selected"),
-    Binding("b", "next shape", LIVE, "mechanisms, natural modes, none"),
-    Binding("home", "fit", (*LIVE, FORCE_METHOD), "fit the view"),
-    Binding("tab", "toggle legend", LIVE, "legend and toolbar on / off"),
-    Binding("t", "next theme", (*LIVE, FORCE_METHOD), "light, dark, colour-blind themes"),
-    Binding("return", "accept", (PROPERTIES,), "accept the box; without one, go back"),
-    Binding("return", "accept", (SAVE,), "save"),
-    Binding("return", "accept", (LOAD,), "open"),
-    Binding("escape", "cancel", (PROPERTIES,), "restore the box; without one, apply all and go back"),
-    Binding("escape", "cancel", (SAVE, LOAD), "restore the box; without one, go back"),
-    Binding("tab", "next box", FORMS, "next box", repeats=True),
-    Binding("shift+tab", "previous box", FORMS, "previous box", repeats=True),
-    Binding("click", "click form", (PROPERTIES,), "select a box, turn a switch"),
-    Binding("click", "click form", (SAVE, LOAD), "choose"),
-    Binding("up", "go up", (PROPERTIES,), "box above, or the previous choice", repeats=True),
-    Binding("down", "go down", (PROPERTIES,), "box below, or the next choice", repeats=True),
-    Binding("left", "go left", (PROPERTIES,), "caret to the left", repeats=True),
-    Binding("right", "go right", (PROPERTIES,), "caret to the right", repeats=True),
-    Binding("up", "go up", (SAVE, LOAD), "choose a picture", repeats=True),
-    Binding("down", "go down", (SAVE, LOAD), "choose a picture", repeats=True),
-    Binding("left", "go left", (SAVE, LOAD), "choose a picture", repeats=True),
-    Binding("right", "go right", (SAVE, LOAD), "choose a picture", repeats=True),
-    Binding("home", "to the beginning", FORMS, ""),
-    Binding("end", "to the end", FORMS, ""),
-    Binding("backspace", "erase", FORMS, "erase", repeats=True),
-    Binding("delete", "erase after", FORMS, "erase after the caret", repeats=True),
-    Binding("ctrl+a", "mark all", FORMS, "mark all"),
-    Binding("ctrl+c", "copy text", FORMS, "copy"),
-    Binding("ctrl+x", "cut text", FORMS, "cut"),
-    Binding("ctrl+v", "paste text", FORMS, "paste"),
-    Binding("wheel up", "scroll up", FORMS, "scroll up"),
-    Binding("wheel down", "scroll down", FORMS, "scroll down"),
-    Binding("page up", "page up", FORMS, "", repeats=True),
-    Binding("page down", "page down", FORMS, "", repeats=True),
-    Binding("ctrl++", "larger", EVERY, "larger or smaller type", repeats=True),
-    Binding("ctrl+shift++", "larger", EVERY, "", repeats=True),
-    Binding("ctrl+-", "smaller", EVERY, "larger or smaller type", repeats=True),
-    Binding("ctrl+0", "usual size", EVERY, "usual size of type"),
-    Binding("f1", "toggle help", EVERY, "these keys"),
-    Binding("f11", "toggle full screen", EVERY, "full screen"),
-    Binding("f12", "screenshot", EVERY, "save a picture"),
-    Binding("click", "select", LIVE, "select"),
-    Binding("ctrl+click", "add to selection", LIVE, "add to the selection"),
-    Binding("drag", "drag", (PAUSE,), "move it; or select in a box"),
-    Binding("drag", "drag", (SIMULATION,), "pull it; or select in a box"),
-    Binding("ctrl+drag", "drag to add", LIVE, "add what is in a box"),
-    Binding("drag to", "drag to", LIVE, ""),
-    Binding("drop", "drop", LIVE, ""),
-    Binding("wheel up", "zoom in", (*LIVE, FORCE_METHOD), "zoom in at the pointer"),
-    Binding("wheel down", "zoom out", (*LIVE, FORCE_METHOD), "zoom out"),
-    Binding("drag middle", "pan", (*LIVE, FORCE_METHOD), "move the view (or right button)"),
+    replace(binding, group=group) for group, bindings in _BY_PURPOSE.items() for binding in bindings
 ]
+
+# Actions that menus and the toolbar offer without a key.
+WITHOUT_KEY: tuple[Binding, ...] = (
+    Binding("", "free", LIVE, "free: no support"),
+    Binding("", "pin", LIVE, "pinned: held in x and y"),
+    Binding("", "hold y", LIVE, "on a roller: held in y"),
+    Binding("", "hold x", LIVE, "on a roller: held in x"),
+    Binding("", "toggle cable", LIVE, "cable: tension only"),
+    Binding("", "release", (PAUSE,), "release it in the force method"),
+    Binding("", "environment", LIVE, "properties of the environment"),
+)
 
 # The actions of the toolbar, in groups from the top to the bottom.
 TOOLBAR: tuple[tuple[str, ...], ...] = (
@@ -150,9 +204,9 @@ TOOLBAR: tuple[tuple[str, ...], ...] = (
     ("toggle diagrams of sets", "back"),
     ("undo", "redo", "copy", "paste", "duplicate", "delete"),
     ("place", "rod", "support", "force", "velocity"),
-    ("toggle diagrams", "toggle theory", "toggle energy", "fit", "new grid", "next grid"),
-    ("properties", "force method", "new", "load", "save again"),
-    ("next theme", "toggle help"),
+    ("toggle diagrams", "toggle theory", "toggle energy", "next shape", "fit", "new grid", "next grid"),
+    ("properties", "force method", "new", "load", "save again", "save"),
+    ("screenshot", "toggle full screen", "next theme", "toggle help"),
 )
 
 ADDED_TOOLS: list[str] = []  # drawing actions of mods, at the end of the group of PLACE
@@ -172,28 +226,33 @@ def add_binding(binding: Binding) -> list[Binding]:
     return list(dict.fromkeys(taken.values()))
 
 
+def _forget_offers() -> None:
+    offers.cache_clear()
+    toolbar.cache_clear()
+
+
 def add_tool(action: str) -> None:
     """Let the toolbar offer an action of a mod that draws, beside those of ours."""
     ADDED_TOOLS.append(action)
-    toolbar.cache_clear()
+    _forget_offers()
 
 
 def remove_tool(action: str) -> None:
     """Take back what `add_tool` did."""
     ADDED_TOOLS.remove(action)
-    toolbar.cache_clear()
+    _forget_offers()
 
 
 def add_button(binding: Binding) -> None:
     """Let the toolbar offer an action of a mod in some scenes, by a key that performs it there, or without one."""
     ADDED_BUTTONS.append(replace(binding, key=""))
-    toolbar.cache_clear()
+    _forget_offers()
 
 
 def remove_button(action: str) -> None:
     """Take back what `add_button` did."""
     ADDED_BUTTONS[:] = [binding for binding in ADDED_BUTTONS if binding.action != action]
-    toolbar.cache_clear()
+    _forget_offers()
 
 
 def remove_binding(binding: Binding) -> None:
@@ -219,7 +278,7 @@ def prefer(scene: str, key: str, action: str) -> None:
 def _index() -> None:
     _BY_KEY.clear()
     _BY_KEY.update({(scene, binding.key): binding for binding in BINDINGS for scene in binding.scenes})
-    toolbar.cache_clear()
+    _forget_offers()
 
 
 def _binding(scene: str, key: str) -> Binding | None:
@@ -241,7 +300,7 @@ def key_named(text: str) -> str:
 
     Shift with a character is the same key: on some keyboards "+" needs it, on others not.
     """
-    if text.startswith(TEXT):
+    if text.startswith((TEXT, FILES)):
         return text
     name, held = text.lower(), set()
     while modifier := next((m for m in MODIFIERS if name.startswith(m) and len(name) > len(m)), None):
@@ -263,14 +322,21 @@ def repeats(scene: str, key: str) -> bool:
 
 
 @cache
+def offers(scene: str) -> dict[str, Binding]:
+    """By action: the binding by which the toolbar and menus offer it; the same while time passes as in pause.
+
+    Keys that perform it in the scene come first, then those of the other, then no key.
+    """
+    scenes = set(LIVE if scene in LIVE else (scene,))
+    found = [b for b in (*BINDINGS, *WITHOUT_KEY, *ADDED_BUTTONS) if scenes & set(b.scenes)]
+    found.sort(key=lambda binding: (scene not in binding.scenes, not binding.key))
+    return {binding.action: binding for binding in reversed(found)}
+
+
+@cache
 def toolbar(scene: str) -> tuple[tuple[Binding, ...], ...]:
     """Groups of bindings of the toolbar in a scene: the same while time passes as in pause; none in forms."""
-    scenes = set(LIVE if scene in LIVE else () if scene in FORMS else (scene,))
-    found = [binding for binding in (*BINDINGS, *ADDED_BUTTONS) if scenes & set(binding.scenes)]
-    found.sort(
-        key=lambda binding: (scene not in binding.scenes, not binding.key)
-    )  # keys that act here come first
-    offered = {binding.action: binding for binding in reversed(found)}
+    offered = {} if scene in FORMS else offers(scene)
     wanted = [[*group, *(ADDED_TOOLS if PLACE in group else ())] for group in TOOLBAR]
     wanted.insert(-1, [binding.action for binding in ADDED_BUTTONS])  # the last group stands at the bottom
     groups = (tuple(offered[action] for action in group if action in offered) for group in wanted)
@@ -278,6 +344,11 @@ def toolbar(scene: str) -> tuple[tuple[Binding, ...], ...]:
 
 
 def help_lines(scene: str) -> list[tuple[str, str]]:
-    """(key, title) of all keys of a scene."""
-    shown = (b for b in BINDINGS if b.title and _binding(scene, b.key) is b)
-    return [(binding.key, binding.title) for binding in shown]
+    """(key, title) of all keys of a scene by purpose; before those of each, ("", purpose)."""
+    shown = [b for b in BINDINGS if b.title and _binding(scene, b.key) is b]
+    purposes = dict.fromkeys([*_BY_PURPOSE, *(binding.group for binding in shown)])
+    lines: list[tuple[str, str]] = []
+    for purpose in purposes:
+        keys = [(binding.key, binding.title) for binding in shown if binding.group == purpose]
+        lines += [("", purpose), *keys] if keys else []
+    return lines

@@ -10,9 +10,10 @@ import pygame
 
 from components.field import Vector
 from systems.base import Phase, System
-from systems.input.bindings import TEXT, repeats
+from systems.input.bindings import FILES, MENU, TEXT, repeats
 
 CLICK_REACH = 4.0  # points that the pointer may move while a button is down; more: a drag
+DOUBLE_CLICK = 0.4  # s between two clicks that count as a double click
 IDLE_PAUSE = 0.016  # s between polls for events while nothing moves
 IDLE_LOOKS = 16  # polls before a frame passes without events
 WAITING_LOOKS = 4  # polls while something is compiled, which frames would slow down
@@ -26,6 +27,7 @@ _NAMES = {
     pygame.K_DELETE: "delete",
     pygame.K_TAB: "tab",
     pygame.K_HOME: "home",
+    1073741925: "menu",  # SDLK_APPLICATION, which pygame has no name for
     pygame.K_LEFT: "left",
     pygame.K_RIGHT: "right",
     pygame.K_UP: "up",
@@ -63,6 +65,8 @@ class PygameInput(System):
         self._held: set[int] = set()  # keys that are down
         self._grip: tuple[str, Vector] | None = None  # the kind of click and where, while the button is down
         self._dragging = False
+        self._right: Vector | None = None  # how far the pointer has gone since the right button went down
+        self._clicked: tuple[float, Vector] | None = None  # when and where the last click was
 
     def close(self) -> None:
         """Close the window after this frame."""
@@ -76,6 +80,9 @@ class PygameInput(System):
             events = _awaited(WAITING_LOOKS if waiting else IDLE_LOOKS)
         for event in events:
             self._handle(event, frame)
+        dropped = [event.file for event in events if event.type == pygame.DROPFILE]
+        if dropped:
+            frame.pressed.append((FILES + "\n".join(dropped), session.pointer))
 
     def _handle(self, event: pygame.event.Event, frame: Any) -> None:
         view, ratio = frame.session.view, self.density
@@ -94,10 +101,15 @@ class PygameInput(System):
             view.pointer = _scaled(event.pos, ratio)
             if event.button == pygame.BUTTON_LEFT:
                 self._grip = ("ctrl+click" if _control(pygame.key.get_mods()) else "click", view.pointer)
+            elif event.button == pygame.BUTTON_RIGHT:
+                self._right = 0.0, 0.0
         elif event.type == pygame.MOUSEBUTTONUP:
             if event.button == pygame.BUTTON_LEFT:
                 view.pointer = _scaled(event.pos, ratio)
                 self._release(frame)
+            elif event.button == pygame.BUTTON_RIGHT and self._right is not None:
+                self._right, view.pointer = None, _scaled(event.pos, ratio)
+                frame.pressed.append(("right click", view.pointer))
         elif event.type == pygame.MOUSEWHEEL and event.y:
             key = "wheel up" if event.y > 0 else "wheel down"
             frame.pressed += [(key, view.pointer or view.camera.middle)] * abs(event.y)
@@ -107,18 +119,25 @@ class PygameInput(System):
             self._held.clear()
             if self._dragging:
                 self._release(frame)
-            self._grip = None
+            self._grip = self._right = None
 
     def _press(self, event: pygame.event.Event, frame: Any) -> None:
         key, repeated = _key_name(event), event.key in self._held
         self._held.add(event.key)
-        if key and (not repeated or repeats(frame.session.scene, key)):
+        scene = frame.session.scene if frame.session.view.menu is None else MENU
+        if key and (not repeated or repeats(scene, key)):
             frame.pressed.append((key, frame.session.pointer))
 
     def _drag(self, event: pygame.event.Event, frame: Any, ratio: float) -> None:
         _, middle, right = event.buttons
         reach = CLICK_REACH * frame.session.view.pixel_ratio
-        if middle or right:
+        if right and self._right is not None:  # a right click, until the pointer has gone too far for one
+            across, down = _scaled(event.rel, ratio)
+            self._right = gone = self._right[0] + across, self._right[1] + down
+            if math.hypot(*gone) > reach:
+                self._right = None
+                frame.pressed.append(("drag middle", gone))
+        elif middle or right:
             frame.pressed.append(("drag middle", _scaled(event.rel, ratio)))
         elif self._grip is not None:
             button, start = self._grip
@@ -135,8 +154,15 @@ class PygameInput(System):
         """The left button is up again: the end of a drag, or a click."""
         grip, self._grip = self._grip, None
         dragging, self._dragging = self._dragging, False
-        if grip is not None:
-            frame.pressed.append(("drop" if dragging else grip[0], frame.session.pointer))
+        if grip is None:
+            return
+        key, pointer = "drop" if dragging else grip[0], frame.session.pointer
+        now, before = time.monotonic(), self._clicked
+        self._clicked = (now, pointer) if key == "click" else None
+        if key == "click" and before is not None and now - before[0] <= DOUBLE_CLICK:
+            if math.dist(pointer, before[1]) <= 2.0 * CLICK_REACH * frame.session.view.pixel_ratio:
+                key, self._clicked = "double click", None
+        frame.pressed.append((key, pointer))
 
 
 def _scaled(position: Any, ratio: float) -> Vector:

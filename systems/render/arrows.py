@@ -1,83 +1,131 @@
-"""Arrows of one length for the directions of loads and velocities; force diagrams show sizes."""
+"""Arrows of loads, reactions and velocities: each kind on one scale, so that they grow with what they show."""
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterator
 
 import numpy as np
 from numpy.typing import NDArray
 
+from components.model import Model
 from components.rod import nodes
 from components.tags import DiagramShown
 from systems.render.clip import bounds, clip_segments
 from systems.render.labels import STRONG
-from systems.render.marks import Fills, Mark, Strokes
+from systems.render.marks import Fills, Mark, Points, Strokes
 from systems.render.sheet import DIRECTIONS, Rows, Sheet
 from systems.render.supports import crowding
 from systems.render.theme import Colour
 
 MOST = 100  # particles, above which arrows would hide one another
-LENGTH, HEAD = 32.0, 10.0  # points
+LONGEST, SHORTEST = 46.0, 13.0  # points: of the largest of its kind, and of any that is drawn
+HEAD = 9.0  # points, or of short arrows a share of them
 GAP = 3.0  # points between an arrow and its particle
+NOTHING = 1e-6  # of the usual speed in a run: a slower motion counts as none
+FORCES, VELOCITIES = ("arrows.force", 0), ("arrows.velocity", 0)  # keys by which scales are kept
+
+_STEPS = 6.0  # of a scale in a power of ten
+_KEPT = 3  # steps by which a scale may be coarser than needed, so that it is steady while forces change
+_SHORT_HEAD = 0.65
+
+Values = NDArray[np.float64]
+
+
+def full_load(model: Model) -> Values:
+    """The force (kN) on each particle, its loads at full size included, (n, 2)."""
+    force: Values = model.particles.force.copy()
+    for axis in (0, 1):
+        force[:, axis] += np.bincount(model.loads.on, model.loads.force[:, axis], len(force))
+    return force
+
+
+def lengths(sheet: Sheet, key: tuple[str, int], sizes: Values, largest: float) -> Values:
+    """Lengths in pixels of arrows for sizes (n,), on the scale of all of a kind, of which `largest` is the largest.
+
+    Scales come in steps, and stay while they fit, so that an arrow grows and shrinks with its own size only.
+    """
+    needed = math.ceil(_STEPS * math.log10(largest) - 1e-9)
+    step = sheet.placed.get(key, needed)
+    step = step if needed <= step <= needed + _KEPT else needed
+    sheet.scales[key] = step
+    found: Values = np.clip(LONGEST * sizes / 10.0 ** (step / _STEPS), SHORTEST, LONGEST) * sheet.unit
+    return found
 
 
 def draw_loads(sheet: Sheet) -> Iterator[Mark]:
-    """The direction of the force on each particle, its loads at full size included, where no diagram shows it."""
-    model = sheet.model
-    force, count = model.particles.force.copy(), model.particles.count
-    for axis in (0, 1):
-        force[:, axis] += np.bincount(model.loads.on, model.loads.force[:, axis], count)
+    """The force on each particle, its loads at full size included, where no diagram shows it."""
+    force = full_load(sheet.model)
     loaded = (force[:, 0] != 0.0) | (force[:, 1] != 0.0)
     loaded[sheet.tagged(DiagramShown, "particles")] = False
     rows = sheet.particles[loaded[sheet.particles]]
     if sheet.view.all_diagrams or not 0 < len(rows) <= MOST:
         return
     sheet.legend.append("load")
-    along = _directions(force[rows])
+    along, size = _directions(force[rows]), np.hypot(*force[rows].T)
+    length = lengths(sheet, FORCES, size, max(float(np.hypot(*force.T).max()), sheet.view.largest_force))
     ahead = np.argmax(along @ DIRECTIONS.T, axis=1)
     crowd = crowding(sheet, rows)
     pushes = crowd[rows, (ahead + 2) % 4] <= crowd[rows, ahead] + 0.1  # towards the particle, if there is room
-    yield from _arrows(sheet, rows, along, sheet.theme.force, pushes)
+    yield from _at_rims(sheet, rows, along, length, sheet.theme.load, pushes)
 
 
 def draw_velocities(sheet: Sheet) -> Iterator[Mark]:
-    """The direction of velocity of free particles, and of nodes before their first step, while time stands still."""
+    """The velocity of free particles, and of nodes before their first step, while time stands still.
+
+    At rest there is none: what is left in the state is below what counts as motion.
+    """
     model = sheet.model
-    velocity = model.particles.velocity
+    velocity, clock = model.particles.velocity, model.clock
     moving = (velocity[:, 0] != 0.0) | (velocity[:, 1] != 0.0)
-    if model.clock.steps:
+    if clock.steps:
         moving &= ~nodes(model)
     rows = sheet.particles[moving[sheet.particles]]
-    if sheet.view.status.speed or not 0 < len(rows) <= MOST:
+    if sheet.view.status.speed or (clock.at_rest and clock.steps) or not 0 < len(rows) <= MOST:
+        return
+    speed = np.hypot(*velocity[rows].T)
+    usual = math.sqrt(2.0 * clock.energy_scale / model.particles.mass[rows].sum()) if clock.steps else 0.0
+    seen = speed > NOTHING * usual
+    rows, speed = rows[seen], speed[seen]
+    if not len(rows):
         return
     sheet.legend.append("velocity")
-    yield from _arrows(sheet, rows, _directions(velocity[rows]), sheet.theme.ink)
+    length = lengths(sheet, VELOCITIES, speed, max(speed.max(), usual))
+    yield from _at_rims(sheet, rows, _directions(velocity[rows]), length, sheet.theme.ink)
 
 
-def _directions(vectors: NDArray[np.float64]) -> NDArray[np.float64]:
+def _directions(vectors: Values) -> Values:
     """Unit vectors in pixels, y down."""
     scaled = vectors / np.abs(vectors).max(axis=1)[:, None]  # squares of tiny components would underflow
-    directions: NDArray[np.float64] = scaled / np.hypot(scaled[:, 0], scaled[:, 1])[:, None] * [1.0, -1.0]
+    directions: Values = scaled / np.hypot(scaled[:, 0], scaled[:, 1])[:, None] * [1.0, -1.0]
     return directions
 
 
-def _arrows(
+def _at_rims(
     sheet: Sheet,
     rows: Rows,
-    along: NDArray[np.float64],
+    along: Values,
+    length: Values,
     colour: Colour,
     pushes: NDArray[np.bool_] | bool = False,
-) -> Iterator[Mark]:
-    """From the rims of particles outwards, or (pushes) ending there."""
+) -> list[Mark]:
+    """Arrows from the rims of particles outwards, or (pushes) ending there."""
+    reach = (sheet.radii[rows] + GAP * sheet.unit)[:, None] * along
+    back = -reach - length[:, None] * along
+    tail = sheet.centres[rows] + np.where(np.reshape(pushes, (-1, 1)), back, reach)
+    return arrows(sheet, rows, tail, along, length, colour)
+
+
+def arrows(sheet: Sheet, rows: Rows, tail: Points, along: Points, length: Values, colour: Colour) -> list[Mark]:
+    """Arrows of particles from `tail` (n, 2) along unit vectors (n, 2), of so many pixels (n,)."""
     u = sheet.unit
-    reach = (sheet.radii[rows] + GAP * u)[:, None] * along
-    length = LENGTH * u * along
-    tail = sheet.centres[rows] + np.where(np.reshape(pushes, (-1, 1)), -reach - length, reach)
-    tip, across = tail + length, along[:, ::-1] * [-1.0, 1.0]
-    neck = tip - HEAD * u * along
+    tip, across = tail + length[:, None] * along, along[:, ::-1] * [-1.0, 1.0]
+    head = np.minimum(HEAD * u, _SHORT_HEAD * length)[:, None]
+    neck = tip - head * along
     low, high = bounds(sheet.viewport)
     _, _, seen = clip_segments(tail, tip, low - HEAD * u, high + HEAD * u)  # rims may be beyond all pixels
-    tail, tip, across, neck = tail[seen], tip[seen], across[seen], neck[seen]
+    tail, tip, across, neck, head = tail[seen], tip[seen], across[seen], neck[seen], head[seen]
     sheet.occupancy.line(tail, tip, STRONG)
-    yield Strokes(tail, neck, 2.0 * u, colour)
-    yield Fills(np.stack([tip, neck + 0.5 * HEAD * u * across, neck - 0.5 * HEAD * u * across], axis=1), colour)
+    points = np.stack([tip, neck + 0.5 * head * across, neck - 0.5 * head * across], axis=1)
+    of = ("particles", rows[seen])
+    return [Strokes(tail, neck, 2.0 * u, colour, of), Fills(points, colour, of)]

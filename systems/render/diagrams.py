@@ -12,11 +12,13 @@ from numpy.typing import NDArray
 from components.load import CONSTANT
 from components.model import Model
 from components.tags import DiagramShown, Selected
+from components.view import View
+from systems.render.arrows import FORCES, arrows, full_load, lengths
 from systems.render.labels import FAINT, Key, Label, half_size
-from systems.render.marks import Bars, Points, Stamps, Strokes
+from systems.render.marks import Bars, Owner, Points, Strokes
 from systems.render.sheet import DIRECTIONS, Rows, Sheet, typical_length
 from systems.render.supports import NO_SUPPORT, crowding
-from systems.render.symbols import ARROW_LENGTH, SUPPORT_DEPTH
+from systems.render.symbols import SUPPORT_DEPTH
 from systems.render.theme import Colour, faded
 
 SMALLEST_FORCE = 1e-4  # kN; smaller forces are drawn as none
@@ -25,9 +27,11 @@ _STEPS = (8.0, 6.0, 5.0, 4.0, 3.0, 2.0, 1.5, 1.0)
 _TOO_FLAT, _ENLARGED = 0.05, 0.3  # of the room: loads (one point per kN) below which, up to which, to enlarge
 _SHORTEST_WITH_DIAGRAM = 6.0  # points
 _SHORTEST_WITH_VALUE = 24.0  # points; the values of shorter rods would only hide the structure
-_MANY_ARROWS = 200  # up to which all are drawn, though they may lie over each other
+_MANY_ARROWS = 200  # of a kind, up to which all are drawn, though they may lie over each other
+_SQUARE = 20.0  # points, the side of squares of which each shows one of more arrows
 _TOLD = 1.5  # factor by which a new value must be larger to replace one of the last picture
-_ROD_VALUE, _ARROW_VALUE = "rods.axial_force", "particles.external_force"  # keys by which labels keep places
+_ROD_VALUE = "rods.axial_force"  # keys by which labels keep places
+_ARROW_VALUES = {"load": "particles.applied_force", "reaction": "particles.reaction"}
 _SLIDES = np.array([0.0, 1.0, -1.0, 2.0, -2.0])  # along a rod, in sizes of a label: the middle first
 _BACKING = 0.86  # opacity behind a value
 
@@ -89,7 +93,7 @@ def draw_rod_diagrams(sheet: Sheet) -> None:
     nothing = ~(pulled | pushed | sheet.model.rods.tension_only[rows])  # a slack cable stays dashed
     for name, mask in (("tension", pulled), ("compression", pushed), ("zero", nothing)):
         if mask.any():
-            _draw_rectangles(sheet, name, start[mask], end[mask], rise[mask])
+            _draw_rectangles(sheet, name, rows[mask], start[mask], end[mask], rise[mask])
     _label_rods(sheet, rows, values, (start + end) / 2, normal, height)
 
 
@@ -137,16 +141,18 @@ def _outward_normals(sheet: Sheet, rows: Rows, start: Points, end: Points) -> Po
     return np.stack([along_y * scale, -along_x * scale], axis=1)
 
 
-def _draw_rectangles(sheet: Sheet, name: str, start: Points, end: Points, rise: Points) -> None:
+def _draw_rectangles(sheet: Sheet, name: str, rows: Rows, start: Points, end: Points, rise: Points) -> None:
     colour: Colour = getattr(sheet.theme, name)
     outlined = typical_length(sheet.start, sheet.end) > 16.0 * sheet.unit
-    bars = Bars(start, end, rise, faded(colour, 0.16 if outlined else 0.5))
+    bars = Bars(start, end, rise, faded(colour, 0.16 if outlined else 0.5), ("rods", rows))
     sheet.marks.append(bars)
     if outlined:
         corners = bars.corners
         first, last = corners[:, :-1].reshape(-1, 2), corners[:, 1:].reshape(-1, 2)
         sheet.occupancy.line(first, last, FAINT)
-        sheet.marks.append(Strokes(first, last, 1.25 * sheet.unit, faded(colour, 0.9)))
+        sheet.marks.append(
+            Strokes(first, last, 1.25 * sheet.unit, faded(colour, 0.9), ("rods", np.repeat(rows, 3)))
+        )
     if name != "zero":
         sheet.legend.append(name)
 
@@ -173,7 +179,8 @@ def _label_rods(
     signs = ("zero" if abs(n) <= SMALLEST_FORCE else "tension" if n > 0.0 else "compression" for n in numbers)
     colours = [getattr(sheet.theme, sign) for sign in signs]
     keys = [(_ROD_VALUE, row) for row in rows[shown].tolist()]
-    values_of = zip(texts, places, colours, (-worth[shown]).tolist(), keys, strict=True)
+    of = [("rods", row) for row in rows[shown].tolist()]
+    values_of = zip(texts, places, colours, (-worth[shown]).tolist(), keys, of, strict=True)
     _add_values(sheet, values_of, size, "spare" if few else "cover")
 
 
@@ -207,15 +214,15 @@ def _value_texts(sheet: Sheet, numbers: Iterable[str], few: bool) -> tuple[list[
 
 def _add_values(
     sheet: Sheet,
-    values: Iterable[tuple[str, Points, Colour, float, Key]],
+    values: Iterable[tuple[str, Points, Colour, float, Key, Owner]],
     size: int,
     lines: Literal["spare", "cover"],
 ) -> None:
-    """Labels of values: text, places, colour, rank and key of each."""
+    """Labels of values: text, places, colour, rank, key and owner of each."""
     backing = faded(sheet.theme.background, _BACKING)
     sheet.labels += [
-        Label(text, places, size, colour, rank, "semibold", backing, lines, key)
-        for text, places, colour, rank, key in values
+        Label(text, places, size, colour, rank, "semibold", backing, lines, key, of)
+        for text, places, colour, rank, key, of in values
     ]
 
 
@@ -239,43 +246,65 @@ def _places_by_rods(
 
 
 def draw_particle_diagrams(sheet: Sheet, sides: NDArray[np.int64]) -> None:
-    """Arrows of the horizontal and vertical external force on each particle that shows its diagram."""
+    """Arrows of the horizontal and vertical load and reaction on each particle that shows its diagram."""
     shown = sheet.particles if sheet.view.forces_known else sheet.particles[:0]
     if not sheet.view.all_diagrams:
         shown = shown[sheet.chosen(sheet.tagged(DiagramShown, "particles"), shown)]
     if not len(shown):
         return
     particles = sheet.model.particles
-    force = (particles.applied_force + particles.reaction)[shown]
-    index, axis = _thinned(sheet, shown, force, *np.nonzero(np.abs(force) > SMALLEST_FORCE))
-    if not len(index):
-        return
-    sheet.legend.append("force")
-    rows, value = shown[index], force[index, axis]
+    largest = max(largest_force(sheet.model, sheet.view), sheet.view.largest_force)
+    taken = np.full((len(sheet.centres), 2), NO_SUPPORT)  # by reactions: a side of each particle, by axis
+    for name, force in (("reaction", particles.reaction[shown]), ("load", particles.applied_force[shown])):
+        index, axis = _thinned(sheet, shown, force, *np.nonzero(np.abs(force) > SMALLEST_FORCE))
+        if len(index):
+            _draw_forces(sheet, name, shown[index], axis, force[index, axis], largest, sides, taken)
+
+
+def largest_force(model: Model, view: View) -> float:
+    """The largest force (kN) that an arrow may show: of loads at full size, and in diagrams of their parts and reactions."""
+    particles = model.particles
+    largest = float(np.hypot(*full_load(model).T).max(initial=SMALLEST_FORCE))
+    if view.forces_known and (view.all_diagrams or model.any_tagged(DiagramShown)):
+        for forces in (particles.applied_force, particles.reaction):
+            largest = max(largest, float(np.abs(forces).max(initial=0.0)))
+    return largest
+
+
+def _draw_forces(
+    sheet: Sheet,
+    name: str,
+    rows: Rows,
+    axis: Rows,
+    value: NDArray[np.float64],
+    largest: float,
+    sides: NDArray[np.int64],
+    taken: NDArray[np.int64],
+) -> None:
+    """Arrows of forces of one kind along an axis each, with their values."""
+    sheet.legend.append(name)
     # Model y is up, pixels' y is down: a positive vertical force points in direction 3.
     direction = np.where(axis == 0, np.where(value > 0, 0, 2), np.where(value > 0, 3, 1))
-    tail, outer = _arrow_places(sheet, rows, direction, sides)
-    length = ARROW_LENGTH * sheet.unit
-    for turns in range(4):
-        mask = direction == turns
-        if mask.any():
-            sheet.marks.append(
-                Stamps("arrow", tail[mask], length, sheet.unit, sheet.theme.force, sheet.theme.force, turns)
-            )
-    sheet.occupancy.block_squares(tail + DIRECTIONS[direction] * length / 2, np.full(len(rows), 0.2 * length))
-    _label_arrows(sheet, 2 * rows + axis, value, tail + DIRECTIONS[direction] * length / 2, outer)
+    length = lengths(sheet, FORCES, np.abs(value), largest)
+    tail, outer = _arrow_places(sheet, rows, direction, length, sides, taken[rows, axis])
+    taken[rows, axis] = outer
+    along = DIRECTIONS[direction]
+    middle = tail + along * length[:, None] / 2
+    sheet.marks += arrows(sheet, rows, tail, along, length, getattr(sheet.theme, name))
+    sheet.occupancy.block_squares(middle, 0.2 * length)
+    _label_arrows(sheet, name, 2 * rows + axis, value, middle, length, outer)
 
 
 def _thinned(
     sheet: Sheet, rows: Rows, force: NDArray[np.float64], index: Rows, axis: Rows
 ) -> tuple[Rows, Rows]:
-    """Of many arrows, the largest in each square of their own length, so that they can be told apart.
+    """Of many arrows, the largest in each square, so that they can be told apart.
 
     Squares divide the original geometry, so that arrows neither come nor go while a structure moves.
     """
     if len(index) <= _MANY_ARROWS:
         return index, axis
-    side = ARROW_LENGTH * sheet.unit / sheet.view.camera.scale
+    side = _SQUARE * sheet.unit / sheet.view.camera.scale
     x, y = np.floor(sheet.model.particles.position[rows[index]] / side).T
     order = np.lexsort((index, -np.abs(force[index, axis]), axis, y, x))
     x, y, along = x[order], y[order], axis[order]
@@ -283,7 +312,7 @@ def _thinned(
     first[1:] = (np.diff(x) != 0) | (np.diff(y) != 0) | (np.diff(along) != 0)
     kept = np.sort(order[first])
     if len(kept) < len(order):
-        sheet.notes.append("zoom in to see all external forces")
+        sheet.notes.append("zoom in to see all loads and reactions")
     return index[kept], axis[kept]
 
 
@@ -291,52 +320,63 @@ def _arrow_places(
     sheet: Sheet,
     rows: Rows,
     direction: NDArray[np.int64],
+    length: NDArray[np.float64],
     sides: NDArray[np.int64],
+    taken: NDArray[np.int64],
 ) -> tuple[Points, NDArray[np.int64]]:
     """Tails of the arrows, and on which side of its particle each stands.
 
     An arrow starts at the rim, or ends at it where the side that it comes from is freer; there it stands
-    beyond the support, if there is one.
+    beyond the support, if there is one. taken: the side of another arrow along the same axis, or NO_SUPPORT.
     """
     u = sheet.unit
     opposite, crowd = (direction + 2) % 4, crowding(sheet, rows)
     supported = sides[rows] != NO_SUPPORT
     busy_ahead = crowd[rows, direction] + 0.8 * (supported & (sides[rows] == direction))
     busy_behind = crowd[rows, opposite] + 0.8 * (supported & (sides[rows] == opposite))
-    pushes = busy_behind < busy_ahead - 0.1
+    pushes = ((busy_behind < busy_ahead - 0.1) & (taken != opposite)) | (taken == direction)
     side = np.where(pushes, opposite, direction)
     gap = sheet.radii[rows] + 2.0 * u + np.where(supported & (sides[rows] == side), SUPPORT_DEPTH * u, 0.0)
     outward = DIRECTIONS[side]
     start = sheet.centres[rows] + outward * gap[:, None]
-    return start + outward * np.where(pushes, ARROW_LENGTH * u, 0.0)[:, None], side
+    return start + outward * np.where(pushes, length, 0.0)[:, None], side
 
 
 def _label_arrows(
-    sheet: Sheet, which: Rows, value: NDArray[np.float64], middle: Points, side: NDArray[np.int64]
+    sheet: Sheet,
+    name: str,
+    which: Rows,
+    value: NDArray[np.float64],
+    middle: Points,
+    length: NDArray[np.float64],
+    side: NDArray[np.int64],
 ) -> None:
     """The size of the force at each arrow; which: twice the particle's row, one more if it is vertical."""
-    few = len(value) <= _FEW_VALUES
-    worth = _worth(sheet, _ARROW_VALUE, which, value)
+    few, field = len(value) <= _FEW_VALUES, _ARROW_VALUES[name]
+    worth = _worth(sheet, field, which, value)
     shown = _most_important(sheet, worth, np.arange(len(value)), middle)
     sizes = np.abs(value[shown]).tolist()
     # The smallest that is drawn at all, 0.0001, must not read 0.00.
     numbers = (written(size, 2 if size >= 0.01 else 4) for size in sizes)
     texts, font, half = _value_texts(sheet, numbers, few)
-    places = _places_by_arrows(middle[shown], DIRECTIONS[side[shown]], half, sheet.unit)
+    places = _places_by_arrows(middle[shown], length[shown], DIRECTIONS[side[shown]], half, sheet.unit)
     # Arrows are few and say little without their value: before the rods.
-    ranks, keys = (-worth[shown] - 1e9).tolist(), [(_ARROW_VALUE, number) for number in which[shown].tolist()]
-    colours = [sheet.theme.force] * len(texts)
-    _add_values(sheet, zip(texts, places, colours, ranks, keys, strict=True), font, "spare")
+    ranks, keys = (-worth[shown] - 1e9).tolist(), [(field, number) for number in which[shown].tolist()]
+    colours = [getattr(sheet.theme, name)] * len(texts)
+    of = [("particles", row) for row in (which[shown] // 2).tolist()]
+    _add_values(sheet, zip(texts, places, colours, ranks, keys, of, strict=True), font, "spare")
 
 
-def _places_by_arrows(middle: Points, outward: Points, half: Points, u: float) -> Points:
+def _places_by_arrows(
+    middle: Points, length: NDArray[np.float64], outward: Points, half: Points, u: float
+) -> Points:
     """Where the value of each arrow may stand, (n, k, 2): beyond its outer end, beside it, beside that end."""
     level = outward[:, 0] != 0.0
-    length, width = np.where(level, half.T, half.T[::-1])
-    outer, nothing = ARROW_LENGTH * u / 2, np.zeros(len(middle))
-    beyond, beside = outer + length, width + 7.5 * u
+    deep, width = np.where(level, half.T, half.T[::-1])
+    outer, nothing = length / 2, np.zeros(len(middle))
+    beyond, beside = outer + deep, width + 7.5 * u
     along, across = [beyond], [nothing]
-    for place in (nothing, length - outer, nothing + outer, beyond):
+    for place in (nothing, deep - outer, outer, beyond):
         along += [place, place]
         across += [beside, -beside]
     along += [nothing, nothing]

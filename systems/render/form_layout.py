@@ -9,32 +9,35 @@ from itertools import groupby
 from components.box import Box
 from components.camera import Rectangle, Viewport
 from components.field import Vector
-from components.form import Form, Tile
+from components.form import Form, Reading, Tile
 from systems.render.typography import font_size, in_rows, wrapped
 
-SIDE = 400.0  # points, width of the properties beside the model
-LEAST_MODEL = 240.0  # points that the model keeps beside them, or they cover it
 WIDEST = 1500.0  # points that tiles spread over
 EDGE = 16.0  # points around everything
 LOW = 330.0  # points: a viewport less high does without explanations
 
-TITLE, BOX, BELOW = 18.0, 26.0, 16.0  # points: title above a box, the box, what is said below it
+TITLE, BOX, BELOW = 18.0, 26.0, 10.0  # points: title above a box, the box, to what follows
+PROBLEM = 14.0  # points that the reason for which a box is refused takes below it
+READING, MOST_READINGS = 20.0, 0.4  # points of a row; share of the height that they take without being scrolled
 MESSAGE, MESSAGE_LINE = 12.0, 16.0  # points, size of type and distance of lines of a message
 SECTION = 28.0
 COLUMN_GAP = 14.0
 HEADING = 104.0  # points, where a low viewport has the box beside the heading
-NARROW = 150.0  # points, a box less wide does not share its row
+CLOSE, ACCEPT = 24.0, 64.0  # points, side of the button that leaves; width of that which does what Return does
+NARROW = 130.0  # points, a box less wide does not share its row
 TILE, TILE_GAP, CAPTION, PROPORTION = 172.0, 16.0, 38.0, 0.6
 LOWEST = 0.65  # share of a picture's height that it keeps where one more row fits then
 
-Row = str | list[Box] | list[Tile]
+PROPERTIES = "Properties"  # the heading of an element's own boxes, where its results stand above them
+
+Row = str | list[Box] | list[Reading] | list[Tile]
 
 
 @dataclass(frozen=True)
 class Place(Rectangle):
-    """The rectangle of a box (without its title), tile or section heading."""
+    """The rectangle of a box (without its title), reading, tile or section heading."""
 
-    item: Box | Tile | str
+    item: Box | Reading | Tile | str
 
 
 @dataclass(frozen=True)
@@ -43,7 +46,8 @@ class FormLayout:
 
     unit: pixels per point. left, right: the edges of all text. header: the middle of the heading's line, whose text
     has the room `heading_width`. message: the middle of the message's first line. top, bottom: the edges of the rows.
-    first, shown, count: the number of the first row in sight, of rows in sight, and of all rows.
+    rows: those that are scrolled. first, shown: the number of the first one in sight, and of those in sight.
+    close, accept: the buttons that leave it, and that do what Return does.
     """
 
     viewport: Viewport
@@ -55,31 +59,26 @@ class FormLayout:
     message: float
     top: float
     bottom: float
+    close: Rectangle
+    accept: Rectangle | None
     first: int = 0
     shown: int = 0
-    count: int = 0
+    rows: list[Row] = field(default_factory=list)
     places: list[Place] = field(default_factory=list)
 
-    def at(self, pixel: Vector) -> Box | Tile | None:
-        """The box or tile under a pixel."""
+    @property
+    def count(self) -> int:
+        """The number of rows that are scrolled."""
+        return len(self.rows)
+
+    def at(self, pixel: Vector) -> Box | Reading | Tile | None:
+        """The box, reading or tile under a pixel."""
         found = (p.item for p in self.places if not isinstance(p.item, str) and p.contains(pixel))
         return next(found, None)
 
     def place_of(self, item: Box | Tile) -> Place | None:
         """Where a box or tile is; None if it is scrolled away."""
         return next((place for place in self.places if place.item is item), None)
-
-
-def beside(viewport: Viewport, unit: float, *, at_left: bool) -> tuple[Viewport | None, Viewport]:
-    """The part of a viewport for the model (None: nothing), and the part for properties."""
-    width = round(SIDE * unit)
-    if viewport.width - width < LEAST_MODEL * unit:
-        return None, viewport
-    rest = viewport.width - width
-    left, top, height = viewport.left, viewport.top, viewport.height
-    if at_left:
-        return Viewport(left + width, top, rest, height), Viewport(left, top, width, height)
-    return Viewport(left, top, rest, height), Viewport(left + rest, top, width, height)
 
 
 def lay_out(form: Form, viewport: Viewport, unit: float) -> FormLayout:
@@ -92,18 +91,30 @@ def lay_out(form: Form, viewport: Viewport, unit: float) -> FormLayout:
     top = header + (16.0 if low else 24.0) * u
     bottom = v.top + v.height - (22.0 if low else 58.0) * u
     fixed: list[Place] = []
+    close = Rectangle(left + width - CLOSE * u, header - CLOSE * u / 2, CLOSE * u, CLOSE * u)
+    accept = None
     if _has_files(form):
         beside_heading = HEADING * u if low else 0.0
         top = v.top + 6.0 * u if low else top + TITLE * u
-        room = min(width - beside_heading, 420.0 * u)
+        taken = (ACCEPT + 8.0 + (CLOSE + 8.0 if low else 0.0)) * u
+        room = max(min(width - beside_heading - taken, 420.0 * u), 40.0 * u)
+        accept = Rectangle(left + beside_heading + room + 8.0 * u, top, ACCEPT * u, BOX * u)
         fixed = [Place(left + beside_heading, top, room, BOX * u, box) for box in form.boxes]
         top += (BOX + 22.0) * u
     shares_line = low and bool(fixed)
-    heading_width = (HEADING - 8.0) * u if shares_line else width
+    heading_width = (HEADING - 8.0) * u if shares_line else width - (CLOSE + 8.0) * u
     message, lines = top - 11.0 * u, message_lines(form, width, u)
     top += max(len(lines) - 1, 0) * MESSAGE_LINE * u
-    layout = FormLayout(v, u, left, left + width, header, heading_width, message, top, bottom)
-    return _with_rows(form, layout, fixed)
+    rows = list(_tile_rows(form, width / u) if _has_files(form) else _box_rows(form, width / u))
+    readings = list(_reading_rows(form))
+    if len(readings) * READING * u > MOST_READINGS * (bottom - top):
+        rows, readings = readings + rows, []
+    for row in readings:  # they stay while boxes are scrolled
+        height = _height(row, 0.0, u)
+        fixed += _placed(row, left, top, width, height, u)
+        top += height
+    layout = FormLayout(v, u, left, left + width, header, heading_width, message, top, bottom, close, accept)
+    return _with_rows(form, layout, fixed, rows)
 
 
 def message_lines(form: Form, width: float, u: float) -> list[str]:
@@ -116,9 +127,8 @@ def _has_files(form: Form) -> bool:
     return any(box.target == "name" for box in form.boxes)
 
 
-def _with_rows(form: Form, layout: FormLayout, fixed: list[Place]) -> FormLayout:
+def _with_rows(form: Form, layout: FormLayout, fixed: list[Place], rows: list[Row]) -> FormLayout:
     u, room, width = layout.unit, layout.bottom - layout.top, layout.right - layout.left
-    rows = list(_tile_rows(form, width / u) if _has_files(form) else _box_rows(form, width / u))
     picture = _picture_height(rows, width, room, u)
     heights = [_height(row, picture, u) for row in rows]
     first = min(form.heading.first, _last_first(heights, room))
@@ -131,7 +141,7 @@ def _with_rows(form: Form, layout: FormLayout, fixed: list[Place]) -> FormLayout
         shown += 1
     if shown > 1 and isinstance(rows[first + shown - 1], str):  # a heading without visible tiles
         places.pop()
-    return replace(layout, first=first, shown=shown, count=len(rows), places=places)
+    return replace(layout, first=first, shown=shown, rows=rows, places=places)
 
 
 def _last_first(heights: Sequence[float], room: float) -> int:
@@ -143,10 +153,9 @@ def _last_first(heights: Sequence[float], room: float) -> int:
     return min(first, max(len(heights) - 1, 0))
 
 
-def row_of(form: Form, item: Box | Tile, layout: FormLayout) -> tuple[int, int]:
+def row_of(layout: FormLayout, item: Box | Tile) -> tuple[int, int]:
     """The number of the row in which a box or tile is, and that of the heading right above, else again of the row."""
-    width = (layout.right - layout.left) / layout.unit
-    rows = list(_tile_rows(form, width) if _has_files(form) else _box_rows(form, width))
+    rows = layout.rows
     row = next(number for number, row in enumerate(rows) if not isinstance(row, str) and item in row)
     return row, row - 1 if row and isinstance(rows[row - 1], str) else row
 
@@ -154,12 +163,18 @@ def row_of(form: Form, item: Box | Tile, layout: FormLayout) -> tuple[int, int]:
 # --- rows --------------------------------------------------------------------------------------------
 
 
+def _reading_rows(form: Form) -> Iterator[Row]:
+    for section, readings in groupby(form.readings, lambda reading: reading.section):
+        yield section
+        yield from in_rows(list(readings), 1)
+
+
 def _box_rows(form: Form, width: float) -> Iterator[Row]:
     """Sections and boxes: the two components of a vector share a row, and so do single boxes."""
     together = 2 if (width - COLUMN_GAP) / 2 >= NARROW else 1
     for section, boxes in groupby(form.boxes, lambda box: box.section):
-        if section != form.heading.text:
-            yield section
+        if section != form.heading.text or len(form.readings):
+            yield section if section != form.heading.text else PROPERTIES
         for _, partners in groupby(boxes, _partner):
             yield from in_rows(list(partners), together)
 
@@ -187,7 +202,11 @@ def tile_columns(width: float) -> int:
 def _height(row: Row, picture: float, u: float) -> float:
     if isinstance(row, str):
         return SECTION * u
-    return (TITLE + BOX + BELOW) * u if isinstance(row[0], Box) else picture + (CAPTION + TILE_GAP) * u
+    if isinstance(row[0], Reading):
+        return READING * u
+    if isinstance(row[0], Tile):
+        return picture + (CAPTION + TILE_GAP) * u
+    return (TITLE + BOX + BELOW + PROBLEM * any(box.problem for box in row)) * u
 
 
 def _picture_height(rows: Sequence[Row], width: float, room: float, u: float) -> float:
@@ -210,6 +229,8 @@ def _tile_width(width: float, u: float) -> float:
 def _placed(row: Row, left: float, top: float, width: float, height: float, u: float) -> Iterator[Place]:
     if isinstance(row, str):
         yield Place(left, top, width, height, row)
+    elif isinstance(row[0], Reading):
+        yield Place(left, top, width, height, row[0])
     elif isinstance(row[0], Box):
         gap = COLUMN_GAP * u
         each = (width - gap) / 2 if (width - gap) / 2 >= NARROW * u else width

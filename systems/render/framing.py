@@ -17,12 +17,14 @@ from systems.render.marks import (
     Discs,
     Fills,
     Mark,
+    Owners,
     Panel,
     Points,
     Rectangles,
     Stamps,
     Strokes,
     Text,
+    owners,
 )
 from systems.render.symbols import LARGEST_STAMP, SUPPORT_DEPTH, SYMBOLS, circle, symbol_parts
 from systems.render.theme import Colour
@@ -55,13 +57,13 @@ def framed(mark: Mark, viewport: Viewport, unit: float) -> Iterator[Mark]:
         case Strokes():
             width = min(mark.width, 4.0 * float(np.hypot(*(high - low))))
             reach = width + _MARGIN
-            start, end, _ = clip_segments(_within(mark.start), _within(mark.end), low - reach, high + reach)
-            yield replace(mark, start=start, end=end, width=width)
+            start, end, seen = clip_segments(_within(mark.start), _within(mark.end), low - reach, high + reach)
+            yield replace(mark, start=start, end=end, width=width, of=owners(mark.of, seen))
         case Fills():
-            yield from _fills(_within(mark.corners), mark.colour, viewport)
+            yield from _fills(_within(mark.corners), mark.colour, viewport, mark.of)
         case Bars():
             mark = replace(mark, start=_within(mark.start), end=_within(mark.end), rise=_within(mark.rise))
-            yield from _fills(mark.corners, mark.colour, viewport)
+            yield from _fills(mark.corners, mark.colour, viewport, mark.of)
         case Stamps():
             yield from _stamps(mark, viewport)
         case Discs():
@@ -79,14 +81,18 @@ def framed(mark: Mark, viewport: Viewport, unit: float) -> Iterator[Mark]:
 
 def check_mark(mark: Mark) -> None:
     """Raise ValueError, naming the part, if a mark of the right types cannot be drawn."""
-    kind = type(mark)
+    kind, arrays = type(mark), [*_SHAPES.get(type(mark), {})]
     names = getattr(mark, "_fields", None) or [*vars(mark)]
-    for name in names:
+    for name in [name for name in names if name != "of"]:
         problem = _problem(name, getattr(mark, name), _SHAPES.get(kind, {}).get(name))
         if problem:
             raise ValueError(f"{kind.__name__}.{name} {problem}")
-    if len({len(getattr(mark, name)) for name in _SHAPES.get(kind, ())}) > 1:
-        raise ValueError(f"{kind.__name__}: {' and '.join(_SHAPES[kind])} have different numbers of rows")
+    counts = {len(getattr(mark, name)) for name in arrays}
+    if arrays and (of := getattr(mark, "of", None)) is not None:
+        arrays.append("of")
+        counts.add(len(of[1]))
+    if len(counts) > 1:
+        raise ValueError(f"{kind.__name__}: {' and '.join(arrays)} have different numbers of rows")
 
 
 def _problem(name: str, value: Any, shape: tuple[int | None, ...] | None) -> str:
@@ -107,30 +113,31 @@ def _problem(name: str, value: Any, shape: tuple[int | None, ...] | None) -> str
         return "" if value in _WORDS[name] else f"is '{value}'; choose one of {', '.join(_WORDS[name])}"
     if isinstance(value, str):
         return ""
-    bad = ~np.isfinite(value) | (np.less(value, 0) if name in _SIZES else False)
+    value = np.asarray(value, dtype=np.float64)  # whole numbers of any length, too
+    bad = ~np.isfinite(value) | ((value < 0.0) if name in _SIZES else False)
     if np.any(bad):
         wanted = "0 or more" if name in _SIZES else "finite"
-        return f"has {np.asarray(value)[bad].flat[0]} in it; it must be {wanted}, in pixels"
+        return f"has {value[bad].flat[0]} in it; it must be {wanted}, in pixels"
     return ""
 
 
 # --- cutting -------------------------------------------------------------------------------------------------
 
 
-def _fills(corners: Points, colour: Colour, viewport: Viewport) -> Iterator[Fills]:
+def _fills(corners: Points, colour: Colour, viewport: Viewport, of: Owners | None) -> Iterator[Fills]:
     """Polygons, those that stick out of the viewport cut to it."""
     if not corners.size:
         return
     low, high = bounds(viewport)
     low, high = low - _MARGIN, high + _MARGIN
-    inside = ((corners >= low) & (corners <= high)).all(axis=(1, 2))
+    inside = np.asarray(((corners >= low) & (corners <= high)).all(axis=(1, 2)))
     if inside.any():
-        yield Fills(corners[inside], colour)
+        yield Fills(corners[inside], colour, owners(of, inside))
     away = ((corners < low).all(axis=1) | (corners > high).all(axis=1)).any(axis=-1)
-    for polygon in corners[~inside & ~away]:
-        cut = _cut(polygon, low, high)
+    for index in np.flatnonzero(~inside & ~away).tolist():
+        cut = _cut(corners[index], low, high)
         if len(cut) > 2:
-            yield Fills(cut[None], colour)
+            yield Fills(cut[None], colour, owners(of, slice(index, index + 1)))
 
 
 def _cut(polygon: Points, low: Points, high: Points) -> Points:
@@ -165,7 +172,8 @@ def _stamps(mark: Stamps, viewport: Viewport) -> Iterator[Mark]:
     mark = replace(mark, at=_within(mark.at), size=min(mark.size, _FAR), unit=min(mark.unit, _FAR))
     largest = mark.size if mark.symbol in SYMBOLS else 20.0 * mark.size  # of an icon: of a unit of its square
     reach = largest + 2.0 * SUPPORT_DEPTH * mark.unit
-    mark = replace(mark, at=mark.at[_near(mark.at, reach, viewport)])
+    near = _near(mark.at, reach, viewport)
+    mark = replace(mark, at=mark.at[near], of=owners(mark.of, near))
     if not len(mark.at) or not mark.size or not mark.unit:
         return
     if reach <= 4.0 * LARGEST_STAMP:
@@ -175,7 +183,7 @@ def _stamps(mark: Stamps, viewport: Viewport) -> Iterator[Mark]:
     rotation = np.array([[turn[0], -turn[1]], [turn[1], turn[0]]], dtype=np.float64)
     for role, corners in symbol_parts(mark.symbol, mark.size, mark.unit):
         colour = mark.ink if role == "ink" else mark.hollow
-        yield from _fills(mark.at[:, None] + corners @ rotation.T, colour, viewport)
+        yield from _fills(mark.at[:, None] + corners @ rotation.T, colour, viewport, mark.of)
 
 
 def _discs(mark: Discs, viewport: Viewport, unit: float) -> Iterator[Mark]:
@@ -183,11 +191,13 @@ def _discs(mark: Discs, viewport: Viewport, unit: float) -> Iterator[Mark]:
     at, radius = _within(mark.at), np.minimum(mark.radius, _FAR)
     large = radius > LARGEST_STAMP * unit
     small = ~large & _near(at, LARGEST_STAMP * unit, viewport)
-    yield replace(mark, at=at[small], radius=radius[small], rim=min(mark.rim, LARGEST_STAMP * unit))
-    for place, reach in zip(at[large], radius[large].tolist(), strict=True):
-        yield from _fills((place + circle(reach))[None], mark.ink, viewport)
+    rim = min(mark.rim, LARGEST_STAMP * unit)
+    yield replace(mark, at=at[small], radius=radius[small], rim=rim, of=owners(mark.of, small))
+    for index in np.flatnonzero(large).tolist():
+        place, reach, of = at[index], float(radius[index]), owners(mark.of, slice(index, index + 1))
+        yield from _fills((place + circle(reach))[None], mark.ink, viewport, of)
         if 0.0 < mark.rim < reach:
-            yield from _fills((place + circle(reach - mark.rim))[None], mark.hollow, viewport)
+            yield from _fills((place + circle(reach - mark.rim))[None], mark.hollow, viewport, of)
 
 
 def _boxes(boxes: Any, low: Points, high: Points) -> Any:

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from components.camera import Viewport
 from systems.render.clip import bounds
-from systems.render.marks import Mark, Panel, Points, Text
+from systems.render.marks import Mark, Owner, Panel, Points, Text
 from systems.render.theme import Colour
 from systems.render.typography import line_height, text_width
 
@@ -112,7 +112,7 @@ class Label(NamedTuple):
 
     rank: labels of lower rank come first. backing: colour behind the text, or None. lines: whether it may
     cover rods ("cover"), only if there is no other place ("spare"), or no line ever ("avoid"). key: the
-    quantity and row, if the label is to stay where it was in the last picture.
+    quantity and row, if the label is to stay where it was in the last picture. of: whose it is.
     """
 
     text: str
@@ -124,6 +124,7 @@ class Label(NamedTuple):
     backing: Colour | None = None
     lines: Literal["cover", "spare", "avoid"] = "spare"
     key: Key | None = None
+    of: Owner | None = None
 
 
 @lru_cache(maxsize=8192)
@@ -163,8 +164,9 @@ def place_labels(labels: Iterable[Label], occupancy: Occupancy, unit: float, pla
         if label.key:
             placed[label.key] = place
         if label.backing is not None:
-            marks.append(Panel(x - wide, y - tall, 2.0 * wide, 2.0 * tall, 4.0 * unit, label.backing))
-        marks.append(Text(label.text, x, y, label.size, label.colour, label.weight, "centre"))
+            box = x - wide, y - tall, 2.0 * wide, 2.0 * tall
+            marks.append(Panel(*box, 4.0 * unit, label.backing, None, label.of))
+        marks.append(Text(label.text, x, y, label.size, label.colour, label.weight, "centre", label.of))
     return marks
 
 

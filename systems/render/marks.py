@@ -1,6 +1,8 @@
 """Marks: the parts of a picture, in pixels, y down, as plain data in painter's order.
 
-Marks of which a picture holds hundreds are tuples, which are faster to make."""
+Marks of which a picture holds hundreds are tuples, which are faster to make. `of` says whose a mark is: a table, such as
+"rods", and the row there of each of its items (n,), or of a text or panel its row; None: no element's.
+"""
 
 from __future__ import annotations
 
@@ -10,10 +12,17 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from components.camera import Viewport
+from components.camera import Rectangle, Viewport
 from systems.render.theme import Colour
 
 Points = NDArray[np.float64]
+Owner = tuple[str, int]  # the table and row of an element
+Owners = tuple[str, NDArray[np.intp]]
+
+
+def owners(of: Owners | None, which: NDArray[np.bool_] | NDArray[np.intp] | slice) -> Owners | None:
+    """Whose some items of a mark are."""
+    return None if of is None else (of[0], of[1][which])
 
 
 @dataclass(frozen=True)
@@ -24,6 +33,7 @@ class Strokes:
     end: Points
     width: float
     colour: Colour
+    of: Owners | None = None
 
 
 @dataclass(frozen=True)
@@ -32,6 +42,7 @@ class Fills:
 
     corners: Points
     colour: Colour
+    of: Owners | None = None
 
 
 @dataclass(frozen=True)
@@ -42,6 +53,7 @@ class Bars:
     end: Points
     rise: Points
     colour: Colour
+    of: Owners | None = None
 
     @property
     def corners(self) -> NDArray[np.float64]:
@@ -64,6 +76,7 @@ class Stamps:
     ink: Colour
     hollow: Colour
     turns: int = 0
+    of: Owners | None = None
 
 
 @dataclass(frozen=True)
@@ -78,6 +91,7 @@ class Discs:
     ink: Colour
     hollow: Colour
     rim: float = 0.0
+    of: Owners | None = None
 
 
 @dataclass(frozen=True)
@@ -103,6 +117,7 @@ class Panel(NamedTuple):
     radius: float
     fill: Colour
     outline: Colour | None = None
+    of: Owner | None = None
 
 
 class Text(NamedTuple):
@@ -119,6 +134,15 @@ class Text(NamedTuple):
     colour: Colour
     weight: str = "regular"
     anchor: str = "left"
+    of: Owner | None = None
+
+
+def cross(place: Rectangle, unit: float, colour: Colour) -> Strokes:
+    """The sign on a button that closes something."""
+    x, y, reach = place.left + place.width / 2, place.top + place.height / 2, 4.5 * unit
+    start = np.array([[x - reach, y - reach], [x - reach, y + reach]])
+    end = np.array([[x + reach, y + reach], [x + reach, y - reach]])
+    return Strokes(start, end, 1.6 * unit, colour)
 
 
 Mark = Strokes | Fills | Bars | Stamps | Discs | Rectangles | Panel | Text

@@ -2,10 +2,9 @@
 
 from __future__ import annotations
 
-import math
-
 import numpy as np
 
+from components import written
 from components.camera import Viewport
 from components.round_numbers import round_down
 from components.view import BETWEEN
@@ -21,7 +20,6 @@ _SMALL = 300.0  # points; lower viewports leave out optional overlays
 _FEW_LINES = 3  # of a notice
 _NOISE = 1e-6  # pixels; smaller displacements count as none
 BAR = 28.0  # points, height of the status bar
-_PREFIXES = ((1.0, ""), (1e-3, "m"), (1e-6, "µ"), (1e-9, "n"))
 
 
 def draw_overlays(sheet: Sheet) -> tuple[list[Mark], tuple[float, float]]:
@@ -33,38 +31,6 @@ def draw_overlays(sheet: Sheet) -> tuple[list[Mark], tuple[float, float]]:
     empty = _empty(sheet, bottom) if blank else []
     caption, top = _caption(sheet, top)
     return marks + heading + legend + caption + empty, (top, bottom)
-
-
-# --- what numbers look like ------------------------------------------------------------------------
-
-
-def written_time(seconds: float, digits: int = 4) -> str:
-    """A time with an SI prefix, such as "1.234 ms"; above 1000 s plain seconds."""
-    if seconds == 0.0:
-        return "0 s"
-    rounded = float(f"{seconds:.{digits - 1}e}")
-    factor, prefix = next((f, p) for f, p in _PREFIXES if abs(rounded) >= 0.1 * f or f == 1e-9)
-    decimals = max(digits - 1 - math.floor(math.log10(abs(rounded) / factor) + 1e-9), 0)
-    return f"{seconds / factor:.{decimals}f} {prefix}s".replace("-", "−")
-
-
-def written_length(metres: float) -> str:
-    """A round length in the unit that suits it, such as "20 cm"."""
-    for factor, unit in ((1000.0, "km"), (1.0, "m"), (0.01, "cm"), (0.001, "mm")):
-        if metres >= 0.999 * factor:
-            return f"{metres / factor:.4g} {unit}"
-    return f"{metres * 1e6:.4g} µm"
-
-
-def written_speed(speed: float) -> str:
-    """How fast the simulation is shown, such as "1 s shown = 0.35 ms simulated"; "" when halted."""
-    if speed == 0.0:
-        return ""
-    if abs(speed - 1.0) < 0.005:
-        return "real time"
-    number, unit = written_time(speed, 3).split(" ")
-    number = number.rstrip("0").rstrip(".") if "." in number else number
-    return f"1 s shown = {number} {unit} simulated"
 
 
 # --- the status bar --------------------------------------------------------------------------------
@@ -88,8 +54,8 @@ def _status_bar(sheet: Sheet) -> tuple[list[Mark], float]:
         x += 13.0 * u
         state = status.state[0].upper() + status.state[1:]
         x = _append(sheet, marks, state, x, middle, theme.text, "semibold")
-        time = "" if status.time is None else f"t = {written_time(status.time)}"
-        for text in (time, written_speed(status.speed)):
+        time = "" if status.time is None else f"t = {written.time(status.time)}"
+        for text in (time, written.pace(status.speed)):
             x = _append(sheet, marks, text, x, middle, theme.text)
     _append_hint(sheet, marks, x, middle)
     return marks, float(top)
@@ -156,7 +122,7 @@ def _heading(sheet: Sheet) -> tuple[list[Mark], tuple[float, float]]:
     for number, line in enumerate(lines):
         y = top + 9.0 * u + number * line_height(size)
         sheet.occupancy.block(left, y - size / 2, text_width(line, size, "semibold"), size)
-        marks.append(Text(line, left, y, size, sheet.theme.heading, "semibold"))
+        marks.append(Text(line, left, y, size, sheet.theme.text, "semibold"))
     right = left + max(text_width(line, size, "semibold") for line in lines)
     return marks, (right, top + len(lines) * line_height(size) - 4.0 * u)
 
@@ -177,7 +143,7 @@ def _caption(sheet: Sheet, top: float) -> tuple[list[Mark], float]:
     for line in (*sheet.view.caption, *shape):
         weight, colour = ("semibold", theme.text) if number == 0 else ("regular", theme.muted)
         if line in shape:
-            weight, colour = "semibold", theme.hover
+            weight, colour = "semibold", theme.sketch
         for text in wrapped(line, room, size, weight):
             y = top + 8.0 * u + (number + 0.5) * line_height(size)
             width = text_width(text, size, weight)
@@ -251,8 +217,8 @@ _MEANINGS = {
     "compression": "compression (kN)",
     "yielding": "yielding",
     "slack": "slack cable",
-    "force": "external force (kN)",
-    "load": "load",
+    "load": "load (kN)",
+    "reaction": "reaction (kN)",
     "velocity": "velocity",
 }
 
@@ -301,15 +267,15 @@ def _rows(widths: list[float], gap: float, room: float) -> list[tuple[int, int]]
 def _swatch(sheet: Sheet, name: str, x: float, y: float, width: float) -> list[Mark]:
     """A small sample of what a colour means: a diagram, a yielding rod, a slack cable, an arrow."""
     u, theme = sheet.unit, sheet.theme
-    role = {"slack": "ink", "load": "force", "velocity": "ink"}.get(name, name)
+    role = {"slack": "ink", "velocity": "ink"}.get(name, name)
     colour = getattr(theme, role)
     ends = np.array([[x, y]]), np.array([[x + width, y]])
-    if name in ("force", "load", "velocity"):
+    if name in ("load", "reaction", "velocity"):
         return [Stamps("arrow", ends[0], width, u, colour, colour)]
     if name == "yielding":
         return [Strokes(*ends, 3.0 * u, colour)]
     if name == "slack":
-        return [Strokes(*dashed(*ends, width / 5), 1.25 * u, colour)]
+        return [Strokes(*dashed(*ends, width / 5)[:2], 1.25 * u, colour)]
     return [Panel(x, y - 5.0 * u, width, 10.0 * u, 1.0 * u, faded(colour, 0.18), colour)]
 
 
@@ -325,7 +291,10 @@ def draw_scale(sheet: Sheet, room: tuple[float, float]) -> list[Mark]:
     longest = min(120.0 * u, 0.25 * v.width) / sheet.view.camera.scale
     metres = round_down(longest)
     notes = _displacements(sheet) + sheet.notes
-    for length, said in ((metres * sheet.view.camera.scale, [written_length(metres), *notes]), (0.0, notes)):
+    for length, said in (
+        (metres * sheet.view.camera.scale, [written.scale_length(metres), *notes]),
+        (0.0, notes),
+    ):
         ruler = length + 8.0 * u if length else 0.0
         room_beside = v.width - ruler - 2 * _EDGE * u
         text = shortened("   ".join(said), room_beside, size)
@@ -369,7 +338,7 @@ def _displacements(sheet: Sheet) -> list[str]:
     if not _NOISE < largest * sheet.view.camera.scale < sheet.unit:
         return []
     return [
-        f"displacements up to {written_length(float(f'{largest:.1e}'))}, too small to see; their slider enlarges them"
+        f"displacements up to {written.given(1000.0 * largest, 2)} mm, too small to see; their slider enlarges them"
     ]
 
 
@@ -382,8 +351,8 @@ def _empty(sheet: Sheet, bottom: float) -> list[Mark]:
     title, size = sheet.font(20.0), sheet.font(13.0)
     steps = [step.split(" ", 1) for step in sheet.view.status.hint.split(BETWEEN) if " " in step]
     keys = max((text_width(key, size, "semibold") for key, _ in steps), default=0) + 12.0 * u
-    written = keys + max((text_width(rest, size) for _, rest in steps), default=0)
-    width = min(v.width - 2 * _EDGE * u, max(written + 64.0 * u, 280.0 * u))
+    widest = keys + max((text_width(rest, size) for _, rest in steps), default=0)
+    width = min(v.width - 2 * _EDGE * u, max(widest + 64.0 * u, 280.0 * u))
     emblem = 68.0 * u if v.height >= _SMALL * u else 0.0
     height = emblem + 62.0 * u + len(steps) * 1.1 * line_height(size)
     middle, top = v.left + v.width / 2, v.top + (bottom - v.top - height) / 2
@@ -392,7 +361,7 @@ def _empty(sheet: Sheet, bottom: float) -> list[Mark]:
         *(_emblem(sheet, middle, top + 24.0 * u) if emblem else []),
         Text("An empty model", middle, top + emblem + 26.0 * u, title, theme.text, "semibold", "centre"),
     ]
-    left, y = middle - written / 2, top + emblem + 58.0 * u
+    left, y = middle - widest / 2, top + emblem + 58.0 * u
     for number, (key, rest) in enumerate(steps):
         at = y + number * 1.1 * line_height(size)
         marks.append(Text(key, left, at, size, theme.text, "semibold"))

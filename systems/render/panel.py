@@ -1,4 +1,4 @@
-"""Panel: the boxes of properties, save and load, and the tiles to choose from, as marks."""
+"""Panel: boxes of properties, save and load, results beside them, and tiles to choose from, as marks."""
 
 from __future__ import annotations
 
@@ -6,9 +6,9 @@ from functools import lru_cache
 
 import numpy as np
 
-from components.box import WORD, Box
+from components.box import NUMBER, WORD, Box
 from components.camera import Camera, Rectangle, Viewport
-from components.form import Form, Tile
+from components.form import Form, Reading, Tile
 from components.model import Model
 from components.view import BETWEEN, View, drawn_places
 from systems.render.arrows import draw_loads, draw_velocities
@@ -23,7 +23,7 @@ from systems.render.form_layout import (
     message_lines,
 )
 from systems.render.help import draw_help
-from systems.render.marks import Fills, Mark, Panel, Picture, Text, boxes
+from systems.render.marks import Fills, Mark, Panel, Picture, Text, boxes, cross
 from systems.render.sheet import BELOW, measure
 from systems.render.structure import draw_particles, draw_rods
 from systems.render.supports import draw_supports, support_sides
@@ -31,6 +31,7 @@ from systems.render.theme import Colour, Theme, faded
 from systems.render.typography import at_most, fitting, font_size, shortened, text_width, wrapped
 
 _TEXT = 13.0  # points, size of type in a box
+_SMALL, _GAP = 11.0, 4.0  # points: size of type of units and notes, between a number and its unit
 _PAD = 8.0  # points between a box's edge and its text
 _THUMBNAIL_MARGIN = 24.0  # points, room for supports
 _SMALLER = 0.6  # symbols in a thumbnail, compared with those in a model
@@ -38,16 +39,17 @@ _SMALLER = 0.6  # symbols in a thumbnail, compared with those in a model
 
 def compose_form(form: Form, view: View, theme: Theme) -> Picture:
     """A form as marks in the pixels of the view's viewport. Reads the form, changes nothing."""
-    layout = lay_out(form, view.camera.viewport, view.pixel_ratio)
+    layout = lay_out(form, view.aside or view.camera.viewport, view.pixel_ratio)
     writer = _Writer(form, view, theme, layout)
     marks = [
+        *writer.edges(),
         *writer.header(),
         *writer.rows(),
         *writer.footer(),
         *writer.scroll_bar(),
         *draw_help(view, layout.viewport, theme),
     ]
-    return Picture(layout.viewport, theme.form, marks)
+    return Picture(layout.viewport, theme.panel, marks)
 
 
 class _Writer:
@@ -64,15 +66,39 @@ class _Writer:
 
     # --- what stands in fixed places -------------------------------------------------------------
 
+    def edges(self) -> list[Mark]:
+        """Hairlines towards a model beside it."""
+        v, window, thin = self.layout.viewport, self.view.camera.viewport, max(round(self.unit), 1)
+        sides = [v.left] * (v.left > window.left) + [v.left + v.width - thin] * (v.right < window.right)
+        return [boxes(self.theme.line, *((x, v.top, thin, v.height) for x in sides))] if sides else []
+
     def header(self) -> list[Mark]:
         """The heading, and the message below the boxes that stay."""
         layout, heading = self.layout, self.form.heading
         size, small, u = self.font(19.0), self.font(MESSAGE), self.unit
-        text = shortened(heading.text, layout.heading_width, size, "semibold")
-        marks: list[Mark] = [Text(text, layout.left, layout.header, size, self.theme.form_text, "semibold")]
+        text = heading.text[:1].upper() + heading.text[1:]
+        text = shortened(text, layout.heading_width, size, "semibold")
+        marks: list[Mark] = [Text(text, layout.left, layout.header, size, self.theme.text, "semibold")]
         for number, line in enumerate(message_lines(self.form, layout.right - layout.left, u)):
             y = layout.message + number * MESSAGE_LINE * u
-            marks.append(Text(line, layout.left, y, small, self.theme.form_problem))
+            marks.append(Text(line, layout.left, y, small, self.theme.problem))
+        return [*marks, *self._buttons()]
+
+    def _buttons(self) -> list[Mark]:
+        """The one that leaves the form, and the one that does what Return does."""
+        layout, theme, u = self.layout, self.theme, self.unit
+        marks: list[Mark] = []
+        for place, title in ((layout.close, ""), (layout.accept, self.form.accept)):
+            if place is None or not (title or place is layout.close):
+                continue
+            under = self.view.pointer is not None and place.contains(self.view.pointer)
+            if under or title:
+                marks.append(_grown(place, 0.0, 4.0 * u, faded(theme.text, 0.22 if under else 0.12)))
+            if title:
+                x, y = place.left + place.width / 2, place.top + place.height / 2
+                marks.append(Text(title, x, y, self.font(_TEXT), theme.text, "semibold", "centre"))
+            else:
+                marks.append(cross(place, u, theme.muted))
         return marks
 
     def footer(self) -> list[Mark]:
@@ -80,19 +106,24 @@ class _Writer:
         layout, size, v = self.layout, self.font(12.0), self.layout.viewport
         width, bottom = layout.right - layout.left, v.bottom
         hint = _steps(self.view.status.hint, width, size)
-        marks: list[Mark] = [Text(hint, layout.left, bottom - 13.0 * self.unit, size, self.theme.form_muted)]
+        marks: list[Mark] = [Text(hint, layout.left, bottom - 13.0 * self.unit, size, self.theme.muted)]
         if v.height >= LOW * self.unit:
-            lines = wrapped(self._explanation(), width, size)
+            told, colour = self._explanation()
+            lines = wrapped(told, width, size)
             for number, line in enumerate(at_most(lines, 2, width, size)):
                 y = bottom - (50.0 - 16.0 * number) * self.unit
-                marks.append(Text(line, layout.left, y, size, self.theme.form_text))
+                marks.append(Text(line, layout.left, y, size, colour))
         return marks
 
-    def _explanation(self) -> str:
-        hovered = self.hovered if isinstance(self.hovered, Tile) else None
+    def _explanation(self) -> tuple[str, Colour]:
+        """What is said about the item under the pointer, else about the chosen or selected one; and its colour."""
         name = next((box for box in self.form.boxes if box.target == "name"), None)
-        told = (hovered, self.chosen, self.selected, name)
-        return next((item.explanation for item in told if item is not None), "")
+        for item in (self.hovered, self.chosen, self.selected, name):
+            if isinstance(item, Box) and item.problem:
+                return f"{item.title}: {item.problem}", self.theme.problem
+            if item is not None and item.explanation:
+                return item.explanation, self.theme.text
+        return "", self.theme.text
 
     def scroll_bar(self) -> list[Mark]:
         """The scroll bar, if some rows are not visible."""
@@ -104,71 +135,105 @@ class _Writer:
         length = max(track * layout.shown / layout.count, 16.0 * self.unit)
         last = layout.count - layout.shown
         top = layout.top + (track - length) * min(layout.first / last, 1.0)
-        return [boxes(self.theme.form_muted, (v.right - 2 * width, round(top), width, round(length)))]
+        return [boxes(self.theme.muted, (v.right - 2 * width, round(top), width, round(length)))]
 
     # --- rows ------------------------------------------------------------------------------------
 
     def rows(self) -> list[Mark]:
-        """Sections, boxes and tiles."""
+        """Sections, boxes, readings and tiles."""
         marks: list[Mark] = []
         for place in self.layout.places:
             if isinstance(place.item, str):
                 y = place.top + 0.5 * place.height
-                marks.append(Text(place.item, place.left, y, self.font(13.0), self.theme.form_text, "semibold"))
+                marks.append(Text(place.item, place.left, y, self.font(13.0), self.theme.text, "semibold"))
             elif isinstance(place.item, Box):
                 marks += self._box(place, place.item)
+            elif isinstance(place.item, Reading):
+                marks += self._reading(place, place.item)
             else:
                 marks += self._tile(place, place.item)
         return marks
 
+    def _reading(self, place: Place, reading: Reading) -> list[Mark]:
+        """What it is at the left, its value at the right."""
+        theme, size, y = self.theme, self.font(12.0), place.top + place.height / 2
+        value = shortened(reading.text, 0.65 * place.width, size, "semibold")
+        room = place.width - text_width(value, size, "semibold") - 8.0 * self.unit
+        return [
+            Text(shortened(reading.title, room, size), place.left, y, size, theme.muted),
+            Text(value, place.right, y, size, theme.text, "semibold", "right"),
+        ]
+
     def _box(self, place: Place, box: Box) -> list[Mark]:
         u, theme, size = self.unit, self.theme, self.font(11.5)
-        above, below = place.top - 10.0 * u, place.bottom + 8.0 * u
-        marks: list[Mark] = []
+        above, below = place.top - 9.0 * u, place.bottom + 9.0 * u
+        marks = [*self._frame(place, box is self.selected, box is self.hovered), *self._contents(place, box)]
         if above > self.layout.header:
-            unit_width = text_width(box.unit, size)
-            title = shortened(box.title, place.width - unit_width - 8.0 * u, size)
-            marks.append(Text(title, place.left, above, size, theme.form_text))
-            if box.unit:
-                marks.append(Text(box.unit, place.right, above, size, theme.form_muted, anchor="right"))
-        marks += self._frame(place, box is self.selected, box is self.hovered)
-        marks += self._contents(place, box)
+            unit = box.unit
+            if self._has_room_for_unit(place, box):
+                unit = "" if box.changed or self._has_room_for_note(place, box) else box.note
+            title = shortened(box.title, place.width - text_width(unit, size) - 8.0 * u, size)
+            marks.append(Text(title, place.left, above, size, theme.muted))
+            if unit:
+                marks.append(Text(unit, place.right, above, size, theme.muted, anchor="right"))
         if box.problem:
             problem = shortened(box.problem, place.width, size)
-            marks.append(Text(problem, place.left, below, size, theme.form_problem))
+            marks.append(Text(problem, place.left, below, size, theme.problem))
         return marks
 
     def _frame(self, place: Place, selected: bool, hovered: bool) -> list[Mark]:
-        """The white box, red when selected."""
+        """The box, with a ring around it when it is typed into."""
         theme, u, radius = self.theme, self.unit, 4.0 * self.unit
-        box = _grown(place, 0.0, radius, theme.box)
         if selected:
-            tint = _grown(place, 0.0, radius, faded(theme.selected, 0.14))
-            return [_grown(place, 2.5 * u, radius + 2.0 * u, theme.selected), box, tint]
-        return [_grown(place, 2.0 * u, radius + 1.5 * u, theme.hover), box] if hovered else [box]
+            ring = _grown(place, 2.0 * u, radius + 2.0 * u, theme.focus)
+            return [ring, _grown(place, 0.0, radius, theme.background)]
+        line = theme.muted if hovered else theme.line
+        return [_grown(place, 0.0, radius, theme.background)._replace(outline=line)]
 
     def _contents(self, place: Place, box: Box) -> list[Mark]:
-        """Text, caret or mark, and the note at the right while nothing was typed."""
+        """Text with its unit, caret or mark, and the note at the right while nothing was typed."""
         u, theme, size = self.unit, self.theme, self.font(_TEXT)
         left, middle = place.left + _PAD * u, place.top + place.height / 2
-        room = place.width - 2 * _PAD * u - (12.0 * u if box.accepts == WORD else 0.0)
+        room, small = self._room(place, box), self.font(_SMALL)
         marks: list[Mark] = []
-        start, visible = _window(box.text, box.caret if box is self.selected else 0, room, size)
+        text = written(box)
+        start, visible = _window(text, box.caret if box is self.selected else 0, room, size)
         width = text_width(visible, size)
         if box is self.selected:
-            before = text_width(box.text[start : box.caret], size)
-            x, w = (left, width) if box.marked and box.text else (left + before, max(1.5 * u, 1.0))
+            before = text_width(text[start : box.caret], size)
+            x, w = (left, width) if box.marked and text else (left + before, max(1.5 * u, 1.0))
             mark = Rectangle(round(x), place.top + 5.0 * u, max(round(w), 1), place.height - 10.0 * u)
-            colour = faded(theme.selected, 0.3) if box.marked and box.text else theme.box_text
+            colour = faded(theme.focus, 0.3) if box.marked and text else theme.text
             marks.append(_grown(mark, 0.0, 1.0 * u, colour))
-        marks.append(Text(visible, left, middle, size, theme.box_text))
-        note_size = self.font(11.0)
-        if box.note and not box.changed and width + text_width(box.note, note_size) + 10.0 * u <= room:
-            x, anchor = (left + room, "right") if box.text else (left + 2.0 * u, "left")
-            marks.append(Text(box.note, x, middle, note_size, theme.box_muted, anchor=anchor))
+        marks.append(Text(visible, left, middle, size, theme.text))
+        if self._has_room_for_unit(place, box):
+            marks.append(Text(box.unit, left + width + _GAP * u, middle, small, theme.muted))
+        if box.note and not box.changed and self._has_room_for_note(place, box):
+            x, anchor = (left + room, "right") if text else (left + 2.0 * u, "left")
+            marks.append(Text(box.note, x, middle, small, theme.muted, anchor=anchor))
         if box.accepts == WORD:
-            marks.append(_turning(place.right - 14.0 * u, middle, u, theme.box_muted))
+            marks.append(_turning(place.right - 14.0 * u, middle, u, theme.muted))
         return marks
+
+    def _room(self, place: Place, box: Box) -> float:
+        """Pixels for what stands in a box."""
+        return place.width - 2 * _PAD * self.unit - (12.0 * self.unit if box.accepts == WORD else 0.0)
+
+    def _has_room_for_unit(self, place: Place, box: Box) -> bool:
+        """True if the unit stands behind the number, not above the box."""
+        if not box.text or not box.unit or box.text in (box.words or ()):
+            return False
+        return self._taken(box, box.unit) <= self._room(place, box)
+
+    def _has_room_for_note(self, place: Place, box: Box) -> bool:
+        """True if the note stands in the box, behind the number and its unit."""
+        unit = box.unit if self._has_room_for_unit(place, box) else ""
+        return self._taken(box, unit, box.note) + 6.0 * self.unit <= self._room(place, box)
+
+    def _taken(self, box: Box, *behind: str) -> float:
+        """Pixels that the text of a box takes with what stands behind it."""
+        small = sum(text_width(text, self.font(_SMALL)) + (_GAP + 2.0) * self.unit for text in behind if text)
+        return text_width(written(box), self.font(_TEXT)) + small
 
     def _tile(self, place: Place, tile: Tile) -> list[Mark]:
         """A picture of the model, its title and its caption."""
@@ -178,7 +243,7 @@ class _Writer:
         radius = 6.0 * u
         marks: list[Mark] = []
         if tile is self.chosen or tile is self.hovered:
-            colour = theme.selected if tile is self.chosen else theme.hover
+            colour = theme.focus if tile is self.chosen else theme.line
             marks.append(_grown(card, 3.0 * u, radius + 2.0 * u, colour))
         marks.append(_grown(card, 0.0, radius, theme.background)._replace(outline=theme.line))
         if tile.picture is not None:
@@ -194,12 +259,12 @@ class _Writer:
         u, theme, size, small = self.unit, self.theme, self.font(12.5), self.font(11.0)
         lines = at_most(wrapped(tile.title, width, size, "semibold"), 2, width, size, "semibold")
         marks: list[Mark] = [
-            Text(line, left, top + (13.0 + 15.5 * number) * u, size, theme.form_text, "semibold")
+            Text(line, left, top + (13.0 + 15.5 * number) * u, size, theme.text, "semibold")
             for number, line in enumerate(lines)
         ]
         if len(lines) == 1:
             caption = shortened(tile.caption, width, small)
-            marks.append(Text(caption, left, top + 28.0 * u, small, theme.form_muted))
+            marks.append(Text(caption, left, top + 28.0 * u, small, theme.muted))
         return marks
 
 
@@ -229,10 +294,16 @@ def _window(text: str, caret: int, room: float, size: int) -> tuple[int, str]:
     return start, text[start : start + fitting(text[start:], room, size)]
 
 
+def written(box: Box) -> str:
+    """The text of a box as it is shown, with as many characters: numbers with a real minus sign."""
+    text: str = box.text
+    return text.replace("-", "−") if box.accepts == NUMBER else text
+
+
 def caret_at(place: Place, box: Box, x: float, unit: float) -> int:
     """The place of the caret nearest to the pixel column `x` in a box's text."""
     size = font_size(_TEXT, unit)
-    start, visible = _window(box.text, box.caret, place.width - 2 * _PAD * unit, size)
+    start, visible = _window(written(box), box.caret, place.width - 2 * _PAD * unit, size)
     left = place.left + _PAD * unit
     ends = [left + text_width(visible[:end], size) for end in range(len(visible) + 1)]
     return start + min(range(len(ends)), key=lambda end: abs(ends[end] - x))

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from components.camera import Rectangle
+from components.field import Vector
 from components.form import Form
 from components.model import Model
 from components.toolbar import Toolbar
@@ -10,11 +12,11 @@ from systems.render.arrows import draw_loads, draw_velocities
 from systems.render.diagrams import draw_particle_diagrams, draw_rod_diagrams
 from systems.render.labels import Placed, place_labels
 from systems.render.marks import Picture
-from systems.render.overlays import draw_notice, draw_overlays, draw_scale
+from systems.render.overlays import BAR, draw_notice, draw_overlays, draw_scale
 from systems.render.page import draw_page
 from systems.render.panel import compose_form
 from systems.render.readouts import draw_readouts
-from systems.render.sheet import ABOVE, BELOW, measure
+from systems.render.sheet import ABOVE, BELOW, Sheet, measure
 from systems.render.sliders import draw_sliders
 from systems.render.structure import (
     draw_ghost,
@@ -43,8 +45,26 @@ def compose(model: Model | Form | Toolbar, view: View, theme: Theme, placed: Pla
     if isinstance(model, Toolbar):
         return compose_toolbar(model, view, theme)
     sheet = measure(model, view, theme, placed)
-    if view.page is not None:
-        return Picture(sheet.viewport, theme.background, draw_page(sheet))
+    return (
+        _composed(sheet)[0]
+        if view.page is None
+        else Picture(sheet.viewport, theme.background, draw_page(sheet))
+    )
+
+
+def lies_under(model: Model, view: View, theme: Theme, pixel: Vector) -> bool:
+    """True if a pixel of the picture of a model shows a panel or the status bar, not the model."""
+    v = view.canvas
+    if view.status.state and v.contains(pixel) and pixel[1] >= v.bottom - BAR * view.pixel_ratio:
+        return True
+    if not (view.readouts and view.legend and view.panels.contains(pixel)):
+        return False
+    return any(panel.contains(pixel) for panel in _composed(measure(model, view, theme))[1])
+
+
+def _composed(sheet: Sheet) -> tuple[Picture, list[Rectangle]]:
+    """The picture of a model, and where its panels are."""
+    model, theme = sheet.model, sheet.theme
     draw_grid(sheet)
     for layer in BELOW:
         sheet.marks += layer(sheet)
@@ -63,9 +83,11 @@ def compose(model: Model | Form | Toolbar, view: View, theme: Theme, placed: Pla
         sheet.marks += layer(sheet)
     overlays, room = draw_overlays(sheet)
     overlays += draw_sliders(sheet)
-    overlays += draw_readouts(sheet, room)
+    readouts, panels = draw_readouts(sheet, room)
+    overlays += readouts
     overlays += draw_notice(sheet, room)
     labels = place_labels(sheet.labels, sheet.occupancy, sheet.unit, sheet.placed)
+    sheet.placed |= sheet.scales
     scale = draw_scale(sheet, room) if model.particles.count else []
     over = [*scale, *draw_flashes(sheet), *draw_preview(sheet), *overlays]
-    return Picture(sheet.viewport, theme.background, [*sheet.marks, *labels, *over])
+    return Picture(sheet.viewport, theme.background, [*sheet.marks, *labels, *over]), panels

@@ -8,6 +8,7 @@ import math
 import numpy as np
 from numpy.typing import NDArray
 
+from components import written
 from components.field import Vector
 from components.round_numbers import round_up
 from components.view import Plot
@@ -43,7 +44,7 @@ class _Drawing:
         labels = max((text_width(text, self.size) for _, text in self.y_ticks), default=0.0)
         self.left, self.right = left + labels + 6.0 * unit, left + width - 4.0 * unit
         self.top, self.bottom = top + 16.0 * unit, top + height - 30.0 * unit
-        colours = theme.force, theme.tension, theme.running, theme.halted, theme.yielding, theme.ink
+        colours = theme.curve_1, theme.curve_2, theme.curve_3, theme.curve_4
         self.coloured = list(zip(plot.curves, itertools.cycle(colours), strict=False))
 
     def pixels(self, x: NDArray[np.float64], y: NDArray[np.float64]) -> Points:
@@ -126,7 +127,7 @@ class _Drawing:
             if len(points) and distance.min() <= reach:
                 at, reach = int(distance.argmin()), float(distance.min())
                 pixel = float(points[at, 0]), float(points[at, 1])
-                found = pixel, f"{written(x[at])}, {written(y[at])}", colour
+                found = pixel, f"{written.given(x[at], 4)}, {written.given(y[at], 4)}", colour
         return found
 
 
@@ -158,9 +159,4 @@ def round_ticks(values: Range, count: int = _TICKS) -> list[tuple[float, str]]:
     """Round values within a range, 1, 2 or 5 times a power of ten apart, and how they are written."""
     step = round_up(values[1] / count - values[0] / count)
     first, last = math.ceil(values[0] / step), math.floor(values[1] / step)
-    return [(n * step, written(n * step)) for n in range(first, last + 1)]
-
-
-def written(value: float) -> str:
-    """A number of at most four digits."""
-    return f"{value:.4g}".replace("-", "−")
+    return [(n * step, written.given(n * step, 4)) for n in range(first, last + 1)]

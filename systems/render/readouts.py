@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import replace
 
+from components.camera import Rectangle
 from components.view import Readout
 from systems.render.marks import Mark, Panel, Text
 from systems.render.plots import Box, draw_plot
@@ -17,8 +18,8 @@ _BETWEEN = 6.0  # points between panels
 _PLOT, _LEAST_PLOT = 150.0, 84.0  # points, height of a plot with its axes, and where there is little room
 
 
-def draw_readouts(sheet: Sheet, room: tuple[float, float]) -> list[Mark]:
-    """The panels between `room`'s top and bottom; none where they are hidden.
+def draw_readouts(sheet: Sheet, room: tuple[float, float]) -> tuple[list[Mark], list[Rectangle]]:
+    """The panels between `room`'s top and bottom, and where they are; none where they are hidden.
 
     Where room is short, plots are lower, and the oldest panels are folded into one with their titles.
     """
@@ -29,13 +30,18 @@ def draw_readouts(sheet: Sheet, room: tuple[float, float]) -> list[Mark]:
     if not any(readout.is_large for readout in readouts):
         width = min(max((_width(sheet, readout) for readout in readouts), default=0.0), width)
     left = place.left + place.width - _EDGE * u - width
-    marks: list[Mark] = []
+    marks, places = list[Mark](), list[Rectangle]()
     heights = _heights(sheet, readouts, width, bottom - top)
     for index, height in sorted(heights.items()):
         marks += _panel(sheet, readouts[index], (left, top, width, height))
+        places.append(Rectangle(left, top, width, height))
         top += height + _BETWEEN * u
     folded = _folded(sheet, [r for index, r in enumerate(readouts) if index not in heights], width)
-    return marks + (_titles(sheet, folded, (left, top, width, _height_of(sheet, folded))) if folded else [])
+    if folded:
+        box = left, top, width, _height_of(sheet, folded)
+        marks += _titles(sheet, folded, box)
+        places.append(Rectangle(*box))
+    return marks, places
 
 
 def _heights(sheet: Sheet, readouts: Sequence[Readout], width: float, room: float) -> dict[int, float]:

@@ -35,7 +35,7 @@ class Sheet:
     end: their visible parts in pixels, aligned with `rods`. particles: rows of those that can be seen.
     pulled, pushed: rows of the rods that are coloured by their axial force, since they have no room for more.
     placed: where labels were in the last picture. legend: names of the colours that occur and mean something.
-    notes: scales to be shown.
+    notes: scales to be shown. scales: those of arrows in this picture, to be kept in `placed`.
     """
 
     model: Model
@@ -57,6 +57,7 @@ class Sheet:
     labels: list[Label] = field(default_factory=list)
     legend: list[str] = field(default_factory=list)
     notes: list[str] = field(default_factory=list)
+    scales: Placed = field(default_factory=dict)
 
     @property
     def viewport(self) -> Viewport:

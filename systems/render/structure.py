@@ -22,6 +22,8 @@ _DASH = 5.0  # points
 _GHOST_FROM = 4.0  # points of displacement
 _SHAPE_WIDTH, _SHAPE_RADIUS, _SHAPE_FROM = 1.5, 2.5, 0.5  # points; drawn from so large a displacement on
 _SHAPE_OPACITY = 0.75
+HALO_OPACITY = 0.4
+_HALO = 0.12  # of the length of rods, by which halos stand out, within limits
 _LARGEST_FILLED = 10_000.0  # pixels, well within the 16 bits of filled polygons
 
 
@@ -64,30 +66,31 @@ def draw_ghost(sheet: Sheet) -> None:
     original = sheet.view.camera.to_pixels(sheet.model.particles.position)
     moved = np.hypot(*(sheet.centres - original).T)
     far = (moved[sheet.ends] > _GHOST_FROM * sheet.unit).any(axis=1)
-    ends = sheet.ends[far]
-    start, end, _ = clip_segments(original[ends[:, 0]], original[ends[:, 1]], *bounds(sheet.viewport))
+    rows = np.flatnonzero(far)
+    first, last = sheet.ends[rows].T
+    start, end, seen = clip_segments(original[first], original[last], *bounds(sheet.viewport))
     if len(start):
         sheet.occupancy.line(start, end, FAINT)
-        dashes = dashed(start, end, _DASH * sheet.unit)
-        sheet.marks.append(Strokes(*dashes, sheet.unit, sheet.theme.ghost))
+        start, end, of = dashed(start, end, _DASH * sheet.unit)
+        sheet.marks.append(Strokes(start, end, sheet.unit, sheet.theme.ghost, ("rods", rows[seen][of])))
 
 
 def draw_halos(sheet: Sheet) -> None:
-    """A soft glow around selected elements, unless they are very many, and around the one that a click would hit."""
+    """Neutral halos around selected elements and, lighter, the one that a click would hit; forces keep their colours."""
     theme, u = sheet.theme, sheet.unit
-    for tag, colour, opacity in ((Selected, theme.selected, 0.16), (Hovered, theme.hover, 0.22)):
-        glow = faded(colour, opacity)
+    around = float(np.clip(_HALO * typical_length(sheet.start, sheet.end), 1.5 * u, 5.0 * u))
+    for tag, colour in ((Hovered, theme.hover), (Selected, theme.selected)):
+        glow = faded(colour, HALO_OPACITY)
         rods = sheet.chosen(sheet.tagged(tag, "rods"), sheet.rods)
-        if rods.sum() > MANY:
-            continue
         if rods.any():
-            sheet.marks.append(Strokes(sheet.start[rods], sheet.end[rods], 11.0 * u, glow))
+            width, of = 2.0 * around + _rod_width(sheet), ("rods", sheet.rods[rods])
+            sheet.marks.append(Strokes(sheet.start[rods], sheet.end[rods], width, glow, of))
         chosen = sheet.chosen(sheet.tagged(tag, "particles"), sheet.particles)
-        _draw_circles(sheet, sheet.particles[chosen], glow, glow, 0.0, 5.0 * u)
+        _draw_circles(sheet, sheet.particles[chosen], glow, glow, 0.0, around)
 
 
 def draw_rods(sheet: Sheet) -> None:
-    """A line between the drawn positions of the ends: red if selected, violet while yielding.
+    """A line between the drawn positions of the ends, violet while yielding.
 
     Cables are thin, and dashed while they are slack.
     """
@@ -95,47 +98,49 @@ def draw_rods(sheet: Sheet) -> None:
     yielding, limited = sheet.rods[:0], np.isfinite(rods.tension_limit) | np.isfinite(rods.compression_limit)
     if sheet.view.forces_known and limited.any():
         yielding = np.flatnonzero(rods.yielding)
-    selected = sheet.tagged(Selected, "rods")
-    width = float(np.clip(0.12 * typical_length(sheet.start, sheet.end) / sheet.unit, 0.5, 2.5)) * sheet.unit
+    width = _rod_width(sheet)
     by_force = {"compression": sheet.pushed, "tension": sheet.pulled}
     layers = [(wanted, getattr(theme, name)) for name, wanted in by_force.items()]
-    layers += [(yielding, theme.yielding), (selected, theme.selected)]
+    layers.append((yielding, theme.yielding))
     for colour, mask in sheet.colours_of(sheet.rods, layers, theme.ink):
-        wider = 1.35 if colour in (theme.yielding, theme.selected) else 1.0
+        wider = 1.35 if colour == theme.yielding else 1.0
         _draw_lines(sheet, mask, width * wider, colour)
     named = {**by_force, "yielding": yielding}
     sheet.legend += [name for name, wanted in named.items() if len(wanted)]
     sheet.occupancy.line(sheet.start, sheet.end, STRONG)
 
 
+def _rod_width(sheet: Sheet) -> float:
+    """Pixels; less where rods are short."""
+    return float(np.clip(0.12 * typical_length(sheet.start, sheet.end) / sheet.unit, 0.5, 2.5)) * sheet.unit
+
+
 def _draw_lines(sheet: Sheet, mask: NDArray[np.bool_] | slice, width: float, colour: Colour) -> None:
     """The lines of some rods, of one colour."""
-    rods, start, end = sheet.model.rods, sheet.start[mask], sheet.end[mask]
-    cables = rods.tension_only[sheet.rods[mask]]
+    rods, rows, start, end = sheet.model.rods, sheet.rods[mask], sheet.start[mask], sheet.end[mask]
+    cables = rods.tension_only[rows]
     if not cables.any():
-        sheet.marks.append(Strokes(start, end, width, colour))
+        sheet.marks.append(Strokes(start, end, width, colour, ("rods", rows)))
         return
     thin, slack = _CABLE * width, np.zeros_like(cables)
     if sheet.view.forces_known:
-        slack = cables & (rods.axial_force[sheet.rods[mask]] <= 0.0)
+        slack = cables & (rods.axial_force[rows] <= 0.0)
     if slack.any():
-        sheet.marks.append(Strokes(*dashed(start[slack], end[slack], _DASH * sheet.unit), thin, colour))
+        first, last, of = dashed(start[slack], end[slack], _DASH * sheet.unit)
+        sheet.marks.append(Strokes(first, last, thin, colour, ("rods", rows[slack][of])))
         sheet.legend.append("slack")
     for kind, thick in ((~cables, width), (cables & ~slack, thin)):
         if kind.any():
-            sheet.marks.append(Strokes(start[kind], end[kind], thick, colour))
+            sheet.marks.append(Strokes(start[kind], end[kind], thick, colour, ("rods", rows[kind])))
 
 
 def draw_particles(sheet: Sheet) -> None:
-    """Open circles of their own radius; red if selected. Very small ones are filled."""
-    theme = sheet.theme
-    layers = [(sheet.tagged(Selected, "particles"), theme.selected)]
-    for colour, mask in sheet.colours_of(sheet.particles, layers, theme.ink):
-        rows = sheet.particles[mask]
-        small = sheet.radii[rows] < 3.0 * sheet.unit
-        for chosen, rim in ((rows[small], 0.0), (rows[~small], RIM * sheet.unit)):
-            if len(chosen):
-                _draw_circles(sheet, chosen, colour, theme.hollow, rim, 0.0)
+    """Open circles of their own radius. Very small ones are filled."""
+    theme, rows = sheet.theme, sheet.particles
+    small = sheet.radii[rows] < 3.0 * sheet.unit
+    for chosen, rim in ((rows[small], 0.0), (rows[~small], RIM * sheet.unit)):
+        if len(chosen):
+            _draw_circles(sheet, chosen, theme.ink, theme.hollow, rim, 0.0)
     if len(sheet.particles) <= MANY:
         sheet.occupancy.block_squares(sheet.centres[sheet.particles], 0.8 * sheet.radii[sheet.particles])
 
@@ -146,28 +151,31 @@ def _draw_circles(sheet: Sheet, rows: Rows, ink: Colour, hollow: Colour, rim: fl
     large = radii > LARGEST_STAMP * sheet.unit
     if large.any():
         for radius in np.unique(radii[large]).tolist():
-            _draw_large_circles(sheet, at[radii == radius], radius, ink, hollow, rim)
-        at, radii = at[~large], radii[~large]
+            alike = radii == radius
+            _draw_large_circles(sheet, rows[alike], at[alike], radius, ink, hollow, rim)
+        rows, at, radii = rows[~large], at[~large], radii[~large]
     if len(at):
-        sheet.marks.append(Discs(at, radii, ink, hollow, rim))
+        sheet.marks.append(Discs(at, radii, ink, hollow, rim, ("particles", rows)))
 
 
 def _draw_large_circles(
-    sheet: Sheet, at: Points, radius: float, ink: Colour, hollow: Colour, rim: float
+    sheet: Sheet, rows: Rows, at: Points, radius: float, ink: Colour, hollow: Colour, rim: float
 ) -> None:
     """Circles as polygons; of those so large that the whole viewport may lie inside, the arcs that may be seen."""
     low, high = bounds(sheet.viewport)
     if radius < _LARGEST_FILLED:
         corners = at[:, None] + circle(radius - rim / 2)
-        sheet.marks.append(Fills(corners, hollow if rim else ink))
+        sheet.marks.append(Fills(corners, hollow if rim else ink, ("particles", rows)))
         first, last = corners.reshape(-1, 2), np.roll(corners, -1, axis=1).reshape(-1, 2)
     else:
-        points = arcs(at, radius - rim / 2, (low + high) / 2, float(np.hypot(*(high - low))))
+        points, passing = arcs(at, radius - rim / 2, (low + high) / 2, float(np.hypot(*(high - low))))
+        rows = rows[passing]
         first, last = points[:, :-1].reshape(-1, 2), points[:, 1:].reshape(-1, 2)
     if rim:
         overlap = 0.5 * (last - first) / np.hypot(*(last - first).T)[:, None]  # pixel, so that joints close
-        start, end, _ = clip_segments(first - overlap, last + overlap, low - rim, high + rim)
-        sheet.marks.append(Strokes(start, end, rim, ink))
+        start, end, seen = clip_segments(first - overlap, last + overlap, low - rim, high + rim)
+        of = np.repeat(rows, len(first) // max(len(rows), 1))[seen]
+        sheet.marks.append(Strokes(start, end, rim, ink, ("particles", of)))
 
 
 def draw_shape(sheet: Sheet) -> None:
@@ -178,7 +186,7 @@ def draw_shape(sheet: Sheet) -> None:
     if shape.about is not None:
         position = position + shape.about * sheet.model.settings.displacement_scale
     places = sheet.view.camera.to_pixels(position + shape.displacement)
-    colour = faded(sheet.theme.hover, _SHAPE_OPACITY)
+    colour = faded(sheet.theme.sketch, _SHAPE_OPACITY)
     pixels = np.hypot(*shape.displacement.T) * sheet.view.camera.scale
     moving = pixels > _SHAPE_FROM * sheet.unit
     ends = sheet.ends[moving[sheet.ends].any(axis=1)]
@@ -209,7 +217,7 @@ def label_names(sheet: Sheet) -> None:
                 label = Label(name, at, size, sheet.theme.text, -1e12, weight, backing, key=key)
             else:
                 label = Label(name, at, size, sheet.theme.muted, 1e12, weight, lines="avoid", key=key)
-            sheet.labels.append(label)
+            sheet.labels.append(label._replace(of=(table, row)))
 
 
 def _beside_particle(sheet: Sheet, row: int, half: tuple[float, float]) -> list[tuple[float, float]]:

@@ -68,8 +68,7 @@ def draw_supports(sheet: Sheet, sides: NDArray[np.int64]) -> None:
                 continue
             apex = sheet.centres[rows] + DIRECTIONS[side] * (sheet.radii[rows] - sheet.unit)[:, None]
             size = SUPPORT_DEPTH * sheet.unit
-            sheet.marks.append(
-                Stamps(symbol, apex, size, sheet.unit, sheet.theme.ink, sheet.theme.hollow, side)
-            )
+            colours, of = (sheet.theme.ink, sheet.theme.hollow), ("particles", rows)
+            sheet.marks.append(Stamps(symbol, apex, size, sheet.unit, *colours, side, of))
             middle = apex + DIRECTIONS[side] * size / 2
             sheet.occupancy.block_squares(middle[:MANY], np.full(len(middle[:MANY]), size / 2))

@@ -10,13 +10,13 @@ from collections.abc import Callable
 from functools import cache
 
 import numpy as np
+from numpy.typing import NDArray
 
 from systems.render.icons import STROKE, icon
 from systems.render.marks import Points
 
 Parts = list[tuple[str, Points]]  # ("ink" or "hollow", corners (k, 2)), in painter's order
 
-ARROW_LENGTH = 20.0  # points
 SUPPORT_DEPTH = 25.0  # points from the particle's rim to the far side of the ground
 RIM = 1.75  # points
 LARGEST_STAMP = 64.0  # points, greatest radius of a circle drawn as a stamp
@@ -67,8 +67,9 @@ def circle(radius: float) -> Points:
     return radius * np.stack([np.cos(angle), np.sin(angle)], axis=1)
 
 
-def arcs(centres: Points, radius: float, middle: Points, reach: float) -> Points:
+def arcs(centres: Points, radius: float, middle: Points, reach: float) -> tuple[Points, NDArray[np.bool_]]:
     """The parts of large circles about centres (n, 2) that come near a point, as lines, shape (k, corners, 2).
+    And which circles do, (n,).
 
     All that is within `reach` of the point `middle` (2,) belongs to them. They are built from there, so that no digits
     cancel however large the circles are.
@@ -86,7 +87,7 @@ def arcs(centres: Points, radius: float, middle: Points, reach: float) -> Points
     nearest = middle - out * (distance - radius)[:, None]
     side = np.stack([-out[:, 1], out[:, 0]], axis=1)
     found: Points = nearest[:, None] + side[:, None] * along - out[:, None] * down
-    return found
+    return found, passing
 
 
 def _bar(left: float, top: float, right: float, bottom: float) -> Points:
@@ -143,12 +144,12 @@ SYMBOLS: dict[str, Callable[[float, float], Parts]] = {
 }
 
 
-def dashed(start: Points, end: Points, dash: float) -> tuple[Points, Points]:
-    """Segments cut into dashes and gaps of about that length, a dash at both ends."""
+def dashed(start: Points, end: Points, dash: float) -> tuple[Points, Points, NDArray[np.intp]]:
+    """Segments cut into dashes and gaps of about that length, a dash at both ends; and of which segment each dash is."""
     step = end - start
     count = np.maximum(np.round((np.hypot(*step.T) / dash - 1.0) / 2.0), 0.0).astype(np.int64) + 1
     of = np.repeat(np.arange(len(start)), count)
     index = np.arange(len(of)) - np.repeat(np.cumsum(count) - count, count)
     share = (1.0 / (2 * count - 1))[of]
     first, last = (2 * index * share)[:, None], ((2 * index + 1) * share)[:, None]
-    return start[of] + first * step[of], start[of] + last * step[of]
+    return start[of] + first * step[of], start[of] + last * step[of], of

@@ -20,14 +20,14 @@ class Theme:
     text, muted: what is said; what is said in passing.
     ink, hollow: rods, rims and supports; the inside of particles and supports.
     ghost, grid: the undeformed structure; lines to draw along.
-    selected, hover: what a person selected; what a click would hit.
+    selected, hover: halos of what a person selected, and of what a click would hit; neutral, so that they hide no force.
+    sketch: what is about to be drawn; mechanisms and modes.
     tension, compression, zero, yielding: rods by their axial force.
-    force: arrows of external forces and reactions.
-    heading, problem, problem_panel: the mode's name; why something stopped, and what it is written on.
+    load, reaction: what acts on particles, and what their supports answer.
+    curve_1, …: curves of plots, in their order.
+    problem, problem_panel: why something stopped, and what it is written on.
     running, resting, halted: the state's dot in the status bar.
-    form, form_raised: behind the boxes of properties, save and load; what stands out of it.
-    form_text, form_muted, form_problem: what is written there.
-    box, box_text, box_muted: a box to type into; its contents; what is said in it in passing.
+    focus: the box that is typed into, the tile that Return opens, and buttons that are pressed; not used among elements.
     """
 
     title: str
@@ -42,25 +42,23 @@ class Theme:
     grid: Colour
     selected: Colour
     hover: Colour
+    sketch: Colour
     tension: Colour
     compression: Colour
     zero: Colour
     yielding: Colour
-    force: Colour
-    heading: Colour
+    load: Colour
+    reaction: Colour
+    curve_1: Colour
+    curve_2: Colour
+    curve_3: Colour
+    curve_4: Colour
     problem: Colour
     problem_panel: Colour
     running: Colour
     resting: Colour
     halted: Colour
-    form: Colour
-    form_raised: Colour
-    form_text: Colour
-    form_muted: Colour
-    form_problem: Colour
-    box: Colour
-    box_text: Colour
-    box_muted: Colour
+    focus: Colour
 
 
 def theme_names() -> list[str]:

@@ -1,4 +1,4 @@
-"""Toolbar: its marks, the tip of the button under the pointer, and the help, over everything else."""
+"""Toolbar: its marks, the tip of the button under the pointer, the help and an open menu, over everything else."""
 
 from __future__ import annotations
 
@@ -8,6 +8,7 @@ from components.toolbar import Button, Toolbar
 from components.view import View
 from systems.render.help import draw_help, written_key
 from systems.render.marks import Mark, Panel, Picture, Stamps, Text, boxes
+from systems.render.menu import draw_menu, titled
 from systems.render.theme import Theme, faded
 from systems.render.typography import font_size, line_height, text_width
 
@@ -18,7 +19,7 @@ _RADIUS = 5.0  # points, of a button's corners
 def compose_toolbar(toolbar: Toolbar, view: View, theme: Theme) -> Picture:
     """The toolbar in its strip of a view; without a background, since it lies over the picture."""
     writer = _Writer(toolbar, view, theme)
-    marks = [*writer.strip(), *draw_help(view, view.canvas, theme), *writer.tip()]
+    marks = [*writer.strip(), *draw_help(view, view.canvas, theme), *writer.tip(), *draw_menu(view, theme)]
     return Picture(view.camera.viewport, None, marks)
 
 
@@ -48,21 +49,21 @@ class _Writer:
         """The icon, on a plate if it is pressed or would be by a click."""
         u, tool, theme = self.unit, button.tool, self.theme
         middle = np.array([[button.left + button.width / 2, button.top + button.height / 2]])
-        ink = faded(theme.muted, 0.4) if not tool.enabled else theme.hover if tool.pressed else theme.text
+        ink = faded(theme.muted, 0.4) if not tool.enabled else theme.focus if tool.pressed else theme.text
         icon = Stamps(tool.icon, middle, _ICON * u, u, ink, ink)
         if not tool.pressed and not (button is self.hovered and tool.enabled):
             return [icon]
-        colour = faded(theme.hover, 0.16) if tool.pressed else faded(theme.text, 0.09)
+        colour = faded(theme.focus, 0.16) if tool.pressed else faded(theme.text, 0.09)
         width, height = button.width - 2 * u, button.height - 2 * u
         return [Panel(button.left + u, button.top + u, width, height, _RADIUS * u, colour), icon]
 
     def tip(self) -> list[Mark]:
         """The title and the key of the button under the pointer, beside the button."""
         button = self.hovered
-        if button is None:
+        if button is None or self.view.menu is not None:
             return []
         u, theme, size = self.unit, self.theme, font_size(12.0, self.unit)
-        title = button.tool.title[:1].upper() + button.tool.title[1:]
+        title = titled(button.tool)
         key = written_key(button.tool.key) if button.tool.key else ""
         title_width, key_width = text_width(title, size), text_width(key, size, "semibold")
         pad, gap, height = 10.0 * u, 14.0 * u if key else 0.0, line_height(size) + 10.0 * u

@@ -29,7 +29,7 @@ def draw_flashes(sheet: Sheet) -> list[Mark]:
     at = at[np.isfinite(at).all(axis=1)]
     if len(at) == 0:
         return []
-    colour = sheet.theme.force
+    colour = sheet.theme.ink
     return [Stamps("disc", at, 7.0 * sheet.unit, sheet.unit, faded(colour, 0.25), faded(colour, 0.8))]
 
 
@@ -46,14 +46,14 @@ def draw_preview(sheet: Sheet) -> list[Mark]:
 
 
 def _rod(sheet: Sheet, start: Pixel, end: Pixel) -> list[Mark]:
-    colour = sheet.theme.hover
+    colour = sheet.theme.sketch
     dot = Stamps("disc", np.array([start, end]), 4.0 * sheet.unit, sheet.unit, colour, colour)
     return [*_lines(sheet, np.array([start, end]), colour), dot]
 
 
 def _pull(sheet: Sheet, start: Pixel, end: Pixel) -> list[Mark]:
     """A spring to the pointer: straight at both ends, coils between."""
-    colour, u = sheet.theme.force, sheet.unit
+    colour, u = sheet.theme.load, sheet.unit
     along = end - start
     length = float(np.hypot(*along))
     hook = Stamps("disc", end[None], 4.0 * u, u, colour, colour)
@@ -70,7 +70,7 @@ def _support(symbol: str, sheet: Sheet, start: Pixel, end: Pixel) -> list[Mark]:
     """A support's symbol, turned to the side to which it was dragged."""
     theme, side = sheet.theme, int(np.argmax(DIRECTIONS @ (end - start)))
     return [
-        Stamps(symbol, start[None], SUPPORT_DEPTH * sheet.unit, sheet.unit, theme.hover, theme.hollow, side)
+        Stamps(symbol, start[None], SUPPORT_DEPTH * sheet.unit, sheet.unit, theme.sketch, theme.hollow, side)
     ]
 
 
@@ -78,7 +78,7 @@ def _box(sheet: Sheet, start: Pixel, end: Pixel) -> list[Mark]:
     low, high = bounds(sheet.viewport)
     (x0, y0), (x1, y1) = np.clip([start, end], low - 10.0, high + 10.0)
     corners = np.array([[x0, y0], [x1, y0], [x1, y1], [x0, y1], [x0, y0]])
-    colour = sheet.theme.hover
+    colour = sheet.theme.sketch
     return [Fills(corners[None, :4], faded(colour, 0.1)), *_lines(sheet, corners, faded(colour, 0.8), 1.0)]
 
 
@@ -116,7 +116,7 @@ def _label(sheet: Sheet, preview: Preview, at: Pixel) -> list[Mark]:
 
 _KINDS: dict[str, Drawn] = {
     "rod": _rod,
-    "force": lambda sheet, start, end: _arrow(sheet, start, end, sheet.theme.force),
+    "force": lambda sheet, start, end: _arrow(sheet, start, end, sheet.theme.load),
     "velocity": lambda sheet, start, end: _arrow(sheet, start, end, sheet.theme.ink),
     "roller": partial(_support, "roller"),
     "pinned": partial(_support, "pinned"),

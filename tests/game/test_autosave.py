@@ -20,7 +20,7 @@ from components.particle import Particle
 from components.rod import spawn_rods
 from game import Session
 from game.documents import library, models
-from game.documents.autosave import LAST_SESSION, Autosave, recovered_name
+from game.documents.autosave import Autosave, recovered_name
 from game.documents.open_documents import ModelFile
 from game.editor.scenes.files import FileScene
 from tests.reference.lines import lines_run
@@ -94,6 +94,11 @@ def model_file(tmp_path: Path) -> Path:
     return tmp_path / "model.json"
 
 
+def stiffness_in(path: Path) -> float:
+    """That of the first rod in a file."""
+    return float(models.load(path).rods.stiffness[0])
+
+
 def kept(keeper: Autosave, session: Session) -> None:
     """Let frames pass until everything is written."""
     for _ in range(200):
@@ -150,7 +155,7 @@ def test_no_moment_of_being_killed_damages_a_file(tmp_path: Path, data: Path) ->
             assert recovered.rods.count == 2 * 40 * 39
 
 
-def test_closing_the_window_leaves_nothing_but_the_last_session(
+def test_closing_the_window_keeps_what_nobody_saved(
     model_file: Path, data: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setenv("SDL_VIDEODRIVER", "dummy")
@@ -164,9 +169,34 @@ def test_closing_the_window_leaves_nothing_but_the_last_session(
     assert list((data / "autosave").glob("*.json"))
     pygame.event.post(pygame.event.Event(pygame.QUIT))
     app.run()
-    assert list((data / "autosave").iterdir()) == []
-    last = models.load(data / "models" / f"{LAST_SESSION}.json")
-    assert last.rods[0].stiffness == 5.0
+    (left,) = Autosave().left()
+    assert stiffness_in(left) == 5.0
+    assert recovered_name(left) == "work"
+    assert not (data / "models").exists(), "it is no model that somebody saved"
+
+
+def test_closing_keeps_every_model_with_unsaved_work_and_no_other(data: Path) -> None:
+    keeper = Autosave(interval=60.0)  # which writes the first one in time, and the others at the end
+    session = Session.open(triangle(), [keeper])
+    session.autosave = keeper
+    session.rods["AB"].stiffness = 5.0
+    kept(keeper, session)
+    for stiffness in (6.0, 7.0):
+        session.open_here("isostatic")
+        session.rods["AB"].stiffness = stiffness
+    session.open_here("tower")
+    session.run(steps=3)
+    keeper.close(session.documents)
+    later = Autosave()
+    assert sorted(map(stiffness_in, later.left())) == [5.0, 6.0, 7.0]
+    again = with_autosave(later)
+    again.press("d")
+    scene = again.scenes.active
+    assert isinstance(scene, FileScene)
+    offered = [tile for tile in scene.form.tiles if tile.source in later.left()]
+    assert len(offered) == 3, "the start page shows them all"
+    later.close(again.documents)
+    assert len(Autosave().left()) == 3, "until they are saved or discarded"
 
 
 # --- what is kept, and when --------------------------------------------------------------------------

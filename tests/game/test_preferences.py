@@ -9,6 +9,7 @@ import pytest
 
 from components.view import magnified
 from game import Session
+from game.app import FRAME, place_on
 from game.documents import preferences
 from game.editor.actions.view import THEMES
 from systems.render.theme import theme_names
@@ -114,3 +115,39 @@ def test_type_grows_with_display_and_window_and_leaves_room(
     height: float, display: float, chosen: float, magnification: float
 ) -> None:
     assert magnified(height, display, chosen) == magnification
+
+
+# --- the window ----------------------------------------------------------------------------------------
+
+DISPLAYS = [(1024, 640), (1280, 800), (1366, 768), (1920, 1080), (3840, 2160)]
+
+
+@pytest.mark.parametrize("display", DISPLAYS)
+def test_a_window_opens_inside_the_display_with_room_for_its_frame(display: tuple[int, int]) -> None:
+    (width, height), position = place_on([display], None)
+    assert position is None, "the desktop places it"
+    assert width <= display[0] - FRAME[0]
+    assert height <= display[1] - FRAME[1]
+    assert width >= 0.5 * min(display[0], 1000)
+
+
+@pytest.mark.parametrize("display", DISPLAYS)
+@pytest.mark.parametrize("place", [(-50, -50, 900, 500), (3000, 2000, 900, 500), (0, 0, 9000, 9000)])
+def test_a_remembered_place_is_moved_into_the_display(
+    display: tuple[int, int], place: tuple[int, int, int, int]
+) -> None:
+    (width, height), position = place_on([display], place)
+    assert position is not None
+    assert 0 <= position[0] <= display[0] - width
+    assert 0 <= position[1] <= display[1] - height
+
+
+def test_a_place_is_remembered_as_it_was_and_nonsense_is_not() -> None:
+    assert preferences.preferred_place() is None
+    preferences.remember("window", [30, 40, 800, 600])
+    assert preferences.preferred_place() == (30, 40, 800, 600)
+    assert place_on([(1920, 1080)], (30, 40, 800, 600)) == ((800, 600), (30, 40))
+    assert place_on([(1920, 1080), (1920, 1080)], (-1800, 40, 800, 600)) == ((800, 600), (-1800, 40))
+    for wrong in ("x", [1, 2], [1, 2, 3, None], [1.5, 2, 3, 4], [10**9, 2, 3, 4]):
+        preferences.remember("window", wrong)  # type: ignore[arg-type]
+        assert preferences.preferred_place() is None

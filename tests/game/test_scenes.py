@@ -1,5 +1,7 @@
 """The six scenes: their transitions, and the keys and clicks of pause and simulation."""
 
+from pathlib import Path
+
 import pytest
 
 from components.particle import Particle
@@ -78,7 +80,6 @@ def test_a_chain_of_transitions_is_checked_link_by_link(session: Session) -> Non
 @pytest.mark.parametrize(
     ("key", "scene"),
     [
-        ("escape", "simulation"),
         ("space", "simulation"),
         ("return", "properties"),
         ("s", "save"),
@@ -144,17 +145,18 @@ def test_a_key_without_meaning_does_nothing(session: Session) -> None:
 # --- selection, diagrams, grids --------------------------------------------------------------------------
 
 
-def test_escape_drops_the_selection_before_it_runs(session: Session) -> None:
+def test_escape_drops_the_selection_and_never_runs(session: Session) -> None:
     session.click(1, 1)
     assert session.selected == [session.particles["B"]]
     session.press("escape")
     assert (session.scene, session.selected) == ("pause", [])
     session.press("escape")
-    assert session.scene == "simulation"
+    assert (session.scene, session.time) == ("pause", 0.0)
+    assert "Space runs" in session.notice
 
 
-def test_a_click_selects_particle_rod_or_grid(session: Session) -> None:
-    """Particles before rods before lines of the shown grid, each within its reach in pixels."""
+def test_a_click_selects_particle_or_rod_and_never_the_grid(session: Session) -> None:
+    """Particles before rods, each within its reach in pixels; the grid on purpose only, by Ctrl."""
     scale = session.view.camera.scale
     middle = (0.5, 0.5)  # of AB
     across = 1.0 / (scale * 2**0.5)  # 1 px at right angles to AB, in each coordinate
@@ -162,11 +164,28 @@ def test_a_click_selects_particle_rod_or_grid(session: Session) -> None:
         ((1.0, 1.0), session.particles["B"]),
         ((middle[0] - 9 * across, middle[1] + 9 * across), session.rods["AB"]),
         ((middle[0] - 11 * across, middle[1] + 11 * across), None),
-        ((2.5 + 4 / scale, 0.75), session.model.grids[0]),
-        ((2.5 + 6 / scale, 0.75), None),
+        ((2.5 + 4 / scale, 0.75), None),
     ]:
         session.click(x, y)
         assert session.selected == ([] if expected is None else [expected])
+    session.click(2.5 + 6 / scale, 0.75, "ctrl+click")
+    assert session.selected == []
+    session.click(2.5 + 4 / scale, 0.75, "ctrl+click")
+    assert session.selected == [session.model.grids[0]]
+
+
+def test_properties_without_a_selection_hold_the_shown_grid(session: Session) -> None:
+    session.press("return")
+    session.click_box("spacing x")
+    session.type("25")
+    session.press("return")
+    while session.scene != "pause":
+        session.press("escape")
+    assert session.model.grids[0].spacing == (0.25, 0.5)
+    while any(grid.shown for grid in session.model.grids):
+        session.press("h")
+    session.press("return")
+    assert "spacing x" not in session.boxes
 
 
 def test_i_shows_the_diagrams_of_the_selected_or_of_all(session: Session) -> None:
@@ -297,6 +316,49 @@ def test_a_run_restarted_after_an_edit_is_the_run_of_the_edited_model(session: S
     fresh.rods["AB"].stiffness = 200_000
     fresh.run(steps=321)
     assert bits.different(bits.columns(session.model), bits.columns(fresh.model)) == []
+
+
+def test_restart_goes_back_to_the_undeformed_beginning_after_settling_too(session: Session) -> None:
+    """Before any run, and with one after it; it can be undone."""
+    start = bits.state(session.model)
+    for run in (0, 50):
+        session.press("e")
+        settled = session.particles["B"].displacement
+        assert settled != (0.0, 0.0)
+        session.run(steps=run)
+        before = bits.state(session.model)
+        session.press("r")
+        assert session.particles.displacement.tolist() == [[0.0, 0.0]] * 3
+        assert (session.time, session.rods["AB"].axial_force) == (0.0, 0.0)
+        session.press("ctrl+z")
+        assert bits.different(bits.state(session.model), before) == []
+        session.press("ctrl+y")
+        assert session.particles.displacement.tolist() == [[0.0, 0.0]] * 3
+    session.press("r")
+    assert "This is the beginning" in session.notice
+    assert bits.different(bits.state(session.model), start) == []
+
+
+def test_a_run_after_settling_and_restarting_is_the_run_of_a_fresh_model(session: Session) -> None:
+    session.press("e")
+    session.press("r")
+    session.run(steps=321)
+    fresh = Session.open("isostatic")
+    fresh.run(steps=321)
+    assert bits.different(bits.columns(session.model), bits.columns(fresh.model)) == []
+    assert abs(session.energy.imbalance - fresh.energy.imbalance) <= 1e-9 * session.energy.work
+
+
+def test_restart_of_a_model_that_was_saved_in_its_run(session: Session, tmp_path: Path) -> None:
+    session.run(steps=100)
+    session.save(tmp_path / "later.json")
+    later = Session.open(tmp_path / "later.json")
+    later.press("r")
+    assert later.particles.displacement.tolist() == [[0.0, 0.0]] * 3
+    assert later.time == 0.0
+    assert "does not say with which velocities" in later.notice
+    later.press("ctrl+z")
+    assert bits.different(bits.state(later.model), bits.state(session.model)) == []
 
 
 def test_restart_before_any_run_does_nothing(session: Session) -> None:

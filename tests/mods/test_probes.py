@@ -153,7 +153,7 @@ def test_a_plot_draws_its_curves_inside_the_box_and_parts_them_at_gaps() -> None
     y = np.sin(6.0 * x)
     y[100] = np.nan
     marks = draw_plot(Plot("t (s)", "u (m)", (("u", x, y),)), BOX, LIGHT, 1.0, None)
-    (curve,) = [mark for mark in marks if isinstance(mark, Strokes) and mark.colour == LIGHT.force]
+    (curve,) = [mark for mark in marks if isinstance(mark, Strokes) and mark.colour == LIGHT.curve_1]
     assert (curve.start >= 0.0).all()
     assert (curve.start[:, 0] <= 300.0).all()
     assert (curve.start[:, 1] <= 150.0).all()
@@ -164,7 +164,7 @@ def test_a_plot_draws_its_curves_inside_the_box_and_parts_them_at_gaps() -> None
 def test_the_pointer_reads_the_nearest_point() -> None:
     plot = Plot("t (s)", "u (m)", (("u", np.array([0.0, 1.0, 2.0]), np.array([0.0, 5.0, 0.0])),))
     marks = draw_plot(plot, BOX, LIGHT, 1.0, None)
-    (curve,) = [mark for mark in marks if isinstance(mark, Strokes) and mark.colour == LIGHT.force]
+    (curve,) = [mark for mark in marks if isinstance(mark, Strokes) and mark.colour == LIGHT.curve_1]
     top = curve.end[np.argmin(curve.end[:, 1])]
     near = draw_plot(plot, BOX, LIGHT, 1.0, (float(top[0]) + 3.0, float(top[1]) + 3.0))
     assert "1, 5" in [mark.text for mark in near if isinstance(mark, Text)]

@@ -19,7 +19,7 @@ import pygame
 
 from game.app import App
 from game.documents import library, models
-from game.documents.autosave import LAST_SESSION, Autosave
+from game.documents.autosave import Autosave
 from game.documents.library import data_in
 from game.documents.open_documents import ModelFile
 from game.documents.preferences import CONFIG_VARIABLE
@@ -195,19 +195,22 @@ class Monkey:
                 Performance(self.app, lesson).play()
 
     def close(self) -> None:
-        """Close the window as a person does; what nobody saved is in the last session."""
+        """Close the window as a person does; what nobody saved stays in recovery files."""
         pygame.event.post(pygame.event.Event(pygame.QUIT))
         with within(LIMIT, "the last frame"):
             self.app.frame(0.0)
         assert self.app.closed
-        edited = [d.model for d in self.session.documents if d.edited and d.model.particles.count]
-        ends = [contents(model) for model in edited]
-        assert self.app.autosave is not None
-        self.app.autosave.close(self.session.documents)
-        assert not list((library.data_folder() / "autosave").iterdir())
-        if ends:
-            kept = contents(models.load(library.path_of(LAST_SESSION)))
-            for name, column in ends[-1].items():
+        autosave = self.app.autosave
+        assert autosave is not None
+        edited = [d for d in self.session.documents if d.edited and d.model.particles.count]
+        ends = [contents(document.model) for document in edited]
+        autosave.close(self.session.documents)
+        files = {document.recovery for document in edited} | {*autosave.left()}
+        assert {*(library.data_folder() / "autosave").glob("*.json")} == files
+        for document, end in zip(edited, ends, strict=True):
+            assert document.recovery is not None
+            kept = contents(models.load(document.recovery))
+            for name, column in end.items():
                 assert "." not in name or kept[name] == column, name
 
 

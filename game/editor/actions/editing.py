@@ -54,10 +54,11 @@ def _support(context: Context, pixel: Vector) -> None:
         context.take_up("support")
         return
     support = next_support(context.model, chosen)
-    context.notice = f"{_all_of(context, chosen)}: {support}"
+    context.notice = f"{all_of(context, chosen)}: {support}"
 
 
-def _all_of(context: Context, particles: list[Particle]) -> str:
+def all_of(context: Context, particles: list[Particle]) -> str:
+    """Some particles as a sentence begins with them."""
     return context.name(particles[0]) if len(particles) == 1 else f"{len(particles)} particles"
 
 
@@ -72,7 +73,7 @@ def nudge(context: Context, direction: Vector, *, far: bool) -> bool:
     with context.history.as_one(("nudge", *(handle.entity for handle in moved))):
         chosen.place(positions)
     x, y = positions[0].tolist()
-    named = _all_of(context, chosen.particles) if not chosen.others else heading(model, moved)
+    named = all_of(context, chosen.particles) if not chosen.others else heading(model, moved)
     context.notice = f"{named[:1].upper()}{named[1:]}: ({100.0 * x:g}, {100.0 * y:g}) cm"
     return True
 

@@ -35,15 +35,15 @@ def _to_pause_and(context: Context, scene: str) -> None:
 
 @action("escape", while_drawing=True)
 def _escape(context: Context, pixel: Vector) -> None:
-    """Cancel the drawing, else put the tool away, else end the run or deselect; with nothing to end, run."""
+    """Cancel the drawing, else put the tool away, else end the run or deselect."""
     if context.cancel_gesture():
         return
     if context.scene == "simulation":
         context.scenes.request("pause")
-    elif context.selected:
+    elif context.has_selected:
         context.select()
     else:
-        context.scenes.request("simulation")
+        context.notice = "Time stands still and nothing is selected. Space runs, F1 shows all keys."
 
 
 @action("force method")

@@ -10,7 +10,7 @@ from game.editor.context import ACTIONS, Context, action
 from game.editor.gestures.drawing import TOOLS, Drawing, DrawSupport
 from game.editor.gestures.moving import BoxSelect, Move, MovePoint, PullParticle
 from systems.edit import Refusal
-from systems.edit.picking import everything, pick, pick_line, pick_particle, pick_point
+from systems.edit.picking import everything, pick, pick_grid, pick_line, pick_particle, pick_point
 
 
 @action("drag", while_drawing=True)
@@ -49,6 +49,8 @@ def _drop(context: Context, pixel: Vector) -> None:
     gesture, context.gesture = context.gesture, None
     if gesture is not None:
         gesture.drop(context, pixel)
+    if isinstance(gesture, Drawing):
+        context.gesture = gesture.following(context)
 
 
 def _draw(context: Context, tool: str, pixel: Vector) -> None:
@@ -59,7 +61,7 @@ def _draw(context: Context, tool: str, pixel: Vector) -> None:
     if tool not in TOOLS:
         ACTIONS[tool](context, pixel)
         return
-    begun = TOOLS[tool].begin(context, pixel)
+    begun = TOOLS[tool].begin_anywhere(context, pixel)
     if begun is not None:
         context.gesture = begun
     elif context.gesture is None:
@@ -87,7 +89,9 @@ def _select(context: Context, pixel: Vector) -> None:
 
 @action("add to selection")
 def _add_to_selection(context: Context, pixel: Vector) -> None:
-    hit = pick(context.model, context.view, pixel)
+    """Also the grid, which a plain click beside an element never takes."""
+    model, view = context.model, context.view
+    hit = pick(model, view, pixel) or pick_grid(model, view, pixel)
     if hit is not None:
         chosen = context.selected
         context.select(*([h for h in chosen if h is not hit] if hit in chosen else [*chosen, hit]))

@@ -37,6 +37,16 @@ def _click_slider(context: Context, pixel: Vector) -> None:
         context.notice = f"Slider removed: {place.control.title}. Ctrl+Z brings it back."
 
 
+@action("double click slider")
+def _double_click_slider(context: Context, pixel: Vector) -> None:
+    """The second click of two lets the displacement scale be automatic; of others it is another click."""
+    place = _under(context, pixel)
+    if place is not None and place.control.key == SCALE and not place.button.contains(pixel):
+        context.settings.displacement_scale = None
+    else:
+        _click_slider(context, pixel)
+
+
 def automatic(context: Context) -> None:
     """Let the displacement scale follow from the model, or keep it as it is from now on."""
     settings = context.settings

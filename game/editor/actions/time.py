@@ -18,12 +18,27 @@ MANY = 2000  # elements; the pace that suits larger models takes too long to fin
 
 
 def _arrow(direction: Vector, steps: int, *, far: bool) -> Action:
-    """The action of an arrow key: move the selected elements; with none selected, right is forward in time."""
+    """The action of an arrow key: once there is a run, right is forward in time; before, it moves what is selected."""
 
     def act(context: Context, pixel: Vector) -> None:
-        if nudge(context, direction, far=far) or steps == 0:
+        if context.at_beginning and nudge(context, direction, far=far):
             return
-        _step(context, steps * (_far(context) if far else 1))
+        if steps:
+            _step(context, steps * (_far(context) if far else 1))
+        elif context.has_selected:
+            raise Refusal(
+                "While there is a run, Ctrl with an arrow moves the selection; R goes back to the beginning."
+            )
+
+    return act
+
+
+def _move(direction: Vector, *, far: bool) -> Action:
+    """The action of an arrow key with Ctrl: move what is selected, whether there is a run or not."""
+
+    def act(context: Context, pixel: Vector) -> None:
+        if not nudge(context, direction, far=far):
+            raise Refusal("Nothing is selected that could be moved; click it first.")
 
     return act
 
@@ -36,6 +51,8 @@ for _name, _direction, _steps in (
 ):
     action(f"arrow {_name}")(_arrow(_direction, _steps, far=False))
     action(f"far arrow {_name}")(_arrow(_direction, _steps, far=True))
+    action(f"move {_name}")(_move(_direction, far=False))
+    action(f"move far {_name}")(_move(_direction, far=True))
 
 
 def _far(context: Context) -> int:
@@ -77,10 +94,12 @@ action("natural pace", while_drawing=True)(lambda context, pixel: setattr(contex
 
 @action("restart")
 def _restart(context: Context, pixel: Vector) -> None:
-    if context.at_beginning:
-        raise Refusal("This is the beginning: no time has passed. Ctrl+Z takes back edits and settling.")
+    if context.document.is_undeformed:
+        raise Refusal("This is the beginning: no time has passed. Ctrl+Z takes back edits.")
+    known = context.document.undeformed is not None
     context.restart()
-    context.notice = "Back at the beginning; all edits are kept."
+    unknown = "" if known else " Its file does not say with which velocities the run began: it is at rest."
+    context.notice = f"Back at the beginning, undeformed; all edits are kept.{unknown}"
 
 
 @action("undo")

@@ -14,7 +14,7 @@ from game.editor.context import Context, Gesture
 from systems.edit import Refusal
 from systems.edit.arrows import arrow_end, arrow_value, usual_force, usual_speed
 from systems.edit.picking import PARTICLE_REACH, pick_particle
-from systems.edit.placing import snapped_to_points
+from systems.edit.placing import place, place_at, snapped, snapped_to_points
 from systems.edit.rods import check_ends, distance, join
 from systems.edit.supports import NAMES, next_support, support, support_towards
 
@@ -22,9 +22,13 @@ SMALLEST_RIM = 5.0  # points, of a particle as it is drawn
 
 
 class Drawing(Gesture):
-    """A drawing by clicks, drags or the key of a tool. tool: the name of the tool and of its action."""
+    """A drawing by clicks, drags or the key of a tool.
+
+    tool: the name of the tool and of its action. goes_on: it began by itself where the one before it ended.
+    """
 
     tool: ClassVar[str]
+    goes_on = False
 
     @classmethod
     def begin(cls, context: Context, pixel: Vector) -> Drawing | None:
@@ -32,10 +36,15 @@ class Drawing(Gesture):
         raise NotImplementedError
 
     @classmethod
+    def begin_anywhere(cls, context: Context, pixel: Vector) -> Drawing | None:
+        """A new drawing by a click or drag with the tool in hand."""
+        return cls.begin(context, pixel)
+
+    @classmethod
     def use(cls, context: Context, pixel: Vector) -> None:
         """The action of the tool: finish its drawing, else begin one at a pixel, else take the tool up or put it away."""
         gesture = context.gesture
-        if isinstance(gesture, Drawing) and gesture.tool == cls.tool:
+        if isinstance(gesture, Drawing) and gesture.tool == cls.tool and not gesture.goes_on:
             gesture.finish(context, pixel)
             return
         context.leave_gesture()
@@ -46,7 +55,18 @@ class Drawing(Gesture):
     def finish(self, context: Context, pixel: Vector) -> None:
         """End at a pixel; where that is refused, the drawing goes on."""
         self.drop(context, pixel)
-        context.gesture = None
+        context.gesture = self.following(context)
+
+    def following(self, context: Context) -> Drawing | None:
+        """The drawing that begins by itself when this one is finished."""
+        return None
+
+
+def start_of(context: Context, particle: Particle) -> Vector:
+    """Where a particle from which something is drawn is drawn (m). Raises Refusal if it was deleted."""
+    if not particle.exists:
+        raise Refusal("The particle where this began was deleted meanwhile; begin at another one.")
+    return drawn_at(context, particle)
 
 
 class DrawFromParticle(Drawing):
@@ -62,37 +82,78 @@ class DrawFromParticle(Drawing):
 
     def start(self, context: Context) -> Vector:
         """Where the particle is drawn (m). Raises Refusal if it was deleted."""
-        if not self.particle.exists:
-            raise Refusal("The particle where this began was deleted meanwhile; begin at another one.")
-        return drawn_at(context, self.particle)
+        return start_of(context, self.particle)
 
 
-class DrawRod(DrawFromParticle):
-    """A rod from one particle to another."""
+class DrawRod(Drawing):
+    """A rod from one particle or place to another; where there is no particle, one is made, on the grid if near it.
+
+    While the tool is in hand, the next rod begins where this one ends.
+    """
 
     tool = "rod"
 
-    def __init__(self, context: Context, particle: Particle) -> None:
-        super().__init__(context, particle)
-        self.hint = f"rod from {particle.name}: L or click over another particle     Esc cancel"
+    def __init__(self, context: Context, begin: Particle | Vector, *, goes_on: bool = False) -> None:
+        self._begin, self.goes_on = begin, goes_on
+        self._end: Particle | None = None
+        named = f" from {begin.name}" if isinstance(begin, Particle) else ""
+        done = "double click ends the chain     Esc done" if goes_on else "Esc cancel"
+        self.hint = f"rod{named}: L or click where it ends     {done}"
+
+    @classmethod
+    def begin(cls, context: Context, pixel: Vector) -> Drawing | None:
+        particle = pick_particle(context.model, context.view, pixel)
+        return cls(context, particle) if particle is not None else None
+
+    @classmethod
+    def begin_anywhere(cls, context: Context, pixel: Vector) -> Drawing | None:
+        point = snapped(context.model, context.view, context.view.camera.to_model(pixel))
+        return cls.begin(context, pixel) or cls(context, point)
+
+    def _start(self, context: Context) -> Vector:
+        """Where it begins (m). Raises Refusal if that particle was deleted."""
+        return start_of(context, self._begin) if isinstance(self._begin, Particle) else self._begin
 
     def drop(self, context: Context, pixel: Vector) -> None:
-        self.start(context)
-        other = pick_particle(context.model, context.view, pixel)
-        if other is None:
-            raise Refusal("A rod ends at a particle; point at one. P makes a new one.")
-        rod = join(context.model, self.particle, other)
-        context.notice = f"{context.name(rod)}: {rod.rest_length:.6g} m"
+        model, view, begin = context.model, context.view, self._begin
+        self._start(context)
+        before = model.particles.count
+        with model.transaction("new rod"):
+            first = begin if isinstance(begin, Particle) else place_at(model, view, begin)
+            self._end = pick_particle(model, view, pixel) or place(model, view, pixel)
+            rod = join(model, first, self._end)
+        made = model.particles.count - before
+        new = f", with {made} new particle{'s' * (made > 1)}" if made else ""
+        context.notice = f"{context.name(rod)}: {rod.rest_length:.6g} m{new}"
+
+    def finish(self, context: Context, pixel: Vector) -> None:
+        """End at a pixel; a click where a chain of rods has come to ends the chain."""
+        if self.goes_on and pick_particle(context.model, context.view, pixel) is self._begin:
+            context.gesture = None
+        else:
+            super().finish(context, pixel)
+
+    def following(self, context: Context) -> Drawing | None:
+        in_hand = context.view.tool == self.tool and self._end is not None
+        return DrawRod(context, self._end, goes_on=True) if in_hand and self._end is not None else None
+
+    def cancel(self, context: Context) -> None:
+        if self.goes_on:
+            context.view.tool = ""
+
+    def leave(self, context: Context) -> None:
+        """The tool stays in hand."""
 
     def preview(self, context: Context, pixel: Vector) -> Preview | None:
-        start = self.start(context)
+        start = self._start(context)
         other = pick_particle(context.model, context.view, pixel)
-        if other is None or other is self.particle:
-            end = context.view.camera.to_model(pixel)
+        if other is None or other is self._begin or not isinstance(self._begin, Particle):
+            point = snapped(context.model, context.view, context.view.camera.to_model(pixel))
+            end = point if other is None else drawn_at(context, other)
             return Preview("rod", start, end, f"{math.dist(start, end):.3g} m")
         try:
-            check_ends(context.model, self.particle, other)
-            label = f"{distance(self.particle, other):.6g} m"
+            check_ends(context.model, self._begin, other)
+            label = f"{distance(self._begin, other):.6g} m"
         except Refusal:
             label = "joined already"
         return Preview("rod", start, drawn_at(context, other), label)
@@ -246,7 +307,7 @@ class DrawSupport(DrawFromParticle):
 TOOL_HINTS = {
     "place": "click where particles are to be     Esc done",
     "support": "supports: drag from a particle to its ground, or click for the next kind     Esc done",
-    "rod": "rods: click two particles, or drag from one to another     L or Esc done",
+    "rod": "rods: click from place to place, or drag     double click ends a chain     Esc done",
     "force": "forces: drag an arrow from a particle     F or Esc done",
     "velocity": "velocities: drag an arrow from a particle     V or Esc done",
 }

@@ -33,9 +33,9 @@ class FileScene(FormScene):
         super().exit(context)
         self._unread = []
 
-    def new_form(self, heading: str, name: str, offers: Sequence[Offer]) -> Form:
-        """A form with a box for the name and a tile for each offer, its picture to be read later."""
-        form = Form(heading)
+    def new_form(self, heading: str, name: str, offers: Sequence[Offer], accept: str) -> Form:
+        """A form with a box for the name, a button, and a tile for each offer, its picture to be read later."""
+        form = Form(heading, accept=accept)
         form.create(Box, 1, title="name", target="name", accepts=FILE_NAME, text=name, opened=name)
         if offers:
             columns = map(list, zip(*offers, strict=True))

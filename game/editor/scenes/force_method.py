@@ -16,6 +16,7 @@ from components.view import Page, Status, View
 from game.editor.context import Context, Scene
 from game.force_method import PARTS, words
 from systems.base import Phase, System
+from systems.render.diagrams import largest_force
 from systems.render.overlays import heading_height
 from systems.render.page import page_height
 
@@ -41,12 +42,17 @@ class _Work:
 
 
 class ForceMethod(Scene):
-    """The seven parts of the force method. shown_guide: the guide as pictures show it, announced work not yet done."""
+    """The seven parts of the force method.
+
+    shown_guide: the guide as pictures show it, announced work not yet done. first_unknown: the name of the rod to
+    release when it begins; "": a person will choose.
+    """
 
     name = "force method"
 
     def __init__(self) -> None:
         self.shown_guide: Guide | None = None
+        self.first_unknown = ""
         self._work: _Work | None = None
         self._problem = ""
         self._mechanism: Mechanism | None = None  # the whole structure, if it cannot be solved
@@ -67,9 +73,10 @@ class ForceMethod(Scene):
 
     def enter(self, context: Context) -> None:
         self._problem, self._mechanism, self._page_of = "", None, -1
-        self.work(context, "Solving the structure", partial(self._begin, context))
+        unknown, self.first_unknown = self.first_unknown, ""
+        self.work(context, "Solving the structure", partial(self._begin, context, unknown))
 
-    def _begin(self, context: Context) -> None:
+    def _begin(self, context: Context, unknown: str) -> None:
         # Here only, since they import scipy.
         from game.force_method.guide import Guide, Mechanism, base_structure, view_like
         from systems.statics.force_method import ForceMethodError
@@ -81,6 +88,10 @@ class ForceMethod(Scene):
             if error.motion is not None:
                 copy = base_structure(context.model, [])
                 self._mechanism = Mechanism(copy, error.motion, view_like(context.view))
+        else:
+            if unknown:
+                self.shown_guide.next()
+                self.shown_guide.pick(self.shown_guide.sets[0].model.rods[unknown])
 
     def exit(self, context: Context) -> None:
         self.shown_guide = self._mechanism = self._work = None
@@ -155,7 +166,7 @@ class ForceMethod(Scene):
         middle = Viewport(whole.left, whole.top + head, whole.width, max(whole.height - head - foot, 1))
         _place(self._head, Viewport(whole.left, whole.top, whole.width, head), ratio)
         _place(self._foot, Viewport(whole.left, middle.top + middle.height, whole.width, foot), ratio)
-        return self._sets(middle, ratio)
+        return self._sets(context, middle, ratio)
 
     def _working(self) -> Page:
         """The equations and the table; made once in every part, since a table may be long."""
@@ -167,7 +178,7 @@ class ForceMethod(Scene):
             self._page_of, self._first = guide.part, 0
         return replace(self._page, first=self._first)
 
-    def _sets(self, middle: Viewport, ratio: float) -> list[tuple[Model, View]]:
+    def _sets(self, context: Context, middle: Viewport, ratio: float) -> list[tuple[Model, View]]:
         captions = words.captions(self.shown_guide) if self.shown_guide else [("",)] * 3
         there: list[Set | Mechanism] = [*self.shown_guide.shown] if self.shown_guide else self._moving()
         places = [(index, _third(middle, index)) for index in range(3)]
@@ -175,6 +186,9 @@ class ForceMethod(Scene):
             picks = self.shown_guide is not None and self.shown_guide.part == 2  # from set 1
             places = [(0 if picks else len(there) - 1, middle)]
         stages = [(one.model, one.view) for one in there]
+        largest = max((largest_force(*stage) for stage in stages), default=0.0)
+        for _, view in stages:
+            view.largest_force = largest
         stages += [(self._blank, view) for view in self._places[len(there) :]]
         shown = []
         for index, viewport in places:

@@ -60,6 +60,9 @@ class FormScene(Scene):
         """The part of the window that the form takes."""
         return context.view.camera.viewport
 
+    def covers(self, context: Context) -> bool:
+        return True
+
     def helped(self, context: Context) -> Viewport:
         return self.viewport(context)
 
@@ -93,23 +96,26 @@ class FormScene(Scene):
     # --- input -------------------------------------------------------------------------------------
 
     def type(self, context: Context, text: str) -> None:
+        self.form.heading.message = ""
         typing.write(self.form, text)
         self._reveal_selected(context)
         self.changed(context)
 
     def erase(self, context: Context, *, after: bool = False) -> None:
         """Backspace, or Delete."""
+        self.form.heading.message = ""
         typing.erase(self.form, after=after)
         self._reveal_selected(context)
         self.changed(context)
 
     def cancel(self, context: Context) -> None:
-        """Esc: give the selected box back what it held; without one, leave."""
+        """Esc: give the selected box back what it held, and say what was typed; without one, leave."""
         if self.form.selected is None:
             self.leave(context)
         else:
-            typing.restore(self.form)
+            given_up = typing.restore(self.form)
             self.changed(context)
+            self.form.heading.message = given_up
 
     def next_box(self, context: Context, by: int) -> None:
         """Tab: select the next box, or the previous one."""
@@ -117,8 +123,16 @@ class FormScene(Scene):
         self._reveal_selected(context)
 
     def click(self, context: Context, pixel: Vector) -> None:
-        """Select a box (a switch also turns), put its caret, or choose a tile."""
-        place = next((p for p in self.layout(context).places if p.contains(pixel)), None)
+        """Select a box (a switch also turns), put its caret, choose a tile, or press a button."""
+        layout = self.layout(context)
+        if layout.close.contains(pixel):
+            typing.accept(self.form)
+            self.leave(context)
+            return
+        if layout.accept is not None and layout.accept.contains(pixel):
+            self.accept(context)
+            return
+        place = next((p for p in layout.places if p.contains(pixel)), None)
         match place.item if place is not None else None:
             case Box() as box:
                 again = box is self.form.selected
@@ -168,7 +182,7 @@ class FormScene(Scene):
         layout, heading = self.layout(context), self.form.heading
         if layout.place_of(item) is not None:
             return
-        row, above = row_of(self.form, item, layout)
+        row, above = row_of(layout, item)
         heading.first = min(layout.first, above)
         while heading.first < row and self.layout(context).place_of(item) is None:
             heading.first += 1

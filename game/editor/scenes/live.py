@@ -24,8 +24,8 @@ class Pause(Scene):
         if kinds and all(kind.points for kind in kinds):
             return "drag it or its ends     Return properties     Esc deselect     F1 keys"
         if kinds:
-            return "Return properties     I its forces     Esc deselect     F1 keys"
-        return "Space run     click select     I forces     wheel zoom     F1 keys"
+            return "right click menu     Return properties     I its forces     Esc deselect     F1 keys"
+        return "Space run     click select     right click menu     I forces     wheel zoom     F1 keys"
 
 
 class Simulation(Scene):

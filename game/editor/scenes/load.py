@@ -42,7 +42,7 @@ class Load(FileScene):
         section = saved[0].section if saved else LESSONS
         new = Offer(section, NEW, "draw your own", "", None, "An empty plane to draw on.", "+")
         offers = [*_left_behind(context), new, *saved, *_lessons(), *_examples()]
-        form = self.new_form(WELCOME if self.welcome else "Load", "", offers)
+        form = self.new_form(WELCOME if self.welcome else "Load", "", offers, "Open")
         form.boxes[0].note = "type to search, or click a picture"
         return form
 

@@ -7,22 +7,23 @@ from dataclasses import replace
 
 import numpy as np
 
-from components.camera import Viewport
+from components.camera import Camera, Viewport
 from components.field import Vector
 from components.form import Form
 from components.handle import Handle
 from components.model import Model
-from components.toolbar import Toolbar
-from components.view import View, drawn_positions
+from components.view import LEAST_BESIDE, MARGIN, Readout, View, drawn_places, drawn_positions
 from game.editor.context import Context, Stage
 from game.editor.scenes.form import FormScene
 from systems.edit.picking import pick
-from systems.forms import answers, properties, typing
-from systems.render.form_layout import beside
+from systems.forms import answers, properties, results, typing
 
 
 class Properties(FormScene):
-    """The Fields of the selected elements, or of the environment. Leaving applies all boxes at once."""
+    """The Fields of the selected elements, or of the environment, beside the model.
+
+    What a box takes acts as soon as it is accepted. All boxes of a visit are one entry of the log.
+    """
 
     name = "properties"
     heading = "Properties"
@@ -31,26 +32,68 @@ class Properties(FormScene):
         super().__init__()
         self._return_to: tuple[str, ...] = ("pause",)
         self._at_left = False
+        self._looked: tuple[object, ...] = ()  # the camera and the part of the window beside the boxes, and
+        self._camera = Camera()  # what shows the model there
+        self._read: tuple[object, ...] = ()  # what the readings were made from
 
     def enter(self, context: Context) -> None:
         super().enter(context)
         self._at_left = _is_right(context, context.selected)
+        self._looked = ()
 
     def make_form(self, context: Context) -> Form:
         model, selected = context.model, context.selected
         form = Form(properties.heading(model, selected), lambda box: answers.problem(model, box))
         properties.fill(form, model, selected)
+        self._read = ()
         return form
 
     def exit(self, context: Context) -> None:
-        self._apply(context)
+        refused = self._apply(context, typing=True)
+        if refused:
+            context.notice = " ".join(sentence[:1].upper() + sentence[1:] for sentence in refused)
         self._return_to = ("pause",)
         super().exit(context)
 
-    def _apply(self, context: Context) -> None:
-        refused = answers.apply(self.form, context.model)
-        if refused:
-            context.notice = " ".join(sentence[:1].upper() + sentence[1:] for sentence in refused)
+    # --- live --------------------------------------------------------------------------------------
+
+    def _apply(self, context: Context, *, typing: bool = False) -> list[str]:
+        """Give the model what is accepted; the boxes then say what it has. Returns the sentences about refused ones."""
+        before = context.model.revision
+        with context.history.as_one(("properties", self.form.context)):
+            refused = answers.apply(self.form, context.model, typing=typing)
+        if context.model.revision != before:
+            self.form.heading.text = properties.heading(context.model, context.selected)
+            properties.refresh(self.form, context.model, context.selected)
+        return refused
+
+    def changed(self, context: Context) -> None:
+        self._apply(context)
+
+    def next_box(self, context: Context, by: int) -> None:
+        super().next_box(context, by)
+        self._apply(context)
+
+    def click(self, context: Context, pixel: Vector) -> None:
+        super().click(context, pixel)
+        self._apply(context)
+
+    def click_box(self, context: Context, title: str) -> None:
+        super().click_box(context, title)
+        self._apply(context)
+
+    def accept(self, context: Context) -> None:
+        """Return: accept the selected box; without one, leave."""
+        if self.form.selected is None:
+            self.leave(context)
+        elif typing.accept(self.form):
+            self._apply(context)
+        else:
+            self.form.selected.marked = True
+
+    @property
+    def tools(self) -> str:
+        return self._return_to[-1]
 
     def opened_from(self, scene: str) -> None:
         """Leaving goes back to that scene."""
@@ -59,40 +102,64 @@ class Properties(FormScene):
     def leave(self, context: Context) -> None:
         context.scenes.request(*self._return_to)
 
-    def accept(self, context: Context) -> None:
-        """Return: accept the selected box; without one, leave."""
-        if self.form.selected is None:
-            self.leave(context)
-        elif not typing.accept(self.form):
-            self.form.selected.marked = True
-
     def hint(self, context: Context) -> str:
         if self.form.selected is not None:
             return "Return accept     Esc restore     Tab next box"
-        return "Click a box     Tab next box     Esc apply and go back"
+        return "Click a box     Tab next box     Esc back"
 
     # --- beside the model --------------------------------------------------------------------------
 
-    def _split(self, context: Context) -> tuple[Viewport | None, Viewport]:
-        view = context.view
-        return beside(view.camera.viewport, view.pixel_ratio, at_left=self._at_left)
+    def _aside(self, context: Context) -> Viewport | None:
+        return context.view.beside(at_left=self._at_left)
 
     def viewport(self, context: Context) -> Viewport:
-        return self._split(context)[1]
+        return self._aside(context) or super().viewport(context)
+
+    def covers(self, context: Context) -> bool:
+        return self._aside(context) is None
+
+    def helped(self, context: Context) -> Viewport:
+        return self.viewport(context) if self.covers(context) else context.view.canvas
 
     def stages(self, context: Context) -> Sequence[Stage]:
-        form = super().stages(context)
-        return form if self._split(context)[0] is None else [self.focus(context), *form]
+        model, view = self.focus(context)
+        self._read_results(context)
+        if view.aside is None:
+            return [(self.form, view)]
+        return [(model, view), (self.form, replace(view, status=context.view.status))]
+
+    def _read_results(self, context: Context) -> None:
+        """Let the readings say what the elements do now."""
+        model, known = context.model, context.view.forces_known
+        now = self.form.context, model.revision, known, self.form.heading.text
+        if now != self._read:
+            self._read = now
+            results.fill(self.form, model, context.selected if known else [])
 
     def focus(self, context: Context) -> tuple[Model, View]:
-        """The model beside the boxes."""
-        rest, view = self._split(context)[0], context.view
-        camera = view.camera
-        if rest is not None:  # the same part of the model as in the whole window
-            scale = camera.scale * rest.width / camera.viewport.width
-            camera = replace(camera, viewport=rest, scale=scale)
-        status = replace(view.status, hint="")
-        return context.model, replace(view, camera=camera, keys=[], status=status, toolbar=Toolbar())
+        """The model where it was, and what is seen of it beside the boxes."""
+        aside, view = self._aside(context), context.view
+        if aside is None:
+            return context.model, view
+        beside = replace(view, aside=aside, keys=[], status=replace(view.status, hint=""))
+        beside.readouts = self._readouts(view, aside)
+        beside.camera = self._camera_beside(context.model, beside)
+        return context.model, beside
+
+    def _camera_beside(self, model: Model, view: View) -> Camera:
+        """The camera as it is; of a model that was wholly in sight and would be covered in part, one that shows it."""
+        now = replace(view.camera), view.canvas
+        if now != self._looked:
+            self._looked, self._camera = now, now[0]
+            if view.fitted and not view.shows(model):
+                self._camera = replace(view.camera)
+                self._camera.fit(drawn_places(model), MARGIN, view.canvas, view.pixel_ratio)
+        return replace(self._camera)
+
+    def _readouts(self, view: View, aside: Viewport) -> tuple[Readout, ...]:
+        """Those for which there is room beside the boxes."""
+        roomy = view.canvas.width - aside.width >= LEAST_BESIDE * view.pixel_ratio + aside.width
+        return view.readouts if roomy else ()
 
     def click_beside(self, context: Context, pixel: Vector) -> None:
         """A click on another element applies these boxes and shows those of that element."""

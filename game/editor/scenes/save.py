@@ -21,7 +21,7 @@ class Save(FileScene):
 
     def make_form(self, context: Context) -> Form:
         self._confirmed = ""
-        form = self.new_form("Save", context.file.name, saved_models())
+        form = self.new_form("Save", context.file.name, saved_models(), "Save")
         form.boxes[0].explanation = f"A file in {library.models_folder()}"
         return form
 

@@ -1,13 +1,13 @@
 """A hierarchical hash grid of boxes: which discs can collide before the present horizon ends.
 
 Every disc has a box around its path until the horizon's end, and belongs to the finest layer whose cells are
-larger than the box. It is entered as native into the cell of that layer that holds the box's left bottom corner, and
-as guest into that of all coarser layers. A box that overlaps another of the same layer then has its corner at most one
-cell to the left of the other, or below, whatever their sizes: a very large or very fast disc costs no more than a look
-at all others.
+larger than the box, so that it overlaps at most four of them. It is entered as native into these, and as guest into
+those of all coarser layers. Discs whose boxes overlap share a cell of the coarser of their layers, whatever their sizes:
+a very large or very fast disc costs no more than a look at all others. They may share more; they find each other in that
+of the left bottom corner of what overlaps.
 
-The entry kind × discs + disc is that of a disc in a layer, with kind = 2 × layer, + 1 for guests. The entries of a
-bucket are chained, to and fro. The buckets of neighbouring cells differ.
+The entries 4 (kind × discs + disc), and the three after it, are those of a disc in a layer, with kind = 2 × layer, + 1
+for guests. The entries of a bucket are chained, to and fro. The buckets of neighbouring cells differ.
 """
 
 import math
@@ -16,6 +16,7 @@ from systems.collision.columns import NONE, Disc
 from systems.collision.kernels import compiled
 from systems.collision.kernels.time_of_impact import extent
 
+CORNERS = 4  # cells of its layer, or of a coarser one, that a box overlaps at most
 FARTHEST_CELL = 2.0**40  # cells from the origin; farther out cells grow, so that they can be told apart
 COARSEST = 63
 GOLDEN_SECTION = 0.6180339887498949
@@ -96,47 +97,72 @@ def layer_of(level, grid, layers):
 
 
 @compiled
+def has_room(grid, layers):
+    """True if so many layers fit into the arrays."""
+    return 2 * CORNERS * grid.boxes.shape[0] * layers <= grid.after.shape[0]
+
+
+@compiled
 def _row(grid):
     """How far the bucket of a cell is from that of the cell below: the golden section spreads rows evenly."""
     return int(GOLDEN_SECTION * grid.heads.shape[0]) | 1
 
 
 @compiled
-def _bucket(i, k, grid):
-    """The bucket of a disc in layer k."""
-    cx = math.floor(grid.boxes[i, 0] * grid.inverse[k])
-    cy = math.floor(grid.boxes[i, 1] * grid.inverse[k])
-    kind = 2 * k + (1 if k > grid.layer[i] else 0)
-    return (cx + cy * _row(grid) + kind * KIND) & (grid.heads.shape[0] - 1)
+def _kind(i, k, grid):
+    """2 k for a native of layer k, 2 k + 1 for a guest."""
+    return 2 * k + (1 if k > grid.layer[i] else 0)
+
+
+@compiled
+def _cells(left, bottom, right, top, k, grid):
+    """The first and last column and row of the cells of layer k that a box overlaps."""
+    inverse = grid.inverse[k]
+    x, y = math.floor(left * inverse), math.floor(bottom * inverse)
+    return x, y, min(math.floor(right * inverse), x + 1), min(math.floor(top * inverse), y + 1)
 
 
 @compiled
 def enter(i, grid, layers):
     """Enter a disc into its layer and all coarser ones."""
     heads, after, before = grid.heads, grid.after, grid.before
+    mask, row = heads.shape[0] - 1, _row(grid)
+    left, bottom, right, top = grid.boxes[i]
     for k in range(grid.layer[i], layers):
-        bucket = _bucket(i, k, grid)
-        entry = (2 * k + (1 if k > grid.layer[i] else 0)) * grid.boxes.shape[0] + i
-        following = heads[bucket]
-        after[entry], before[entry] = following, NONE
-        if following != NONE:
-            before[following] = entry
-        heads[bucket] = entry
+        kind = _kind(i, k, grid)
+        first_x, first_y, last_x, last_y = _cells(left, bottom, right, top, k, grid)
+        entry = CORNERS * (kind * grid.boxes.shape[0] + i)
+        for y in range(first_y, last_y + 1):
+            for x in range(first_x, last_x + 1):
+                bucket = (x + y * row + kind * KIND) & mask
+                following = heads[bucket]
+                after[entry], before[entry] = following, NONE
+                if following != NONE:
+                    before[following] = entry
+                heads[bucket] = entry
+                entry += 1
 
 
 @compiled
 def leave(i, grid, layers):
     """Take a disc out of the grid, before its box changes."""
     heads, after, before = grid.heads, grid.after, grid.before
+    mask, row = heads.shape[0] - 1, _row(grid)
+    left, bottom, right, top = grid.boxes[i]
     for k in range(grid.layer[i], layers):
-        entry = (2 * k + (1 if k > grid.layer[i] else 0)) * grid.boxes.shape[0] + i
-        following, previous = after[entry], before[entry]
-        if following != NONE:
-            before[following] = previous
-        if previous != NONE:
-            after[previous] = following
-        else:
-            heads[_bucket(i, k, grid)] = following
+        kind = _kind(i, k, grid)
+        first_x, first_y, last_x, last_y = _cells(left, bottom, right, top, k, grid)
+        entry = CORNERS * (kind * grid.boxes.shape[0] + i)
+        for y in range(first_y, last_y + 1):
+            for x in range(first_x, last_x + 1):
+                following, previous = after[entry], before[entry]
+                if following != NONE:
+                    before[following] = previous
+                if previous != NONE:
+                    after[previous] = following
+                else:
+                    heads[(x + y * row + kind * KIND) & mask] = following
+                entry += 1
 
 
 @compiled
@@ -145,34 +171,40 @@ def neighbours(i, left, bottom, right, top, grid, layers, count):
 
     Returns how many have been found then.
     """
-    heads, mask, row = grid.heads, grid.heads.shape[0] - 1, _row(grid)
+    mask, row = grid.heads.shape[0] - 1, _row(grid)
     for k in range(grid.layer[i], layers):
-        inverse = grid.inverse[k]
-        first_x, first_y = math.floor(left * inverse) - 1, math.floor(bottom * inverse) - 1
-        columns, rows = math.floor(right * inverse) - first_x + 1, math.floor(top * inverse) - first_y + 1
-        for guests in range(2 if k == grid.layer[i] and k > 0 else 1):
-            kind = 2 * k + guests
-            start = first_x + first_y * row + kind * KIND
-            for _ in range(rows):
-                for cell in range(start, start + columns):
-                    count = _look_into(heads[cell & mask], kind, i, left, bottom, right, top, count, grid)
-                start += row
+        first_x, first_y, last_x, last_y = _cells(left, bottom, right, top, k, grid)
+        for kind in range(2 * k, 2 * k + (2 if k == grid.layer[i] and k > 0 else 1)):
+            for y in range(first_y, last_y + 1):
+                for x in range(first_x, last_x + 1):
+                    entry = grid.heads[(x + y * row + kind * KIND) & mask]
+                    if entry != NONE:
+                        left_most, lowest = x == first_x, y == first_y
+                        box = left, bottom, right, top
+                        count = _look_into(entry, kind, i, box, x, y, left_most, lowest, k, count, grid)
     return count
 
 
 @compiled
-def _look_into(entry, kind, i, left, bottom, right, top, count, grid):
+def _look_into(entry, kind, i, box, x, y, left_most, lowest, k, count, grid):
     """Add the discs of a bucket, from an entry on, whose boxes overlap a part of that of i.
 
-    Which do is hard to predict for a processor: it is counted rather than branched upon.
+    Each in the cell of the left bottom corner of what overlaps. Which do is hard to predict for a processor: it is
+    counted rather than branched upon.
     """
-    boxes, found = grid.boxes, grid.found
+    boxes, found, inverse = grid.boxes, grid.found, grid.inverse[k]
+    left, bottom, right, top = box
+    first = CORNERS * kind * boxes.shape[0]
+    last = first + CORNERS * boxes.shape[0]
     while entry != NONE:
-        j = entry - kind * boxes.shape[0]
-        if 0 <= j < boxes.shape[0]:
+        if first <= entry < last:
+            j = (entry - first) // CORNERS
             found[count] = j
-            beside = (boxes[j, 0] <= right) & (left <= boxes[j, 2])
-            count += beside & (boxes[j, 1] <= top) & (bottom <= boxes[j, 3]) & (j != i)
+            near = (
+                (boxes[j, 0] <= right) & (left <= boxes[j, 2]) & (boxes[j, 1] <= top) & (bottom <= boxes[j, 3])
+            )
+            here = left_most | (math.floor(boxes[j, 0] * inverse) == x)
+            count += near & here & (lowest | (math.floor(boxes[j, 1] * inverse) == y)) & (j != i)
         entry = grid.after[entry]
     return count
 

@@ -14,6 +14,7 @@ from systems.collision.kernels.grid import (
     box_size,
     enclose,
     enter,
+    has_room,
     layer_of,
     leave,
     level_of,
@@ -21,7 +22,7 @@ from systems.collision.kernels.grid import (
     suitable_size,
 )
 from systems.collision.kernels.heap import changes, purge, push
-from systems.collision.kernels.persistent_contact import find_persistent
+from systems.collision.kernels.persistent_contact import find_persistent, is_held
 from systems.collision.kernels.time_of_impact import (
     INFINITY,
     first_approach,
@@ -36,7 +37,7 @@ from systems.collision.kernels.time_of_impact import (
 )
 
 LONGEST_HORIZON, SHORTEST_HORIZON = 2.0**20, 2.0**-200  # s
-BOX_COST = 1.25  # of renewing a disc's box, relative to that of looking at one neighbour (measured)
+BOX_COST = 0.9  # of renewing a disc's box, relative to that of looking at one neighbour (measured)
 MOST_NEIGHBOURS = 64  # per disc; with more, a shorter horizon is opened
 MOST_CORRECTIONS = 3  # of a time of impact, each of which squares its error
 LARGEST_CORRECTION = 1e-3  # of the step of persistent contact
@@ -132,16 +133,17 @@ def open_horizon(discs, grid, constraints, queue, numbers, counts):
     counts[Count.RENEW] = 1
     _choose_length(discs, numbers)
     while True:
-        area, _ = _survey(discs, numbers, numbers[Number.HORIZON])
-        resting, _ = _survey(discs, numbers, 0.0)
-        most = INFINITY if area <= 2.0 * resting else MOST_NEIGHBOURS * discs.shape[0]
+        area, _, count = _survey(discs, numbers, numbers[Number.HORIZON])
+        resting, _, _ = _survey(discs, numbers, 0.0)
+        most = INFINITY if area <= 2.0 * resting else MOST_NEIGHBOURS * count
         reason, pairs = _fill(most, discs, grid, constraints, queue, numbers, counts)
         if reason != Reason.DONE:
             return reason
         if pairs <= most:
             break
         numbers[Number.HORIZON] = max(0.25 * numbers[Number.HORIZON], SHORTEST_HORIZON)
-    numbers[Number.CROWDING] = max(pairs, 0.05 * discs.shape[0]) / area
+    if area > 0.0:
+        numbers[Number.CROWDING] = max(pairs, 0.05 * count) / area
     counts[Count.RENEW] = 0
     return Reason.DONE
 
@@ -154,12 +156,17 @@ def _fill(most, discs, grid, constraints, queue, numbers, counts):
         enclose(i, discs, grid, numbers[Number.NOW], numbers[Number.HORIZON_END])
     set_layers(grid, numbers, counts)
     layers = counts[Count.LAYERS]
-    if 2 * discs.shape[0] * layers > grid.after.shape[0]:
+    if not has_room(grid, layers):
         return Reason.GRID_FULL, 0
     grid.heads[:] = NONE
     counts[Count.QUEUED] = 0
     pairs = 0
+    for i in range(discs.shape[0]):  # two that are held have no impact
+        if is_held(i, discs):
+            enter(i, grid, layers)
     for i in range(discs.shape[0]):
+        if is_held(i, discs):
+            continue
         left, bottom, right, top = grid.boxes[i]
         near = neighbours(i, left, bottom, right, top, grid, layers, 0)
         grid.found[near] = i  # and the step of its persistent contacts
@@ -178,13 +185,15 @@ def _fill(most, discs, grid, constraints, queue, numbers, counts):
 
 @compiled
 def _survey(discs, numbers, horizon):
-    """Sums over all discs: the areas of their boxes (m²) for a length of the horizon (s), and radius × speed (m²/s).
+    """Sums over discs that may move: the areas of their boxes (m²) for a length of the horizon (s), radius × speed (m²/s).
 
-    No box counts for more than would hold half of all discs.
+    And how many there are, at least 1. No box counts for more than would hold half of all discs.
     """
     most = 0.5 * discs.shape[0] / numbers[Number.CROWDING]
-    area, sweep = 0.0, 0.0
+    area, sweep, count = 0.0, 0.0, 0
     for i in range(discs.shape[0]):
+        if is_held(i, discs):
+            continue
         s = numbers[Number.NOW] - discs[i, Disc.EPOCH]
         ax, ay = discs[i, Disc.AX], discs[i, Disc.AY]
         speed = max(abs(discs[i, Disc.VX] + s * ax), abs(discs[i, Disc.VY] + s * ay))
@@ -192,7 +201,8 @@ def _survey(discs, numbers, horizon):
         side = 2.0 * discs[i, Disc.RADIUS] + horizon * (speed + 0.5 * horizon * pull)
         area += min(side * side, most)
         sweep += min(discs[i, Disc.RADIUS] * speed, most / horizon)
-    return area, sweep
+        count += 1
+    return area, sweep, max(count, 1)
 
 
 @compiled
@@ -202,9 +212,8 @@ def _cost(discs, numbers, horizon):
     With 2 × crowding discs per area, crowding × area pairs of boxes overlap and about crowding × sweep pairs
     of discs meet per second.
     """
-    area, sweep = _survey(discs, numbers, horizon)
+    area, sweep, count = _survey(discs, numbers, horizon)
     pairs = numbers[Number.CROWDING] * area
-    count = discs.shape[0]
     impacts = 2.0 * numbers[Number.CROWDING] * sweep
     return (BOX_COST * count + pairs) / horizon + impacts * (BOX_COST + 2.0 * pairs / count)
 
@@ -284,7 +293,7 @@ def enclose_anew(i, discs, grid, numbers, counts):
 
 @compiled
 def _cell_size(grid):
-    """About the largest of the boxes, but not more than a few times the small ones.
+    """About twice the largest of the boxes, but not more than a few times the small ones (measured).
 
     Nor so small that no layer is coarse enough for the largest: every box overlaps few cells, however small others are.
     """
@@ -294,7 +303,7 @@ def _cell_size(grid):
     least = 0.0
     for i in range(grid.boxes.shape[0]):
         least = max(least, math.ldexp(suitable_size(i, grid), 1 - COARSEST))
-    return max(large if large <= 8.0 * small else 2.0 * small, least)
+    return max(2.0 * large if large <= 8.0 * small else 4.0 * small, least)
 
 
 @compiled

@@ -23,6 +23,7 @@ from systems.collision.columns import (
     Travel,
 )
 from systems.collision.kernels import compiled
+from systems.collision.kernels.pile_energy import supplies_energy
 from systems.collision.kernels.pile_pairs import (
     allow_more_shift,
     allow_shifts,
@@ -38,7 +39,6 @@ from systems.collision.kernels.pile_solver import (
     find_impulses,
     make_contacts,
     start_without_contacts,
-    supplies_energy,
 )
 from systems.collision.kernels.time_of_impact import INFINITY, displacement_at, smaller_radius, velocity_at
 
@@ -51,7 +51,7 @@ CALM_TRAVEL = 0.004  # of the smallest radius, in a step: a disc that travels le
 CALM_SPEEDS = 1.0  # of the speed that free fall gives in a step: a slower disc is calm
 LEAST_PATIENCE = 16  # calm steps before a pile first seeks its equilibrium
 LARGE_GROUP = 256  # contacts at one instant, above which weights that press on them make steps cheaper
-WORK_PER_DISC, LEAST_WORK = 1, 1000  # contacts dealt with in WORK_STEPS steps before events give way to steps
+WORK_PER_DISC, LEAST_WORK = 1, 300  # contacts dealt with in WORK_STEPS steps before events give way to steps
 WORK_STEPS = 10.0
 
 
@@ -116,10 +116,9 @@ def step(discs, grid, constraints, pile, report, numbers, counts):
         if active > SMALL_PILE:
             depth = max(depth, min(DEPTH * numbers[Number.SMALLEST], ROUGHNESS * h * fastest))
         find_impulses(active, depth / h, pile)
-        if supplies_energy(active, h, discs, pile):
-            # the forces of the step before mislead, as in a row that has come loose
-            pile.forces[: counts[Count.LISTED]] = 0.0
-        elif stays_within_reach(h, discs, pile):
+        if supplies_energy(active, h, discs, pile, numbers, counts):
+            continue
+        if stays_within_reach(h, discs, pile):
             break
     numbers[Number.STEP_END] = numbers[Number.NOW] + h
     _report_impacts(active, h, discs, pile, report, numbers, counts)

@@ -16,12 +16,13 @@ from systems.collision.columns import (
     Entry,
     Motion,
     Number,
+    Part,
     PilePair,
     Reason,
     Travel,
 )
 from systems.collision.kernels import compiled
-from systems.collision.kernels.grid import enclose, enter, neighbours, sort
+from systems.collision.kernels.grid import enclose, enter, has_room, neighbours, sort
 from systems.collision.kernels.horizon import is_joined, set_layers
 from systems.collision.kernels.persistent_contact import (
     enter_persistent,
@@ -50,7 +51,7 @@ def allow_shifts(h, discs, pile):
         pull = math.sqrt(discs[i, Disc.GX] ** 2 + discs[i, Disc.GY] ** 2)
         pile.travel[Travel.PULL, i] = pull
         pile.travel[Travel.SHIFT, i] = 2.0 * h * h * pull
-        pile.travel[Travel.FASTEST, i] = 0.0
+        pile.travel[Travel.FASTEST, i] = pile.parts[Part.LAW, i] = 0.0
 
 
 @compiled
@@ -107,7 +108,7 @@ def _list_pairs(h, discs, grid, constraints, pile, numbers, counts):
         grid.boxes[i, 3] += room
     set_layers(grid, numbers, counts)
     layers = counts[Count.LAYERS]
-    if 2 * discs.shape[0] * layers > grid.after.shape[0]:
+    if not has_room(grid, layers):
         return Reason.GRID_FULL
     grid.heads[:] = NONE
     pairs = 0

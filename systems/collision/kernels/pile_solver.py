@@ -6,7 +6,7 @@ The step is that of Moreau and Jean (Jean, Comput. Methods Appl. Mech. Eng. 177,
 
 import math
 
-from systems.collision.columns import Disc, Motion, Number, PileContact, PilePair, Travel
+from systems.collision.columns import Disc, Motion, Number, Part, PileContact, PilePair, Travel
 from systems.collision.kernels import compiled
 from systems.collision.kernels.persistent_contact import is_held
 from systems.collision.kernels.time_of_impact import rest_speed
@@ -15,8 +15,8 @@ MOST_PILE_SWEEPS = 80  # to and fro over the contacts in a step; the next contin
 FEW = 0.02  # of the contacts left to correct, at which sweeps end
 MOST_REST = 10  # times that each contact is then looked at, on average
 MOST_RELAXED = 40000  # contacts up to which the sweeps over few are more
-ENERGY_ROUND_OFF = 1e-9  # of the energy of motion
 ALL_AGAIN = 8  # turns, after which sweeps go over idle contacts too
+PLASTIC, KEPT = 1.0, 2.0  # Part.LAW: the disc does not bounce; nor is it pushed out of others
 SIDE_BY_SIDE = 4  # contacts next to each other in the order of sweeps are far apart: computed at once
 
 
@@ -25,13 +25,13 @@ def start_without_contacts(h, discs, pile):
     """Set the velocities at the end of the step without contacts."""
     for i in range(discs.shape[0]):
         for d in range(2):
-            pile.motion[Motion.SPEED, 2 * i + d] = _free(i, d, h, discs, pile)
+            pile.motion[Motion.SPEED, 2 * i + d] = without_contacts(i, d, h, discs, pile)
             pile.motion[Motion.DIRECTION, 2 * i + d] = 0.0
         pile.travel[Travel.NEAR, i] = 0.0
 
 
 @compiled
-def _free(i, d, h, discs, pile):
+def without_contacts(i, d, h, discs, pile):
     """u of a disc at the end of the step, without contacts; 0 where it is held."""
     root = pile.motion[Motion.ROOT, 2 * i + d]
     return (discs[i, Disc.VX + d] + h * discs[i, Disc.GX + d]) / root if root > 0.0 else 0.0
@@ -73,8 +73,11 @@ def _make_contact(c, k, h, discs, pile, numbers):
     if opening == 0.0:
         return
     pulled, bias = speed + h * pair[PilePair.PULL], gap / h
-    if pulled + bias < 0.0 and bounces(speed, i, j, h, discs, pile, numbers):
+    law = max(pile.parts[Part.LAW, i], pile.parts[Part.LAW, j])
+    if law == 0.0 and pulled + bias < 0.0 and bounces(speed, i, j, h, discs, pile, numbers):
         bias = min(bias, discs[j, Disc.BOUNCE] * speed)
+    elif law == KEPT:
+        bias = max(bias, 0.0)
     contacts[c, PileContact.BIAS] = bias / root
     for d in range(4):
         contacts[c, PileContact.AX + d] /= root
@@ -258,27 +261,3 @@ def _relax(c, before, pile):
     speed[a], speed[a + 1] = ux + ax * change, uy + ay * change
     speed[b], speed[b + 1] = vx + bx * change, vy + by * change
     return impulse
-
-
-@compiled
-def supplies_energy(active, h, discs, pile):
-    """True if the impulses could supply energy: they began too large, and sweeps have not corrected them.
-
-    Sweeps lessen ½ |u₁ − u₀|² + p·(N u₀ + b) with the motion u₀ without impulses; without impulses it is 0.
-    """
-    contacts, motion = pile.contacts, pile.motion
-    total, size = 0.0, 0.0
-    for i in range(discs.shape[0]):
-        for d in range(2):
-            free = _free(i, d, h, discs, pile)
-            motion[Motion.PREVIOUS, 2 * i + d] = free
-            total += 0.5 * (motion[Motion.SPEED, 2 * i + d] - free) ** 2
-            size += 0.5 * free * free
-    for c in range(active):
-        a, b = pile.ends[c, 0], pile.ends[c, 1]
-        ax, ay = contacts[c, PileContact.AX], contacts[c, PileContact.AY]
-        bx, by = contacts[c, PileContact.BX], contacts[c, PileContact.BY]
-        rate = ax * motion[Motion.PREVIOUS, 2 * a] + ay * motion[Motion.PREVIOUS, 2 * a + 1]
-        rate += bx * motion[Motion.PREVIOUS, 2 * b] + by * motion[Motion.PREVIOUS, 2 * b + 1]
-        total += contacts[c, PileContact.IMPULSE] * (rate + contacts[c, PileContact.BIAS])
-    return total > ENERGY_ROUND_OFF * size

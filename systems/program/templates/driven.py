@@ -206,12 +206,13 @@ def evaluate_controlled():
 
 
 def take_controlled():
-    """Take whole steps, or as many as it takes to Real.END."""
+    """Take whole steps, or one to Real.END: in parts, where the error asks for that, and counted once all the same."""
     end = real[Real.END]
     until = real[Real.UNTIL] if alone else (real[Real.BY] if end == math.inf else end)
     wanted = whole[Whole.WANTED] if alone else (whole[Whole.STEPS] if end == math.inf else REVIEW_INTERVAL)
     longest = limit if whole[Whole.CHOSEN] == 0 else min(limit, real[Real.HELD_LIMIT])
     ended = StopReason.DONE.value
+    before = whole[Whole.TOTAL]
     while True:
         total = whole[Whole.TOTAL]
         began = control[Control.TIME]
@@ -243,4 +244,8 @@ def take_controlled():
         goes_on = ended == StopReason.DONE or ended == StopReason.REVIEW or ended == StopReason.REST
         if alone or end == math.inf or now >= end or not goes_on:
             break
+    if not alone and end < math.inf:
+        further = max(whole[Whole.TOTAL] - before - 1, 0)
+        whole[Whole.TOTAL] -= further
+        whole[Whole.SINCE] -= further
     whole[Whole.REASON] = ended

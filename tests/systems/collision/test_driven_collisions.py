@@ -140,6 +140,19 @@ def test_how_a_run_is_divided_does_not_matter_nor_is_anything_lost_by_saving(tmp
     assert whole.energy == divided.energy
 
 
+@pytest.mark.parametrize(("integrator", "tolerance"), [("esdirk4", 1e-6), ("dop853", 1e-9)])
+def test_as_many_steps_are_taken_as_asked_for(integrator: str, tolerance: float) -> None:
+    """A step that ends at an impact is one, in however many parts the error lets it be taken."""
+    ball = {"position": [1.0, 0.7], "velocity": [0.0, 0.0]}
+    session = Session.open(truss(ball, integrator=integrator, tolerance=tolerance))
+    counts = []
+    for _ in range(300):
+        session.run(steps=1)
+        counts.append(session.model.clock.steps)
+    assert counts == list(range(1, 301))
+    assert len(session.impacts) > 10
+
+
 def test_undo_returns_the_same_bits_through_impacts_and_contact() -> None:
     session, straight = Session.open(truss({})), Session.open(truss({}))
     straight.run(steps=160)

@@ -98,8 +98,6 @@ def test_a_rod_that_cannot_be_is_refused_and_the_tool_goes_on(two: Session) -> N
     press_at(two, "l", 0.0, 0.0)
     press_at(two, "l", 0.0, 0.0)
     assert "two different particles" in two.notice
-    press_at(two, "l", 0.7, 0.9)
-    assert two.notice.startswith("A rod ends at a particle")
     press_at(two, "l", 1.5, 0.0)
     assert two.rods.count == 1
     press_at(two, "l", 1.5, 0.0)
@@ -114,13 +112,42 @@ def test_the_rod_tool_drags_from_particle_to_particle_until_it_is_put_away(two: 
     two.drag((0.0, 0.0), (1.5, 0.0))
     two.drag((1.5, 0.0), (0.0, 1.0))
     assert two.rods.count == 2
-    two.click(0.0, 1.0)
-    two.click(0.0, 0.0)
+    two.click(0.0, 0.0)  # the chain goes on from where the last one ended
     assert two.rods.count == 3
     two.press("escape")
     two.drag((0.0, 1.0), (0.0, 1.3))
     assert two.rods.count == 3
     assert two.particles["particle 3"].position == (0.0, 1.3)
+
+
+def test_with_the_tool_in_hand_rods_follow_one_another_until_the_chain_is_ended(empty: Session) -> None:
+    """By clicks on nothing: particles are made, on the grid if near it."""
+    empty.press("g")
+    empty.act("rod", (5.0, 5.0))
+    assert empty.view.tool == "rod"
+    for x, y in ((0.0, 0.0), (0.98, 0.03), (0.5, 1.0), (0.0, 0.0)):
+        empty.click(x, y)
+    assert empty.particles.position.tolist() == [[0.0, 0.0], [1.0, 0.0], [0.5, 1.0]]
+    assert empty.model.rods.between.tolist() == [[0, 1], [1, 2], [2, 0]]
+    empty.point(0.2, 0.4)
+    assert preview(empty).start == (0.0, 0.0)
+    empty.press("double click", empty.point(0.0, 0.0))
+    assert (empty.gesture, empty.view.tool) == (None, "rod")
+    empty.click(2.0, 0.0)
+    empty.click(2.0, 1.0)
+    assert empty.rods.count == 4
+    empty.press("right click")
+    assert (empty.gesture, empty.view.tool, empty.view.menu) == (None, "", None)
+    empty.press("ctrl+z")  # the last rod with the two particles that it brought
+    assert (empty.particles.count, empty.rods.count) == (3, 3)
+
+
+def test_a_drag_over_nothing_with_the_rod_tool_makes_both_ends(empty: Session) -> None:
+    empty.act("rod", (5.0, 5.0))
+    empty.drag((0.0, 0.0), (1.0, 1.0))
+    assert (empty.particles.count, empty.rods.count) == (2, 1)
+    empty.press("escape")  # of the rod that would follow, and of the tool
+    assert (empty.gesture, empty.view.tool) == (None, "")
 
 
 def test_a_drag_with_l_held_makes_a_rod(two: Session) -> None:

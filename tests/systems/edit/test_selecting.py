@@ -66,6 +66,8 @@ def test_delete_removes_the_selected_with_what_depends_on_it_and_undo_brings_it_
 def test_delete_of_a_shown_grid(empty: Session) -> None:
     empty.press("g")
     empty.click(0.2, 0.5)
+    assert empty.selected == []
+    empty.click(0.2, 0.5, "ctrl+click")
     empty.press("delete")
     assert empty.model.grids.count == 0
 
@@ -149,3 +151,25 @@ def test_arrows_nudge_the_selection_by_a_pixel_and_with_shift_by_the_grid(triang
         triangle.press("ctrl+z")
     assert triangle.particles["B"].position == (1.0, 1.0)
     assert not triangle.history.can_undo
+
+
+def test_arrows_go_through_time_once_there_is_a_run_and_ctrl_moves(triangle: Session) -> None:
+    triangle.run(steps=10)
+    triangle.select(triangle.particles["B"])
+    triangle.press("right")
+    assert (triangle.model.clock.steps, triangle.particles["B"].position) == (11, (1.0, 1.0))
+    triangle.press("left")
+    triangle.press("shift+right")
+    assert triangle.model.clock.steps > 11
+    triangle.press("up")
+    assert "Ctrl with an arrow moves" in triangle.notice
+    triangle.press("ctrl+up")
+    assert triangle.particles["B"].position == (1.0, 1.01)
+    triangle.press("ctrl+shift+left")
+    assert triangle.particles["B"].position == (0.5, 1.01)
+    triangle.press("r")
+    triangle.press("right")
+    assert (triangle.model.clock.steps, triangle.particles["B"].position) == (0, (0.51, 1.01))
+    triangle.select()
+    triangle.press("ctrl+right")
+    assert triangle.notice.startswith("Nothing is selected")

@@ -7,7 +7,7 @@ import numpy as np
 from components.snapshot import Snapshot
 from game import Session
 from game.editor.actions import ACTIONS
-from systems.input.bindings import BINDINGS, EVERY, action_for, help_lines
+from systems.input.bindings import BINDINGS, EVERY, MENU, WITHOUT_KEY, action_for, help_lines
 from tests.systems.edit.hand import FRAME, assert_same_state, opened, press_at
 
 
@@ -40,12 +40,13 @@ def test_every_binding_leads_to_an_action_and_no_key_to_two() -> None:
     for binding in BINDINGS:
         assert binding.action in ACTIONS, binding
         for scene in binding.scenes:
-            assert scene in EVERY
+            assert scene in (*EVERY, MENU)
             assert (scene, binding.key) not in seen, binding
             seen.add((scene, binding.key))
             assert action_for(scene, binding.key) == binding.action
             if binding.title:
                 assert (binding.key, binding.title) in help_lines(scene)
+    assert {binding.action for binding in WITHOUT_KEY} <= set(ACTIONS)
 
 
 def test_another_action_ends_a_drag_but_a_look_does_not(triangle: Session) -> None:

@@ -163,17 +163,76 @@ def test_a_number_takes_what_can_become_a_number(session: Session, typed: str, t
     assert session.boxes["stiffness"] == text
 
 
-def test_return_accepts_and_deselects_and_leaving_applies(session: Session) -> None:
+def test_return_accepts_and_deselects_and_the_value_acts_at_once(session: Session) -> None:
     scene = open_of(session, "AB")
     session.click_box("stiffness")
     session.type("200000")
     assert scene.form.selected is box_of(session, "stiffness")
+    assert session.rods["AB"].stiffness == 164640.0, "not while it is typed"
     session.press("return")
     assert scene.form.selected is None
-    assert session.rods["AB"].stiffness == 164640.0, "not before leaving"
+    assert session.rods["AB"].stiffness == 200000.0
     session.press("escape")
     assert session.scene == "pause"
     assert session.rods["AB"].stiffness == 200000.0
+
+
+@pytest.mark.parametrize("accept", ["return", "tab", "shift+tab", "down"])
+def test_every_way_to_accept_a_box_applies_it(session: Session, accept: str) -> None:
+    open_of(session, "B")
+    session.click_box("applied force x")
+    session.type("7")
+    session.press(accept)
+    assert session.particles["B"].force == (7.0, -160.0)
+
+
+def test_a_click_into_another_box_or_beside_applies_the_first(session: Session) -> None:
+    session.resize(1000, 720)
+    open_of(session, "B")
+    session.click_box("applied force x")
+    session.type("7")
+    place = layout_of(session).place_of(box_of(session, "radius"))
+    assert place is not None
+    session.press("click", (place.left + 3, place.top + 3))
+    assert session.particles["B"].force == (7.0, -160.0)
+    session.type("9")
+    session.press("click", (place.left + 3, place.top - 60))
+    assert session.particles["B"].radius == 0.09
+
+
+def test_a_switch_acts_at_the_click_and_escape_turns_it_back(session: Session) -> None:
+    session.resize(1000, 720)
+    open_of(session, "B")
+    place = layout_of(session).place_of(box_of(session, "constrained x"))
+    assert place is not None
+    session.press("click", (place.left + 3, place.top + 3))
+    assert session.particles["B"].fixed == (True, False)
+    session.press("escape")
+    assert session.particles["B"].fixed == (False, False)
+    assert session.scene == "properties"
+
+
+def test_boxes_follow_what_others_change(session: Session) -> None:
+    scene = open_of(session, "AB")
+    before = session.boxes["rest length"]
+    session.press("escape")
+    open_of(session, "B")
+    mass = session.boxes["mass"]
+    entered(session, "original position x", "150")
+    assert session.boxes["mass"] != mass, "half of the mass of longer rods"
+    session.press("escape")
+    assert open_of(session, "AB") is scene
+    assert session.boxes["rest length"] != before
+    entered(session, "name", "strut")
+    assert scene.form.heading.text == "rod strut"
+
+
+def test_a_load_with_another_history_has_its_boxes_at_once() -> None:
+    session = ramped()
+    open_of(session, "B")
+    assert "history duration" in session.boxes
+    entered(session, "history", "constant")
+    assert "history duration" not in session.boxes
 
 
 def test_escape_restores_what_the_box_held(session: Session) -> None:
@@ -241,7 +300,8 @@ def test_a_mass_can_be_given_back_to_the_rods(session: Session) -> None:
     session.particles["B"].mass = 2.0
     open_of(session, "B")
     assert session.boxes["mass"] == "2"
-    assert entered(session, "mass", "a").text == "automatic"
+    assert entered(session, "mass", "a").note == "automatic"
+    assert float(session.boxes["mass"]) == pytest.approx(lumped, rel=1e-8)
     session.press("escape")
     assert session.particles["B"].mass == lumped
 
@@ -550,13 +610,28 @@ def test_tab_scrolls_to_the_box_and_a_click_there_selects_it(session: Session, s
 def test_the_window_keeps_its_size_and_the_model_is_seen_beside(session: Session) -> None:
     session.view.camera.viewport = Viewport(0, 0, 1000, 720)
     open_of(session, "B")
-    (_, beside), (_, form) = session.stages
-    widths = beside.camera.viewport.width, form.camera.viewport.width
-    assert sum(widths) == 1000
+    (_, beside), (_, form), _ = session.stages
+    assert form.aside is not None
+    assert session.view.strip.width + beside.canvas.width + form.aside.width == 1000
     assert session.view.camera.viewport == Viewport(0, 0, 1000, 720)
     pixels = beside.camera.to_pixels(session.particles.position)
-    assert (pixels[:, 0] >= beside.camera.viewport.left).all()
-    assert (pixels[:, 0] <= beside.camera.viewport.left + widths[0]).all()
+    assert (pixels[:, 0] >= beside.canvas.left).all()
+    assert (pixels[:, 0] <= beside.canvas.left + beside.canvas.width).all()
+
+
+def test_a_model_for_which_there_is_room_stays_in_its_place(session: Session) -> None:
+    session.resize(1920, 1080)
+    session.view.camera.scale = 200.0
+    open_of(session, "A")
+    (_, beside), *_ = session.stages
+    assert (beside.camera.scale, beside.camera.centre) == (200.0, session.view.camera.centre)
+    session.press("escape")
+    session.resize(1000, 720)
+    session.view.camera.scale = 2000.0
+    session.view.fitted = False
+    open_of(session, "A")
+    (_, beside), *_ = session.stages
+    assert beside.camera.scale == 2000.0, "a person who looks closer goes on doing so"
 
 
 def test_typing_brings_back_a_box_that_was_scrolled_away(session: Session) -> None:

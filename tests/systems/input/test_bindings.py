@@ -18,6 +18,7 @@ from systems.input.bindings import (
     BINDINGS,
     FORCE_METHOD,
     LOAD,
+    MENU,
     PAUSE,
     PROPERTIES,
     SAVE,
@@ -25,6 +26,7 @@ from systems.input.bindings import (
     Binding,
     key_named,
 )
+from systems.render.menu import menu_of
 from tests.properties.soundness import contents
 
 CASES = [(scene, binding) for binding in BINDINGS for scene in binding.scenes]
@@ -73,13 +75,27 @@ def in_scene(scene: str) -> Session:
     session.run(steps=300)
     session.select(session.particles["B"])
     session.point(*session.particles["B"].position)
-    keys = {PAUSE: "", SIMULATION: "space", PROPERTIES: "return", SAVE: "s", LOAD: "d", FORCE_METHOD: "k"}[
-        scene
-    ]
-    if keys:
-        session.press(keys)
-    assert session.scene == scene
+    keys = {SIMULATION: "space", PROPERTIES: "return", SAVE: "s", LOAD: "d", FORCE_METHOD: "k", MENU: "menu"}
+    if scene in keys:
+        session.press(keys[scene])
+    assert scene == MENU or session.scene == scene
+    assert (scene == MENU) == (session.view.menu is not None)
     return session
+
+
+def _in_wide_menu(session: Session) -> None:
+    """The menu of the canvas, which has several columns here; the second entry is chosen."""
+    session.press("escape")
+    session.press("right click", session.view.camera.middle)
+    session.press("down")
+    session.press("right")
+
+
+def _over_an_entry(session: Session) -> None:
+    layout = menu_of(session.view)
+    assert layout is not None
+    place = layout.entries[1]
+    session.view.pointer = place.left + 5.0, place.top + 5.0
 
 
 def _deselected(session: Session) -> None:
@@ -153,6 +169,9 @@ def _named(session: Session) -> None:
 
 
 PREPARED: dict[tuple[str, str], Callable[[Session], None]] = {
+    ("menu left", MENU): _in_wide_menu,
+    ("menu right", MENU): lambda session: (_in_wide_menu(session), session.press("left")),
+    ("choose entry", MENU): _over_an_entry,
     ("redo", PAUSE): _undone,
     ("redo", SIMULATION): _undone,
     ("paste", PAUSE): _copied,

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import os
 from collections.abc import Iterator
+from pathlib import Path
 from typing import Any
 
 os.environ.setdefault("SDL_VIDEODRIVER", "dummy")
@@ -75,9 +76,13 @@ def test_esc_in_a_drag_puts_back_and_what_follows_does_nothing(session: Session)
 
 
 def test_the_other_buttons_move_the_view(session: Session) -> None:
-    assert pressed(session, down(300, 500, RIGHT), motion(303, 498, (0, 0, 1)), up(303, 498, RIGHT)) == [
-        "drag middle"
-    ]
+    assert pressed(
+        session,
+        down(300, 500, RIGHT),
+        motion(303, 498, (0, 0, 1)),
+        motion(306, 496, (0, 0, 1)),
+        up(306, 496, RIGHT),
+    ) == ["drag middle"]
 
 
 def test_a_held_key_repeats_only_where_that_makes_sense(session: Session) -> None:
@@ -104,3 +109,32 @@ def test_losing_the_focus_ends_a_drag_but_makes_no_click(session: Session) -> No
     assert session.gesture is None
     pressed(session, down(x, y))
     assert pressed(session, (pygame.WINDOWFOCUSLOST, {})) == []
+
+
+def test_a_right_click_may_slip_by_4_points_else_it_moves_the_view(session: Session) -> None:
+    assert pressed(session, down(300, 500, RIGHT), up(302, 501, RIGHT)) == ["right click"]
+    slip = motion(303, 498, (0, 0, 1))
+    assert pressed(session, down(300, 500, RIGHT), slip, up(303, 498, RIGHT)) == ["right click"]
+
+
+def test_two_quick_clicks_at_a_place_are_a_double_click(
+    session: Session, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    now = [0.0]
+    monkeypatch.setattr("systems.input.pygame_input.time.monotonic", lambda: now[0])
+    click = down(300, 500), up(300, 500)
+    assert pressed(session, *click, *click, *click) == ["click", "double click", "click"]
+    now[0] = 1.0
+    assert pressed(session, *click) == ["click"]
+    assert pressed(session, down(340, 500), up(340, 500)) == ["click"]  # elsewhere
+    now[0] = 2.0
+    assert pressed(session, down(340, 500), up(340, 500)) == ["click"]
+
+
+def test_files_dropped_together_are_opened_together(session: Session, tmp_path: Path) -> None:
+    for name in ("one", "two"):
+        session.save(tmp_path / f"{name}.json")
+    dropped = [(pygame.DROPFILE, {"file": str(tmp_path / f"{name}.json")}) for name in ("one", "two")]
+    pressed(session, *dropped)
+    assert session.notice == "Opened one and two; Ctrl+Z goes back."
+    assert session.file.name == "two"

@@ -10,15 +10,25 @@ from components.model import Model
 from components.particle import Particle
 from components.tags import DiagramShown
 from components.view import Status
-from systems.render.arrows import LENGTH, MOST
-from systems.render.marks import Fills
-from tests.systems.render.pictures import LIGHT, marks_of, picture_of, triangle
+from game.session import Session
+from systems.render.arrows import LONGEST, MOST, SHORTEST
+from systems.render.marks import Fills, Strokes
+from systems.render.picture import compose
+from tests.systems.render.pictures import LIGHT, fill, marks_of, picture_of, triangle, view_of
 
 
-def tips(model: Model, colour: tuple[int, ...] = LIGHT.force, **options: object) -> np.ndarray:
+def tips(model: Model, colour: tuple[int, ...] = LIGHT.load, **options: object) -> np.ndarray:
     """Where arrows of one colour end, in pixels."""
     heads = [mark.corners[:, 0] for mark in marks_of(picture_of(model, **options), Fills, colour)]
     return np.concatenate(heads) if heads else np.zeros((0, 2))
+
+
+def reaches(model: Model, colour: tuple[int, ...] = LIGHT.load, **options: object) -> list[float]:
+    """How long arrows of one colour are, in pixels."""
+    picture = picture_of(model, **options)
+    heads = [mark.corners[:, 0] for mark in marks_of(picture, Fills, colour)]
+    shafts = [mark.start for mark in marks_of(picture, Strokes, colour) if mark.width == 2.0]
+    return np.hypot(*(np.concatenate(heads) - np.concatenate(shafts)).T).tolist() if heads else []
 
 
 def test_a_force_is_seen_without_its_diagram_and_only_then() -> None:
@@ -26,10 +36,10 @@ def test_a_force_is_seen_without_its_diagram_and_only_then() -> None:
     assert len(tips(model)) == 0
     model.particles["B"].force = (120.0, -160.0)
     assert len(tips(model)) == 1
-    assert "load" in picture_of(model).texts
-    assert len(tips(model, all_diagrams=True)) == 0
+    assert "load (kN)" in picture_of(model).texts
+    assert len(tips(model, all_diagrams=True)) == 2, "its parts"
     model.tag(model.particles["B"], DiagramShown)
-    assert len(tips(model)) == 0
+    assert len(tips(model)) == 2
 
 
 def test_a_load_pushes_from_outside_where_rods_are_on_the_other_side() -> None:
@@ -38,7 +48,66 @@ def test_a_load_pushes_from_outside_where_rods_are_on_the_other_side() -> None:
     (down,) = tips(model)
     load.force = (0.0, 10.0)
     (up,) = tips(model)
-    assert up == pytest.approx(down - [0.0, LENGTH]), "both are above B, whose rods are below"
+    [length] = reaches(model)
+    assert up == pytest.approx(down - [0.0, length]), "both are above B, whose rods are below"
+
+
+def test_arrows_grow_with_their_loads_and_all_can_be_seen() -> None:
+    model = Model()
+    forces = [(0.0, -10.0), (6.0, 8.0), (0.0, -5.0), (0.0, -1e-3)]
+    model.create(Particle, 4, position=[(i, 0.0) for i in range(4)], force=forces)
+    whole, slanted, half, tiny = reaches(model)
+    assert whole == pytest.approx(LONGEST), "10 is a step of the scale"
+    assert (slanted, half, tiny) == pytest.approx((whole, 0.5 * whole, SHORTEST))
+
+
+def test_loads_and_reactions_differ_in_colour_and_name_and_share_a_scale() -> None:
+    model = triangle()
+    fill(model, "particles.applied_force", [(0, -10), (20, 0), (0, 0)])
+    fill(model, "particles.reaction", [(0, 40), (0, 0), (-20, -30)])
+    texts = picture_of(model, all_diagrams=True).texts
+    assert {"load (kN)", "reaction (kN)"} <= set(texts)
+    loads, reactions = (reaches(model, colour, all_diagrams=True) for colour in (LIGHT.load, LIGHT.reaction))
+    assert len(loads) == 2
+    assert len(reactions) == 3
+    assert max(loads) == pytest.approx(0.5 * max(reactions))
+    assert sorted(reactions)[0] == pytest.approx(max(loads)), "20 kN are 20 kN"
+
+
+def test_a_load_and_a_reaction_along_one_line_stand_on_different_sides() -> None:
+    for load in (-10.0, 10.0):
+        model = triangle()
+        fill(model, "particles.applied_force", [(0, load), (0, 0), (0, 0)])
+        fill(model, "particles.reaction", [(0, 30), (0, 0), (0, 0)])
+        [at], [answer] = (tips(model, colour, all_diagrams=True) for colour in (LIGHT.load, LIGHT.reaction))
+        a = picture_place(model, "A")
+        assert (at[1] < a[1]) != (answer[1] < a[1])
+
+
+def picture_place(model: Model, name: str) -> np.ndarray:
+    """Where a particle is in the picture, in pixels."""
+    return np.asarray(view_of(model).camera.to_pixels(model.particles[name].position))
+
+
+def test_a_scale_stays_while_it_fits() -> None:
+    """A reaction that swings does not let the arrow of a steady load grow and shrink."""
+    model, placed, seen = triangle(), {}, set()
+    view = view_of(model, all_diagrams=True)
+    model.particles["B"].force = (0.0, -100.0)
+    fill(model, "particles.applied_force", [(0, 0), (0, -100), (0, 0)])
+    for swing in (250.0, 120.0, 30.0, 180.0, 0.0, 250.0):
+        fill(model, "particles.reaction", [(0, swing), (0, 0), (0, 0)])
+        [mark] = marks_of(compose(model, view, LIGHT, placed), Strokes, LIGHT.load)
+        seen.add(round(float(np.hypot(*(mark.end - mark.start).T)[0]), 6))
+    assert len(seen) == 1
+
+
+def test_pictures_beside_each_other_share_a_scale() -> None:
+    model = Model()
+    model.create(Particle, 1, force=[(0.0, -10.0)])
+    assert reaches(model, largest_force=20.0) == pytest.approx(
+        [0.5 * r for r in reaches(model, largest_force=10.0)], rel=0.1
+    )
 
 
 def test_a_force_too_small_for_squares_still_has_a_direction() -> None:
@@ -65,6 +134,34 @@ def test_velocities_are_seen_while_time_stands_still() -> None:
     assert len(tips(model, LIGHT.ink, status=Status(speed=1.0, state="running"))) == 0
     model.writable("clock.steps")[0] = 5
     assert len(tips(model, LIGHT.ink)) == 1, "nodes swing to and fro"
+
+
+def test_what_is_at_rest_has_no_velocity_though_rounding_leaves_some() -> None:
+    session = Session.open("ball_on_truss")
+    assert len(tips(session.model, LIGHT.ink)) == 0
+    session.run(time=0.3)
+    assert len(tips(session.model, LIGHT.ink)) == 1, "the ball falls"
+    session.run(until="rest")
+    assert session.particles["ball"].velocity[1] != 0.0
+    assert len(tips(session.model, LIGHT.ink)) == 0
+
+
+def test_velocities_have_a_scale_of_their_own_which_motion_that_fades_does_not_change() -> None:
+    model = Model()
+    model.create(
+        Particle,
+        2,
+        position=[(0.0, 0.0), (1.0, 0.0)],
+        velocity=[(1.0, 0.0), (0.5, 0.0)],
+        force=[(500.0, 0.0), (0.0, 0.0)],
+    )
+    fast, slow = reaches(model, LIGHT.ink)
+    assert (fast, slow) == pytest.approx((LONGEST, 0.5 * LONGEST))
+    model.writable("clock.steps")[0] = 5
+    model.writable("clock.energy_scale")[0] = 0.5 * model.particles.mass.sum()
+    model.writable("particles.velocity")[...] = [(0.5, 0.0), (1e-8, 0.0)]
+    [fading] = reaches(model, LIGHT.ink)
+    assert fading < 0.6 * LONGEST
 
 
 def test_very_many_arrows_are_left_out() -> None:

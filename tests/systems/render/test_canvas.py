@@ -54,7 +54,10 @@ def test_the_triangle_on_a_surface() -> None:
     Canvas().draw(surface, compose(model, view, LIGHT))
     pixels = view.camera.to_pixels
     assert colour_at(surface, pixels((0.5, 0.5))) == LIGHT.ink[:3]
-    assert colour_at(surface, pixels((1.5, 0.5))) == LIGHT.selected[:3]
+    assert colour_at(surface, pixels((1.5, 0.5))) == LIGHT.ink[:3], "a selected rod keeps its colour"
+    halo = colour_at(surface, np.add(pixels((1.5, 0.5)), [-3, 3]))
+    assert max(halo) - min(halo) < 30, "and has a halo of grey"
+    assert 120 < min(halo) < 230
     assert colour_at(surface, pixels((1.0, 1.0))) == LIGHT.hollow[:3]
     assert max(colour_at(surface, pixels((1.0, 1.0)) - [10, 0])) < 80  # the rim, from 8.25 to 10 px
     assert colour_at(surface, pixels((1.0, 0.6))) == LIGHT.background[:3]

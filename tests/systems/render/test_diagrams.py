@@ -11,9 +11,8 @@ from components.model import Model
 from components.particle import Particle
 from components.tags import DiagramShown
 from systems.render.diagrams import diagram_factor, scale_step, written
-from systems.render.marks import Bars, Stamps
+from systems.render.marks import Bars, Fills, Picture, Strokes
 from systems.render.picture import compose
-from systems.render.supports import DOWN, LEFT, RIGHT, UP
 from tests.systems.render.pictures import LIGHT, fill, marks_of, picture_of, triangle, view_of
 
 
@@ -100,35 +99,41 @@ def test_only_marked_elements_show_their_diagrams() -> None:
     assert not {"−28.34 kN", "−198.03 kN", "120.00 kN"} & set(texts)
 
 
+def arrows_of(picture: Picture, colour: tuple[int, ...]) -> list[tuple[np.ndarray, np.ndarray]]:
+    """Tails and tips of the arrows of one colour."""
+    heads = [tip for mark in marks_of(picture, Fills, colour) for tip in mark.corners[:, 0]]
+    return list(zip([tail for m in marks_of(picture, Strokes, colour) for tail in m.start], heads, strict=True))
+
+
 def test_arrows_point_along_the_force_and_meet_the_rim() -> None:
     model = Model()
     model.create(Particle, 4, position=[(0, 0), (1, 0), (2, 0), (3, 0)])
     fill(model, "particles.applied_force", [(1.0, 0), (0, 2.0), (-3.0, 0), (0, -0.00009)])
     fill(model, "particles.reaction", [(0, 0), (0, 0), (0, 0), (0.00011, 0)])
     view = view_of(model)
-    arrows = [s for s in marks_of(compose(model, view, LIGHT), Stamps) if s.symbol == "arrow"]
-    assert not arrows
+    assert not arrows_of(compose(model, view, LIGHT), LIGHT.load)
     view.all_diagrams = True
     picture = compose(model, view, LIGHT)
-    arrows = [s for s in marks_of(picture, Stamps) if s.symbol == "arrow" and s.size == 20.0]
+    found = [*arrows_of(picture, LIGHT.load), *arrows_of(picture, LIGHT.reaction)]
     pixels = view.camera.to_pixels(model.particles.position)
     radius = 0.05 * view.camera.scale
-    by_row = {int(np.argmin(np.abs(pixels[:, 0] - at[0]))): (s.turns, at) for s in arrows for at in s.at}
-    assert {row: turns for row, (turns, _) in by_row.items()} == {0: RIGHT, 1: UP, 2: LEFT, 3: RIGHT}
-    for row, (_, at) in by_row.items():
-        assert np.linalg.norm(at - pixels[row]) == pytest.approx(radius + 2.0)
+    by_row = {int(np.argmin(np.abs(pixels[:, 0] - tail[0]))): (tail, tip - tail) for tail, tip in found}
+    along = {0: (1, 0), 1: (0, -1), 2: (-1, 0), 3: (1, 0)}
+    for row, (tail, whole) in by_row.items():
+        np.testing.assert_allclose(whole / np.hypot(*whole), along[row], atol=1e-9)
+        assert np.linalg.norm(tail - pixels[row]) == pytest.approx(radius + 2.0)
+    lengths = {row: np.hypot(*whole) for row, (_, whole) in by_row.items()}
+    assert lengths[2] == pytest.approx(1.5 * lengths[1])
     assert {"1.00 kN", "2.00 kN", "3.00 kN", "0.0001 kN"} <= set(picture.texts)
-    assert all(s.ink[:3] == (0, 100, 255) for s in arrows)
 
 
 def test_a_load_on_a_crowded_side_pushes_from_the_free_one() -> None:
     """The load on top of the triangle stands above it; its head ends at the rim."""
     model = triangle()
     view = view_of(model, all_diagrams=True)
-    arrows = [s for s in marks_of(compose(model, view, LIGHT), Stamps) if s.symbol == "arrow"]
     top = view.camera.to_pixels((1.0, 1.0))
-    (down,) = [s for s in arrows if s.turns == DOWN]
-    np.testing.assert_allclose(down.at, [top - [0, 0.05 * view.camera.scale + 2.0 + 20.0]])
+    [tip] = [tip for tail, tip in arrows_of(compose(model, view, LIGHT), LIGHT.load) if tail[1] < tip[1]]
+    np.testing.assert_allclose(tip, top - [0, 0.05 * view.camera.scale + 2.0])
 
 
 @pytest.mark.parametrize(

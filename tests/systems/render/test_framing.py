@@ -79,13 +79,14 @@ def test_very_large_discs_and_symbols_cover_what_they_should() -> None:
         assert (picture[:, 44:] == INK[0]).all()
 
 
+OF = st.sampled_from([None, ("rods", np.array([3]))])
 LENGTHS = st.floats(allow_nan=False, allow_infinity=False)
 SIZES = st.floats(min_value=0.0, allow_nan=False, allow_infinity=False)
 PLACES = st.lists(LENGTHS, min_size=2, max_size=2).map(lambda place: at(*place))
 MARKS = st.one_of(
-    st.builds(Strokes, PLACES, PLACES, SIZES, st.just(INK)),
+    st.builds(Strokes, PLACES, PLACES, SIZES, st.just(INK), OF),
     st.builds(lambda *corners: Fills(np.stack(corners, axis=1), INK), PLACES, PLACES, PLACES),
-    st.builds(Bars, PLACES, PLACES, PLACES, st.just(INK)),
+    st.builds(Bars, PLACES, PLACES, PLACES, st.just(INK), OF),
     st.builds(
         Stamps,
         st.sampled_from([*SYMBOLS, "rod"]),
@@ -95,10 +96,11 @@ MARKS = st.one_of(
         st.just(INK),
         st.just(PALE),
         st.integers(),
+        OF,
     ),
     st.builds(lambda p, r, rim: Discs(p, np.array([r]), INK, PALE, rim), PLACES, SIZES, SIZES),
     st.builds(lambda *box: Rectangles(np.array([box]), INK), *[st.integers(-(2**62), 2**62)] * 4),
-    st.builds(Panel, LENGTHS, LENGTHS, SIZES, SIZES, SIZES, st.just(INK), st.sampled_from([None, PALE])),
+    st.builds(Panel, LENGTHS, LENGTHS, SIZES, SIZES, SIZES, st.just(INK), st.none(), st.just(("rods", 3))),
     st.builds(
         Text,
         st.text(),
@@ -108,6 +110,7 @@ MARKS = st.one_of(
         st.just(INK),
         weight=st.just("semibold"),
         anchor=st.sampled_from(["left", "right"]),
+        of=st.just(("rods", 3)),
     ),
 )
 
@@ -124,3 +127,20 @@ def test_polygons_that_are_not_seen_cost_little() -> None:
     began = time.process_time()
     assert not list(framed(Fills(np.full((10**6, 4, 2), 1e6), INK), VIEW, 1.0))
     assert time.process_time() - began < 5.0
+
+
+def test_what_is_cut_still_says_whose_it_is() -> None:
+    rows = np.array([4, 7, 9])
+    far = at(50, 40, 9000, 40, 60, 30)
+    marks = [
+        Strokes(far, far + 5.0, 1.0, INK, ("rods", rows)),
+        Fills(far[:, None] + at(0, 0, 5, 0, 0, 5), INK, ("rods", rows)),
+        Fills(at(50, 40, 55, 40, 50, 45)[None] + at(0, 0, 9000, 0, 70, 0)[:, None], INK, ("rods", rows)),
+        Stamps("disc", far, 5.0, 1.0, INK, INK, of=("rods", rows)),
+        Discs(far, np.array([5.0, 5.0, 900.0]), INK, INK, of=("rods", rows)),
+    ]
+    for mark in marks:
+        parts = list(framed(mark, VIEW, 1.0))
+        assert np.concatenate([part.of[1] for part in parts]).tolist() == [4, 9]
+    with pytest.raises(ValueError, match="different numbers of rows"):
+        list(framed(Strokes(far, far, 1.0, INK, ("rods", rows[:2])), VIEW, 1.0))

@@ -15,7 +15,7 @@ from components.particle import Particle
 from components.tags import Hovered, Selected
 from components.view import View, drawn_positions
 from components.world import Derivation
-from systems.render.marks import Discs, Rectangles, Stamps, Strokes
+from systems.render.marks import Bars, Discs, Fills, Panel, Rectangles, Stamps, Strokes, Text
 from systems.render.picture import compose
 from systems.render.supports import DOWN, LEFT, NO_SUPPORT, RIGHT, UP, freest_sides
 from tests.systems.render.pictures import LIGHT, fill, marks_of, picture_of, triangle, view_of
@@ -72,16 +72,17 @@ def test_selection_hovering_and_yielding_show() -> None:
     model.tag(model.rods["AB"], Hovered)
     picture = picture_of(model)
     view = view_of(model)
-    a, _, c = view.camera.to_pixels(model.particles.position)
+    a, b, c = view.camera.to_pixels(model.particles.position)
     strokes = reversed(marks_of(picture, Strokes))  # the first of each colour, since the legend comes later
     opaque = {s.colour: s for s in strokes if s.colour[3] == 255}
-    np.testing.assert_allclose(opaque[LIGHT.selected].end[0], c)  # selected wins over yielding
-    np.testing.assert_allclose(opaque[LIGHT.yielding].start[0], c)
-    (halo,) = marks_of(picture, Strokes, LIGHT.hover)
-    assert halo.colour[3] < 128
-    np.testing.assert_allclose(halo.start[0], a)
-    (ring,) = [discs for discs in marks_of(picture, Discs) if discs.rim and discs.ink == LIGHT.selected]
-    np.testing.assert_allclose(ring.at, [a])
+    np.testing.assert_allclose(opaque[LIGHT.yielding].end[0], c)  # BC, though it is selected
+    np.testing.assert_allclose(opaque[LIGHT.yielding].start[1], c)
+    halos = [*marks_of(picture, Strokes, LIGHT.hover), *marks_of(picture, Strokes, LIGHT.selected)]
+    assert all(halo.colour[3] < 128 and halo.width > 3 * opaque[LIGHT.ink].width for halo in halos)
+    np.testing.assert_allclose([halo.start[0] for halo in halos], [a, b])
+    (glow,) = [discs for discs in marks_of(picture, Discs) if discs.ink[:3] == LIGHT.selected[:3]]
+    np.testing.assert_allclose(glow.at, [a])
+    assert {discs.ink for discs in marks_of(picture, Discs) if discs.rim} == {LIGHT.ink}
 
 
 def test_cables_are_thin_and_slack_ones_dashed() -> None:
@@ -192,3 +193,25 @@ def test_discs_of_any_size_are_drawn_by_few_lines(radius: float) -> None:
         assert len(points)
         edge = view.camera.to_pixels((0.0, 0.0))
         np.testing.assert_allclose(points[:, 0], edge[0], atol=5.0)
+
+
+def test_every_mark_of_an_element_says_whose_it_is() -> None:
+    model = triangle()
+    model.tag(model.rods["AB"], Selected)
+    fill(model, "particles.displacement", [(0, 0), (0.5, 0), (0, 0)])
+    picture = picture_of(model, all_diagrams=True, legend=False)
+    marks = [mark for mark in picture.marks if not isinstance(mark, Rectangles) and mark.of]
+    places = {Strokes: "start", Bars: "start", Stamps: "at", Discs: "at", Fills: "corners"}
+    for mark in marks:
+        if isinstance(mark, Panel | Text):
+            continue
+        assert len(mark.of[1]) == len(getattr(mark, places[type(mark)]))
+    said = {(mark.text, *mark.of) for mark in marks if isinstance(mark, Text)}
+    assert {
+        ("−28.34 kN", "rods", 0),
+        ("BC", "rods", 1),
+        ("C", "particles", 2),
+        ("20.01 kN", "particles", 0),
+    } <= said
+    anonymous = [mark for mark in picture.marks if getattr(mark, "of", None) is None]
+    assert not [mark for mark in anonymous if isinstance(mark, Bars | Stamps | Discs)]

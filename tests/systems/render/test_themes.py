@@ -18,20 +18,19 @@ def test_themes_load_and_the_default_is_the_thesis() -> None:
     assert len({load_theme(name).title for name in theme_names()}) == 4
     assert LIGHT.background[:3] == (255, 255, 255)
     assert LIGHT.yielding[:3] == (255, 0, 255)
-    assert LIGHT.force[:3] == (0, 100, 255)
 
 
 def test_wrong_themes_are_refused_by_name() -> None:
     entries = {"title": "T"} | dict.fromkeys(LIGHT.__dataclass_fields__, "#102030") | {"title": "T"}
-    assert theme_from(entries, "theme t").force == (16, 32, 48, 255)
+    assert theme_from(entries, "theme t").load == (16, 32, 48, 255)
     with pytest.raises(ValueError, match="no theme 'pink'; choose one of"):
         load_theme("pink")
-    with pytest.raises(ValueError, match="theme t lacks the colour 'force'"):
-        theme_from({k: v for k, v in entries.items() if k != "force"}, "theme t")
+    with pytest.raises(ValueError, match="theme t lacks the colour 'load'"):
+        theme_from({k: v for k, v in entries.items() if k != "load"}, "theme t")
     with pytest.raises(ValueError, match="theme t has an unknown colour 'glow'"):
         theme_from(entries | {"glow": "#000000"}, "theme t")
-    with pytest.raises(ValueError, match="theme t, force: 'blue' is no colour"):
-        theme_from(entries | {"force": "blue"}, "theme t")
+    with pytest.raises(ValueError, match="theme t, load: 'blue' is no colour"):
+        theme_from(entries | {"load": "blue"}, "theme t")
 
 
 # Linear RGB as people without red, green or blue cones see it: Machado, Oliveira, Fernandes (2009), severity 1.
@@ -53,6 +52,7 @@ VISIONS = {
         [0.004733, 0.691367, 0.303900],
     ],
 }
+CURVES = ("curve_1", "curve_2", "curve_3", "curve_4")
 XYZ = np.array([[0.4124, 0.3576, 0.1805], [0.2126, 0.7152, 0.0722], [0.0193, 0.1192, 0.9505]])
 
 
@@ -71,7 +71,39 @@ def test_colour_blind_themes_tell_meanings_apart(name: str, vision: str) -> None
     """A difference of 25 in L*a*b* is ten times what is just noticeable."""
     theme = load_theme(name)
     colours = {
-        key: getattr(theme, key) for key in ("tension", "compression", "yielding", "selected", "force", "ink")
+        key: getattr(theme, key) for key in ("tension", "compression", "yielding", "load", "reaction", "ink")
     }
     for (a, first), (b, second) in itertools.combinations(colours.items(), 2):
         assert np.linalg.norm(lab(first, VISIONS[vision]) - lab(second, VISIONS[vision])) > 25, (a, b)
+
+
+@pytest.mark.parametrize("name", theme_names())
+def test_red_and_blue_mean_forces_and_nothing_else(name: str) -> None:
+    """Every other colour among elements, plots and messages keeps away from both; halos are neutral."""
+    theme = load_theme(name)
+    others = ("ink", "selected", "hover", "sketch", "load", "reaction", "problem", *CURVES)
+    for meaning in ("tension", "compression"):
+        for other in others:
+            apart = np.linalg.norm(
+                lab(getattr(theme, meaning), np.eye(3)) - lab(getattr(theme, other), np.eye(3))
+            )
+            assert apart > 30, (meaning, other)
+    for halo in (theme.selected, theme.hover):
+        assert np.hypot(*lab(halo, np.eye(3))[1:]) < 15, "a* and b* of grey are 0"
+
+
+@pytest.mark.parametrize("vision", VISIONS)
+@pytest.mark.parametrize("name", ["colour-blind", "colour-blind-dark"])
+def test_curves_are_told_apart(name: str, vision: str) -> None:
+    colours = [lab(getattr(load_theme(name), curve), VISIONS[vision]) for curve in CURVES]
+    assert all(np.linalg.norm(a - b) > 20 for a, b in itertools.combinations(colours, 2))
+
+
+@pytest.mark.parametrize("name", theme_names())
+def test_numbers_in_the_colours_of_their_arrows_can_be_read(name: str) -> None:
+    """At least 4 to 1 against the background, for numbers in semibold beside their symbols."""
+    theme = load_theme(name)
+    for meaning in ("tension", "compression", "load", "reaction", "sketch"):
+        lights = sorted(lab(getattr(theme, key), np.eye(3))[0] for key in (meaning, "background"))
+        dark, light = (((lightness + 16.0) / 116.0) ** 3 for lightness in lights)
+        assert (light + 0.05) / (dark + 0.05) > 4.0, meaning

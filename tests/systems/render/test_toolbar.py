@@ -9,7 +9,7 @@ from components.toolbar import Button, Tool
 from components.view import drawn_positions
 from game import Session
 from game.editor.actions import ACTIONS
-from systems.input.bindings import ADDED_TOOLS, BINDINGS, TOOLBAR
+from systems.input.bindings import ADDED_BUTTONS, ADDED_TOOLS, BINDINGS, TOOLBAR
 from systems.render.icons import ADDED, icon, icons
 from systems.render.marks import Stamps
 from systems.render.picture import compose
@@ -51,7 +51,8 @@ def test_every_tool_is_an_action_with_a_key_and_an_icon() -> None:
         assert action in ACTIONS
         assert icon(action)
         assert any(binding.action == action and binding.title for binding in BINDINGS)
-    assert {*icons(), *ADDED} == {*offered, "pause"}
+    added = [binding.action for binding in ADDED_BUTTONS]
+    assert {*icons(), *ADDED} == {*offered, *added, "pause"}
 
 
 @pytest.mark.parametrize("size", SIZES)
@@ -164,7 +165,7 @@ def test_steps_by_the_toolbar_ignore_the_selection() -> None:
     assert session.particles["B"].position == (1.0, 1.0)
 
 
-def test_the_force_method_has_its_own_tools_and_panels_none() -> None:
+def test_the_force_method_has_its_own_tools_and_sheets_none() -> None:
     session = opened("hyperstatic")
     push(session, "force method")
     assert session.scene == "force method"
@@ -172,11 +173,24 @@ def test_the_force_method_has_its_own_tools_and_panels_none() -> None:
     assert "undo" not in buttons(session)
     push(session, "back")
     assert session.scene == "pause"
+    push(session, "load")
+    assert session.scene == "load"
+    assert not any(shown is session.view.toolbar for shown, _ in session.stages)
+
+
+def test_tools_beside_properties_leave_them_and_act() -> None:
+    session = opened("isostatic")
     push(session, "properties")
     assert session.scene == "properties"
-    push(session, "toggle run")  # there is no toolbar to click now
+    session.click_box("drag")
+    session.type("3")
+    push(session, "toggle run")
+    assert session.scene == "simulation"
+    assert session.environment.drag == 3.0, "what was typed counts"
+    push(session, "properties")
     assert session.scene == "properties"
-    assert not any(shown is session.view.toolbar for shown, _ in session.stages)
+    push(session, "properties")
+    assert session.scene == "simulation", "the same button closes them"
 
 
 def test_the_tip_names_the_action_and_its_key() -> None:
@@ -194,6 +208,6 @@ def test_pressed_and_unavailable_tools_look_different() -> None:
     toolbar, view = session.stages[-1]
     theme = load_theme()
     inks = {mark.symbol: mark.ink for mark in compose(toolbar, view, theme).marks if isinstance(mark, Stamps)}
-    assert inks["toggle diagrams"] == theme.hover
+    assert inks["toggle diagrams"] == theme.focus
     assert inks["place"] == theme.text
     assert inks["redo"][3] < 128

@@ -1,0 +1,98 @@
+"""Written: numbers as people read them on screen, with few digits and one unit for each kind of thing.
+
+Lengths that people set are in m, displacements in mm, forces in kN, strains in ‰, shares in %. Minus signs are real ones,
+and what is nothing but rounding is 0.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable
+
+DIGITS = 4  # significant ones of a result
+GIVEN_DIGITS = 6  # of a number that a person set, without zeros at its end
+ROUNDING = 1e-9  # of the largest of its kind: a result below is written as 0
+
+_PLAIN = range(-4, 7)  # powers of ten within which numbers are written out
+_RAISED = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
+_PREFIXES = ((1.0, ""), (1e-3, "m"), (1e-6, "µ"), (1e-9, "n"))
+
+
+def number(value: float, digits: int = DIGITS, *, nothing: float = 0.0) -> str:
+    """A result to so many significant digits: "−28.22", "1.235·10⁻⁷", and "0" if it is at most `nothing`."""
+    if not math.isfinite(value):
+        return "—" if math.isnan(value) else f"{'−' * (value < 0)}∞"
+    if abs(value) <= nothing or value == 0.0:
+        return "0"
+    mantissa, _, exponent = f"{value:.{digits - 1}e}".partition("e")
+    power = int(exponent)
+    if power in _PLAIN:
+        return f"{value:.{max(digits - 1 - power, 0)}f}".replace("-", "−")
+    return f"{mantissa}·10{str(power).translate(_RAISED)}".replace("-", "−")
+
+
+def given(value: float, digits: int = GIVEN_DIGITS) -> str:
+    """A number that a person set, or a round one, as short as it is: "0.5"."""
+    head, dot, power = number(value, digits).partition("·")
+    return (head.rstrip("0").rstrip(".") if "." in head else head) + dot + power
+
+
+def force(kilonewtons: float, *, nothing: float = 0.0) -> str:
+    """A force that was computed."""
+    return f"{number(kilonewtons, nothing=nothing)} kN"
+
+
+def displacement(metres: float, *, nothing: float = 0.0) -> str:
+    """A displacement or an elongation."""
+    return f"{number(1000.0 * metres, nothing=1000.0 * nothing)} mm"
+
+
+def length(metres: float, digits: int = GIVEN_DIGITS) -> str:
+    """A length that a person set."""
+    return f"{given(metres, digits)} m"
+
+
+def scale_length(metres: float) -> str:
+    """A round length beside a ruler: in mm where m would begin with zeros."""
+    return length(metres) if metres >= 0.0099 else f"{given(1000.0 * metres)} mm"
+
+
+def place(metres: Iterable[float], digits: int = GIVEN_DIGITS) -> str:
+    """A point of the plane."""
+    return f"{vector(metres, digits)} m"
+
+
+def vector(values: Iterable[float], digits: int = GIVEN_DIGITS) -> str:
+    """The two parts of what a person set: "(120, −160)"."""
+    return f"({', '.join(given(value, digits) for value in values)})"
+
+
+def strain(value: float, *, nothing: float = 0.0) -> str:
+    """Elongation per length."""
+    return f"{number(1000.0 * value, nothing=1000.0 * nothing)} ‰"
+
+
+def share(value: float, digits: int = 3) -> str:
+    """A part of a whole."""
+    return f"{number(100.0 * value, digits)} %"
+
+
+def time(seconds: float, digits: int = DIGITS) -> str:
+    """A time with an SI prefix, such as "1.234 ms"; above 1000 s plain seconds."""
+    if seconds == 0.0:
+        return "0 s"
+    rounded = float(f"{seconds:.{digits - 1}e}")
+    factor, prefix = next((f, p) for f, p in _PREFIXES if abs(rounded) >= 0.1 * f or f == 1e-9)
+    decimals = max(digits - 1 - math.floor(math.log10(abs(rounded) / factor) + 1e-9), 0)
+    return f"{seconds / factor:.{decimals}f} {prefix}s".replace("-", "−")
+
+
+def pace(speed: float) -> str:
+    """How fast the simulation is shown, such as "1 s shown = 0.35 ms simulated"; "" when halted."""
+    if speed == 0.0:
+        return ""
+    if abs(speed - 1.0) < 0.005:
+        return "real time"
+    shown, unit = time(speed, 3).split(" ")
+    shown = shown.rstrip("0").rstrip(".") if "." in shown else shown
+    return f"1 s shown = {shown} {unit} simulated"

@@ -1,0 +1,128 @@
+"""Actions of menus and of the mouse alone: opening a menu, going through it, and what it offers that no key does."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+from components.field import Vector
+from components.particle import Particle
+from components.rod import Rod
+from game.editor.actions.editing import all_of
+from game.editor.context import ACTIONS, Action, Context, action
+from game.editor.gestures.drawing import Drawing
+from game.editor.menu import menu_at
+from game.editor.scenes.force_method import ForceMethod
+from systems.edit import Refusal
+from systems.edit.picking import pick, pick_line, pick_particle
+from systems.edit.supports import support
+from systems.input.bindings import LIVE
+from systems.render.menu import menu_of
+
+
+@action("open menu", while_drawing=True)
+def _open_menu(context: Context, pixel: Vector) -> None:
+    """The menu of what is under the pointer, which is selected; a drawing, or a tool in hand, is ended instead."""
+    if context.cancel_gesture():
+        return
+    if context.scene in LIVE:
+        model, view = context.model, context.view
+        hit = pick_particle(model, view, pixel) or pick_line(model, view, pixel)
+        if hit is None:
+            context.select()
+        elif hit not in context.selected:
+            context.select(hit)
+    context.view.menu = menu_at(context, pixel)
+
+
+def _to_entry(way: str) -> Action:
+    """An arrow key in an open menu."""
+
+    def act(context: Context, pixel: Vector) -> None:
+        layout = menu_of(context.view)
+        if layout is None:
+            return
+        here, count = layout.pointed_at(context.view.pointer), len(layout.entries)
+        if way in ("up", "down"):
+            chosen = (here + 1) % count if way == "down" else (max(here, 0) - 1) % count
+        else:
+            chosen = layout.beside(here, 1 if way == "right" else -1)
+        context.view.menu = replace(layout.menu, chosen=chosen, pointed=context.view.pointer)
+
+    return act
+
+
+for _way in ("up", "down", "left", "right"):
+    action(f"menu {_way}", while_drawing=True)(_to_entry(_way))
+
+
+@action("close menu", while_drawing=True)
+def _close_menu(context: Context, pixel: Vector) -> None:
+    context.view.menu = None
+
+
+@action("choose entry", while_drawing=True)
+def _choose_nothing(context: Context, pixel: Vector) -> None:
+    """A press on the menu that hits no entry; one that does performs the action of the entry."""
+
+
+@action("open", while_drawing=True)
+def _open(context: Context, pixel: Vector) -> None:
+    """A double click: the properties of what it hits; it ends a chain of rods, and with a tool is another click."""
+    if isinstance(context.gesture, Drawing) and context.gesture.goes_on:
+        context.gesture = None
+    elif isinstance(context.gesture, Drawing) or context.view.tool:
+        ACTIONS["select"](context, pixel)
+    elif (hit := pick(context.model, context.view, pixel)) is not None:
+        if hit not in context.selected:
+            context.select(hit)
+        ACTIONS["properties"](context, pixel)
+
+
+@action("environment")
+def _environment(context: Context, pixel: Vector) -> None:
+    context.select()
+    ACTIONS["properties"](context, pixel)
+
+
+def _hold(fixed: tuple[bool, bool]) -> Action:
+    """Give all selected particles a support."""
+
+    def act(context: Context, pixel: Vector) -> None:
+        particles = context.selected_of(Particle)
+        if not particles:
+            raise Refusal("No particle is selected; click one first.")
+        context.notice = f"{all_of(context, particles)}: {support(context.model, particles, fixed)}"
+
+    return act
+
+
+for _name, _fixed in {
+    "free": (False, False),
+    "pin": (True, True),
+    "hold y": (False, True),
+    "hold x": (True, False),
+}.items():
+    action(_name)(_hold(_fixed))
+
+
+@action("toggle cable")
+def _toggle_cable(context: Context, pixel: Vector) -> None:
+    """Let the selected rods bear tension only, or if all do so, compression as well."""
+    rods = context.selected_of(Rod)
+    if not rods:
+        raise Refusal("No rod is selected; click one first.")
+    cable = not all(rod.tension_only for rod in rods)
+    context.model.assign(rods, "tension_only", cable)
+    named = context.name(rods[0]) if len(rods) == 1 else f"{len(rods)} rods"
+    context.notice = f"{named}: {'tension only, as a cable' if cable else 'tension and compression'}"
+
+
+@action("release")
+def _release(context: Context, pixel: Vector) -> None:
+    """Begin the force method with the selected rod as the static unknown."""
+    rods, scene = context.selected_of(Rod), context.scenes["force method"]
+    if len(rods) != 1:
+        raise Refusal("Select one rod, which is to be released.")
+    assert isinstance(scene, ForceMethod)
+    scene.first_unknown = rods[0].name
+    context.scenes.request("force method")

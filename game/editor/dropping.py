@@ -1,0 +1,31 @@
+"""Dropping: opening the files that a person drops on the window."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+from game.documents import models
+from game.documents.document import ModelError
+from game.documents.open_documents import file_of
+from game.editor.context import Context
+from game.scripts.script import Script
+
+MODEL, SCRIPT = ".json", ".jsonl"
+
+
+def open_dropped(context: Context, path: Path) -> None:
+    """Open a model file, or play a recorded session. Raises ModelError or ScriptError; then nothing has changed.
+
+    The document in use stays open unless it is empty.
+    """
+    if path.is_dir():
+        raise ModelError(f"'{path.name}' is a folder; drop the model files in it.")
+    if path.suffix.lower() not in (MODEL, SCRIPT):
+        raise ModelError(
+            f"'{path.name}' is no model: Pinjoint opens model files ({MODEL}) and recorded sessions ({SCRIPT})."
+        )
+    script = Script(path) if path.suffix.lower() == SCRIPT else None
+    model = models.load(path if script is None else script.source)
+    keep = context.model.particles.count > 0
+    context.adopt(model, file_of(path if script is None else script.source), keep=keep)
+    context.lesson = script or context.lesson

@@ -1,0 +1,114 @@
+"""Routing: which action a key or a button means, and where; what lies on top takes clicks before the scene does."""
+
+from __future__ import annotations
+
+from components.field import Vector
+from components.slider import under
+from game.editor.context import Context
+from game.editor.view_model import pages_of_help
+from systems.input.bindings import FORMS, LIVE, MENU, action_for
+from systems.render.help import help_closed_by
+from systems.render.menu import menu_of
+from systems.render.picture import lies_under
+from systems.render.theme import load_theme
+
+CLICKS = (
+    "click",
+    "ctrl+click",
+    "double click",
+    "drag",
+    "ctrl+drag",
+)  # the pointer may slip a little in a click
+BUTTONS = (*CLICKS, "right click")
+AT_POINTER = (*BUTTONS, "wheel up", "wheel down")
+ON_SLIDER = {
+    **dict.fromkeys(("click", "ctrl+click"), "click slider"),
+    "double click": "double click slider",
+    **dict.fromkeys(("drag", "ctrl+drag"), "drag slider"),
+    "wheel up": "slider up",
+    "wheel down": "slider down",
+}
+
+# The scene, whether a menu, the help, or the toolbar takes clicks, and the title of the slider that does.
+Layer = tuple[str, bool, bool, bool, str]
+Meaning = tuple[str | None, Vector]  # the name of an action, if any, and the pixel where it acts
+
+
+def meaning(context: Context, key: str, pixel: Vector) -> Meaning:
+    """What a key or button means with the pointer at a pixel: to an open menu, the help, the toolbar, a slider, or the scene."""
+    view = context.view
+    if view.menu is not None and (found := _in_menu(context, key, pixel)) is not None:
+        return found
+    if view.help and (key == "escape" or key in AT_POINTER):
+        return _on_help(context, key, pixel), pixel
+    if for_tools(context, key, pixel):
+        on_toolbar = view.strip.contains(pixel)
+        return _on_toolbar(context, key, pixel) if on_toolbar else action_for(LIVE[0], key), pixel
+    if key in AT_POINTER and context.scene in LIVE and under(view.slider_places, pixel) is not None:
+        return ON_SLIDER.get(key), pixel
+    if key in BUTTONS and context.scene in LIVE and not context.performing:
+        if lies_under(context.model, view, load_theme(view.theme), pixel):
+            return None, pixel
+    return scene_meaning(context.scene, key), pixel
+
+
+def for_tools(context: Context, key: str, pixel: Vector) -> bool:
+    """True if a press belongs to the toolbar, or is a right click on the model beside boxes to type into.
+
+    A scene in which tools do not act is left first.
+    """
+    view, scene = context.view, context.scenes.active
+    if key not in AT_POINTER or view.menu is not None or view.help or scene.covers(context):
+        return False
+    beside = key == "right click" and context.scene in FORMS and not context.focus[1].covers(pixel)
+    return beside or view.strip.contains(pixel)
+
+
+def layer(context: Context, pixel: Vector) -> Layer:
+    """What takes a click at a pixel."""
+    view = context.view
+    slider = under(view.slider_places, pixel)
+    title = slider.control.title if slider is not None else ""
+    return context.scene, view.menu is not None, view.help > 0, view.strip.contains(pixel), title
+
+
+def scene_meaning(scene: str, key: str) -> str | None:
+    """The action of a key in a scene; where a second click means nothing special, it is another click."""
+    found = action_for(scene, key)
+    return action_for(scene, "click") if found is None and key == "double click" else found
+
+
+def _in_menu(context: Context, key: str, pixel: Vector) -> Meaning | None:
+    """What a key means to the open menu; None: it is not for the menu, which it closes."""
+    view, layout = context.view, menu_of(context.view)
+    assert layout is not None
+    if key == "return" or (key in BUTTONS and layout.frame.contains(pixel)):
+        number = layout.pointed_at(view.pointer) if key == "return" else layout.entry_at(pixel)
+        entry = layout.menu.entries[number] if number >= 0 else None
+        if entry is None or not entry.enabled:
+            return None if key == "return" else ("choose entry", pixel)
+        return entry.action, layout.menu.at
+    if key in CLICKS:
+        return "close menu", pixel
+    action = action_for(MENU, key)
+    return None if action is None else (action, pixel)
+
+
+def _on_help(context: Context, key: str, pixel: Vector) -> str | None:
+    """Clicks on the help leaf through it or close it, and go no further."""
+    if key == "escape":
+        return "close help"
+    if key not in ("click", "ctrl+click", "double click", "right click"):
+        return None
+    pages, shown = pages_of_help(context), context.view.help
+    viewport = context.scenes.active.helped(context)
+    page = pages[min(shown, len(pages)) - 1] if pages else []
+    closed = help_closed_by(page, shown < len(pages), viewport, context.view.pixel_ratio, pixel)
+    return "close help" if closed or key == "right click" else "toggle help"
+
+
+def _on_toolbar(context: Context, key: str, pixel: Vector) -> str | None:
+    view = context.view
+    buttons = view.toolbar.buttons(view.camera.viewport, view.pixel_ratio)
+    hit = (button.tool for button in buttons if button.contains(pixel))
+    return next((tool.action for tool in hit if tool.enabled and key in CLICKS), None)

@@ -1,0 +1,80 @@
+"""Numbers as people read them."""
+
+from __future__ import annotations
+
+import math
+
+import pytest
+from hypothesis import given as generated
+from hypothesis import strategies as st
+
+from components import written
+
+
+@pytest.mark.parametrize(
+    ("value", "text"),
+    [
+        (0.0, "0"),
+        (-0.0, "0"),
+        (-28.21949, "−28.22"),
+        (139.98521, "140.0"),
+        (5.0, "5.000"),
+        (0.00012346, "0.0001235"),
+        (164640.0, "164640"),
+        (9999.96, "10000"),
+        (1.2346e-7, "1.235·10⁻⁷"),
+        (-2.5e9, "−2.500·10⁹"),
+        (math.inf, "∞"),
+        (-math.inf, "−∞"),
+        (math.nan, "—"),
+    ],
+)
+def test_results(value: float, text: str) -> None:
+    assert written.number(value) == text
+
+
+def test_what_is_rounding_only_is_nothing() -> None:
+    assert written.force(3.1e-14, nothing=1e-9) == "0 kN"
+    assert written.displacement(-2e-16, nothing=1e-12) == "0 mm"
+    assert written.strain(1.2e-4) == "0.1200 ‰"
+    assert written.displacement(-0.0012346) == "−1.235 mm"
+
+
+def test_what_a_person_set_is_as_short_as_it_is() -> None:
+    assert [written.length(x) for x in (0.5, 2.0, 0.1 + 0.2, 1e-9)] == ["0.5 m", "2 m", "0.3 m", "1·10⁻⁹ m"]
+    assert written.vector((120.0, -160.5)) == "(120, −160.5)"
+    assert written.place((0.0, 1e3)) == "(0, 1000) m"
+    assert written.given(100.0) == "100"
+    assert written.share(0.875) == "87.5 %"
+
+
+@generated(st.floats(-1e300, 1e300), st.integers(1, 8))
+def test_a_number_that_is_read_back_is_near(value: float, digits: int) -> None:
+    text = written.number(value, digits).replace("−", "-")
+    head, _, power = text.partition("·10")
+    exponent = int(power.translate(str.maketrans("⁻⁰¹²³⁴⁵⁶⁷⁸⁹", "-0123456789")) or 0)
+    read = float(f"{head}e{exponent}")
+    assert math.isclose(read, value, rel_tol=0.51 * 10.0 ** (1 - digits)) or abs(value) < 1e-300
+
+
+@pytest.mark.parametrize(
+    ("seconds", "text"),
+    [
+        (0.0, "0 s"),
+        (1.234e-3, "1.234 ms"),
+        (0.5, "0.5000 s"),
+        (12.3456, "12.35 s"),
+        (3.5e-8, "35.00 ns"),
+        (12345.6, "12346 s"),
+        (0.0009999999, "1.000 ms"),
+    ],
+)
+def test_times(seconds: float, text: str) -> None:
+    assert written.time(seconds) == text
+
+
+def test_the_pace_and_rulers() -> None:
+    assert written.pace(0.0) == ""
+    assert written.pace(1.0) == "real time"
+    assert written.pace(20.0) == "1 s shown = 20 s simulated"
+    assert [written.scale_length(x) for x in (0.5, 2.0, 0.005, 1000.0)] == ["0.5 m", "2 m", "5 mm", "1000 m"]
