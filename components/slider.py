@@ -7,13 +7,14 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any, ClassVar
 
-from components.camera import Rectangle, Viewport
+from components.camera import LEAST_MARGIN, Rectangle, Viewport
 from components.field import Role
 from components.handle import Handle
 from components.round_numbers import round_down
 
 WIDTH, HEIGHT, GAP, EDGE = 226.0, 36.0, 4.0, 8.0  # points, of a slider, between and around them
 PAD, BUTTON = 10.0, 30.0  # points: beside the track, and the width of the button at its right
+SUPPORT, ARROW, NARROW = 30.0, 44.0, 620.0  # points below a particle; and the width of a narrow canvas
 SHARE = 0.6  # of the height of a canvas that sliders take at most
 STEPS = 100.0  # from end to end; on a logarithmic one numbers have DIGITS
 DIGITS = 2
@@ -139,9 +140,17 @@ class SliderStack:
     controls: tuple[Control, ...] = ()
     above: float = 0.0
 
-    def further_height(self, unit: float) -> int:
-        """Pixels that all but the first take, for which the margin around a model has room."""
-        return round(max(len(self.controls) - 1, 0) * (HEIGHT + GAP) * unit)
+    def reserve(self, canvas: Viewport, unit: float, margin: float) -> int:
+        """Pixels of the height to be left free of a model, below which there is a margin (points) anyway.
+
+        Supports stand in the margin and, where a canvas is narrow, arrows above the sliders.
+        """
+        if not self.controls:
+            return 0
+        first = self.above + EDGE + HEIGHT + SUPPORT + (ARROW if canvas.width < NARROW * unit else 0.0)
+        least = min(margin, LEAST_MARGIN * canvas.height / unit)
+        further = (len(self.controls) - 1) * (HEIGHT + GAP)
+        return round((max(first - least, 0.0) + further) * unit)
 
     def places(self, canvas: Viewport, unit: float) -> list[Place]:
         """Where the controls are in a canvas with `unit` pixels per point."""

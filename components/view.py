@@ -259,7 +259,7 @@ class View:
     def room(self) -> Viewport:
         """The part of the canvas that a model is fitted into."""
         c, panels = self.canvas, self.panels
-        c = replace(c, height=max(c.height - self.sliders.further_height(self.pixel_ratio), 1))
+        c = replace(c, height=max(c.height - self.sliders.reserve(c, self.pixel_ratio, MARGIN), 1))
         if not self.shares or panels == self.canvas:
             return c
         if panels.width < c.width:

@@ -32,7 +32,7 @@ from game.editor.menu import IN_MENU
 from game.editor.routing import Layer, for_tools, layer, meaning
 from game.editor.scenes import all_scenes, scene_systems
 from game.editor.scenes.files import FileScene
-from game.editor.sliders import slider_stack
+from game.editor.sliders import slider_stack, sliders_of
 from game.editor.toolbar import toolbar_of
 from game.editor.view_model import show
 from game.mods import load_all
@@ -276,14 +276,15 @@ class Session(Context):
         self.offer_tools()
         self.make_room()
 
+    def begin_document(self) -> None:
+        """Show the document that is open now, with its sliders, from the first frame on."""
+        self.view.sliders = sliders_of(self)
+        super().begin_document()
+
     def offer_tools(self) -> None:
         """Let toolbar and sliders show what can be done now; where they are not seen they stay as they were."""
-        view = self.view
         if not self.scenes.active.covers(self):
-            room = view.room
-            view.toolbar, view.sliders = toolbar_of(self), slider_stack(self)
-            if view.room != room and view.fitted:
-                view.fit(self.model)
+            self.view.toolbar, self.view.sliders = toolbar_of(self), slider_stack(self)
 
     def press(self, key: str, pixel: Vector | None = None) -> None:
         """Press a key, such as "k", "escape" or "ctrl+z"; one that means nothing in this scene does nothing.

@@ -34,9 +34,12 @@ NOTHING = {"K": 50.0, "kN": 10.0, "m/s²": 10.0, "m/s": 1.0}  # by unit: how far
 
 
 def slider_stack(context: Context) -> SliderStack:
-    """The sliders on the canvas of the active scene: the displacement scale at the bottom, then those of the model."""
-    if not context.view.legend or context.scene not in LIVE:
-        return SliderStack()
+    """The sliders on the canvas of the active scene."""
+    return sliders_of(context) if context.view.legend and context.scene in LIVE else SliderStack()
+
+
+def sliders_of(context: Context) -> SliderStack:
+    """The sliders of the open document: the displacement scale at the bottom, then those of the model."""
     model = context.model
     scale = [scale_control(model.settings)] if model.rods.count else []
     own = (_control(model, key, slider) for key, slider in enumerate(model.sliders))

@@ -41,7 +41,7 @@ def _slider(sheet: Sheet, place: Place, *, hovered: bool) -> list[Mark]:
     if control.share is not None:
         knob = np.array([[left + control.share * (right - left), middle]])
         radius = (_KNOB + (1.0 if hovered else 0.0)) * u
-        marks.append(Stamps("disc", knob, radius, u, theme.hover, theme.hover))
+        marks.append(Stamps("disc", knob, radius, u, theme.focus, theme.focus))
     return marks
 
 
@@ -54,13 +54,13 @@ def _button(sheet: Sheet, place: Place) -> list[Mark]:
         button.left + button.width / 2 - 0.1 * PAD * u,
         button.top + button.height / 2,
         size if len(control.button) > 1 else sheet.font(14.0),
-        theme.hover if control.pressed else theme.muted,
+        theme.focus if control.pressed else theme.muted,
         "semibold",
         "centre",
     )
     if not control.pressed and not (pointer is not None and button.contains(pointer)):
         return [text]
-    colour = faded(theme.hover, 0.16) if control.pressed else faded(theme.text, 0.09)
+    colour = faded(theme.focus, 0.16) if control.pressed else faded(theme.text, 0.09)
     inset = 3.0 * u
     width, height = button.width - 2 * inset, button.height - 2 * inset
     return [Panel(button.left + inset, button.top + inset, width, height, 4.0 * u, colour), text]
