@@ -178,6 +178,10 @@ class Scene:
         """The model that a pointer picks from, and its view."""
         return context.model, context.view
 
+    def scaled(self, context: Context) -> list[Settings]:
+        """The settings of the models whose displacements are drawn to the scale that its slider sets."""
+        return [context.settings]
+
     def type(self, context: Context, text: str) -> None:
         """Text was typed."""
 

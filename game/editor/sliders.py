@@ -100,7 +100,7 @@ def _value(aim: Aim, handle: Handle) -> float | None:
 def slider_of(context: Context, key: int) -> Slider:
     """The slider with a key. Raises Refusal if it was removed meanwhile."""
     if key == SCALE:
-        return scales(context.settings)
+        return scales(context.scenes.active.scaled(context)[0])
     if key >= len(context.model.sliders):
         raise Refusal("This slider was removed meanwhile.")
     return context.model.sliders[key]
@@ -110,7 +110,7 @@ def move_to(context: Context, key: int, value: float) -> None:
     """Give what a slider moves a value, as one edit. Raises FieldError for a value that cannot be."""
     model = context.model
     if key == SCALE:
-        context.settings.displacement_scale = value
+        scale_to(context, value)
         return
     slider = slider_of(context, key)
     control = _control(model, key, slider)
@@ -118,6 +118,12 @@ def move_to(context: Context, key: int, value: float) -> None:
         for aim in slider.aims:
             handles = aim.handles(model.tables)
             model.assign(handles, aim.field, [_with(aim, handle, value) for handle in handles])
+
+
+def scale_to(context: Context, scale: float | None) -> None:
+    """Draw displacements to a scale; None: to the automatic one."""
+    for settings in context.scenes.active.scaled(context):
+        settings.displacement_scale = scale
 
 
 def _with(aim: Aim, handle: Handle, value: float) -> Any:

@@ -6,13 +6,13 @@ from components.field import Vector
 from components.slider import Place, under
 from game.editor.context import Action, Context, action
 from game.editor.gestures.sliding import Slide
-from game.editor.sliders import SCALE, add_usual_slider, move_to, remove_slider, slider_of
+from game.editor.sliders import SCALE, add_usual_slider, move_to, remove_slider, scale_to, slider_of
 
 WHEEL = 0.02  # of its length, by which the wheel moves a slider
 
 
 def _under(context: Context, pixel: Vector) -> Place | None:
-    return under(context.view.slider_places, pixel)
+    return under(context.focus[1].slider_places, pixel)
 
 
 @action("drag slider")
@@ -42,16 +42,16 @@ def _double_click_slider(context: Context, pixel: Vector) -> None:
     """The second click of two lets the displacement scale be automatic; of others it is another click."""
     place = _under(context, pixel)
     if place is not None and place.control.key == SCALE and not place.button.contains(pixel):
-        context.settings.displacement_scale = None
+        scale_to(context, None)
     else:
         _click_slider(context, pixel)
 
 
 def automatic(context: Context) -> None:
     """Let the displacement scale follow from the model, or keep it as it is from now on."""
-    settings = context.settings
-    chosen = settings.prescribed_displacement_scale is None
-    settings.displacement_scale = settings.displacement_scale if chosen else None
+    [settings, *_] = context.scenes.active.scaled(context)
+    is_automatic = settings.prescribed_displacement_scale is None
+    scale_to(context, settings.displacement_scale if is_automatic else None)
 
 
 def _step(by: float) -> Action:
