@@ -19,7 +19,7 @@ T = TypeVar("T")
 Vector = tuple[float, float]
 Column = NDArray[Any]
 
-CM = ("cm", 100.0)  # as lengths are shown
+MM = ("mm", 1000.0)  # as displacements are shown
 LARGEST, SMALLEST = 1e30, 1e-30  # sizes of numbers to compute with, in inside units; SMALLEST of those above 0
 _FEW = 8  # rows up to which checking values one by one is faster than as an array
 _LARGEST_REFERENCE = 2**32 - 1

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass
+from pkgutil import resolve_name
 from types import MappingProxyType
 from typing import Any
 
@@ -136,6 +137,24 @@ class Load(Handle):
         """The particle it acts on."""
         found: Particle = self.world.tables["particles"][self.on]
         return found
+
+
+def factor_at(history: History, time: float) -> float:
+    """The factor of a history at a time (s); NaN where the mod that brought it is off."""
+    kind = HISTORIES[history["kind"]]
+    factor = resolve_name(kind.factor) if isinstance(kind.factor, str) else kind.factor
+    values = np.array(flattened(history[name] for name in kind.parameters), dtype=np.float64)
+    if kind.mod is None:
+        return float(factor(time, values, 0))
+    return float(kind.mod.call("a load's factor", factor, time, values, 0, otherwise=np.nan, declared=float))
+
+
+def flattened(parameters: Iterable[Any]) -> list[float]:
+    """Numbers in order, lists preceded by their length."""
+    values: list[float] = []
+    for parameter in parameters:
+        values += (len(parameter), *parameter) if isinstance(parameter, tuple) else (parameter,)
+    return values
 
 
 def static_factor(history: History) -> float:

@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from components.field import CM, Field, FieldError, derived, state
+from components.field import Field, FieldError, derived, state
 from components.handle import Handle
 from components.particle import Particle, rods_without_length
 from components.table import Table, flags
@@ -38,7 +38,6 @@ class Rod(Handle):
         title="rest length",
         key="rest_length",
         doc="Length without force; automatic: the distance between the original positions.",
-        shown=CM,
         overrides="rest_length",
     )
     tensile_strength: Field[float | None] = Field(
@@ -59,9 +58,7 @@ class Rod(Handle):
         title="damping coefficient",
         doc="Axial force per elongation rate.",
     )
-    density: Field[float] = Field(
-        "kg/m", default=6.15, minimum=0.0, doc="Mass per length.", shown=("kg/cm", 0.01)
-    )
+    density: Field[float] = Field("kg/m", default=6.15, minimum=0.0, doc="Mass per length.")
     temperature_change: Field[float] = Field(
         "K", doc="Warming since it had its rest length; it expands as it warms."
     )
@@ -80,7 +77,6 @@ class Rod(Handle):
     rest_length: Field[float] = derived(
         "m",
         doc="Prescribed, or the distance between the original positions.",
-        shown=CM,
         overridden_by="prescribed_rest_length",
     )
     difference: Field[tuple[float, float]] = derived(
@@ -96,7 +92,7 @@ class Rod(Handle):
     tension_limit: Field[float] = derived("kN", doc="Tensile strength; infinite if unlimited.")
     compression_limit: Field[float] = derived("kN", doc="Compressive strength; infinite if unlimited.")
     axial_force: Field[float] = derived("kN", doc="Without the damper's; tension positive.")
-    length: Field[float] = derived("m", doc="Present distance between the ends.", shown=CM)
+    length: Field[float] = derived("m", doc="Present distance between the ends.")
     strain: Field[float] = derived(doc="Elongation / rest length, without thermal expansion.")
     yielding: Field[bool] = derived(dtype=bool, doc="Axial force is at a strength.")
 

@@ -1,15 +1,13 @@
-"""The window: pygame-ce around a session; and pictures of a session without a display."""
+"""The window: pygame-ce around a session."""
 
 from __future__ import annotations
 
 import gc
-import io
 import itertools
 import os
 import sys
 import time
 from collections.abc import Sequence
-from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -17,12 +15,10 @@ import numpy as np
 import pygame
 from numpy.typing import NDArray
 
-from components.camera import Camera, Viewport
+from components.camera import Viewport
 from components.field import Vector
 from components.model import Model
-from components.slider import SliderStack
-from components.toolbar import Toolbar
-from components.view import MAGNIFICATIONS, MARGIN, Plot, View, drawn_places, magnified
+from components.view import MAGNIFICATIONS, View, magnified
 from game.documents import library, models
 from game.documents.autosave import Autosave, unkept
 from game.documents.open_documents import ModelFile, OpenDocument
@@ -36,6 +32,7 @@ from game.documents.preferences import (
 from game.editor.frame import Frame
 from game.editor.scenes.load import Load
 from game.interrupts import closed_by_signals
+from game.pictures import on_paper, write
 from game.preparation import Preparation
 from game.scripts.performance import FOOTER, LARGER, Performance
 from game.scripts.playing import Failure, Recorder
@@ -44,14 +41,9 @@ from game.session import Session
 from systems.base import System
 from systems.edit.hover import Hover
 from systems.input.pygame_input import PygameInput
-from systems.render.labels import Placed
-from systems.render.marks import Picture
-from systems.render.picture import compose
-from systems.render.plots import draw_plot
-from systems.render.pygame_canvas import Canvas
+from systems.render.pygame_images import encoded
 from systems.render.pygame_render import PygameRender
 from systems.render.raster import load_raster
-from systems.render.theme import load_theme
 
 FRAME_RATE = 60  # Hz
 FIRST_SIZE = (1000, 720)  # points
@@ -344,63 +336,22 @@ class App:
         else:
             self.window.set_windowed()
 
-    def screenshot(self) -> str:
-        """Save what the window shows as a PNG in the working folder; returns its path. Raises OSError."""
-        path = _unused(Path.cwd() / "pinjoint.png")
-        _save(self.render.surface, path)
+    def screenshot(self, suffix: str = ".png") -> str:
+        """Save the model as the window shows it, without panels and bars, in the working folder; returns the path.
+
+        Where the window shows no model, all that it shows is saved, as a PNG. Raises OSError.
+        """
+        drawn = [(model, on_paper(view)) for model, view in self.session.stages if isinstance(model, Model)]
+        if not drawn:
+            path = _unused(Path.cwd() / "pinjoint.png")
+            models.replace(path, encoded(self.render.surface, ".png"))
+            return str(path)
+        path = _unused(Path.cwd() / f"pinjoint{suffix}")
+        write(drawn, path, self.render.surface.get_size(), self.session.view.theme)
         return str(path)
-
-
-def _save(surface: pygame.Surface, path: Path) -> None:
-    """Write a picture in the format of its suffix, as a whole or not at all. Raises OSError."""
-    made = io.BytesIO()
-    pygame.image.save(surface, made, path.suffix)
-    models.replace(path, made.getvalue())
 
 
 def _unused(path: Path) -> Path:
     """The path, or the first of path-2, path-3, … that does not exist."""
     further = (path.with_stem(f"{path.stem}-{number}") for number in itertools.count(2))
     return next(candidate for candidate in itertools.chain([path], further) if not candidate.exists())
-
-
-def render_png(session: Session, path: str, size: tuple[int, int], theme: str = "light") -> None:
-    """Draw a session to a PNG file, without a display. Raises OSError if it cannot be written."""
-    session.exaggerate()
-    surface = _drawn(session, size, theme, drawn_places(session.model))
-    _save(surface, Path(path))
-
-
-def picture(
-    session: Session, size: tuple[int, int], theme: str, around: Points, placed: Placed | None = None
-) -> Colours:
-    """A session as colours, shape (height, width, 3), showing all these points (n, 2) of the model.
-
-    placed: where labels were in the last of several pictures, see compose().
-    """
-    surface = _drawn(session, size, theme, around, placed)
-    return np.ascontiguousarray(pygame.surfarray.array3d(surface).transpose(1, 0, 2))
-
-
-def _drawn(
-    session: Session, size: tuple[int, int], theme: str, around: Points, placed: Placed | None = None
-) -> pygame.Surface:
-    surface = pygame.Surface(size, depth=32)
-    session.update_view()
-    status = replace(session.view.status, hint="")  # a picture takes no keys
-    camera = Camera(viewport=Viewport(0, 0, *size))
-    view = replace(
-        session.view, camera=camera, toolbar=Toolbar(), sliders=SliderStack(), heading="", status=status
-    )
-    view.camera.fit(around, MARGIN, view.room, view.pixel_ratio)
-    Canvas(load_raster).draw(surface, compose(session.model, view, load_theme(theme), placed))
-    return surface
-
-
-def plot_png(plot: Plot, path: Path, theme: str = "light", size: tuple[int, int] = (900, 560)) -> None:
-    """Draw a plot to a PNG file, without a display. Raises OSError if it cannot be written."""
-    surface, colours, unit = pygame.Surface(size, depth=32), load_theme(theme), 1.5
-    box = 16.0 * unit, 8.0 * unit, size[0] - 32.0 * unit, size[1] - 16.0 * unit
-    marks = draw_plot(plot, box, colours, unit, None)
-    Canvas(load_raster).draw(surface, Picture(Viewport(0, 0, *size), colours.background, marks))
-    _save(surface, path)

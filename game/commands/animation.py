@@ -30,7 +30,7 @@ def render_gif(
     """
     from PIL import Image
 
-    from game.app import picture
+    from game.pictures import frame
 
     status, moments = _run(session, until, limit)
     session.exaggerate()
@@ -42,7 +42,7 @@ def render_gif(
     placed: Placed = {}
     for moment in moments:
         moment.restore(session.model)
-        image = Image.fromarray(picture(session, size, theme, around, placed))
+        image = Image.fromarray(frame(session, size, theme, around, placed))
         images.append(image.quantize(COLOURS, method=Image.Quantize.MEDIANCUT, dither=Image.Dither.NONE))
     durations = [round(1000 * FRAME)] * (len(images) - 1) + [round(1000 * HELD)]
     made = io.BytesIO()

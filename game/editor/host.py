@@ -17,8 +17,8 @@ class Window(Protocol):
     def magnify(self, by: int) -> str:
         """Draw type and symbols a step larger or smaller; 0: as they suit the window. Returns which it is."""
 
-    def screenshot(self) -> str:
-        """Save a picture of the window; returns where. Raises OSError."""
+    def screenshot(self, suffix: str) -> str:
+        """Save a picture in the format of that suffix; returns where. Raises OSError."""
 
     def copied(self) -> str:
         """The text on the system's clipboard."""

@@ -46,9 +46,9 @@ def meaning(context: Context, key: str, pixel: Vector) -> Meaning:
         return _on_toolbar(context, key, pixel) if on_toolbar else action_for(LIVE[0], key), pixel
     if key in AT_POINTER and _slider_at(context, pixel):
         return ON_SLIDER.get(key), pixel
-    if key in BUTTONS and context.scene in LIVE and not context.performing:
-        if lies_under(context.model, view, load_theme(view.theme), pixel):
-            return None, pixel
+    to_model = key in BUTTONS and context.scene in LIVE and not context.performing
+    if to_model and lies_under(context.model, view, load_theme(view.theme), pixel):
+        return None, pixel
     return scene_meaning(context.scene, key), pixel
 
 

@@ -5,13 +5,16 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from components.view import Preview, Status
+from components.model import Model
+from components.tags import Hovered
+from components.view import Preview, Readout, Status
 from game.editor.context import Context
 from game.editor.gestures.drawing import TOOL_HINTS
 from game.editor.host import Waiting
 from game.editor.readouts import own_readouts
 from systems.base import StopReason
 from systems.edit import Refusal
+from systems.forms.results import told
 from systems.input.bindings import LIVE, help_lines
 from systems.render.help import help_pages
 
@@ -34,6 +37,7 @@ def show(context: Context) -> None:
     view.keys = pages[min(view.help, len(pages)) - 1] if pages else []
     view.more_keys = view.help < len(pages)
     _show_readouts(context)
+    _point_out(context)
     view.status = Status(
         time=context.time,
         speed=context.clock.shown_pace if context.busy else 0.0,
@@ -60,6 +64,15 @@ def _show_readouts(context: Context) -> None:
         readout.title: since.get(readout.title, latest + number)
         for number, readout in enumerate(view.readouts, start=1)
     }
+
+
+def _point_out(context: Context) -> None:
+    """Say what the element under the pointer does now, in the view that shows it."""
+    model, view = context.focus
+    found = model.tagged(Hovered) if isinstance(model, Model) else []
+    rows = told(model, found[0], forces_known=view.forces_known) if found else []
+    pointed = Readout(model.describe(found[0]), tuple(rows)) if rows else None
+    view.pointer, view.pointed, context.view.pointed = context.view.pointer, pointed, pointed
 
 
 def _awaited(context: Context) -> Waiting | None:

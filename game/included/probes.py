@@ -202,7 +202,7 @@ def write_csv(probe: Probe, path: Path) -> None:
 
 def write_png(probe: Probe, path: Path, theme: str = "light") -> None:
     """Write the whole plot as a picture."""
-    from game.app import plot_png  # pygame is there when it is needed
+    from game.pictures import plot_png  # pygame is there when it is needed
 
     plot_png(probe.plot(1.0), path, theme)
 

@@ -31,8 +31,8 @@ class Wall(Handle):
     points = ("start", "end")
 
     name: Field[str] = Field(doc="Unique among the walls.", dtype=str)
-    start: Field[Vector] = Field("m", shape=(2,), doc="Where it begins.", shown=("cm", 100.0))
-    end: Field[Vector] = Field("m", shape=(2,), doc="Where it ends.", shown=("cm", 100.0))
+    start: Field[Vector] = Field("m", shape=(2,), doc="Where it begins.")
+    end: Field[Vector] = Field("m", shape=(2,), doc="Where it ends.")
     restitution: Field[float | None] = Field(
         default=None,
         nullable=True,

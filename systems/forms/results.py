@@ -1,4 +1,4 @@
-"""Results: what elements do now, as readings beside the boxes of their properties."""
+"""Results: what elements do now, as readings beside the boxes of their properties, and where something is pointed at."""
 
 from __future__ import annotations
 
@@ -9,16 +9,16 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from components.field import Field
+from components import written
+from components.field import Field, Role
 from components.form import Form, Reading
 from components.handle import Handle
+from components.load import CONSTANT, Load, factor_at
 from components.model import Model
 from components.particle import Particle
 from components.rod import Rod
 
 SECTION = "Results"
-DIGITS = 4  # significant
-NOTHING = 1e-9  # of the largest of its kind in the model: round-off, shown as 0
 RESIDUAL = 1e-12  # of a length (m), force (kN) or speed (m/s): nothing, where all of them are as small
 _AXES = "xy"
 
@@ -48,6 +48,19 @@ def results(model: Model, selected: Sequence[Handle]) -> Iterator[Result]:
         yield from _of_rods(model, rows["rods"])
     if len(rows["particles"]):
         yield from _of_particles(model, rows["particles"])
+
+
+def told(model: Model, handle: Handle, *, forces_known: bool) -> list[tuple[str, str]]:
+    """What is said of an element that is pointed at: its results, the loads on it, what a mod's element was given.
+
+    Results only once forces are known.
+    """
+    found = [*results(model, [handle])] if forces_known else []
+    if isinstance(handle, Particle):
+        found += _of_loads(model, handle.row)
+    elif handle.points:
+        found += _of_others(model, handle)
+    return [(result.title, result.text) for result in found]
 
 
 # --- rods ---------------------------------------------------------------------------------------------
@@ -80,7 +93,7 @@ def _utilisation(model: Model, rows: NDArray[np.intp]) -> Iterator[Result]:
         most = int(np.nanargmax(used))
         whose = f" ({model.rods.column('name')[rows[most]]})" if len(rows) > 1 else ""
         title = "largest utilisation" if len(rows) > 1 else "utilisation"
-        text = f"{100.0 * used[most]:.3g} %{whose}"
+        text = f"{written.share(used[most])}{whose}"
         yield Result(SECTION, title, text, "Axial force, as a share of the strength in its direction.")
 
 
@@ -119,6 +132,32 @@ def _of_particles(model: Model, rows: NDArray[np.intp]) -> Iterator[Result]:
         yield _vector("sum of reactions", total, particles.reaction, "kN", Particle.reaction)
 
 
+# --- loads, and elements of mods -----------------------------------------------------------------------
+
+
+def _of_loads(model: Model, particle: int) -> Iterator[Result]:
+    """What the loads on a particle are now, of those that vary beside their force at factor 1."""
+    for row in np.flatnonzero(model.loads.on == particle).tolist():
+        load = model.loads[row]
+        text = f"{written.vector(load.force)} kN"
+        if load.history["kind"] != CONSTANT["kind"]:
+            now = factor_at(load.history, model.clock.time) * model.loads.force[row]
+            text = f"{written.vector(now, written.DIGITS)} of {text}"
+        yield _result(model.describe(load), text, Load.force)
+
+
+def _of_others(model: Model, handle: Handle) -> Iterator[Result]:
+    """The numbers that a person gave an element of a mod's kind."""
+    table = model.tables[handle.table]
+    for field in table.fields_in(Role.DOCUMENT):
+        value = getattr(handle, field.name)
+        unit, factor = field.shown
+        if field.dtype is float and value is not None:
+            parts = np.multiply(value, factor)
+            text = written.vector(parts) if field.shape else written.given(float(parts))
+            yield _result(field.title, f"{text} {unit}".rstrip(), field)
+
+
 # --- as text ------------------------------------------------------------------------------------------
 
 
@@ -139,7 +178,5 @@ def _vector(title: str, values: Sequence[float], column: Any, unit: str, field: 
 def _number(value: float, column: Any, unit: str = "") -> str:
     """A value with its unit; 0 where it is nothing beside the largest in the model."""
     largest = np.abs(column).max(initial=0.0)
-    if not math.isfinite(value):
-        return "—"
-    clear = 0.0 if abs(value) <= max(NOTHING * largest, RESIDUAL) else float(value)
-    return f"{clear:.{DIGITS}g} {unit}".rstrip().replace("-", "−")
+    nothing = max(written.ROUNDING * largest, RESIDUAL)
+    return f"{written.number(float(value), nothing=nothing)} {unit}".rstrip()

@@ -163,6 +163,8 @@ _BY_PURPOSE: dict[str, tuple[Binding, ...]] = {
         Binding("f1", "toggle help", EVERY, "these keys"),
         Binding("f11", "toggle full screen", EVERY, "full screen"),
         Binding("f12", "screenshot", EVERY, "save a picture"),
+        Binding("shift+f12", "picture as svg", EVERY, "save a picture as SVG"),
+        Binding("ctrl+f12", "picture as pdf", EVERY, "save a picture as PDF"),
     ),
     "Files": (
         Binding("s", "save", (PAUSE,), "save as"),

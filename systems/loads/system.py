@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Mapping
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from components.load import CONSTANT, HISTORIES, HistoryKind
+from components.load import CONSTANT, HISTORIES, HistoryKind, flattened
 from components.model import Model
 from systems.base import Law
 
@@ -43,7 +43,7 @@ class VaryingLoads(Law):
             history = model.loads.history[row]
             if id(history) not in begun:
                 begun[id(history)] = len(values)
-                values += _flattened(history[name] for name in self.kind.parameters)
+                values += flattened(history[name] for name in self.kind.parameters)
             first.append(begun[id(history)])
         prefix = self.name.replace(".", "_")
         return {
@@ -52,14 +52,6 @@ class VaryingLoads(Law):
             f"{prefix}_values": np.array(values, dtype=np.float64),
             f"{prefix}_first": np.array(first, dtype=np.uint32),
         }
-
-
-def _flattened(parameters: Iterable[Any]) -> list[float]:
-    """Numbers in order, lists preceded by their length."""
-    values: list[float] = []
-    for parameter in parameters:
-        values += (len(parameter), *parameter) if isinstance(parameter, tuple) else (parameter,)
-    return values
 
 
 def varying_loads() -> list[VaryingLoads]:

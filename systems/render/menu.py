@@ -38,7 +38,7 @@ class MenuLayout:
         self.menu, self.unit, self.size, self.row = menu, unit, font_size(points, unit), row * unit
         edge = _EDGE * unit
         self.head = self.row if menu.title else 0.0
-        columns = self._columns(window.height - 4 * edge - self.head)
+        columns = self._even_columns(window.height - 4 * edge - self.head)
         width = max(
             [self._width(tool) for tool in menu.entries] + [text_width(menu.title, self.size, "semibold") / 2]
         )
@@ -62,6 +62,15 @@ class MenuLayout:
     def _width(self, tool: Tool) -> float:
         key = text_width(written_key(tool.key), self.size) + _GAP * self.unit if tool.key else 0.0
         return text_width(titled(tool), self.size) + key
+
+    def _even_columns(self, room: float) -> list[list[tuple[bool, float]]]:
+        """As few columns as the room above each other needs, about equally high."""
+        columns, high = self._columns(room), len(self.menu.entries) * self.row
+        least = high / len(columns)
+        lower = (
+            self._columns(least + number * self.row) for number in range(int((room - least) / self.row) + 1)
+        )
+        return next((even for even in lower if len(even) == len(columns)), columns)
 
     def _columns(self, room: float) -> list[list[tuple[bool, float]]]:
         """(is a rule, its top) of every line, in as many columns as the room above each other needs."""

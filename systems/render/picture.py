@@ -15,6 +15,7 @@ from systems.render.marks import Picture
 from systems.render.overlays import BAR, draw_notice, draw_overlays, draw_scale
 from systems.render.page import draw_page
 from systems.render.panel import compose_form
+from systems.render.pointed import draw_pointed
 from systems.render.readouts import draw_readouts
 from systems.render.sheet import ABOVE, BELOW, Sheet, measure
 from systems.render.sliders import draw_sliders
@@ -89,5 +90,5 @@ def _composed(sheet: Sheet) -> tuple[Picture, list[Rectangle]]:
     labels = place_labels(sheet.labels, sheet.occupancy, sheet.unit, sheet.placed)
     sheet.placed |= sheet.scales
     scale = draw_scale(sheet, room) if model.particles.count else []
-    over = [*scale, *draw_flashes(sheet), *draw_preview(sheet), *overlays]
+    over = [*scale, *draw_flashes(sheet), *draw_preview(sheet), *overlays, *draw_pointed(sheet)]
     return Picture(sheet.viewport, theme.background, [*sheet.marks, *labels, *over]), panels

@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 
 from components.camera import Viewport
 from components.model import Model
+from components.tags import Hovered
 from components.view import View, drawn_positions
 from systems.render.clip import bounds, clip_rods
 from systems.render.labels import Label, Occupancy, Placed
@@ -76,7 +77,9 @@ class Sheet:
         return inside
 
     def tagged(self, tag: type, table: str) -> Rows:
-        """Rows of the entities of one table that carry a tag."""
+        """Rows of the entities of one table that carry a tag; nothing is pointed at in a picture without a pointer."""
+        if tag is Hovered and self.view.pointer is None:
+            return np.empty(0, dtype=np.intp)
         return self.model.rows_tagged(tag)[table]
 
     def chosen(self, wanted: Rows, rows: Rows) -> NDArray[np.bool_]:

@@ -16,9 +16,9 @@ from game.documents import models
 from game.documents.document import ModelError
 from systems.collision.system import normals
 from systems.render.marks import Strokes
-from systems.render.panel import thumbnail
 from systems.render.picture import compose
 from systems.render.theme import load_theme
+from systems.render.thumbnails import thumbnail
 
 FRAME = 1.0 / 60.0
 
@@ -105,7 +105,7 @@ def test_what_the_pointer_is_over_is_picked_and_its_end_or_all_of_it_is_dragged(
     assert session.selected == [floor]
     session.drag((1, 0), (1.2, 0.3))
     assert (floor.start, floor.end) == ((-1, 0), (1.2, 0.3))
-    assert session.notice == "Wall floor, end: (120, 30) cm"
+    assert session.notice == "Wall floor, end: (1.2, 0.3) m"
     session.press("ctrl+z")
     session.drag((0.3, 0), (0.4, -0.2))
     assert floor.start == pytest.approx((-0.9, -0.2))
@@ -159,7 +159,7 @@ def test_its_properties_are_boxes() -> None:
     session.click_box("restitution")
     session.type("0.25")
     session.click_box("end x")
-    session.type("150")
+    session.type("1.5")
     session.press("return")
     session.press("escape")
     [floor] = walls_of(session)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
+from components import written
 from components.field import Vector
 from components.grid import Grid
 from components.handle import Handle
@@ -26,8 +27,7 @@ def _place(context: Context, pixel: Vector) -> None:
         context.take_up("place")
         return
     particle = place(context.model, context.view, pixel)
-    x, y = particle.position
-    context.notice = f"{context.name(particle)}: ({100.0 * x:g}, {100.0 * y:g}) cm"
+    context.notice = f"{context.name(particle)}: {written.place(particle.position)}"
 
 
 @action("delete")
@@ -72,9 +72,8 @@ def nudge(context: Context, direction: Vector, *, far: bool) -> bool:
     moved = [*chosen.particles, *chosen.others]
     with context.history.as_one(("nudge", *(handle.entity for handle in moved))):
         chosen.place(positions)
-    x, y = positions[0].tolist()
     named = all_of(context, chosen.particles) if not chosen.others else heading(model, moved)
-    context.notice = f"{named[:1].upper()}{named[1:]}: ({100.0 * x:g}, {100.0 * y:g}) cm"
+    context.notice = f"{named[:1].upper()}{named[1:]}: {written.place(positions[0])}"
     return True
 
 

@@ -74,13 +74,22 @@ def _toggle_full_screen(context: Context, pixel: Vector) -> None:
         context.window.toggle_full_screen()
 
 
-@action("screenshot", while_drawing=True)
-def _screenshot(context: Context, pixel: Vector) -> None:
-    if context.window is None:
-        return
-    try:
-        context.notice = f"Picture saved: {context.window.screenshot()}"
-    except OSError as error:
-        raise Refusal(
-            f"No picture was saved: {error.filename}: {error.strerror}. Start Pinjoint in a folder where you may write."
-        ) from None
+def _picture(suffix: str) -> Action:
+    """Save a picture of the model in a format."""
+
+    def act(context: Context, pixel: Vector) -> None:
+        if context.window is None:
+            return
+        try:
+            context.notice = f"Picture saved: {context.window.screenshot(suffix)}"
+        except OSError as error:
+            raise Refusal(
+                f"No picture was saved: {error.filename}: {error.strerror}. Start Pinjoint in a folder where you may"
+                " write."
+            ) from None
+
+    return act
+
+
+for _name, _suffix in (("screenshot", ".png"), ("picture as svg", ".svg"), ("picture as pdf", ".pdf")):
+    action(_name, while_drawing=True)(_picture(_suffix))

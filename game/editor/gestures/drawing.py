@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from typing import ClassVar
 
+from components import written
 from components.field import Vector
 from components.handle import Handle
 from components.model import Model
@@ -124,7 +125,7 @@ class DrawRod(Drawing):
             rod = join(model, first, self._end)
         made = model.particles.count - before
         new = f", with {made} new particle{'s' * (made > 1)}" if made else ""
-        context.notice = f"{context.name(rod)}: {rod.rest_length:.6g} m{new}"
+        context.notice = f"{context.name(rod)}: {written.length(rod.rest_length)}{new}"
 
     def finish(self, context: Context, pixel: Vector) -> None:
         """End at a pixel; a click where a chain of rods has come to ends the chain."""
@@ -150,10 +151,10 @@ class DrawRod(Drawing):
         if other is None or other is self._begin or not isinstance(self._begin, Particle):
             point = snapped(context.model, context.view, context.view.camera.to_model(pixel))
             end = point if other is None else drawn_at(context, other)
-            return Preview("rod", start, end, f"{math.dist(start, end):.3g} m")
+            return Preview("rod", start, end, written.length(math.dist(start, end), 3))
         try:
             check_ends(context.model, self._begin, other)
-            label = f"{distance(self._begin, other):.6g} m"
+            label = written.length(distance(self._begin, other))
         except Refusal:
             label = "joined already"
         return Preview("rod", start, drawn_at(context, other), label)
@@ -177,7 +178,7 @@ class DrawArrow(DrawFromParticle):
 
     def shown(self, value: Vector) -> str:
         """The text of a vector."""
-        return f"({value[0]:g}, {value[1]:g}) {self.unit}"
+        return f"{written.vector(value)} {self.unit}"
 
     def drop(self, context: Context, pixel: Vector) -> None:
         value = self.value(context, pixel)
@@ -244,7 +245,7 @@ class DrawElement(Drawing):
 
 def _length_and_angle(start: Vector, end: Vector) -> str:
     angle = math.degrees(math.atan2(end[1] - start[1], end[0] - start[0])) + 0.0
-    return f"{math.dist(start, end):.6g} m, {angle:.4g}°"
+    return f"{written.length(math.dist(start, end))}, {written.given(angle, 4)}°"
 
 
 def drawing_of(kind: type[Handle], tool: str, key: str) -> type[DrawElement]:

@@ -6,6 +6,7 @@ import math
 
 import numpy as np
 
+from components import written
 from components.field import FieldError, Vector
 from components.handle import Handle
 from components.particle import Particle
@@ -71,7 +72,7 @@ class Move(Placing):
         particles, count = self._movable.particles, len(self._movable)
         leader = particles[self._leader] if self._leader < len(particles) else self._movable.others[0]
         others = f" and {count - 1} more" if count > 1 else ""
-        return f"{leader.name}{others}: ({100.0 * target[0]:.6g}, {100.0 * target[1]:.6g}) cm"  # type: ignore[attr-defined]
+        return f"{leader.name}{others}: {written.place(target)}"  # type: ignore[attr-defined]
 
 
 class MovePoint(Placing):
@@ -90,8 +91,7 @@ class MovePoint(Placing):
         except FieldError as error:
             context.notice = str(error)
         else:
-            x, y = (100.0 * value for value in target)
-            context.notice = f"{context.name(element)}, {point}: ({x:.6g}, {y:.6g}) cm"
+            context.notice = f"{context.name(element)}, {point}: {written.place(target)}"
 
 
 class PullParticle(Gesture):
@@ -130,7 +130,7 @@ class PullParticle(Gesture):
             (self._particle.position[0] + scale * u[0], self._particle.position[1] + scale * u[1])
             for u in (self._particle.displacement, hand.anchor)
         )
-        return Preview("pull", start, end, f"{math.hypot(*context.pull.force):.4g} kN")
+        return Preview("pull", start, end, written.force(math.hypot(*context.pull.force)))
 
 
 class BoxSelect(Gesture):

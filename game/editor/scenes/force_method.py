@@ -31,6 +31,7 @@ MOST_OF_HEIGHT = 0.45  # of the window that the equations and the table take at 
 LARGE = 500  # rods; work on larger structures is announced in a picture first
 LOW = 1.8  # width / height of a place from which a structure stands beside its caption
 LEAST_WIDTH, LEAST_HEIGHT, LEAST_LOW = 140.0, 160.0, 90.0  # points of a set; below or beside its caption
+HIGH = 340.0  # points of a set in which a slider has room below supports and reactions
 MOVED = 0.08  # of the size of a structure: about what drawn displacements add to it
 CAPTION, SCALE, MARGIN = (
     66.0,
@@ -206,8 +207,9 @@ class ForceMethod(Scene):
             view.caption = captions[index]
             shown.append((model, view))
         if self.shown_guide is not None and self.shown_guide.mechanism is None:
-            first = shown[0][1]
-            first.sliders = SliderStack((scale_control(self.shown_guide.sets[0].model.settings),))
+            first, control = shown[0][1], scale_control(self.shown_guide.sets[0].model.settings)
+            high = first.camera.viewport.height >= HIGH * ratio
+            first.sliders = SliderStack((control,)) if high else SliderStack()
         return shown
 
     def scaled(self, context: Context) -> list[Settings]:

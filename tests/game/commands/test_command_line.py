@@ -75,7 +75,7 @@ MODEL = {
         ("shake isostatic missing.csv --output x.json", "missing.csv cannot be read: No such file"),
         ("play missing.jsonl", "There is no file and no lesson 'missing.jsonl'; choose one of 1_draw"),
         ("play 1_draw_truss", "did you mean '1_draw_a_truss'?"),
-        ("render isostatic --output x.pdf", "write a file that ends with .png or .gif"),
+        ("render isostatic --output x.tiff", "write a file that ends with .png or .svg"),
         (
             "plot isostatic --of time --until 1e-4 --samples 2 --output /proc/x.csv",
             "/proc/x.csv cannot be written",

@@ -17,7 +17,7 @@ def test_p_makes_a_free_particle_of_1_kg_under_the_pointer(empty: Session) -> No
     assert particle.name == "particle 1"
     assert particle.position == (0.25, -0.5)
     assert (particle.mass, particle.fixed, particle.velocity) == (1.0, (False, False), (0.0, 0.0))
-    assert empty.notice == "Particle 1: (25, -50) cm"
+    assert empty.notice == "Particle 1: (0.25, −0.5) m"
 
 
 @pytest.mark.parametrize(

@@ -70,18 +70,18 @@ def test_a_rod_has_the_boxes_that_the_thesis_names(session: Session) -> None:
     assert session.scene == "properties"
     assert scene.form.heading.text == "rod AB"
     shown = {
-        "rest length": "141.421356",
+        "rest length": "1.41421356",
         "tensile strength": "215",
         "compressive strength": "unlimited",
         "stiffness": "164640",
         "damping coefficient": "100",
-        "density": "0.0615",
+        "density": "6.15",
         "force diagram scale": "1",
     }
     assert shown.items() <= session.boxes.items()
     units = {box.title: box.unit for box in scene.form.boxes}
-    assert units["rest length"] == "cm"
-    assert units["density"] == "kg/cm"
+    assert units["rest length"] == "m"
+    assert units["density"] == "kg/m"
     assert units["damping coefficient"] == "kN·s/m"
 
 
@@ -89,10 +89,10 @@ def test_a_particle_has_the_boxes_that_the_thesis_names(session: Session) -> Non
     open_of(session, "B")
     for title in ("displacement", "original position", "applied force", "applied acceleration", "velocity"):
         assert {f"{title} x", f"{title} y"} <= session.boxes.keys()
-    assert session.boxes["original position x"] == "100"
+    assert session.boxes["original position x"] == "1"
     assert session.boxes["applied force y"] == "-160"
     assert session.boxes["constrained x"] == "no"
-    assert session.boxes["radius"] == "5"
+    assert session.boxes["radius"] == "0.05"
     together = {"displacement scale": "100", "coefficient of restitution": "1", "time step": "automatic"}
     assert together.items() <= session.boxes.items()
 
@@ -109,7 +109,7 @@ def test_a_grid_has_its_spacing(session: Session) -> None:
     grid = session.model.grids[0]
     session.select(grid)
     session.press("return")
-    entered(session, "spacing x", "25")
+    entered(session, "spacing x", "0.25")
     session.press("escape")
     assert grid.spacing == (0.25, 0.5)
 
@@ -195,7 +195,7 @@ def test_a_click_into_another_box_or_beside_applies_the_first(session: Session) 
     assert place is not None
     session.press("click", (place.left + 3, place.top + 3))
     assert session.particles["B"].force == (7.0, -160.0)
-    session.type("9")
+    session.type("0.09")
     session.press("click", (place.left + 3, place.top - 60))
     assert session.particles["B"].radius == 0.09
 
@@ -218,7 +218,7 @@ def test_boxes_follow_what_others_change(session: Session) -> None:
     session.press("escape")
     open_of(session, "B")
     mass = session.boxes["mass"]
-    entered(session, "original position x", "150")
+    entered(session, "original position x", "1.5")
     assert session.boxes["mass"] != mass, "half of the mass of longer rods"
     session.press("escape")
     assert open_of(session, "AB") is scene
@@ -270,9 +270,9 @@ def test_what_was_not_typed_keeps_its_bits() -> None:
 @pytest.mark.parametrize(
     ("title", "text", "field", "value"),
     [
-        ("radius", "7", "radius", 0.07),
-        ("original position x", "33", "position", (0.33, 1.0)),
-        ("displacement y", "-0.1", "displacement", (0.0, -0.001)),
+        ("radius", "0.07", "radius", 0.07),
+        ("original position x", "0.33", "position", (0.33, 1.0)),
+        ("displacement y", "-1", "displacement", (0.0, -0.001)),
         ("constrained x", "1", "fixed", (True, False)),
         ("constrained y", "yes", "fixed", (False, True)),
         ("mass", "2.5", "mass", 2.5),
@@ -288,9 +288,9 @@ def test_a_number_is_taken_in_the_unit_shown(
     assert getattr(session.particles["B"], field) == value
 
 
-def test_density_is_per_centimetre(session: Session) -> None:
+def test_density_is_per_metre(session: Session) -> None:
     open_of(session, "AB")
-    entered(session, "density", "0.07")
+    entered(session, "density", "7")
     session.press("escape")
     assert session.rods["AB"].density == 7.0
 
@@ -430,7 +430,7 @@ def test_a_bad_history_is_refused() -> None:
     [
         ("AB", "stiffness", "0", "must be greater than 0 kN"),
         ("AB", "stiffness", "-", "must be a number"),
-        ("AB", "rest length", "-3", "must be greater than 0 cm"),
+        ("AB", "rest length", "-3", "must be greater than 0 m"),
         ("AB", "damping coefficient", "-1", "must be at least 0 kN·s/m"),
         ("AB", "density", "1e999", "must be a finite number"),
         ("AB", "name", "BC", "there is a rod 'BC' already"),
@@ -492,7 +492,7 @@ def test_several_elements_are_edited_together(session: Session) -> None:
 def test_all_boxes_are_one_step_to_undo(session: Session) -> None:
     open_of(session, "AB")
     entered(session, "stiffness", "5")
-    entered(session, "density", "5")
+    entered(session, "density", "500")
     entered(session, "name", "first rod")
     session.press("escape")
     assert session.rods["first rod"].density == 500.0

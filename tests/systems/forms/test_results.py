@@ -28,7 +28,7 @@ def test_a_rod_says_its_force_utilisation_strain_and_length() -> None:
     session.select(session.rods["BC"])
     session.press("return")
     shown = readings(session)
-    assert shown["axial force"] == "−198 kN"
+    assert shown["axial force"] == "−198.0 kN"
     assert shown["utilisation"] == "92.1 %"
     assert shown["strain"] == "−1.203 ‰"
     assert shown["length"] == "1.413 m"
@@ -61,10 +61,10 @@ def test_several_elements_show_the_extremes_and_whose_they_are() -> None:
     session.press("return")
     shown = readings(session)
     assert shown["largest tension"] == "20.07 kN (CA)"
-    assert shown["largest compression"] == "−198 kN (BC)"
+    assert shown["largest compression"] == "−198.0 kN (BC)"
     assert shown["largest utilisation"] == "92.1 % (BC)"
     assert shown["largest displacement"].endswith("(B)")
-    assert shown["sum of reactions"] == "x −120   y 160 kN"
+    assert shown["sum of reactions"] == "x −120.0   y 160.0 kN"
 
 
 def test_results_follow_an_accepted_value_at_once() -> None:

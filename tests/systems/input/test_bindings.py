@@ -56,7 +56,7 @@ class FakeWindow:
         self.asked += 1
         return "110 %"
 
-    def screenshot(self) -> str:
+    def screenshot(self, suffix: str) -> str:
         self.asked += 1
         return "picture.png"
 
@@ -89,6 +89,11 @@ def _in_wide_menu(session: Session) -> None:
     session.press("right click", session.view.camera.middle)
     session.press("down")
     session.press("right")
+
+
+def _at_left_in_wide_menu(session: Session) -> None:
+    _in_wide_menu(session)
+    session.press("left")
 
 
 def _over_an_entry(session: Session) -> None:
@@ -170,7 +175,7 @@ def _named(session: Session) -> None:
 
 PREPARED: dict[tuple[str, str], Callable[[Session], None]] = {
     ("menu left", MENU): _in_wide_menu,
-    ("menu right", MENU): lambda session: (_in_wide_menu(session), session.press("left")),
+    ("menu right", MENU): _at_left_in_wide_menu,
     ("choose entry", MENU): _over_an_entry,
     ("redo", PAUSE): _undone,
     ("redo", SIMULATION): _undone,
@@ -188,6 +193,8 @@ PREPARED: dict[tuple[str, str], Callable[[Session], None]] = {
     ("release another", FORCE_METHOD): _part(7),
     ("toggle full screen", ""): _window,
     ("screenshot", ""): _window,
+    ("picture as svg", ""): _window,
+    ("picture as pdf", ""): _window,
     ("larger", ""): _window,
     ("smaller", ""): _window,
     ("usual size", ""): _window,

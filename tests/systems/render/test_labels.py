@@ -100,7 +100,8 @@ def test_names_of_all_show_only_where_there_are_few() -> None:
     assert not [text for text in picture_of(model).texts if text.startswith(("particle", "rod"))]
     model.tag(model.rods["rod 3"], Selected)
     model.tag(model.particles["particle 2"], Hovered)
-    assert {"rod 3", "particle 2"} <= set(picture_of(model).texts)
+    assert {"rod 3", "particle 2"} <= set(picture_of(model, pointer=(0.0, 0.0)).texts)
+    assert "particle 2" not in picture_of(model).texts  # nothing points at it
 
 
 PLACES = [(30.0, 50.0), (70.0, 50.0)]

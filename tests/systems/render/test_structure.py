@@ -70,7 +70,7 @@ def test_selection_hovering_and_yielding_show() -> None:
     model.tag(model.rods["BC"], Selected)
     model.tag(model.particles["A"], Selected)
     model.tag(model.rods["AB"], Hovered)
-    picture = picture_of(model)
+    picture = picture_of(model, pointer=(0.0, 0.0))
     view = view_of(model)
     a, b, c = view.camera.to_pixels(model.particles.position)
     strokes = reversed(marks_of(picture, Strokes))  # the first of each colour, since the legend comes later

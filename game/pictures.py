@@ -1,0 +1,126 @@
+"""Pictures of sessions, windows and plots: as files for reports, and as colours for animations."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import replace
+from functools import partial
+from pathlib import Path
+from typing import Literal
+
+import numpy as np
+from numpy.typing import NDArray
+
+from components.camera import Camera, Viewport
+from components.model import Model
+from components.slider import SliderStack
+from components.toolbar import Toolbar
+from components.view import MARGIN, Plot, Status, View, drawn_places
+from game.documents import models
+from game.session import Session
+from systems.render.labels import Placed
+from systems.render.marks import Owner, Picture, Points
+from systems.render.pdf import as_pdf
+from systems.render.picture import compose
+from systems.render.plots import draw_plot
+from systems.render.svg import as_svg
+from systems.render.theme import load_theme
+
+Size = tuple[int, int]
+Background = Literal["theme", "white", "transparent"]
+
+_WHITE = (255, 255, 255, 255)
+
+
+def render(
+    session: Session, path: str | Path, size: Size, theme: str = "light", background: Background = "theme"
+) -> None:
+    """Draw a session to a file in the format of its suffix, without a display. Raises OSError if it cannot be written."""
+    session.exaggerate()
+    session.update_view()
+    view = on_paper(session.view, Camera(viewport=Viewport(0, 0, *size)))
+    view.camera.fit(drawn_places(session.model), MARGIN, view.room, view.pixel_ratio)
+    write([(session.model, view)], path, size, theme, background)
+
+
+def on_paper(view: View, camera: Camera | None = None) -> View:
+    """A view without what only a person at the window needs: bars, panels, sliders, and what is pointed at."""
+    return replace(
+        view,
+        camera=camera or view.camera,
+        toolbar=Toolbar(),
+        sliders=SliderStack(),
+        heading="",
+        status=Status(time=None, speed=view.status.speed),
+        readouts=(),
+        shares=False,
+        preview=None,
+        pointer=None,
+        pointed=None,
+        help=0,
+    )
+
+
+def write(
+    stages: Sequence[tuple[Model, View]],
+    path: str | Path,
+    size: Size,
+    theme: str = "light",
+    background: Background = "theme",
+) -> None:
+    """Draw models in their views to a file in the format of its suffix, as a whole or not at all. Raises OSError."""
+    colours, path = load_theme(theme), Path(path)
+    if background == "white":
+        colours = replace(colours, background=_WHITE)
+    pictures = [compose(model, view, colours) for model, view in stages]
+    if background == "transparent":
+        pictures = [replace(picture, background=None) for picture in pictures]
+    title, suffix = stages[0][0].title or "Pinjoint", path.suffix.lower()
+    if suffix == ".svg":
+        paths = [partial(path_of, model) for model, _ in stages]
+        made = as_svg(list(zip(pictures, paths, strict=True)), size, title)
+    elif suffix == ".pdf":
+        made = as_pdf(pictures, size, title)
+    else:
+        made = _as_image(pictures, size, suffix, clear=background == "transparent")
+    models.replace(path, made)
+
+
+def _as_image(pictures: Sequence[Picture], size: Size, suffix: str, *, clear: bool) -> bytes:
+    """Pictures as pixels."""
+    from systems.render.pygame_images import as_clear_png, as_image  # pygame takes a while to import
+
+    return as_clear_png(pictures, size) if clear else as_image(pictures, size, suffix)
+
+
+def path_of(model: Model, owner: Owner) -> str:
+    """The path of an element that marks belong to, such as "rods.AB"."""
+    table, row = owner
+    return f"{table}.{model.tables[table].names[row]}"
+
+
+def frame(
+    session: Session, size: Size, theme: str, around: Points, placed: Placed | None = None
+) -> NDArray[np.uint8]:
+    """A moment of a run with its status as colours, shape (height, width, 3), showing all these points (n, 2).
+
+    placed: where labels were in the last of several pictures, see compose().
+    """
+    from systems.render.pygame_images import as_colours
+
+    session.update_view()
+    status = replace(session.view.status, hint="")  # a picture takes no keys
+    camera = Camera(viewport=Viewport(0, 0, *size))
+    view = replace(session.view, camera=camera, toolbar=Toolbar(), sliders=SliderStack(), status=status)
+    view.heading = ""
+    view.camera.fit(around, MARGIN, view.room, view.pixel_ratio)
+    return as_colours([compose(session.model, view, load_theme(theme), placed)], size)
+
+
+def plot_png(plot: Plot, path: Path, theme: str = "light", size: Size = (900, 560)) -> None:
+    """Draw a plot to a PNG file, without a display. Raises OSError if it cannot be written."""
+    colours, unit = load_theme(theme), 1.5
+    box = 16.0 * unit, 8.0 * unit, size[0] - 32.0 * unit, size[1] - 16.0 * unit
+    marks = draw_plot(plot, box, colours, unit, None)
+    picture = Picture(Viewport(0, 0, *size), colours.background, marks)
+    models.replace(path, _as_image([picture], size, ".png", clear=False))

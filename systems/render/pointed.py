@@ -1,0 +1,97 @@
+"""Pointed: the numbers of the element under the pointer, beside it."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from components.handle import Handle
+from components.particle import Particle
+from components.rod import Rod
+from components.tags import Hovered
+from systems.render.clip import bounds, clip_segments
+from systems.render.marks import Mark, Panel, Points, Text
+from systems.render.sheet import Sheet
+from systems.render.symbols import SUPPORT_DEPTH
+from systems.render.theme import faded
+from systems.render.typography import line_height, text_width
+
+_PAD, _GAP, _NEAR = 8.0, 14.0, 16.0  # points: inside the box, between columns, to the pointer
+_MOST = 8  # lines
+_AROUND = [(1, 1), (1, -1), (-1, 1), (-1, -1), (0, 1), (0, -1), (1, 0), (-1, 0)]
+
+Box = tuple[float, float, float, float]  # left, top, width, height
+
+
+def draw_pointed(sheet: Sheet) -> list[Mark]:
+    """A box with the results of the element under the pointer, near that, where it covers neither it nor much else."""
+    pointed, handle = sheet.view.pointed, _hovered(sheet)
+    if pointed is None or handle is None or sheet.view.preview is not None or sheet.view.help:
+        return []
+    u, theme, size, rows = sheet.unit, sheet.theme, sheet.font(12.0), pointed.rows[:_MOST]
+    names = max((text_width(name, size) for name, _ in rows), default=0)
+    values = max((text_width(value, size, "semibold") for _, value in rows), default=0)
+    inner = max(names + _GAP * u + values, text_width(pointed.title, size, "semibold"))
+    line = line_height(size)
+    place = _place(sheet, handle, inner + 2 * _PAD * u, (len(rows) + 1) * line + _PAD * u)
+    if place is None:
+        return []
+    left, top, width, height = place
+    x, y = left + _PAD * u, top + (_PAD * u + line) / 2
+    marks: list[Mark] = [
+        Panel(left, top, width, height, 5.0 * u, faded(theme.panel, 0.96), theme.line),
+        Text(pointed.title, x, y, size, theme.text, "semibold"),
+    ]
+    for name, value in rows:
+        y += line
+        marks.append(Text(name, x, y, size, theme.muted))
+        marks.append(Text(value, x + inner, y, size, theme.text, "semibold", "right"))
+    return marks
+
+
+def _hovered(sheet: Sheet) -> Handle | None:
+    for name, table in sheet.model.tables.items():
+        for row in sheet.tagged(Hovered, name).tolist():
+            handle: Handle = table[row]
+            return handle
+    return None
+
+
+def _place(sheet: Sheet, handle: Handle, width: float, height: float) -> Box | None:
+    """The box beside the pointer that covers least, and never the element; None where there is no such place."""
+    (low, high), pointer = bounds(sheet.viewport), sheet.view.pointer or sheet.view.camera.middle
+    best: tuple[float, Box] | None = None
+    for rank, (reach, (across, down)) in enumerate((r, way) for r in (1.0, 2.0, 4.0, 7.0) for way in _AROUND):
+        gap = reach * _NEAR * sheet.unit
+        left = pointer[0] + across * (gap + width / 2) - width / 2
+        top = pointer[1] + down * (gap + height / 2) - height / 2
+        if left < low[0] or top < low[1] or left + width > high[0] or top + height > high[1]:
+            continue
+        if _covers(sheet, handle, (left, top, width, height)):
+            continue
+        hidden = sheet.occupancy.crossed(left, top, width, height) + 4.0 * rank
+        if best is None or hidden < best[0]:
+            best = hidden, (left, top, width, height)
+    return best[1] if best is not None else None
+
+
+def _covers(sheet: Sheet, handle: Handle, box: Box) -> bool:
+    """Whether a box lies over any of the lines or the disc of an element."""
+    start, end, reach = _outline(sheet, handle)
+    corner, size = np.array(box[:2]), np.array(box[2:])
+    covered = clip_segments(start, end, corner - reach, corner + size + reach)[2]
+    return len(covered) > 0
+
+
+def _outline(sheet: Sheet, handle: Handle) -> tuple[Points, Points, float]:
+    """The lines of an element in pixels, from and to, and how far it reaches from them."""
+    u = sheet.unit
+    if isinstance(handle, Particle):
+        at = sheet.centres[[handle.row]]
+        return at, at, float(sheet.radii[handle.row]) + (SUPPORT_DEPTH * u if any(handle.fixed) else 2.0 * u)
+    if isinstance(handle, Rod):
+        first, last = sheet.ends[handle.row]
+        return sheet.centres[[first]], sheet.centres[[last]], 4.0 * u
+    table = sheet.model.tables[handle.table]
+    points = [getattr(table, point)[handle.row] for point in handle.points]
+    places = sheet.view.camera.to_pixels(np.array(points))
+    return places, np.roll(places, -1, axis=0), 4.0 * u

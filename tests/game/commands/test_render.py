@@ -1,0 +1,95 @@
+"""`pinjoint render`: pictures for reports."""
+
+from __future__ import annotations
+
+import os
+
+os.environ.setdefault("SDL_VIDEODRIVER", "dummy")
+
+import xml.etree.ElementTree as ET
+from pathlib import Path
+
+import numpy as np
+import pygame
+import pytest
+
+from game.app import App
+from game.commands.command_line import main
+from game.documents import models
+
+SVG = "{http://www.w3.org/2000/svg}"
+RUN = ["isostatic", "--until-rest", "--diagrams"]
+
+
+def rendered(path: Path, *words: str) -> Path:
+    assert main(["render", *RUN, "--size", "640x480", "--output", str(path), *words]) == 0
+    return path
+
+
+def colours(path: Path) -> np.ndarray:
+    surface = pygame.image.load(path)
+    return np.dstack([pygame.surfarray.array3d(surface), pygame.surfarray.array_alpha(surface)]).astype(int)
+
+
+def test_a_transparent_picture_over_white_is_the_opaque_one(tmp_path: Path) -> None:
+    opaque = colours(rendered(tmp_path / "a.png"))
+    clear = colours(rendered(tmp_path / "b.png", "--background", "transparent"))
+    assert clear[-1, -1, 3] == 0
+    assert (clear[..., 3] == 0).mean() > 0.5
+    share = clear[..., 3:] / 255
+    # Levels are whole numbers in each of the two pictures that it is computed from, and in itself.
+    assert np.abs(share * clear[..., :3] + 255 * (1 - share) - opaque[..., :3]).max() <= 2.0
+
+
+def test_no_status_bar_stands_in_a_picture_for_a_report(tmp_path: Path) -> None:
+    root = ET.parse(rendered(tmp_path / "a.svg")).getroot()
+    texts = {text.text for text in root.iter(f"{SVG}text")}
+    assert {"AB", "−28.34 kN"} <= texts
+    assert not [text for text in texts if text and (text.startswith("t =") or text == "At rest")]
+    assert root.find(f"{SVG}rect").get("fill") == "#ffffff"
+    clear = ET.parse(rendered(tmp_path / "b.svg", "--background", "transparent")).getroot()
+    assert clear.find(f"{SVG}rect").get("width") == "1"  # a line of the grid: there is no background
+
+
+def test_walls_have_groups_too(tmp_path: Path) -> None:
+    path = tmp_path / "a.svg"
+    assert main(["render", "pile", "--output", str(path)]) == 0
+    groups = {group.get("data-path"): group for group in ET.parse(path).getroot().iter(f"{SVG}g")}
+    walls = {f"walls.{name}" for name in models.load("pile").tables["walls"].names}
+    assert walls
+    assert walls <= set(groups)
+    assert len(groups["walls.floor"]) == 3  # a line and two round ends
+
+
+@pytest.mark.parametrize(
+    ("words", "told"),
+    [
+        (["a.jpg", "--background", "transparent"], "a .jpg has none"),
+        (["a.gif", "--background", "white"], "has that of its theme"),
+        (["a.png", "--background", "white", "--theme", "dark"], "choose a theme for light paper"),
+        (["a.tiff"], "ends with .png or .svg or .pdf"),
+    ],
+)
+def test_what_does_not_go_together_is_refused(
+    words: list[str], told: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    assert main(["render", "isostatic", "--output", str(tmp_path / words[0]), *words[1:]]) == 2
+    assert told in capsys.readouterr().err
+    assert not list(tmp_path.iterdir())
+
+
+def test_pictures_of_the_window(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.chdir(tmp_path)
+    app = App(models.load("isostatic"))
+    app.next_frame(wait=False)
+    for key in ("f12", "shift+f12", "ctrl+f12", "shift+f12"):
+        app.session.press(key)
+        app.next_frame(wait=False)
+    assert sorted(path.name for path in tmp_path.iterdir()) == [
+        *("pinjoint-2.svg", "pinjoint.pdf", "pinjoint.png", "pinjoint.svg")
+    ]
+    texts = [text.text for text in ET.parse(tmp_path / "pinjoint.svg").getroot().iter(f"{SVG}text")]
+    assert "AB" in texts
+    assert "Paused" not in texts
+    assert pygame.image.load(tmp_path / "pinjoint.png").get_size() == app.render.surface.get_size()
+    app.close()

@@ -1,0 +1,115 @@
+"""The numbers of the element under the pointer: right, and never over it."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from components.handle import Handle
+from components.load import factor_at
+from components.tags import Hovered
+from components.view import drawn_positions
+from game import Session
+from systems.render.clip import clip_segments
+from systems.render.marks import Panel, Text
+from systems.render.picture import compose
+from systems.render.theme import load_theme
+
+LIGHT = load_theme("light")
+
+
+def told(session: Session, handle: Handle) -> dict[str, str]:
+    """What the picture says of an element, by title."""
+    point_at(session, handle)
+    pointed = session.view.pointed
+    return dict(pointed.rows) if pointed is not None else {}
+
+
+def point_at(session: Session, handle: Handle) -> None:
+    places = drawn_positions(session.model)
+    if handle.table == "rods":
+        place = places[list(session.model.rods.between[handle.row])].mean(axis=0)
+    else:
+        place = places[handle.row] if handle.table == "particles" else handle.start
+    session.view.pointer = tuple(session.view.camera.to_pixels(place).tolist())
+    session.model.tag_only([handle], Hovered)
+    session.update_view()
+
+
+def settled(model: str, size: tuple[int, int] = (1000, 720)) -> Session:
+    session = Session.open(model)
+    session.resize(*size)
+    session.settle()
+    return session
+
+
+def test_a_rod_tells_its_force_strain_utilisation_and_length() -> None:
+    session = settled("isostatic")
+    assert told(session, session.rods["BC"]) == {
+        "axial force": "−198.0 kN",
+        "utilisation": "92.1 %",
+        "strain": "−1.203 ‰",
+        "length": "1.413 m",
+    }
+
+
+def test_a_particle_tells_its_displacement_reactions_speed_and_loads() -> None:
+    session = settled("braced_portal")
+    rows = told(session, session.particles["A"])
+    assert {"displacement", "reaction", "speed"} <= set(rows)
+    assert rows["displacement"] == "x 0   y 0 mm"
+    rows = told(session, session.particles["D"])
+    assert rows["load 1"] == "(50, 0) of (50, 0) kN"  # it has grown to all of it
+
+
+def test_a_load_that_grows_tells_what_it_is_now() -> None:
+    session = Session.open("braced_portal")
+    [load] = session.model.loads
+    half = load.history["start"] + 0.5 * load.history["duration"]
+    assert factor_at(load.history, half) == pytest.approx(0.5)
+    session.run(time=half)
+    assert told(session, session.particles["D"])["load 1"] == "(25, 0) of (50, 0) kN"
+
+
+def test_walls_tell_their_places_in_metres() -> None:
+    session = Session.open("pile")
+    rows = told(session, session.model.tables["walls"]["floor"])
+    assert rows["start"] == "(0, 0) m"
+    assert rows["end"] == "(1.6, 0) m"
+
+
+def test_nothing_is_told_without_a_pointer_or_while_something_is_drawn() -> None:
+    session = settled("isostatic")
+    point_at(session, session.rods["AB"])
+    assert "axial force" in compose(session.model, session.view, LIGHT).texts
+    session.view.help = 1
+    assert "axial force" not in compose(session.model, session.view, LIGHT).texts
+    session.view.help = 0
+    session.model.tag_only([], Hovered)
+    session.update_view()
+    assert session.view.pointed is None
+
+
+@pytest.mark.parametrize("size", [(640, 480), (1280, 800)])
+@pytest.mark.parametrize("model", ["isostatic", "braced_portal", "warren_bridge", "tower", "von_mises"])
+def test_it_lies_in_the_picture_and_not_over_its_element(model: str, size: tuple[int, int]) -> None:
+    session = settled(model, size)
+    told_of = 0
+    for handle in [*list(session.model.rods)[::5], *list(session.model.particles)[::5]]:
+        point_at(session, handle)
+        picture = compose(session.model, session.view, LIGHT)
+        title = session.model.describe(handle)
+        found = [i for i, mark in enumerate(picture.marks) if isinstance(mark, Text) and mark.text == title]
+        if not found:
+            continue
+        told_of += 1
+        box = picture.marks[found[-1] - 1]
+        assert isinstance(box, Panel)
+        low, high = np.array([box.left, box.top]), np.array([box.left + box.width, box.top + box.height])
+        canvas = session.view.canvas
+        assert (low >= [canvas.left, canvas.top]).all()
+        assert (high <= [canvas.right, canvas.bottom]).all()
+        ends = list(session.model.rods.between[handle.row]) if handle.table == "rods" else [handle.row] * 2
+        start, end = session.view.camera.to_pixels(drawn_positions(session.model)[ends])
+        assert not len(clip_segments(start[None], end[None], low, high)[2]), title
+    assert told_of > 1
