@@ -35,7 +35,7 @@ Meaning = tuple[str | None, Vector]  # the name of an action, if any, and the pi
 
 
 def meaning(context: Context, key: str, pixel: Vector) -> Meaning:
-    """What a key or button means with the pointer at a pixel: to an open menu, the help, the toolbar, a slider, or the scene."""
+    """What a key or button means at a pixel: to an open menu, the help, the toolbar, a slider, or the scene."""
     view = context.view
     if view.menu is not None and (found := _in_menu(context, key, pixel)) is not None:
         return found

@@ -6,6 +6,7 @@ import math
 from collections.abc import Sequence
 from typing import Any
 
+from components.box import Box
 from components.field import Field
 from components.handle import Handle
 from components.load import Load
@@ -158,6 +159,12 @@ def add_slider(context: Context, elements: Sequence[Handle], field: str, axis: s
     _set(context, (*model.sliders, slider), "new slider")
     context.notice = f"Slider at the lower left: {_title(model, aims[0], first, found)}"
     return slider
+
+
+def add_slider_for(context: Context, box: Box) -> Slider:
+    """Put a slider for the number in a box of properties on the canvas. Raises Refusal."""
+    _, field, axis = f"{box.target}.".split(".")[:3]
+    return add_slider(context, box.elements, field, axis)
 
 
 def _around(model: Model, field: Field[Any], value: float, aims: tuple[Aim, ...]) -> Slider:

@@ -144,6 +144,7 @@ _BY_PURPOSE: dict[str, tuple[Binding, ...]] = {
         Binding("ctrl+c", "copy text", FORMS, "copy"),
         Binding("ctrl+x", "cut text", FORMS, "cut"),
         Binding("ctrl+v", "paste text", FORMS, "paste"),
+        Binding("ctrl+l", "slider of box", (PROPERTIES,), "slider for the number in the box"),
         Binding("wheel up", "scroll up", FORMS, "scroll up"),
         Binding("wheel down", "scroll down", FORMS, "scroll down"),
         Binding("page up", "page up", FORMS, "", repeats=True),

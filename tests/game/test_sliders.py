@@ -234,6 +234,22 @@ def test_any_number_can_have_a_slider(table: str, field: str, axis: str, range_:
     assert session.can_undo
 
 
+def test_a_box_of_properties_makes_one_for_its_number() -> None:
+    session = opened()
+    session.select(session.particles["B"])
+    session.press("return")
+    session.press("ctrl+l")
+    assert "Click the box" in session.notice
+    for box in ("name", "applied force y", "radius"):
+        session.click_box(box)
+        session.press("ctrl+l")
+    session.press("escape")
+    session.press("escape")
+    assert session.scene == "pause"
+    titles = [p.control.title for p in session.view.slider_places]
+    assert titles == ["displacements", "B: force y", "B: radius"]
+
+
 def test_what_is_no_number_has_none() -> None:
     session = opened()
     rod, particle = session.rods["AB"], session.particles["B"]

@@ -6,7 +6,17 @@ from components.field import Vector
 from components.slider import Place, under
 from game.editor.context import Action, Context, action
 from game.editor.gestures.sliding import Slide
-from game.editor.sliders import SCALE, add_usual_slider, move_to, remove_slider, scale_to, slider_of
+from game.editor.scenes.form import FormScene
+from game.editor.sliders import (
+    SCALE,
+    add_slider_for,
+    add_usual_slider,
+    move_to,
+    remove_slider,
+    scale_to,
+    slider_of,
+)
+from systems.edit import Refusal
 
 WHEEL = 0.02  # of its length, by which the wheel moves a slider
 
@@ -64,6 +74,16 @@ def _step(by: float) -> Action:
             move_to(context, place.control.key, value)
 
     return act
+
+
+@action("slider of box")
+def _slider_of_box(context: Context, pixel: Vector) -> None:
+    """A slider for what the selected box of properties holds."""
+    scene = context.scenes.active
+    box = scene.form.selected if isinstance(scene, FormScene) else None
+    if box is None:
+        raise Refusal("Click the box of the number first; then this makes a slider for it.")
+    add_slider_for(context, box)
 
 
 action("slider up")(_step(WHEEL))
