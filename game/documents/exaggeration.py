@@ -16,19 +16,15 @@ from game.documents.shapes import extent
 from systems.islands import lowest_joined
 from systems.physics.pace import expected_displacement, loaded_mode
 
-DRAWN = (
-    0.08  # of the structure's size, which the largest displacement is drawn as at most when a factor is chosen
-)
+DRAWN = 0.08  # of the structure's size: the largest displacement as drawn, at most, when a factor is chosen
 KEPT = (0.02, 0.25)  # of the size, drawn, within which a factor stays as it is
 FROM = 5.0  # the smallest factor; what would need less is seen without one
+TRUE = 1.0  # the factor of motions that are seen without one
 LEAST = 1e-7  # of the size: smaller displacements are rounding
-LARGEST = (
-    2000  # rods up to which displacements are expected by theory; those of larger structures are looked at
-)
+LARGEST = 2000  # rods up to which displacements are expected by theory; larger structures are looked at
+LARGEST_YIELDING = 60  # rods up to which statics with yielding takes no noticeable time
 
 Displacement = NDArray[np.float64]
-
-TRUE = 1.0  # the factor of motions that are seen without one
 
 
 class Exaggeration:
@@ -98,7 +94,12 @@ def _yields(model: Model, displacement: Displacement) -> bool:
 
 
 def _with_yielding(model: Model, elastic: Displacement) -> Displacement | None:
-    """The displacement (n, 2) of statics (m) from the beginning; None if the model collapses."""
+    """The displacement (n, 2) of statics (m) from the beginning; None if the model collapses.
+
+    Of larger structures the elastic one, unless they have no rod to spare.
+    """
+    if model.rods.count > LARGEST_YIELDING:
+        return elastic if model.rods.count > (model.particles.mobility > 0.0).sum() else None
     from systems.statics.settle import Start, settle  # scipy
 
     supports = np.where(model.particles.fixed, elastic, 0.0)
