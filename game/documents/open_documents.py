@@ -17,6 +17,7 @@ from components.model import Model
 from components.snapshot import Snapshot
 from game.documents import models
 from game.documents.assessment import Assessment
+from game.documents.chronicle import Chronicle
 from game.documents.exaggeration import Exaggeration
 from game.documents.history.history import History
 from game.documents.history.log import Edit, Entry
@@ -87,6 +88,7 @@ class OpenDocument:
         self.assessment = Assessment(model, self.simulation)
         self.shapes = Shapes(model)
         self.exaggeration = Exaggeration(model)
+        self.chronicle = Chronicle(model, self.simulation)
         self.file = file
         self.recovery: Path | None = None
         self.saved = self._last_edit = model.revision
@@ -128,6 +130,7 @@ class OpenDocument:
         self._note_undeformed()
         if self.at_beginning:
             self.beginning = self.simulation.present()
+            self.chronicle.look()
             self.assessment.begin(self.beginning)
 
     def restart(self) -> None:

@@ -103,8 +103,10 @@ _BY_PURPOSE: dict[str, tuple[Binding, ...]] = {
     ),
     "Results": (
         Binding("i", "toggle diagrams", LIVE, "force diagrams on / off"),
+        Binding("a", "toggle utilisation", LIVE, "share of the strength in colours, on / off"),
         Binding("m", "toggle theory", LIVE, "theory beside the run, on / off"),
         Binding("j", "toggle energy", LIVE, "energy account on / off"),
+        Binding("n", "toggle events", LIVE, "what happened, on / off"),
         Binding("b", "next shape", LIVE, "mechanisms, natural modes, none"),
         Binding("n", "new slider", LIVE, "slider for the force or stiffness selected"),
         Binding("k", "force method", (PAUSE,), "force method"),
@@ -198,6 +200,7 @@ WITHOUT_KEY: tuple[Binding, ...] = (
     Binding("", "toggle cable", LIVE, "cable: tension only"),
     Binding("", "release", (PAUSE,), "release it in the force method"),
     Binding("", "environment", LIVE, "properties of the environment"),
+    Binding("", "more tools", (*LIVE, FORCE_METHOD), "more"),
 )
 
 # The actions of the toolbar, in groups from the top to the bottom.

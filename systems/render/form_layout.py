@@ -102,7 +102,8 @@ def lay_out(form: Form, viewport: Viewport, unit: float) -> FormLayout:
     top = header + (16.0 if low else 24.0) * u
     bottom = v.top + v.height - (22.0 if low else 58.0) * u
     close = Rectangle(left + width - CLOSE * u, header - CLOSE * u / 2, CLOSE * u, CLOSE * u)
-    fixed, accept, heading_width = [], None, width - (CLOSE + 8.0) * u
+    fixed: list[Place] = []
+    accept, heading_width = None, width - (CLOSE + 8.0) * u
     if _has_files(form):
         fixed, accept, heading_width = _name_place(form, left, width, v, u)
         top = accept.bottom + 22.0 * u

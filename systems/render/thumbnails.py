@@ -83,7 +83,8 @@ def _corners(mark: Mark) -> Points:
             shape = np.concatenate([polygon.reshape(-1, 2) for _, polygon in parts])
             across, down = np.array([[1, 0], [0, 1], [-1, 0], [0, -1]])[mark.turns % 4]
             turned = shape @ np.array([[across, down], [-down, across]], dtype=np.float64)
-            return (mark.at[:, None] + turned).reshape(-1, 2)
+            placed: Points = (mark.at[:, None] + turned).reshape(-1, 2)
+            return placed
         case Rectangles():
             return np.concatenate([mark.boxes[:, :2], mark.boxes[:, :2] + mark.boxes[:, 2:]]).astype(np.float64)
         case _:

@@ -45,7 +45,8 @@ Numbers that a person moves on the canvas, in model files only:
             {"of": ["rods.AB.stiffness", "rods.BC.stiffness"], "from": 1e4, "to": 1e6, "logarithmic": true, "title": "EA"}]
 ```
 
-* `of`: the path of a number, or several, which all get the value. `from`, `to`: its ends, in the units above; either may be larger.
+* `of`: the path of a number, or several, which all get the value.
+* `from`, `to`: its left and its right end, in the units above; either may be larger.
 * `logarithmic`: equal ways are equal ratios. `title`: what it is called; left out, after its first path.
 """
 ROLES = {Role.DOCUMENT: "set", Role.LOOK: "drawn", Role.STATE: "moves", Role.DERIVED: "computed"}
