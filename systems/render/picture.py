@@ -12,7 +12,7 @@ from systems.render.arrows import draw_loads, draw_velocities
 from systems.render.diagrams import draw_particle_diagrams, draw_rod_diagrams
 from systems.render.labels import Placed, place_labels
 from systems.render.marks import Picture
-from systems.render.overlays import BAR, draw_notice, draw_overlays, draw_scale
+from systems.render.overlays import BAR, draw_notice, draw_overlays, draw_scale, place_scale
 from systems.render.page import draw_page
 from systems.render.panel import compose_form
 from systems.render.pointed import draw_pointed
@@ -89,8 +89,14 @@ def _composed(sheet: Sheet) -> tuple[Picture, list[Rectangle]]:
     readouts, panels = draw_readouts(sheet, room)
     overlays += readouts
     overlays += draw_notice(sheet, room)
+    scale = place_scale(sheet, room) if model.particles.count else None
     labels = place_labels(sheet.labels, sheet.occupancy, sheet.unit, sheet.placed)
+    over = [
+        *draw_scale(sheet, scale),
+        *draw_flashes(sheet),
+        *draw_preview(sheet),
+        *overlays,
+        *draw_pointed(sheet),
+    ]
     sheet.placed |= sheet.scales
-    scale = draw_scale(sheet, room) if model.particles.count else []
-    over = [*scale, *draw_flashes(sheet), *draw_preview(sheet), *overlays, *draw_pointed(sheet)]
     return Picture(sheet.viewport, theme.background, [*sheet.marks, *labels, *over]), panels
