@@ -108,7 +108,7 @@ _BY_PURPOSE: dict[str, tuple[Binding, ...]] = {
         Binding("j", "toggle energy", LIVE, "energy account on / off"),
         Binding("q", "toggle events", LIVE, "what happened, on / off"),
         Binding("b", "next shape", LIVE, "mechanisms, natural modes, none"),
-        Binding("n", "new slider", LIVE, "slider for the force or stiffness selected"),
+        Binding("q", "new slider", LIVE, "slider for the force or stiffness selected"),
         Binding("k", "force method", (PAUSE,), "force method"),
     ),
     "Force method": (

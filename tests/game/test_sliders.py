@@ -185,14 +185,14 @@ def test_a_value_that_cannot_be_is_said_and_not_taken() -> None:
     ("select", "title", "share"),
     [(("rods", "AB"), "AB: stiffness", 0.5), (("particles", "B"), "B: force y", 0.4)],
 )
-def test_n_makes_a_slider_for_what_is_selected(select: tuple[str, str], title: str, share: float) -> None:
+def test_q_makes_a_slider_for_what_is_selected(select: tuple[str, str], title: str, share: float) -> None:
     session = opened()
-    session.press("n")
+    session.press("q")
     assert "Select" in session.notice
     session.select(session.table(select[0])[select[1]])
-    session.press("n")
+    session.press("q")
     assert place(session, title).control.share == pytest.approx(share, abs=0.11)
-    session.press("n")
+    session.press("q")
     assert "already" in session.notice
     assert len(session.model.sliders) == 1
     assert session.undo() == "new slider"
