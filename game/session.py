@@ -201,6 +201,7 @@ class Session(Context):
             with heeding_mods(simulation), self.without_frames(), watched(simulation):
                 yield simulation
         finally:
+            document.chronicle.look()
             if not self.time_passes:
                 document.history.end_run()
 
@@ -441,9 +442,9 @@ class Session(Context):
             stages.append((self._blank, self.footer))
         return stages
 
-    def update_view(self) -> None:
-        """Bring what the view says about the run up to date."""
-        show(self)
+    def update_view(self, elapsed: float = 0.0) -> None:
+        """Bring what the view says about the run up to date, so many seconds after the last time."""
+        show(self, elapsed)
         self.offer_tools()
 
 

@@ -19,6 +19,7 @@ if TYPE_CHECKING:  # it imports scipy
     from systems.statics.verify import Comparison, Row, Theories
 
 MOST_ELEMENTS = 3  # selected elements with a readout of their own
+MOST_EVENTS = 10  # of a run, that are listed
 NOTHING = 1e-12  # of the largest exact value of its kind: round-off, shown as 0
 
 _SHOWN = {"axial_force": ("N", "kN", 1.0), "reaction": ("R", "kN", 1.0), "displacement": ("u", "mm", 1000.0)}
@@ -31,6 +32,16 @@ def own_readouts(context: Context) -> Iterator[Readout]:
         yield from _theory(context)
     if context.view.energy:
         yield _energy(context)
+    if context.view.events:
+        yield _events(context)
+
+
+def _events(context: Context) -> Readout:
+    """What happened in the run, the latest last."""
+    found = [(event.when, event.message.rstrip(".")) for event in context.events]
+    left_out = len(found) - MOST_EVENTS
+    earlier = [(f"{left_out} earlier", "")] if left_out > 0 else []
+    return Readout("What happened", (*earlier, *found[-MOST_EVENTS:]) or (("nothing yet", ""),))
 
 
 def _energy(context: Context) -> Readout:

@@ -103,8 +103,10 @@ _BY_PURPOSE: dict[str, tuple[Binding, ...]] = {
     ),
     "Results": (
         Binding("i", "toggle diagrams", LIVE, "force diagrams on / off"),
+        Binding("a", "toggle utilisation", LIVE, "share of the strength in colours, on / off"),
         Binding("m", "toggle theory", LIVE, "theory beside the run, on / off"),
         Binding("j", "toggle energy", LIVE, "energy account on / off"),
+        Binding("n", "toggle events", LIVE, "what happened, on / off"),
         Binding("b", "next shape", LIVE, "mechanisms, natural modes, none"),
         Binding("k", "force method", (PAUSE,), "force method"),
     ),
