@@ -67,13 +67,13 @@ def scene_meaning(scene: str, key: str) -> str | None:
 
 def _in_menu(context: Context, key: str, pixel: Vector) -> Meaning | None:
     """What a key means to the open menu; None: it is not for the menu, which it closes."""
-    view, layout = context.view, menu_of(context.view)
+    layout = menu_of(context.view)
     assert layout is not None
     if key == "return" or (key in BUTTONS and layout.frame.contains(pixel)):
         number = layout.pointed_at(pixel) if key == "return" else layout.entry_at(pixel)
         entry = layout.menu.entries[number] if number >= 0 else None
         if entry is None or not entry.enabled:
-            return None if key == "return" else ("choose entry", pixel)
+            return "choose entry", pixel  # nothing
         return entry.action, layout.menu.at
     if key in CLICKS:
         return "close menu", pixel
