@@ -94,8 +94,9 @@ class Toolbar:
     def _kept(self) -> Iterator[Groups]:
         """All groups; then without the last ones, but for that at the bottom."""
         yield self.groups
-        for count in range(len(self.groups) - 2, 1, -1) if self.more is not None else ():
-            yield (*self.groups[:count], (self.more, *self.groups[-1]))
+        if self.more is not None:
+            for count in range(len(self.groups) - 2, 1, -1):
+                yield (*self.groups[:count], (self.more, *self.groups[-1]))
 
 
 def _height(groups: Groups, columns: int) -> float:

@@ -89,11 +89,13 @@ def _in_menu(context: Context, key: str, pixel: Vector) -> Meaning | None:
     """What a key means to the open menu; None: it is not for the menu, which it closes."""
     layout = menu_of(context.view)
     assert layout is not None
+    if key in BUTTONS and pixel == layout.menu.pointed:
+        return "close menu", pixel  # the pointer has not moved: what came to lie under it is not meant
     if key == "return" or (key in BUTTONS and layout.frame.contains(pixel)):
         number = layout.pointed_at(pixel) if key == "return" else layout.entry_at(pixel)
         entry = layout.menu.entries[number] if number >= 0 else None
         if entry is None or not entry.enabled:
-            return None if key == "return" else ("choose entry", pixel)
+            return "choose entry", pixel  # nothing
         return entry.action, layout.menu.at
     if key in CLICKS:
         return "close menu", pixel

@@ -105,5 +105,6 @@ _NEEDS: dict[str, Condition] = {
     "next grid": lambda context: context.model.grids.count > 0,
     "force method": lambda context: context.model.rods.count > 0,
     **dict.fromkeys(("release x", "release y"), _guided(lambda guide: guide.axis_wanted is not None)),
+    "pick unknown": _guided(lambda guide: guide.part == 2),
     "release another": _guided(lambda guide: guide.can_release_another),
 }

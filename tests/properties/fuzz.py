@@ -56,16 +56,8 @@ TEXTS = (
     "",
 )
 MOUSE = (
-    "click",
-    "click",
-    "double click",
-    "right click",
-    "ctrl+click",
-    "drag",
-    "ctrl+drag",
-    "wheel up",
-    "wheel down",
-    "drag middle",
+    *("click", "click", "double click", "right click", "ctrl+click", "drag", "ctrl+drag"),
+    *("wheel up", "wheel down", "drag middle"),
 )
 OFTEN = {  # keys that are pressed more often than others, so that every scene is seen as much as any
     "simulation": ("l", "p", "i", "drag", "space"),

@@ -71,7 +71,7 @@ def _close_menu(context: Context, pixel: Vector) -> None:
 
 @action("choose entry", while_drawing=True)
 def _choose_nothing(context: Context, pixel: Vector) -> None:
-    """A press on the menu that hits no entry; one that does performs the action of the entry."""
+    """A press that comes to no entry, or to one that would do nothing; others perform the action of the entry."""
 
 
 @action("open", while_drawing=True)
