@@ -32,7 +32,7 @@ def preview(source: str | Path) -> Model:
 
 
 def solved(path: Path) -> Model | None:
-    """A small structure that never moved, with the forces of linear theory; None if a file has no such. Raises ModelError."""
+    """A small structure that never moved, with forces of linear theory; None if a file has no such. Raises ModelError."""
     from systems.statics.events import NoEquilibrium
     from systems.statics.theory import linear  # scipy
 
