@@ -381,15 +381,15 @@ def _ruler(sheet: Sheet, x: int, y: int, length: int) -> Mark:
 
 
 def _displacements(sheet: Sheet) -> list[str]:
-    """The exaggeration of displacements, or a hint to exaggerate where a structure seems not to move."""
+    """The exaggeration of displacements, if no slider shows it, or a hint where a structure seems not to move."""
     model, scale = sheet.model, sheet.model.settings.displacement_scale
     if scale != 1.0:
-        return [f"displacements ×{scale:g}"]
+        return [] if sheet.view.slider_places else [f"displacements ×{scale:g}"]
     largest = float(np.abs(model.particles.displacement).max(initial=0.0)) if model.rods.count else 0.0
     if not _NOISE < largest * sheet.view.camera.scale < sheet.unit:
         return []
     return [
-        f"displacements up to {written.given(1000.0 * largest, 2)} mm, too small to see; Return sets their scale"
+        f"displacements up to {written.given(1000.0 * largest, 2)} mm, too small to see; their slider enlarges them"
     ]
 
 

@@ -18,6 +18,7 @@ from systems.render.panel import compose_form
 from systems.render.pointed import draw_pointed
 from systems.render.readouts import draw_readouts
 from systems.render.sheet import ABOVE, BELOW, Sheet, measure
+from systems.render.sliders import draw_sliders
 from systems.render.structure import (
     draw_ghost,
     draw_grid,
@@ -84,6 +85,7 @@ def _composed(sheet: Sheet) -> tuple[Picture, list[Rectangle]]:
     for layer in ABOVE:
         sheet.marks += layer(sheet)
     overlays, room = draw_overlays(sheet)
+    overlays += draw_sliders(sheet)
     readouts, panels = draw_readouts(sheet, room)
     overlays += readouts
     overlays += draw_notice(sheet, room)
