@@ -61,13 +61,12 @@ def draw_loads(sheet: Sheet) -> Iterator[Mark]:
     rows = sheet.particles[loaded[sheet.particles]]
     if sheet.view.all_diagrams or not 0 < len(rows) <= MOST:
         return
-    sheet.legend.append("load")
     along, size = _directions(force[rows]), np.hypot(*force[rows].T)
     length = lengths(sheet, FORCES, size, max(float(np.hypot(*force.T).max()), sheet.view.largest_force))
     ahead = np.argmax(along @ DIRECTIONS.T, axis=1)
     crowd = crowding(sheet, rows)
     pushes = crowd[rows, (ahead + 2) % 4] <= crowd[rows, ahead] + 0.1  # towards the particle, if there is room
-    yield from _at_rims(sheet, rows, along, length, sheet.theme.load, "particles.force", pushes)
+    yield from _at_rims(sheet, rows, along, length, sheet.theme.load, "load", pushes)
 
 
 def draw_velocities(sheet: Sheet) -> Iterator[Mark]:
@@ -89,9 +88,8 @@ def draw_velocities(sheet: Sheet) -> Iterator[Mark]:
     rows, speed = rows[seen], speed[seen]
     if not len(rows):
         return
-    sheet.legend.append("velocity")
     length = lengths(sheet, VELOCITIES, speed, max(speed.max(), usual))
-    yield from _at_rims(sheet, rows, _directions(velocity[rows]), length, sheet.theme.ink, "particles.velocity")
+    yield from _at_rims(sheet, rows, _directions(velocity[rows]), length, sheet.theme.ink, "velocity")
 
 
 def _directions(vectors: Values) -> Values:
@@ -107,14 +105,15 @@ def _at_rims(
     along: Values,
     length: Values,
     colour: Colour,
-    kind: str,
+    name: str,
     pushes: NDArray[np.bool_] | bool = False,
 ) -> list[Mark]:
     """Arrows from the rims of particles outwards, or (pushes) ending there."""
     reach = (sheet.radii[rows] + GAP * sheet.unit)[:, None] * along
     back = -reach - length[:, None] * along
     tail = sheet.centres[rows] + np.where(np.reshape(pushes, (-1, 1)), back, reach)
-    return arrows(sheet, rows, tail, along, length, colour, (kind, rows))
+    sheet.explain(name, tail, tail + length[:, None] * along)
+    return arrows(sheet, rows, tail, along, length, colour, (f"particles.{name}", rows))
 
 
 def head_length(length: Values, unit: float) -> Values:

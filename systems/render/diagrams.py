@@ -158,7 +158,7 @@ def _draw_rectangles(sheet: Sheet, name: str, rows: Rows, start: Points, end: Po
             Strokes(first, last, 1.25 * sheet.unit, faded(colour, 0.9), ("rods", np.repeat(rows, 3)))
         )
     if name != "zero":
-        sheet.legend.append(name)
+        sheet.explain(name, np.concatenate([start, start + rise]), np.concatenate([end, end + rise]))
 
 
 def _label_rods(
@@ -291,7 +291,6 @@ def _draw_forces(
     taken: NDArray[np.int64],
 ) -> None:
     """Arrows of forces of one kind along an axis each, with their values."""
-    sheet.legend.append(name)
     # Model y is up, pixels' y is down: a positive vertical force points in direction 3.
     direction = np.where(axis == 0, np.where(value > 0, 0, 2), np.where(value > 0, 3, 1))
     length = lengths(sheet, FORCES, np.abs(value), largest)
@@ -299,6 +298,7 @@ def _draw_forces(
     taken[rows, axis] = outer
     along, parts = DIRECTIONS[direction], (_ARROW_VALUES[name], 2 * rows + axis)
     middle = tail + along * length[:, None] / 2
+    sheet.explain(name, tail, tail + along * length[:, None])
     sheet.marks += arrows(sheet, rows, tail, along, length, getattr(sheet.theme, name), parts)
     sheet.occupancy.block_squares(middle, np.minimum(0.2 * length, 3.0 * sheet.unit))
     _label_arrows(sheet, name, 2 * rows + axis, value, middle, length, outer, outer == direction)

@@ -24,6 +24,7 @@ _SMALL = 300.0  # points; lower viewports leave out optional overlays
 _FEW_LINES = 3  # of a notice
 _NOISE = 1e-6  # pixels; smaller displacements count as none
 BAR = 28.0  # points, height of the status bar
+_ROW, _ROWS_BESIDE = 28.0, 2  # of the legend: points, and how many stand beside the heading
 _STRIP = 19.0  # points, height of the scale
 
 
@@ -228,13 +229,14 @@ _MEANINGS = {
     "load": "load (kN)",
     "reaction": "reaction (kN)",
     "velocity": "velocity",
+    "ghost": "undeformed",
 }
 
 
 def _legend(sheet: Sheet, heading_end: tuple[float, float]) -> tuple[list[Mark], float]:
-    """The colours that occur and what they mean, in a row top right; and the lower end of all at the top.
+    """The colours that occur and what they mean, in rows top right; and the lower end of all at the top.
 
-    It stands beside the heading if there is room, else below it, in several rows if it must.
+    They stand beside the heading if one or two rows have room there, else below it.
     """
     v, u, theme, size = sheet.viewport, sheet.unit, sheet.theme, sheet.font(11.0)
     names = [name for name in _MEANINGS if name in sheet.legend] if sheet.view.legend else []
@@ -246,12 +248,13 @@ def _legend(sheet: Sheet, heading_end: tuple[float, float]) -> tuple[list[Mark],
     entries = [
         wide + 6.0 * u + text_width(_MEANINGS[name], size) for name, wide in zip(names, swatches, strict=True)
     ]
-    beside = sum(entries) + gap * (len(names) - 1) + 2 * pad <= right - heading_end[0] - gap
+    room, whole = right - heading_end[0] - gap - 2 * pad, right - v.left - 10.0 * u - 2 * pad
+    beside = max(entries) <= room and len(_rows(entries, gap, room)) <= _ROWS_BESIDE
     if not beside and v.height < _SMALL * u:
         return [], heading_end[1]
     top = v.top + 10.0 * u if beside else heading_end[1] + 8.0 * u
     marks: list[Mark] = []
-    for first, last in _rows(entries, gap, right - v.left - 10.0 * u - 2 * pad):
+    for first, last in _rows(entries, gap, room if beside else whole):
         width = sum(entries[first:last]) + gap * (last - first - 1) + 2 * pad
         left, x = right - width, right - width + pad
         sheet.occupancy.block(left, top, width, height)
@@ -260,7 +263,7 @@ def _legend(sheet: Sheet, heading_end: tuple[float, float]) -> tuple[list[Mark],
             marks += _swatch(sheet, name, x, top + height / 2, wide)
             marks.append(Text(_MEANINGS[name], x + wide + 6.0 * u, top + height / 2, size, theme.text))
             x += entry + gap
-        top += height + 4.0 * u
+        top += _ROW * u
     return marks, max(top - 4.0 * u, heading_end[1])
 
 
@@ -289,7 +292,7 @@ def _swatch(sheet: Sheet, name: str, x: float, y: float, width: float) -> list[M
         return [Strokes(*ends, 9.0 * u, faded(colour, HALO_OPACITY))]
     if name == "yielding":
         return [Strokes(*ends, 3.0 * u, colour)]
-    if name == "slack":
+    if name in ("slack", "ghost"):
         return [Strokes(*dashed(*ends, width / 5)[:2], 1.25 * u, colour)]
     return [Panel(x, y - 5.0 * u, width, 10.0 * u, 1.0 * u, faded(colour, 0.18), colour)]
 
@@ -365,6 +368,7 @@ def _freest(sheet: Sheet, width: float, room: tuple[float, float]) -> tuple[floa
     low, high = bottom - height - 6.0 * u, top + 6.0 * u
     first, last = v.left + 8.0 * u, v.right - width - 8.0 * u
     places = [(first, low), ((first + last) / 2, low), (last, low), (first, high), (last, high)]
+    places.append((first, max(high - _ROW * u, v.top)))  # beside the last row of the legend
     occupancy = sheet.occupancy
     hides = [(occupancy.is_taken(*at, width, height), occupancy.crossed(*at, width, height)) for at in places]
     return places[hides.index(min(hides))]

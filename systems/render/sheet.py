@@ -12,7 +12,7 @@ from components.camera import Viewport
 from components.model import Model
 from components.tags import Hovered
 from components.view import View, drawn_positions
-from systems.render.clip import bounds, clip_rods
+from systems.render.clip import bounds, clip_rods, clip_segments
 from systems.render.labels import Label, Placed
 from systems.render.marks import Mark, Points
 from systems.render.occupancy import Occupancy
@@ -80,6 +80,13 @@ class Sheet:
         for axis in (0, 1):
             inside &= (points[:, axis] >= low[axis]) & (points[:, axis] <= high[axis])
         return inside
+
+    def explain(self, name: str, start: Points, end: Points) -> None:
+        """Let the legend say what a colour means if any of the lines from `start` to `end`, each (n, 2), can be seen."""
+        if name not in self.legend and len(start):
+            seen = self.sees(start).any() or self.sees(end).any()
+            if seen or len(clip_segments(start, end, *bounds(self.viewport))[2]):
+                self.legend.append(name)
 
     def tagged(self, tag: type, table: str) -> Rows:
         """Rows of the entities of one table that carry a tag; nothing is pointed at in a picture without a pointer."""

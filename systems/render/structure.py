@@ -73,6 +73,7 @@ def draw_ghost(sheet: Sheet) -> None:
     start, end, seen = clip_segments(original[first], original[last], *bounds(sheet.viewport))
     if len(start):
         sheet.occupancy.line(start, end, FAINT)
+        sheet.explain("ghost", start, end)
         start, end, of = dashed(start, end, _DASH * sheet.unit)
         sheet.marks.append(Strokes(start, end, sheet.unit, sheet.theme.ghost, ("rods", rows[seen][of])))
 
@@ -108,7 +109,9 @@ def draw_rods(sheet: Sheet) -> None:
         wider = _SHADED if sheet.shades else 1.35 if colour == theme.yielding else 1.0
         _draw_lines(sheet, mask, width * wider, colour)
     named = {**by_force, "yielding": yielding}
-    sheet.legend += [name for name, wanted in named.items() if len(wanted)]
+    for name, wanted in named.items():
+        shown = sheet.chosen(wanted, sheet.rods)
+        sheet.explain(name, sheet.start[shown], sheet.end[shown])
     sheet.occupancy.line(sheet.start, sheet.end, STRONG, ("rods", sheet.rods))
     sheet.occupancy.parts.lines(("rods", sheet.rods), sheet.start, sheet.end, width / 2)
 
@@ -131,7 +134,7 @@ def _draw_lines(sheet: Sheet, mask: NDArray[np.bool_] | slice, width: float, col
     if slack.any():
         first, last, of = dashed(start[slack], end[slack], _DASH * sheet.unit)
         sheet.marks.append(Strokes(first, last, thin, colour, ("rods", rows[slack][of])))
-        sheet.legend.append("slack")
+        sheet.explain("slack", first, last)
     for kind, thick in ((~cables, width), (cables & ~slack, thin)):
         if kind.any():
             sheet.marks.append(Strokes(start[kind], end[kind], thick, colour, ("rods", rows[kind])))

@@ -49,7 +49,7 @@ def shade_rods(sheet: Sheet) -> None:
     for step in np.unique(level[limited]).tolist():
         colour = shade(sheet.theme, step / (LEVELS - 1))
         sheet.shades.append((np.flatnonzero(limited & (level == step)), colour))
-    sheet.legend.append("utilisation")
+    sheet.explain("utilisation", sheet.start, sheet.end)
     _mark_first(sheet, share)
     _label(sheet, share)
 
@@ -63,7 +63,7 @@ def _mark_first(sheet: Sheet, share: Values) -> None:
     sheet.marks.append(
         Strokes(sheet.start[here], sheet.end[here], _HALO * sheet.unit, colour, ("rods", sheet.rods[here]))
     )
-    sheet.legend.append("first")
+    sheet.explain("first", sheet.start[here], sheet.end[here])
 
 
 def _label(sheet: Sheet, share: Values) -> None:
@@ -80,8 +80,11 @@ def _label(sheet: Sheet, share: Values) -> None:
         places = [
             place for number, place in enumerate(beside_rod(sheet, index, half)) if number % 4 < 2
         ]  # the nearest
+        middle, along = (sheet.start[index] + sheet.end[index]) / 2, sheet.end[index] - sheet.start[index]
+        anchor = np.stack([middle, along[::-1] * [1.0, -1.0] / max(float(np.hypot(*along)), 1e-9)])
+        of, sheet.values = ("rods", row), sheet.values + 1
         label = Label(
-            text, places, size, sheet.theme.text, rank, "semibold", backing, key=key, of=("rods", row)
+            text, places, size, sheet.theme.text, rank, "semibold", backing, "spare", key, of, of, anchor
         )
         sheet.labels.append(label)
 

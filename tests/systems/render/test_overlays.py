@@ -45,6 +45,24 @@ def test_legend_names_only_what_occurs() -> None:
     assert not meanings & set(picture_of(model, legend=False, all_diagrams=True).texts)
 
 
+def test_legend_leaves_out_what_is_not_in_the_picture() -> None:
+    model = triangle()
+    model.rods["BC"].compressive_strength = 198.0
+    fill(model, "rods.yielding", [False, True, False])
+    view = view_of(model, all_diagrams=True)
+    view.camera.zoom(20.0, view.camera.to_pixels((0.5, 0.0)))
+    texts = set(compose(model, view, LIGHT).texts)
+    assert "tension (kN)" in texts
+    assert not {"compression (kN)", "yielding", "load (kN)", "reaction (kN)"} & texts
+
+
+def test_legend_explains_the_undeformed_structure_where_it_is_drawn() -> None:
+    model = triangle()
+    assert "undeformed" not in picture_of(model).texts
+    model.particles["B"].displacement = (0.2, 0.0)
+    assert "undeformed" in picture_of(model).texts
+
+
 def test_heading_and_displacement_scale_are_written() -> None:
     model = triangle()
     model.settings.displacement_scale = 50.0
