@@ -143,6 +143,7 @@ class View:
     pointed: what is said of the element under the pointer, beside it.
     shape: a mechanism or mode that is drawn over the model, with its title below the caption.
     largest_force: that (kN) of pictures beside this one, with which its arrows share a scale; 0: none.
+    free_bodies: rods and joints are drawn apart, with the forces on each.
     theory, energy: show theory beside the run, and its energy account, among them.
     fitted: the camera shows the whole model, and follows the size of the window until a person zooms or pans.
     shares: the model is fitted beside the panels; else panels may cover it. since: by title, the rank in which each
@@ -174,6 +175,7 @@ class View:
     largest_force: float = 0.0
     theory: bool = False
     energy: bool = False
+    free_bodies: bool = False
     shape: Shape | None = None
     pointed: Readout | None = None
     fitted: bool = False

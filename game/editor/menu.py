@@ -68,7 +68,7 @@ def _of_canvas(context: Context) -> Groups:
     groups: list[list[Entry]] = [
         [("place", "new particle here"), "rod", *ADDED_TOOLS, ("paste", "paste here"), "select all"],
         ["toggle run", "restart", "settle"],
-        ["toggle diagrams", "toggle theory", "toggle energy", "next shape"],
+        ["toggle diagrams", "toggle free bodies", "toggle theory", "toggle energy", "next shape"],
         [binding.action for binding in ADDED_BUTTONS],
         ["fit", "zoom in", "zoom out", "new grid", "next grid", "toggle legend", "next theme"],
         ["environment", "screenshot", "toggle full screen", "toggle help"],

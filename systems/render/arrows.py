@@ -13,7 +13,7 @@ from components.rod import nodes
 from components.tags import DiagramShown
 from systems.render.clip import bounds, clip_segments
 from systems.render.labels import STRONG
-from systems.render.marks import Fills, Mark, Points, Strokes
+from systems.render.marks import Fills, Mark, Owners, Points, Strokes, owners
 from systems.render.sheet import DIRECTIONS, Rows, Sheet
 from systems.render.supports import crowding
 from systems.render.theme import Colour
@@ -113,11 +113,13 @@ def _at_rims(
     reach = (sheet.radii[rows] + GAP * sheet.unit)[:, None] * along
     back = -reach - length[:, None] * along
     tail = sheet.centres[rows] + np.where(np.reshape(pushes, (-1, 1)), back, reach)
-    return arrows(sheet, rows, tail, along, length, colour)
+    return arrows(sheet, ("particles", rows), tail, along, length, colour)
 
 
-def arrows(sheet: Sheet, rows: Rows, tail: Points, along: Points, length: Values, colour: Colour) -> list[Mark]:
-    """Arrows of particles from `tail` (n, 2) along unit vectors (n, 2), of so many pixels (n,)."""
+def arrows(
+    sheet: Sheet, whose: Owners, tail: Points, along: Points, length: Values, colour: Colour
+) -> list[Mark]:
+    """Arrows of elements from `tail` (n, 2) along unit vectors (n, 2), of so many pixels (n,)."""
     u = sheet.unit
     tip, across = tail + length[:, None] * along, along[:, ::-1] * [-1.0, 1.0]
     head = np.minimum(HEAD * u, _SHORT_HEAD * length)[:, None]
@@ -127,5 +129,5 @@ def arrows(sheet: Sheet, rows: Rows, tail: Points, along: Points, length: Values
     tail, tip, across, neck, head = tail[seen], tip[seen], across[seen], neck[seen], head[seen]
     sheet.occupancy.line(tail, tip, STRONG)
     points = np.stack([tip, neck + 0.5 * head * across, neck - 0.5 * head * across], axis=1)
-    of = ("particles", rows[seen])
+    of = owners(whose, seen)
     return [Strokes(tail, neck, 2.0 * u, colour, of), Fills(points, colour, of)]

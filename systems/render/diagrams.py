@@ -290,7 +290,7 @@ def _draw_forces(
     taken[rows, axis] = outer
     along = DIRECTIONS[direction]
     middle = tail + along * length[:, None] / 2
-    sheet.marks += arrows(sheet, rows, tail, along, length, getattr(sheet.theme, name))
+    sheet.marks += arrows(sheet, ("particles", rows), tail, along, length, getattr(sheet.theme, name))
     sheet.occupancy.block_squares(middle, 0.2 * length)
     _label_arrows(sheet, name, 2 * rows + axis, value, middle, length, outer)
 

@@ -219,6 +219,7 @@ _MEANINGS = {
     "slack": "slack cable",
     "load": "load (kN)",
     "reaction": "reaction (kN)",
+    "inertia": "inertia −m a (kN)",
     "velocity": "velocity",
 }
 
@@ -267,10 +268,10 @@ def _rows(widths: list[float], gap: float, room: float) -> list[tuple[int, int]]
 def _swatch(sheet: Sheet, name: str, x: float, y: float, width: float) -> list[Mark]:
     """A small sample of what a colour means: a diagram, a yielding rod, a slack cable, an arrow."""
     u, theme = sheet.unit, sheet.theme
-    role = {"slack": "ink", "velocity": "ink"}.get(name, name)
+    role = {"slack": "ink", "velocity": "ink", "inertia": "ink"}.get(name, name)
     colour = getattr(theme, role)
     ends = np.array([[x, y]]), np.array([[x + width, y]])
-    if name in ("load", "reaction", "velocity"):
+    if name in ("load", "reaction", "inertia", "velocity"):
         return [Stamps("arrow", ends[0], width, u, colour, colour)]
     if name == "yielding":
         return [Strokes(*ends, 3.0 * u, colour)]

@@ -1,0 +1,180 @@
+"""Free bodies: joints and rods drawn apart, with the forces on each as arrows with their values."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+from numpy.typing import NDArray
+
+from components import written
+from components.free_body import Force, left_over, on_joint, pulls
+from systems.render.arrows import FORCES, GAP, arrows, lengths
+from systems.render.clip import bounds
+from systems.render.diagrams import SMALLEST_FORCE
+from systems.render.labels import STRONG, Label, half_size
+from systems.render.marks import Owner, Points, Strokes
+from systems.render.sheet import Sheet
+from systems.render.theme import Colour, faded
+
+MOST = 150  # rods that are taken apart: of more, arrows would hide one another
+SHORTEST = 74.0  # points: shorter rods stay whole, since there is no room for arrows
+_WIDEST, _SHARE = 84.0, 0.36  # of the gap between a joint and its rod: points, and of the rod
+_CLEAR = math.cos(math.radians(24.0))  # of the angle between an arrow and the rods that leaves both readable
+_ASIDE = 10.0  # points by which an arrow stands beside a rod where all is taken
+_SMALLEST_SHARE = 1e-3  # of the largest force: a smaller one of inertia is told, not drawn
+
+
+def draw_free_bodies(sheet: Sheet) -> None:
+    """Rods with gaps at their joints; in each the two opposite forces; and what else acts on every joint."""
+    force, _ = pulls(sheet.model)
+    long = np.hypot(*(sheet.end - sheet.start).T) >= SHORTEST * sheet.unit
+    if len(sheet.rods) > MOST or not long.any():
+        sheet.notes.append("zoom in to take rods and joints apart")
+        sheet.marks.append(
+            Strokes(sheet.start, sheet.end, 2.0 * sheet.unit, sheet.theme.ink, ("rods", sheet.rods))
+        )
+        return
+    if not long.all():
+        sheet.notes.append("zoom in to take short rods apart, too")
+    largest = _largest(sheet, force)
+    _draw_rods(sheet, force, long, largest)
+    inertia = np.hypot(*left_over(sheet.model).T) > _SMALLEST_SHARE * largest
+    for row in sheet.particles.tolist():
+        others = [f for f in on_joint(sheet.model, row) if f.kind != "rod"]
+        others = [f for f in others if f.kind != "inertia" or inertia[row]]
+        _draw_others(sheet, row, others, largest)
+
+
+def _largest(sheet: Sheet, force: NDArray[np.float64]) -> float:
+    particles = sheet.model.particles
+    acting = [particles.applied_force, particles.reaction, force]
+    return max(SMALLEST_FORCE, *(float(np.abs(values).max(initial=0.0)) for values in acting))
+
+
+def _draw_rods(sheet: Sheet, force: NDArray[np.float64], long: NDArray[np.bool_], largest: float) -> None:
+    """The rods, shortened where they are long enough, and the pairs of forces in the gaps."""
+    u, rods = sheet.unit, sheet.rods
+    way = sheet.end - sheet.start
+    length = np.hypot(*way.T)
+    along = way / np.maximum(length, 1e-9)[:, None]
+    bearing = long & (np.abs(force[rods]) > SMALLEST_FORCE)
+    gap = np.where(bearing, np.minimum(_SHARE * length, _WIDEST * u), 0.0)
+    start, end = sheet.start + gap[:, None] * along, sheet.end - gap[:, None] * along
+    sheet.marks.append(Strokes(start, end, 2.5 * u, sheet.theme.ink, ("rods", rods)))
+    sheet.occupancy.line(start, end, STRONG)
+    for index in np.flatnonzero(long & (np.abs(force[rods]) <= SMALLEST_FORCE)).tolist():
+        thirds = [start[index] + share * way[index] for share in (0.5, 0.3, 0.7)]
+        places = [place for at in thirds for place in _beside(sheet, "0 kN", at, along[index])]
+        row = int(rods[index])
+        _label(sheet, "0 kN", places, sheet.theme.zero, ("rods.end0", row), ("rods", row))
+    for pulled, name in ((True, "tension"), (False, "compression")):
+        bears = long & ((force[rods] > SMALLEST_FORCE) if pulled else (force[rods] < -SMALLEST_FORCE))
+        which = np.flatnonzero(bears)
+        if not len(which):
+            continue
+        sheet.legend.append(name)
+        colour: Colour = getattr(sheet.theme, name)
+        for joint, out, rod_end, side in ((sheet.start, along, start, 0), (sheet.end, -along, end, 1)):
+            radius = sheet.radii[sheet.ends[rods[which], side]]
+            room = gap[which] - radius - GAP * u
+            size = np.minimum(lengths(sheet, FORCES, np.abs(force[rods[which]]), largest), 0.5 * room - GAP * u)
+            rim = joint[which] + (radius + GAP * u)[:, None] * out[which]
+            _draw_pair(sheet, rods[which], rim, rod_end[which], out[which], size, colour, pulled=pulled)
+            middle = 0.5 * (rim + rod_end[which])
+            for row, place, direction in zip(rods[which].tolist(), middle, out[which], strict=True):
+                text = written.force(abs(float(force[row])))
+                _label(
+                    sheet,
+                    text,
+                    _beside(sheet, text, place, direction),
+                    colour,
+                    (f"rods.end{side}", row),
+                    ("rods", row),
+                )
+
+
+def _draw_pair(
+    sheet: Sheet,
+    rows: NDArray[np.intp],
+    rim: Points,
+    rod_end: Points,
+    out: Points,
+    size: NDArray[np.float64],
+    colour: Colour,
+    *,
+    pulled: bool,
+) -> None:
+    """The force of a rod on its joint and the opposite one on the rod, in the gap between them.
+
+    A rod in tension pulls both: the arrows point at each other. In compression they point apart.
+    """
+    step = size[:, None] * out
+    whose = "rods", rows
+    if pulled:
+        sheet.marks += arrows(sheet, whose, rim, out, size, colour)
+        sheet.marks += arrows(sheet, whose, rod_end, -out, size, colour)
+    else:
+        sheet.marks += arrows(sheet, whose, rim + step, -out, size, colour)
+        sheet.marks += arrows(sheet, whose, rod_end - step, out, size, colour)
+
+
+def _draw_others(sheet: Sheet, row: int, forces: list[Force], largest: float) -> None:
+    """Loads, reactions and inertia of a joint, each on the side where rods and other arrows leave most room."""
+    taken = _directions_of_rods(sheet, row)
+    u, centre, radius = sheet.unit, sheet.centres[row], float(sheet.radii[row])
+    for force in forces:
+        size = math.hypot(force.x, force.y)
+        if size <= SMALLEST_FORCE:
+            continue
+        out = np.array([force.x, -force.y]) / size
+        crowd = [max((float(side @ other) for other in taken), default=-1.0) for side in (out, -out)]
+        pushes = crowd[1] <= crowd[0]  # towards the joint, if there is as much room
+        side = -out if pushes else out
+        aside = np.array([-side[1], side[0]]) * (_ASIDE * u if min(crowd) > _CLEAR else 0.0)
+        taken.append(side)
+        length = float(lengths(sheet, FORCES, np.array([size]), largest)[0])
+        rim = centre + (radius + GAP * u) * side + aside
+        tail = rim + length * side if pushes else rim
+        colour: Colour = sheet.theme.ink if force.kind == "inertia" else getattr(sheet.theme, force.kind)
+        sheet.marks += arrows(
+            sheet, ("particles", np.array([row])), tail[None], out[None], np.array([length]), colour
+        )
+        sheet.legend.append(force.kind)
+        text = written.force(size)
+        half = half_size(text, sheet.font(12.0), "semibold", u)
+        far = rim + (length + 4.0 * u + abs(side[0]) * half[0] + abs(side[1]) * half[1]) * side
+        places = [tuple(far.tolist()), *_beside(sheet, text, rim + 0.5 * length * side, side)]
+        key = f"particles.{force.name}"
+        _label(sheet, text, places, colour, (key, row), ("particles", row))
+
+
+def _directions_of_rods(sheet: Sheet, row: int) -> list[Points]:
+    """Unit vectors in pixels along the rods that leave a joint."""
+    found = []
+    for end, sign in ((0, 1.0), (1, -1.0)):
+        for index in np.flatnonzero(sheet.ends[sheet.rods, end] == row).tolist():
+            way = sign * (sheet.end[index] - sheet.start[index])
+            found.append(way / max(float(np.hypot(*way)), 1e-9))
+    return found
+
+
+def _beside(sheet: Sheet, text: str, middle: Points, along: Points) -> list[tuple[float, float]]:
+    """Where a value may stand beside an arrow: on either side of its middle, then further along."""
+    half = half_size(text, sheet.font(12.0), "semibold", sheet.unit)
+    across = np.array([-along[1], along[0]])
+    reach = abs(across[0]) * half[0] + abs(across[1]) * half[1] + 4.0 * sheet.unit
+    steps = [0.0, 9.0 * sheet.unit, -9.0 * sheet.unit]
+    places = [middle + side * reach * across + step * along for step in steps for side in (1.0, -1.0)]
+    return [(float(x), float(y)) for x, y in places]
+
+
+def _label(
+    sheet: Sheet, text: str, places: list[tuple[float, float]], colour: Colour, key: tuple[str, int], of: Owner
+) -> None:
+    low, high = bounds(sheet.viewport)
+    places = [place for place in places if low[0] <= place[0] <= high[0] and low[1] <= place[1] <= high[1]]
+    if places:
+        backing = faded(sheet.theme.background, 0.86)
+        label = Label(text, places, sheet.font(12.0), colour, -1e9, "semibold", backing, "avoid", key, of)
+        sheet.labels.append(label)
