@@ -22,10 +22,8 @@ COMFORTABLE_HEIGHT, LEAST_HEIGHT = 480.0, 240.0  # points that are left in a win
 BETWEEN = " " * 5  # the steps of a hint
 MARGIN = 110.0  # points around a fitted model, room for supports, diagrams and labels
 COLUMN, COLUMN_SHARE, WIDEST_COLUMN = 306.0, 0.34, 340.0  # points, share of the canvas: the column of panels
-SIDE, LEAST_MODEL = (
-    332.0,
-    240.0,
-)  # points: boxes to type into; what the model keeps beside them, or they take all
+SIDE, LEAST_SIDE, SIDE_SHARE = 332.0, 286.0, 0.54  # points, and share of the canvas: boxes to type into
+LEAST_MODEL = 240.0  # points that the model keeps beside them, or they take all
 LEAST_BESIDE, LEAST_ABOVE = 520.0, 300.0  # points of a canvas's width or height that is shared with panels
 
 
@@ -226,8 +224,9 @@ class View:
 
     def beside(self, *, at_left: bool) -> Viewport | None:
         """Where boxes to type into stand beside the model; None where they would leave too little of it."""
-        c, width = self.canvas, round(SIDE * self.pixel_ratio)
-        if c.width - width < LEAST_MODEL * self.pixel_ratio:
+        c, u = self.canvas, self.pixel_ratio
+        width = round(min(max(SIDE_SHARE * c.width, LEAST_SIDE * u), SIDE * u))
+        if c.width - width < LEAST_MODEL * u:
             return None
         return replace(c, left=c.left if at_left else c.left + c.width - width, width=width)
 

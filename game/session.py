@@ -26,8 +26,8 @@ from game.documents.document import ModelError
 from game.documents.open_documents import ModelFile, Source, file_of
 from game.editor.actions import ACTIONS, WHILE_DRAWING
 from game.editor.context import FAULTS, Context, Stage
-from game.editor.frame import Actions, Frame, HeadlessFrame, ShowView
 from game.editor.dropping import open_dropped
+from game.editor.frame import Actions, Frame, HeadlessFrame, ShowView
 from game.editor.menu import IN_MENU
 from game.editor.routing import Layer, for_tools, layer, meaning
 from game.editor.scenes import all_scenes, scene_systems
@@ -325,8 +325,9 @@ class Session(Context):
 
     def _slipped(self, key: str, pixel: Vector) -> bool:
         """True for the second click of a double click whose first one led elsewhere: it is not meant for what is there."""
-        first, self._clicked = self._clicked, layer(self, pixel)
-        return key == "double click" and first not in (None, self._clicked)
+        first, now = self._clicked, layer(self, pixel)
+        self._clicked = now if key == "click" else None
+        return key == "double click" and first not in (None, now)
 
     def open_files(self, paths: Iterable[str | Path]) -> None:
         """Open model files and play recorded sessions, as when they are dropped on the window; undo goes back.

@@ -17,12 +17,20 @@ from systems.input.bindings import ADDED_BUTTONS, ADDED_TOOLS, FORCE_METHOD, LIV
 Entry = str | tuple[str, str]  # an action, or an action and the title that suits the place
 Groups = Sequence[Sequence[Entry]]
 
-IN_MENU = ("open menu", "choose entry", *(f"menu {way}" for way in ("up", "down", "left", "right")))  # keep it open
+IN_MENU = (
+    "open menu",
+    "choose entry",
+    *(f"menu {way}" for way in ("up", "down", "left", "right")),
+)  # keep it open
 
 _PLOT = "probes.plot"  # offered where the mod that plots is there
 _RESULTS = (("properties", "properties"), ("toggle diagrams", "force diagram"), (_PLOT, "plot"))
 _SUPPORTS = ("free", "pin", "hold y", "hold x")
-_FROM_HERE = (("force", "force: click its end"), ("velocity", "velocity: click its end"), ("rod", "rod from here"))
+_FROM_HERE = (
+    ("force", "force: click its end"),
+    ("velocity", "velocity: click its end"),
+    ("rod", "rod from here"),
+)
 _PARTS = (("copy", "copy"), ("duplicate", "duplicate"), ("delete", "delete"))
 _OF_RODS = (("toggle cable", "cable: tension only"), ("release", "release it in the force method"))
 
@@ -60,7 +68,13 @@ def _of_selection(selected: Sequence[Handle]) -> Groups:
     rods = any(isinstance(handle, Rod) for handle in selected)
     results = _RESULTS if particles or rods else _RESULTS[:1]
     only_rod = _OF_RODS if len(selected) == 1 else _OF_RODS[:1]
-    return [results, _SUPPORTS if particles else (), _FROM_HERE if one else (), only_rod if rods else (), _PARTS]
+    return [
+        results,
+        _SUPPORTS if particles else (),
+        _FROM_HERE if one else (),
+        only_rod if rods else (),
+        _PARTS,
+    ]
 
 
 def _of_canvas(context: Context) -> Groups:

@@ -11,7 +11,13 @@ from systems.render.menu import menu_of
 from systems.render.picture import lies_under
 from systems.render.theme import load_theme
 
-CLICKS = ("click", "ctrl+click", "double click", "drag", "ctrl+drag")  # the pointer may slip a little in a click
+CLICKS = (
+    "click",
+    "ctrl+click",
+    "double click",
+    "drag",
+    "ctrl+drag",
+)  # the pointer may slip a little in a click
 BUTTONS = (*CLICKS, "right click")
 AT_POINTER = (*BUTTONS, "wheel up", "wheel down")
 
@@ -29,9 +35,9 @@ def meaning(context: Context, key: str, pixel: Vector) -> Meaning:
     if for_tools(context, key, pixel):
         on_toolbar = view.strip.contains(pixel)
         return _on_toolbar(context, key, pixel) if on_toolbar else action_for(LIVE[0], key), pixel
-    if key in BUTTONS and context.scene in LIVE and not context.performing:
-        if lies_under(context.model, view, load_theme(view.theme), pixel):
-            return None, pixel
+    to_model = key in BUTTONS and context.scene in LIVE and not context.performing
+    if to_model and lies_under(context.model, view, load_theme(view.theme), pixel):
+        return None, pixel
     return scene_meaning(context.scene, key), pixel
 
 

@@ -97,7 +97,6 @@ _NEEDS: dict[str, Condition] = {
     **dict.fromkeys(
         ("settle", "support", "force", "velocity"), lambda context: context.model.particles.count > 0
     ),
-    "rod": lambda context: context.model.particles.count > 1,
     "next grid": lambda context: context.model.grids.count > 0,
     "force method": lambda context: context.model.rods.count > 0,
     **dict.fromkeys(("release x", "release y"), _guided(lambda guide: guide.axis_wanted is not None)),

@@ -19,7 +19,10 @@ RANGE = 2.5  # times the root mean square speed, that the bars cover
 
 ICON = (
     ("line", (-8.5, 8, 8.5, 8)),
-    *(("area", (x, 8, x, 8 - high, x + 2.6, 8 - high, x + 2.6, 8)) for x, high in ((-7, 5), (-3.5, 12), (0, 15), (3.5, 7))),
+    *(
+        ("area", (x, 8, x, 8 - high, x + 2.6, 8 - high, x + 2.6, 8))
+        for x, high in ((-7, 5), (-3.5, 12), (0, 15), (3.5, 7))
+    ),
 )
 
 Array = NDArray[np.float64]

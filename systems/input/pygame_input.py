@@ -159,9 +159,10 @@ class PygameInput(System):
         key, pointer = "drop" if dragging else grip[0], frame.session.pointer
         now, before = time.monotonic(), self._clicked
         self._clicked = (now, pointer) if key == "click" else None
-        if key == "click" and before is not None and now - before[0] <= DOUBLE_CLICK:
-            if math.dist(pointer, before[1]) <= 2.0 * CLICK_REACH * frame.session.view.pixel_ratio:
-                key, self._clicked = "double click", None
+        reach = 2.0 * CLICK_REACH * frame.session.view.pixel_ratio
+        soon = key == "click" and before is not None and now - before[0] <= DOUBLE_CLICK
+        if soon and before is not None and math.dist(pointer, before[1]) <= reach:
+            key, self._clicked = "double click", None
         frame.pressed.append((key, pointer))
 
 

@@ -13,7 +13,7 @@ from components.form import Form, Reading, Tile
 from systems.render.typography import font_size, in_rows, wrapped
 
 WIDEST = 1500.0  # points that tiles spread over
-EDGE = 16.0  # points around everything
+EDGE, CLOSE_EDGE, SLIM = 16.0, 10.0, 325.0  # points around everything; of a viewport less wide than the last, less
 LOW = 330.0  # points: a viewport less high does without explanations
 
 TITLE, BOX, BELOW = 18.0, 26.0, 10.0  # points: title above a box, the box, to what follows
@@ -21,12 +21,15 @@ PROBLEM = 14.0  # points that the reason for which a box is refused takes below 
 READING, MOST_READINGS = 20.0, 0.4  # points of a row; share of the height that they take without being scrolled
 MESSAGE, MESSAGE_LINE = 12.0, 16.0  # points, size of type and distance of lines of a message
 SECTION = 28.0
-COLUMN_GAP = 14.0
+COLUMN_GAP = 10.0
 HEADING = 104.0  # points, where a low viewport has the box beside the heading
 CLOSE, ACCEPT = 24.0, 64.0  # points, side of the button that leaves; width of that which does what Return does
-NARROW = 130.0  # points, a box less wide does not share its row
+NARROW, NARROWEST = 140.0, 120.0  # points, a box less wide does not share its row; one of a vector
 TILE, TILE_GAP, CAPTION, PROPORTION = 172.0, 16.0, 38.0, 0.6
+PILL, PILL_WIDTH, PILL_GAP = 40.0, 186.0, 10.0  # points: tiles of a section without pictures
+BESIDE, SEARCH = 985.0, 340.0  # points of width from which the name stands beside the heading, and that it takes there
 LOWEST = 0.65  # share of a picture's height that it keeps where one more row fits then
+LEAST_PICTURE = 40.0  # points
 
 PROPERTIES = "Properties"  # the heading of an element's own boxes, where its results stand above them
 
@@ -84,28 +87,21 @@ class FormLayout:
 def lay_out(form: Form, viewport: Viewport, unit: float) -> FormLayout:
     """Place all visible rows; rows that do not fit whole are scrolled away."""
     u, v = unit, viewport
-    width = max(min(v.width - 2 * EDGE * u, WIDEST * u), 1.0)
+    edge = EDGE if v.width >= SLIM * u else CLOSE_EDGE
+    width = max(min(v.width - 2 * edge * u, WIDEST * u), 1.0)
     left = v.left + (v.width - width) / 2
     low = v.height < LOW * u
     header = v.top + (18.0 if low else 26.0) * u
     top = header + (16.0 if low else 24.0) * u
     bottom = v.top + v.height - (22.0 if low else 58.0) * u
-    fixed: list[Place] = []
     close = Rectangle(left + width - CLOSE * u, header - CLOSE * u / 2, CLOSE * u, CLOSE * u)
-    accept = None
+    fixed, accept, heading_width = [], None, width - (CLOSE + 8.0) * u
     if _has_files(form):
-        beside_heading = HEADING * u if low else 0.0
-        top = v.top + 6.0 * u if low else top + TITLE * u
-        taken = (ACCEPT + 8.0 + (CLOSE + 8.0 if low else 0.0)) * u
-        room = max(min(width - beside_heading - taken, 420.0 * u), 40.0 * u)
-        accept = Rectangle(left + beside_heading + room + 8.0 * u, top, ACCEPT * u, BOX * u)
-        fixed = [Place(left + beside_heading, top, room, BOX * u, box) for box in form.boxes]
-        top += (BOX + 22.0) * u
-    shares_line = low and bool(fixed)
-    heading_width = (HEADING - 8.0) * u if shares_line else width - (CLOSE + 8.0) * u
-    message, lines = top - 11.0 * u, message_lines(form, width, u)
-    top += max(len(lines) - 1, 0) * MESSAGE_LINE * u
-    rows = list(_tile_rows(form, width / u) if _has_files(form) else _box_rows(form, width / u))
+        fixed, accept, heading_width = _name_place(form, left, width, v, u)
+        top = accept.bottom + 22.0 * u
+        rows = list(_tile_rows(form, width / u))
+    else:
+        rows = list(_box_rows(form, width / u))
     readings = list(_reading_rows(form))
     if len(readings) * READING * u > MOST_READINGS * (bottom - top):
         rows, readings = readings + rows, []
@@ -113,8 +109,33 @@ def lay_out(form: Form, viewport: Viewport, unit: float) -> FormLayout:
         height = _height(row, 0.0, u)
         fixed += _placed(row, left, top, width, height, u)
         top += height
-    layout = FormLayout(v, u, left, left + width, header, heading_width, message, top, bottom, close, accept)
-    return _with_rows(form, layout, fixed, rows)
+    message, lines = top - 11.0 * u, message_lines(form, width, u)
+    top += max(len(lines) - 1, 0) * MESSAGE_LINE * u
+    layout = FormLayout(
+        v, u, left, left + width, header, heading_width, message, top, bottom, close, accept, form.heading.first
+    )
+    return _with_rows(layout, fixed, rows)
+
+
+def _name_place(
+    form: Form, left: float, width: float, v: Viewport, u: float
+) -> tuple[list[Place], Rectangle, float]:
+    """The places of the box for a name and of the button beside it, and the heading's width.
+
+    They stand beside the heading where there is room or little height, else below it.
+    """
+    button, closes, heading = (ACCEPT + 8.0) * u, (CLOSE + 8.0) * u, width - (CLOSE + 8.0) * u
+    x, top, room = left, v.top + 46.0 * u, 420.0 * u
+    if v.height < LOW * u:
+        x, top, heading = left + HEADING * u, v.top + 6.0 * u, (HEADING - 8.0) * u
+        width -= HEADING * u + closes
+    elif width >= BESIDE * u:
+        room, top = SEARCH * u, v.top + 13.0 * u
+        x = left + width - closes - button - room
+        heading = x - left - COLUMN_GAP * u
+    room = max(min(width - button, room), 40.0 * u)
+    accept = Rectangle(x + room + 8.0 * u, top, ACCEPT * u, BOX * u)
+    return [Place(x, top, room, BOX * u, box) for box in form.boxes], accept, heading
 
 
 def message_lines(form: Form, width: float, u: float) -> list[str]:
@@ -127,11 +148,11 @@ def _has_files(form: Form) -> bool:
     return any(box.target == "name" for box in form.boxes)
 
 
-def _with_rows(form: Form, layout: FormLayout, fixed: list[Place], rows: list[Row]) -> FormLayout:
+def _with_rows(layout: FormLayout, fixed: list[Place], rows: list[Row]) -> FormLayout:
     u, room, width = layout.unit, layout.bottom - layout.top, layout.right - layout.left
     picture = _picture_height(rows, width, room, u)
     heights = [_height(row, picture, u) for row in rows]
-    first = min(form.heading.first, _last_first(heights, room))
+    first = min(layout.first, _last_first(heights, room))
     places, top, shown = list(fixed), layout.top, 0
     for row, height in zip(rows[first:], heights[first:], strict=True):
         if top + height > layout.bottom + 0.5 and shown:
@@ -171,12 +192,12 @@ def _reading_rows(form: Form) -> Iterator[Row]:
 
 def _box_rows(form: Form, width: float) -> Iterator[Row]:
     """Sections and boxes: the two components of a vector share a row, and so do single boxes."""
-    together = 2 if (width - COLUMN_GAP) / 2 >= NARROW else 1
+    half = (width - COLUMN_GAP) / 2
     for section, boxes in groupby(form.boxes, lambda box: box.section):
         if section != form.heading.text or len(form.readings):
             yield section if section != form.heading.text else PROPERTIES
-        for _, partners in groupby(boxes, _partner):
-            yield from in_rows(list(partners), together)
+        for vector, partners in groupby(boxes, _partner):
+            yield from in_rows(list(partners), 2 if half >= (NARROWEST if vector else NARROW) else 1)
 
 
 def _partner(box: Box) -> str:
@@ -186,12 +207,22 @@ def _partner(box: Box) -> str:
 
 
 def _tile_rows(form: Form, width: float) -> Iterator[Row]:
-    columns = tile_columns(width)
+    """Sections and tiles; of a section with a tile that stands for the rest one row."""
     shown = (tile for tile in form.tiles if not tile.hidden)
     for section, group in groupby(shown, lambda tile: tile.section):
+        tiles = list(group)
+        columns = pill_columns(width) if _are_pills(tiles) else tile_columns(width)
+        those, rest = [t for t in tiles if not t.rest], [t for t in tiles if t.rest]
+        if rest and len(those) > columns:
+            those = [*those[: max(columns - 1, 1)], *rest[: columns - 1]]  # of one column the first tile only
         if section:
             yield section
-        yield from in_rows(list(group), columns)
+        yield from in_rows(those, columns)
+
+
+def _are_pills(tiles: Sequence[Tile]) -> bool:
+    """True for tiles without pictures."""
+    return all(tile.symbol for tile in tiles)
 
 
 def tile_columns(width: float) -> int:
@@ -199,25 +230,33 @@ def tile_columns(width: float) -> int:
     return max(int((width + TILE_GAP) / (min(TILE, 0.45 * width) + TILE_GAP)), 1)
 
 
+def pill_columns(width: float) -> int:
+    """How many tiles without pictures stand side by side in a width in points."""
+    return max(int((width + PILL_GAP) / (PILL_WIDTH + PILL_GAP)), 1)
+
+
 def _height(row: Row, picture: float, u: float) -> float:
     if isinstance(row, str):
         return SECTION * u
     if isinstance(row[0], Reading):
         return READING * u
-    if isinstance(row[0], Tile):
-        return picture + (CAPTION + TILE_GAP) * u
-    return (TITLE + BOX + BELOW + PROBLEM * any(box.problem for box in row)) * u
+    if isinstance(row[0], Box):
+        return (TITLE + BOX + BELOW + PROBLEM * any(box.problem for box in row)) * u
+    return (PILL + PILL_GAP) * u if _are_pills(row) else picture + (CAPTION + TILE_GAP) * u
 
 
 def _picture_height(rows: Sequence[Row], width: float, room: float, u: float) -> float:
-    """Height of the pictures of tiles: reduced where one more row becomes visible."""
-    sections = sum(isinstance(row, str) for row in rows)
-    below, high = (CAPTION + TILE_GAP) * u, _tile_width(width, u) * PROPORTION
-    for seen in range(len(rows) - sections, 0, -1):
-        headings = min(sections, max(seen - 1, 1)) * SECTION * u  # of few rows rather the first section's only
-        each = (room - headings) / seen - below
-        if each >= LOWEST * high or seen == 1:
-            return max(min(each, high), 40.0 * u)
+    """Height of the pictures of tiles: reduced until the first row of each section is in sight, or where one more row is."""
+    high, least = _tile_width(width, u) * PROPORTION, LEAST_PICTURE * u
+    pictured = [not isinstance(row, str) and isinstance(row[0], Tile) and not _are_pills(row) for row in rows]
+    ends = [number + 1 for number, has in enumerate(pictured) if has]
+    headings = [number for number, row in enumerate(rows) if isinstance(row, str)]
+    needed = next((end for end in ends if end > max(headings, default=0)), 0)
+    for end in reversed(ends):
+        fixed = sum(_height(row, 0.0, u) for row in rows[:end])
+        each = (room - fixed) / sum(pictured[:end])
+        if end <= needed or each >= LOWEST * high:
+            return max(min(each, high), least)
     return high
 
 
@@ -233,9 +272,15 @@ def _placed(row: Row, left: float, top: float, width: float, height: float, u: f
         yield Place(left, top, width, height, row[0])
     elif isinstance(row[0], Box):
         gap = COLUMN_GAP * u
-        each = (width - gap) / 2 if (width - gap) / 2 >= NARROW * u else width
+        half = (width - gap) / 2
+        each = half if len(row) > 1 or half >= NARROW * u else width
         for column, box in enumerate(row):
             yield Place(left + column * (each + gap), top + TITLE * u, each, BOX * u, box)
+    elif _are_pills(row):
+        gap, columns = PILL_GAP * u, pill_columns(width / u)
+        each = min((width - (columns - 1) * gap) / columns, 1.4 * PILL_WIDTH * u)
+        for column, tile in enumerate(row):
+            yield Place(left + column * (each + gap), top, each, height - gap, tile)
     else:
         each = _tile_width(width, u)
         for column, tile in enumerate(row):

@@ -88,7 +88,10 @@ class _Card:
             for column in self.columns
         ]
         self.widths = [
-            max(text_width(title, self.size, weight_of(key)) + (keys_wide if key else 0) for key, title in column)
+            max(
+                text_width(title, self.size, weight_of(key)) + (keys_wide if key else 0)
+                for key, title in column
+            )
             for keys_wide, column in zip(self.key_widths, self.columns, strict=True)
         ]
         self.width = max(sum(self.widths) + (columns - 1) * self.gap, _HEAD * u) + 2 * self.pad

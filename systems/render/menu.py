@@ -38,8 +38,10 @@ class MenuLayout:
         self.menu, self.unit, self.size, self.row = menu, unit, font_size(points, unit), row * unit
         edge = _EDGE * unit
         self.head = self.row if menu.title else 0.0
-        columns = self._columns(window.height - 4 * edge - self.head)
-        width = max([self._width(tool) for tool in menu.entries] + [text_width(menu.title, self.size, "semibold") / 2])
+        columns = self._even_columns(window.height - 4 * edge - self.head)
+        width = max(
+            [self._width(tool) for tool in menu.entries] + [text_width(menu.title, self.size, "semibold") / 2]
+        )
         self.column = min(width + (2 * _PAD + _CHECK) * unit, (window.width - 2 * edge) / len(columns))
         high = max(rows[-1][1] + self.row for rows in columns) + self.head + 2 * edge
         wide = self.column * len(columns)
@@ -60,6 +62,15 @@ class MenuLayout:
     def _width(self, tool: Tool) -> float:
         key = text_width(written_key(tool.key), self.size) + _GAP * self.unit if tool.key else 0.0
         return text_width(titled(tool), self.size) + key
+
+    def _even_columns(self, room: float) -> list[list[tuple[bool, float]]]:
+        """As few columns as the room above each other needs, about equally high."""
+        columns, high = self._columns(room), len(self.menu.entries) * self.row
+        least = high / len(columns)
+        lower = (
+            self._columns(least + number * self.row) for number in range(int((room - least) / self.row) + 1)
+        )
+        return next((even for even in lower if len(even) == len(columns)), columns)
 
     def _columns(self, room: float) -> list[list[tuple[bool, float]]]:
         """(is a rule, its top) of every line, in as many columns as the room above each other needs."""
@@ -119,7 +130,12 @@ def draw_menu(view: View, theme: Theme) -> list[Mark]:
         marks.append(Text(title, frame.left + _PAD * u, y, size, theme.muted, "semibold"))
     for rule in layout.rules:
         thin = max(round(u), 1)
-        marks.append(boxes(theme.line, (round(rule.left + _PAD * u), round(rule.top), round(rule.width - 2 * _PAD * u), thin)))
+        marks.append(
+            boxes(
+                theme.line,
+                (round(rule.left + _PAD * u), round(rule.top), round(rule.width - 2 * _PAD * u), thin),
+            )
+        )
     now = layout.pointed_at(view.pointer)
     for number, (tool, place) in enumerate(zip(menu.entries, layout.entries, strict=True)):
         if number == now:
@@ -142,7 +158,16 @@ def _entry(layout: MenuLayout, tool: Tool, place: Rectangle, theme: Theme) -> li
     title, key = titled(tool), written_key(tool.key) if tool.key else ""
     marks: list[Mark] = [Text(shortened(title, room, size), left, y, size, ink)]
     if key and text_width(title, size) + text_width(key, size) + 0.5 * _GAP * u <= room:
-        marks.append(Text(key, place.right - _PAD * u, y, size, faded(theme.muted, 1.0 if tool.enabled else 0.5), anchor="right"))
+        marks.append(
+            Text(
+                key,
+                place.right - _PAD * u,
+                y,
+                size,
+                faded(theme.muted, 1.0 if tool.enabled else 0.5),
+                anchor="right",
+            )
+        )
     if tool.pressed:
         x = place.left + _PAD * u
         corners = np.array([[x, y], [x + 3.5 * u, y + 3.5 * u], [x + 9.5 * u, y - 4.0 * u]])

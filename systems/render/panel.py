@@ -2,39 +2,32 @@
 
 from __future__ import annotations
 
-from functools import lru_cache
-
 import numpy as np
 
 from components.box import NUMBER, WORD, Box
-from components.camera import Camera, Rectangle, Viewport
+from components.camera import Rectangle, Viewport
 from components.form import Form, Reading, Tile
-from components.model import Model
-from components.view import BETWEEN, View, drawn_places
-from systems.render.arrows import draw_loads, draw_velocities
+from components.view import BETWEEN, View
 from systems.render.form_layout import (
     CAPTION,
     LOW,
     MESSAGE,
     MESSAGE_LINE,
+    PILL,
     FormLayout,
     Place,
     lay_out,
     message_lines,
 )
 from systems.render.help import draw_help
-from systems.render.marks import Fills, Mark, Panel, Picture, Text, boxes, cross
-from systems.render.sheet import BELOW, measure
-from systems.render.structure import draw_particles, draw_rods
-from systems.render.supports import draw_supports, support_sides
+from systems.render.marks import Fills, Mark, Panel, Picture, Stamps, Text, boxes, cross
 from systems.render.theme import Colour, Theme, faded
+from systems.render.thumbnails import thumbnail
 from systems.render.typography import at_most, fitting, font_size, shortened, text_width, wrapped
 
 _TEXT = 13.0  # points, size of type in a box
 _SMALL, _GAP = 11.0, 4.0  # points: size of type of units and notes, between a number and its unit
 _PAD = 8.0  # points between a box's edge and its text
-_THUMBNAIL_MARGIN = 24.0  # points, room for supports
-_SMALLER = 0.6  # symbols in a thumbnail, compared with those in a model
 
 
 def compose_form(form: Form, view: View, theme: Theme) -> Picture:
@@ -168,11 +161,12 @@ class _Writer:
         u, theme, size = self.unit, self.theme, self.font(11.5)
         above, below = place.top - 9.0 * u, place.bottom + 9.0 * u
         marks = [*self._frame(place, box is self.selected, box is self.hovered), *self._contents(place, box)]
-        if above > self.layout.header:
+        if box.target != "name":
             unit = box.unit
             if self._has_room_for_unit(place, box):
                 unit = "" if box.changed or self._has_room_for_note(place, box) else box.note
-            title = shortened(box.title, place.width - text_width(unit, size) - 8.0 * u, size)
+            taken = text_width(unit, size) + 8.0 * u if unit else 0.0
+            title = shortened(box.title, place.width - taken, size)
             marks.append(Text(title, place.left, above, size, theme.muted))
             if unit:
                 marks.append(Text(unit, place.right, above, size, theme.muted, anchor="right"))
@@ -235,23 +229,43 @@ class _Writer:
         small = sum(text_width(text, self.font(_SMALL)) + (_GAP + 2.0) * self.unit for text in behind if text)
         return text_width(written(box), self.font(_TEXT)) + small
 
+    def _pill(self, place: Place, tile: Tile) -> list[Mark]:
+        """A tile without a picture: its symbol, and beside it its title and its caption."""
+        u, theme, size, small = self.unit, self.theme, self.font(12.5), self.font(11.0)
+        middle, left = place.top + place.height / 2, place.left + 40.0 * u
+        room = place.right - left - 6.0 * u
+        at = np.array([[place.left + 21.0 * u, middle]])
+        return [
+            *self._card(place, tile, 8.0 * u),
+            Stamps("disc", at, 12.0 * u, u, faded(theme.focus, 0.14), theme.background),
+            Text(tile.symbol, *at[0].tolist(), self.font(15.0), theme.focus, anchor="centre"),
+            Text(shortened(tile.title, room, size, "semibold"), left, middle - 7.5 * u, size, theme.text, "semibold"),
+            Text(shortened(tile.caption, room, small), left, middle + 8.5 * u, small, theme.muted),
+        ]
+
+    def _card(self, place: Rectangle, tile: Tile, radius: float) -> list[Mark]:
+        """The paper of a tile, with a ring around it when Return or a click opens it."""
+        theme, u = self.theme, self.unit
+        marks: list[Mark] = []
+        if tile is self.chosen:
+            marks.append(_grown(place, 2.5 * u, radius + 2.0 * u, theme.focus))
+        line = theme.focus if tile is self.hovered else theme.line
+        return [*marks, _grown(place, 0.0, radius, theme.background)._replace(outline=line)]
+
     def _tile(self, place: Place, tile: Tile) -> list[Mark]:
         """A picture of the model, its title and its caption."""
+        if place.height <= PILL * self.unit:
+            return self._pill(place, tile)
         u, theme = self.unit, self.theme
         height = place.height - CAPTION * u
         card = Rectangle(place.left, place.top, place.width, height)
-        radius = 6.0 * u
-        marks: list[Mark] = []
-        if tile is self.chosen or tile is self.hovered:
-            colour = theme.focus if tile is self.chosen else theme.line
-            marks.append(_grown(card, 3.0 * u, radius + 2.0 * u, colour))
-        marks.append(_grown(card, 0.0, radius, theme.background)._replace(outline=theme.line))
+        marks = self._card(card, tile, 6.0 * u)
         if tile.picture is not None:
             viewport = Viewport(round(card.left), round(card.top), round(card.width), round(card.height))
             marks += thumbnail(tile.picture, viewport, u, theme)
         elif tile.symbol:
             middle = card.left + card.width / 2, card.top + card.height / 2
-            marks.append(Text(tile.symbol, *middle, self.font(44.0), theme.muted, anchor="centre"))
+            marks.append(Text(tile.symbol, *middle, self.font(32.0), theme.muted, anchor="centre"))
         return [*marks, *self._legend(tile, place.left, card.bottom, place.width)]
 
     def _legend(self, tile: Tile, left: float, top: float, width: float) -> list[Mark]:
@@ -307,17 +321,3 @@ def caret_at(place: Place, box: Box, x: float, unit: float) -> int:
     left = place.left + _PAD * unit
     ends = [left + text_width(visible[:end], size) for end in range(len(visible) + 1)]
     return start + min(range(len(ends)), key=lambda end: abs(ends[end] - x))
-
-
-@lru_cache(maxsize=128)
-def thumbnail(model: Model, viewport: Viewport, unit: float, theme: Theme) -> tuple[Mark, ...]:
-    """A small picture of a fixed model: walls, rods, supports, particles and arrows."""
-    camera = Camera(viewport=viewport)
-    camera.fit(drawn_places(model), _THUMBNAIL_MARGIN, unit=unit)
-    sheet = measure(model, View(camera=camera, pixel_ratio=_SMALLER * unit), theme)
-    for layer in BELOW:
-        sheet.marks += layer(sheet)
-    draw_supports(sheet, support_sides(sheet))
-    draw_rods(sheet)
-    draw_particles(sheet)
-    return (*sheet.marks, *draw_loads(sheet), *draw_velocities(sheet))

@@ -46,7 +46,11 @@ def compose(model: Model | Form | Toolbar, view: View, theme: Theme, placed: Pla
     if isinstance(model, Toolbar):
         return compose_toolbar(model, view, theme)
     sheet = measure(model, view, theme, placed)
-    return _composed(sheet)[0] if view.page is None else Picture(sheet.viewport, theme.background, draw_page(sheet))
+    return (
+        _composed(sheet)[0]
+        if view.page is None
+        else Picture(sheet.viewport, theme.background, draw_page(sheet))
+    )
 
 
 def lies_under(model: Model, view: View, theme: Theme, pixel: Vector) -> bool:

@@ -7,8 +7,8 @@ import numpy as np
 from components.toolbar import Button, Toolbar
 from components.view import View
 from systems.render.help import draw_help, written_key
-from systems.render.menu import draw_menu, titled
 from systems.render.marks import Mark, Panel, Picture, Stamps, Text, boxes
+from systems.render.menu import draw_menu, titled
 from systems.render.theme import Theme, faded
 from systems.render.typography import font_size, line_height, text_width
 

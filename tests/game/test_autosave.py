@@ -311,7 +311,8 @@ def test_what_was_left_behind_is_offered_first_and_opened(data: Path) -> None:
     scene = session.scenes.active
     assert isinstance(scene, FileScene)
     tile = scene.form.tiles[0]
-    assert (tile.section, tile.title) == ("Unsaved work, recovered", "my work")
+    assert (tile.section, tile.title) == ("Your models", "my work")
+    assert tile.caption.startswith("not saved")
     session.press("down")
     session.press("return")
     assert session.rods["AB"].stiffness == 5.0

@@ -21,8 +21,8 @@ from game import Session
 from game.documents import library, models
 from game.editor.scenes import files
 from game.editor.scenes.files import FileScene
-from game.editor.scenes.load import Load
-from game.scripts.script import lessons
+from game.editor.scenes.load import NEW, Load
+from game.scripts.script import Script, lessons
 from systems.render.marks import Text
 from systems.render.picture import compose
 from systems.render.theme import load_theme
@@ -64,6 +64,14 @@ def stiffness_in(source: str | Path) -> float:
     """The stiffness of rod AB in a file."""
     model = models.load(source)
     return model.rods["AB"].stiffness
+
+
+def unfold(session: Session) -> None:
+    """Choose the tiles that stand for those for which one row has no room."""
+    scene = scene_of(session)
+    assert isinstance(scene, Load)
+    for tile in [tile for tile in scene.form.tiles if tile.rest]:
+        scene.choose(session, tile)
 
 
 def shown_tiles(session: Session) -> list[str]:
@@ -315,7 +323,9 @@ def test_typing_filters_by_title_and_name(session: Session) -> None:
     saved_as(session, "my tower")
     session.press("ctrl+o")
     everything = shown_tiles(session)
-    assert len(everything) == len(models.bundled()) + len(lessons()) + 2
+    folded = ["All 1", "All lessons"]  # tiles that stand for those for which one row has no room
+    assert len(everything) == len(models.bundled()) + len(lessons()) + 2 + len(folded)
+    assert {*folded} <= {*everything}
     session.type("TOWER")
     assert shown_tiles(session) == ["my tower", "Lattice tower in the wind"]
     session.type(" wind")
@@ -496,6 +506,7 @@ def test_pictures_are_read_few_a_frame_and_only_where_they_are_seen(
         (data / "models" / f"m{number}.json").write_bytes(content)
     session.view.camera.viewport = Viewport(0, 0, 640, 480)
     session.press("d")
+    unfold(session)
     read: Callable[[], int] = lambda: sum(  # noqa: E731
         isinstance(tile.source, Path) and tile.picture is not None for tile in scene_of(session).form.tiles
     )
@@ -527,7 +538,9 @@ def test_nothing_overlaps_and_everything_can_be_scrolled_to(
     scene = scene_of(session)
     scene.say("There is something to say here, and it is not short; it may not fit into the window at all.")
     seen: set[int] = set()
-    for _ in range(len(scene.form.tiles) + 3):
+    for turn in range(len(scene.form.tiles) + 4):
+        if turn == 1 and kind != "save":
+            unfold(session)
         session.update_view()
         ((form, view),) = scene.stages(session)
         picture = compose(form, view, load_theme())
@@ -540,8 +553,8 @@ def test_nothing_overlaps_and_everything_can_be_scrolled_to(
         rects = [("", p.left, p.top, p.left + p.width, p.top + p.height) for p in places]
         assert overlapping(rects) == []
         assert any(isinstance(place.item, Box) for place in places)
-        seen |= {place.item.row for place in places if isinstance(place.item, Tile)}
-        session.press("wheel down")
+        seen |= {place.item.row for place in places if isinstance(place.item, Tile) and turn > 0}
+        session.press("wheel down" if turn else "wheel up")
     assert seen == set(range(len(scene.form.tiles)))
 
 
@@ -573,6 +586,37 @@ def test_examples_are_pictured_and_said_what_they_are(session: Session) -> None:
     assert len({tile.title for tile in examples}) == len(examples)
     first = [tile.source for tile in itertools.islice(examples, 2)]
     assert first == ["isostatic", "hyperstatic"]
+
+
+@pytest.mark.parametrize("size", [(640, 480), (1024, 640), (1280, 800), (1920, 1080)])
+@pytest.mark.parametrize("own", [0, 1, 30])
+def test_the_first_screen_has_own_models_a_new_one_lessons_and_examples(
+    session: Session, size: tuple[int, int], own: int
+) -> None:
+    for number in range(own):
+        saved_as(session, f"my model {number}")
+    session.resize(*size)
+    session.press("d")
+    scene = scene_of(session)
+    seen = [place.item for place in scene.layout(session).places if isinstance(place.item, Tile)]
+    titles = [tile.title for tile in seen]
+    assert sum(isinstance(tile.source, Path) for tile in seen) >= min(own, 2)
+    assert NEW in titles
+    assert any(isinstance(tile.source, Script) for tile in seen)
+    assert sum(isinstance(tile.source, str) and not tile.rest for tile in seen) >= 3
+    if own > 10:
+        session.press("click", middle_of(scene, "All 30", session))
+        seen = [place.item for place in scene.layout(session).places if isinstance(place.item, Tile)]
+        assert sum(isinstance(tile.source, Path) for tile in seen) > 3
+        assert "All 30" not in shown_tiles(session)
+        session.type("model 17")
+        assert shown_tiles(session) == ["my model 17"], "search finds what was folded"
+
+
+def middle_of(scene: FileScene, title: str, session: Session) -> tuple[float, float]:
+    """The pixel in the middle of a tile."""
+    place = next(p for p in scene.layout(session).places if isinstance(p.item, Tile) and p.item.title == title)
+    return place.left + place.width / 2, place.top + place.height / 2
 
 
 def test_arrows_begin_where_one_has_scrolled_to(session: Session) -> None:

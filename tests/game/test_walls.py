@@ -16,9 +16,9 @@ from game.documents import models
 from game.documents.document import ModelError
 from systems.collision.system import normals
 from systems.render.marks import Strokes
-from systems.render.panel import thumbnail
 from systems.render.picture import compose
 from systems.render.theme import load_theme
+from systems.render.thumbnails import thumbnail
 
 FRAME = 1.0 / 60.0
 

@@ -184,6 +184,20 @@ def _notice(window: Window) -> Session:
     return session
 
 
+def _menu(window: Window) -> Session:
+    """The menu of a particle, one entry chosen by a key."""
+    session = opened(window, "hyperstatic")
+    session.click(0.0, 1.5, "right click")
+    session.press("down")
+    return session
+
+
+def _menu_of_canvas(window: Window) -> Session:
+    session = opened(window, "hyperstatic")
+    session.press("right click", session.view.camera.middle)
+    return session
+
+
 PICKED = ("k", "click")
 SCENES: dict[str, Scene] = {
     "empty": lambda window: pressed(window, source=EMPTY),
@@ -211,10 +225,13 @@ SCENES: dict[str, Scene] = {
     "force-method-6": _force_method(*PICKED, "k", "k", "k"),
     "force-method": _force_method(*PICKED, "k", "k", "k", "k"),
     "help": lambda window: pressed(window, "f1"),
+    "menu": _menu,
+    "menu-of-canvas": _menu_of_canvas,
 }
 ALONE_IN_LAYOUT = {
     "notice",
     "properties-of-all",
+    "menu-of-canvas",
     *(f"force-method-{part}" for part in ("1", "2", "3", "5", "6")),
 }
 IN_OTHER_SIZES = (

@@ -26,7 +26,9 @@ def _arrow(direction: Vector, steps: int, *, far: bool) -> Action:
         if steps:
             _step(context, steps * (_far(context) if far else 1))
         elif context.has_selected:
-            raise Refusal("While there is a run, Ctrl with an arrow moves the selection; R goes back to the beginning.")
+            raise Refusal(
+                "While there is a run, Ctrl with an arrow moves the selection; R goes back to the beginning."
+            )
 
     return act
 

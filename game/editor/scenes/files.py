@@ -4,22 +4,20 @@ from __future__ import annotations
 
 import time
 from collections.abc import Sequence
-from functools import cache
 from typing import Any, NamedTuple
 
 from components.box import FILE_NAME, Box
 from components.form import Form, Tile
-from components.model import Model
 from game.documents import library, models
+from game.documents.previews import preview
 from game.editor.context import Context
 from game.editor.scenes.form import FormScene
 from systems.base import Phase, System
 from systems.forms import typing
-from systems.render.form_layout import tile_columns
 
 SAVED = "Saved models"
 LARGEST_PICTURED = 4 * 2**20  # bytes; larger files get no picture
-READING = 0.012  # s of each frame spent on reading pictures; one picture at least
+READING = 0.005  # s of each frame spent on reading pictures; one picture at least
 
 
 class FileScene(FormScene):
@@ -75,14 +73,19 @@ class FileScene(FormScene):
 
     def _neighbour(self, context: Context, direction: str) -> Tile | None:
         """The tile next to the chosen one in a direction; the first visible tile if none is chosen yet."""
-        layout = self.layout(context)
-        columns = tile_columns((layout.right - layout.left) / layout.unit)
-        tiles = [tile for tile in self.form.tiles if not tile.hidden]
-        chosen = self.form.chosen
-        if chosen is None or not tiles:
+        layout, chosen = self.layout(context), self.form.chosen
+        rows = [[item for item in row if isinstance(item, Tile)] for row in layout.rows if not isinstance(row, str)]
+        at = next(((row, row.index(chosen)) for row in rows if chosen in row), None)
+        if at is None:
             return next((place.item for place in layout.places if isinstance(place.item, Tile)), None)
-        at = tiles.index(chosen) + {"left": -1, "right": 1, "up": -columns, "down": columns}[direction]
-        return tiles[min(max(at, 0), len(tiles) - 1)]
+        row, column = at
+        if direction in ("up", "down"):
+            other = rows.index(row) + (1 if direction == "down" else -1)
+            row = rows[min(max(other, 0), len(rows) - 1)]
+            return row[min(column, len(row) - 1)]
+        tiles = [tile for row in rows for tile in row]
+        beside = tiles.index(row[column]) + (1 if direction == "right" else -1)
+        return tiles[min(max(beside, 0), len(tiles) - 1)]
 
     def next_box(self, context: Context, by: int) -> None:
         """Tab: select the only box, or accept it if it is selected."""
@@ -136,6 +139,7 @@ class Offer(NamedTuple):
     source: Any
     explanation: str = ""
     symbol: str = ""
+    rest: bool = False
 
 
 def saved_models() -> list[Offer]:
@@ -147,18 +151,12 @@ def saved_models() -> list[Offer]:
     ]
 
 
-@cache
-def example(name: str) -> Model:
-    """A bundled model, to look at only."""
-    return models.load(name)
-
-
 def _read_picture(tile: Tile) -> None:
     try:
         if isinstance(tile.source, str):
-            tile.picture = example(tile.source)
+            tile.picture = preview(tile.source)
         elif tile.source.stat().st_size <= LARGEST_PICTURED:
-            tile.picture = models.load(tile.source)
+            tile.picture = preview(tile.source)
             tile.explanation = tile.picture.description or tile.picture.title
         else:
             tile.caption = f"{tile.caption}, too large for a picture".lstrip(", ")

@@ -16,8 +16,9 @@ WELCOME = "Welcome to Pinjoint. What would you like to begin with?"
 NEW = "New, empty model"
 LESSONS = "Begin here"
 EXAMPLES = "Examples"
-LEFT_BEHIND = "Unsaved work, recovered"
-DISCARD = "discard what was recovered"  # the source of the tile that discards recovered work
+YOURS = "Your models"
+DISCARD = "discard unsaved work"  # the source of the tile that discards what windows left behind
+ALL = "all of this section"  # the source of a tile that shows all tiles of its section, not only a row of them
 # The first examples; the others follow in alphabetical order.
 FIRST = ("isostatic", "hyperstatic", "pendulum", "collision_iii", "warren_bridge", "hyperstatic_yield", "tower")
 
@@ -34,14 +35,16 @@ class Load(FileScene):
     def __init__(self) -> None:
         super().__init__()
         self.welcome = False
-        self._asked = False  # the person chose once to discard the recovered work
+        self._asked = False  # the person chose once to discard unsaved work
 
     def make_form(self, context: Context) -> Form:
         self._asked = False
-        saved = saved_models()
-        section = saved[0].section if saved else LESSONS
-        new = Offer(section, NEW, "draw your own", "", None, "An empty plane to draw on.", "+")
-        offers = [*_left_behind(context), new, *saved, *_lessons(), *_examples()]
+        new = Offer(LESSONS, NEW, "draw your own", "", None, "An empty plane to draw on.", "+")
+        yours = _yours(context)
+        lessons = [new, *_lessons()]
+        if yours:
+            lessons.append(Offer(LESSONS, "All lessons", "to watch", "", ALL, symbol="»", rest=True))
+        offers = [*yours, *lessons, *_examples()]
         form = self.new_form(WELCOME if self.welcome else "Load", "", offers, "Open")
         form.boxes[0].note = "type to search, or click a picture"
         return form
@@ -51,8 +54,10 @@ class Load(FileScene):
         self.welcome = False
 
     def choose(self, context: Context, tile: Tile) -> None:
-        """Open the source of a tile; the tile "Discard", chosen twice, discards the recovered work."""
-        if tile.source is not DISCARD:
+        """Open the source of a tile; the tile "Discard", chosen twice, discards unsaved work."""
+        if tile.source is ALL:
+            self.form.delete([tile])
+        elif tile.source is not DISCARD:
             self._open(context, tile.source)
         elif self._asked and context.autosave is not None:
             context.autosave.discard()
@@ -61,7 +66,7 @@ class Load(FileScene):
             self._asked = True
             self.form.choose(tile)
             self.say(
-                "What was recovered will be gone for ever. Choose this once more to discard it; Esc does not."
+                "Unsaved work of earlier windows will be gone for ever. Choose this once more to discard it; Esc does not."
             )
 
     def accept(self, context: Context) -> None:
@@ -102,7 +107,11 @@ class Load(FileScene):
         self._asked = False
         words = self.box.text.lower().split()
         tiles = list(self.form.tiles)
-        hidden = [not all(word in f"{tile.title} {tile.file}".lower() for word in words) for tile in tiles]
+        told = [f"{tile.title} {tile.file}".lower() for tile in tiles]
+        hidden = [
+            bool(words) and (tile.rest or not all(word in text for word in words))
+            for tile, text in zip(tiles, told, strict=True)
+        ]
         self.form.assign(tiles, "hidden", hidden)
         self.form.heading.first = 0
 
@@ -112,15 +121,19 @@ class Load(FileScene):
         return f"Click a picture     {more}Arrows choose     Return open     Type to search     Esc back"
 
 
-def _left_behind(context: Context) -> list[Offer]:
-    """Unsaved work that a crash left behind."""
+def _yours(context: Context) -> list[Offer]:
+    """Unsaved work that windows left behind, and saved models, the newest first."""
     files = context.autosave.left() if context.autosave is not None else []
     offers = [
-        Offer(LEFT_BEHIND, recovered_name(path) or "Untitled", library.written_age(path), "", path)
+        Offer(YOURS, recovered_name(path) or "Untitled", f"not saved, {library.written_age(path)}", "", path)
         for path in files
     ]
-    discard = Offer(LEFT_BEHIND, "Discard", "what was recovered", "", DISCARD, symbol="×")
-    return [*offers, discard] if offers else []
+    if offers:
+        offers.append(Offer(YOURS, "Discard", "what was not saved", "", DISCARD, symbol="×"))
+    offers += [offer._replace(section=YOURS) for offer in saved_models()]
+    count = sum(offer.source is not DISCARD for offer in offers)
+    everything = Offer(YOURS, f"All {count}", "of your models", "", ALL, symbol="»", rest=True)
+    return [*offers, everything] if offers else []
 
 
 def _lessons() -> list[Offer]:

@@ -91,6 +91,11 @@ def _in_wide_menu(session: Session) -> None:
     session.press("right")
 
 
+def _at_left_in_wide_menu(session: Session) -> None:
+    _in_wide_menu(session)
+    session.press("left")
+
+
 def _over_an_entry(session: Session) -> None:
     layout = menu_of(session.view)
     assert layout is not None
@@ -170,7 +175,7 @@ def _named(session: Session) -> None:
 
 PREPARED: dict[tuple[str, str], Callable[[Session], None]] = {
     ("menu left", MENU): _in_wide_menu,
-    ("menu right", MENU): lambda session: (_in_wide_menu(session), session.press("left")),
+    ("menu right", MENU): _at_left_in_wide_menu,
     ("choose entry", MENU): _over_an_entry,
     ("redo", PAUSE): _undone,
     ("redo", SIMULATION): _undone,

@@ -76,9 +76,13 @@ def test_esc_in_a_drag_puts_back_and_what_follows_does_nothing(session: Session)
 
 
 def test_the_other_buttons_move_the_view(session: Session) -> None:
-    assert pressed(session, down(300, 500, RIGHT), motion(303, 498, (0, 0, 1)), motion(306, 496, (0, 0, 1)), up(306, 496, RIGHT)) == [
-        "drag middle"
-    ]
+    assert pressed(
+        session,
+        down(300, 500, RIGHT),
+        motion(303, 498, (0, 0, 1)),
+        motion(306, 496, (0, 0, 1)),
+        up(306, 496, RIGHT),
+    ) == ["drag middle"]
 
 
 def test_a_held_key_repeats_only_where_that_makes_sense(session: Session) -> None:
@@ -113,7 +117,9 @@ def test_a_right_click_may_slip_by_4_points_else_it_moves_the_view(session: Sess
     assert pressed(session, down(300, 500, RIGHT), slip, up(303, 498, RIGHT)) == ["right click"]
 
 
-def test_two_quick_clicks_at_a_place_are_a_double_click(session: Session, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_two_quick_clicks_at_a_place_are_a_double_click(
+    session: Session, monkeypatch: pytest.MonkeyPatch
+) -> None:
     now = [0.0]
     monkeypatch.setattr("systems.input.pygame_input.time.monotonic", lambda: now[0])
     click = down(300, 500), up(300, 500)

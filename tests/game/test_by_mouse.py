@@ -1,0 +1,427 @@
+"""Everything by mouse: menus, double clicks, buttons that close, clicks that go no further, files that are dropped."""
+
+from __future__ import annotations
+
+import io
+from pathlib import Path
+
+import pytest
+
+from components.menu import Menu
+from components.tags import DiagramShown
+from game import Session
+from game.documents import library, models
+from game.editor.scenes.form import FormScene
+from game.scripts.playing import Recorder, play, session_of
+from game.scripts.script import Script
+from systems.input.bindings import ADDED_TOOLS, TOOLBAR, offers
+from systems.render.marks import Text
+from systems.render.menu import MenuLayout, menu_of
+from systems.render.picture import compose
+from systems.render.theme import load_theme
+from tests.reference import bits
+from tests.reference.boxes import overlapping, text_boxes
+
+SIZES = [(320, 240), (480, 800), (640, 480), (1024, 640), (1280, 800), (1920, 1080)]
+
+
+@pytest.fixture(autouse=True)
+def data(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+    monkeypatch.setenv(library.DATA_VARIABLE, str(tmp_path / "data"))
+    return tmp_path / "data"
+
+
+@pytest.fixture
+def session() -> Session:
+    made = Session.open("hyperstatic")
+    made.resize(1024, 640)
+    return made
+
+
+def menu(session: Session) -> MenuLayout:
+    layout = menu_of(session.view)
+    assert layout is not None
+    return layout
+
+
+def actions(shown: Menu) -> list[str]:
+    return [entry.action for entry in shown.entries]
+
+
+def choose(session: Session, action: str, button: str = "click") -> None:
+    """Click an entry of the open menu."""
+    layout = menu(session)
+    place = layout.entries[actions(layout.menu).index(action)]
+    session.press(button, (place.left + place.width / 2, place.top + place.height / 2))
+
+
+def click_button(session: Session, name: str) -> None:
+    """Click "close" or "accept" of a form."""
+    scene = session.scenes.active
+    assert isinstance(scene, FormScene)
+    place = getattr(scene.layout(session), name)
+    session.press("click", (place.left + place.width / 2, place.top + place.height / 2))
+
+
+# --- menus -----------------------------------------------------------------------------------------------
+
+
+def test_a_right_click_selects_what_it_hits_and_opens_its_menu(session: Session) -> None:
+    session.click(1.5, 1.5, "right click")
+    assert session.selected == [session.particles["C"]]
+    assert menu(session).menu.title == "Particle C"
+    assert {"properties", "toggle diagrams", "probes.plot", "pin", "force", "delete"} <= {
+        *actions(menu(session).menu)
+    }
+    session.press("escape")
+    assert (session.view.menu, session.selected) == (None, [session.particles["C"]])
+    session.click(0.0, 0.75, "right click")
+    assert menu(session).menu.title == "Rod AB"
+    assert {"properties", "toggle cable", "release", "delete"} <= {*actions(menu(session).menu)}
+    session.press("right click", (900.0, 100.0))  # beside the menu: another one
+    assert (session.selected, menu(session).menu.title) == ([], "")
+    wanted = {
+        "place",
+        "paste",
+        "fit",
+        "toggle diagrams",
+        "toggle theory",
+        "new grid",
+        "walls.wall",
+        "screenshot",
+    }
+    assert wanted <= {*actions(menu(session).menu)}
+
+
+def test_a_right_click_on_one_of_several_selected_keeps_them(session: Session) -> None:
+    session.press("ctrl+a")
+    session.click(1.5, 1.5, "right click")
+    assert len(session.selected) == 10
+    assert menu(session).menu.title == "4 particles, 6 rods"
+    choose(session, "toggle cable")
+    assert all(rod.tension_only for rod in session.rods)
+    assert session.notice == "6 rods: tension only, as a cable"
+    session.press("ctrl+z")
+    assert not any(rod.tension_only for rod in session.rods)
+
+
+def test_entries_act_where_the_menu_was_opened(session: Session) -> None:
+    session.press("right click", session.point(0.75, 2.0))
+    choose(session, "place")
+    assert session.view.menu is None
+    assert session.particles[-1].position == pytest.approx((0.75, 2.0), abs=0.01)
+    made = session.particles[-1]
+    session.click(*made.position, "right click")
+    choose(session, "force")
+    session.click(0.75, 2.5)
+    assert made.force[1] > 0.0
+    session.click(*made.position, "right click")
+    choose(session, "rod")
+    session.click(1.5, 1.5)
+    assert session.rods[-1].ends == (made, session.particles["C"])
+
+
+@pytest.mark.parametrize(
+    ("action", "fixed"),
+    [("pin", (True, True)), ("hold x", (True, False)), ("hold y", (False, True)), ("free", (False, False))],
+)
+def test_supports_are_chosen_and_the_present_one_is_marked(
+    session: Session, action: str, fixed: tuple[bool, bool]
+) -> None:
+    session.click(1.5, 1.5, "right click")
+    choose(session, action)
+    assert session.particles["C"].fixed == fixed
+    session.click(1.5, 1.5, "right click")
+    supports = ("pin", "hold x", "hold y", "free")
+    assert [e.action for e in menu(session).menu.entries if e.pressed and e.action in supports] == [action]
+
+
+def test_a_rod_is_released_in_the_force_method(session: Session) -> None:
+    session.click(0.5, 1.0, "right click")
+    choose(session, "release")
+    assert session.scene == "force method"
+    session.expect("force_method.unknown = BD")
+    session.press("right click", session.view.camera.middle)
+    choose(session, "next part")
+    session.expect("force_method.part = 4")
+
+
+def test_keys_go_through_a_menu(session: Session) -> None:
+    session.point(1.5, 1.5)
+    session.press("menu")
+    session.press("up")  # the last
+    assert menu(session).menu.entries[menu(session).menu.chosen].action == "delete"
+    session.press("down")
+    session.press("down")
+    session.press("return")  # the diagram
+    assert session.model.tagged(DiagramShown) == [session.particles["C"]]
+    session.press("shift+f10")
+    session.press("return")  # nothing is chosen yet: the menu is closed, and properties are opened by their key
+    assert (session.view.menu, session.scene) == (None, "properties")
+
+
+def test_the_entry_under_the_pointer_counts_once_it_moves(session: Session) -> None:
+    session.press("right click", session.point(1.5, 1.5))
+    layout = menu(session)
+    place = layout.entries[2]
+    session.view.pointer = pointed = (place.left + 5.0, place.top + 5.0)
+    assert menu(session).pointed_at(pointed) == 2
+    session.press("down")
+    assert menu(session).pointed_at(pointed) == 3
+    session.view.pointer = (pointed[0] + 1.0, pointed[1])
+    assert menu(session).pointed_at(session.view.pointer) == 2
+
+
+def test_a_click_beside_a_menu_closes_it_and_does_nothing_else(session: Session) -> None:
+    before = bits.columns(session.model)
+    session.click(1.5, 1.5, "right click")
+    session.click(0.0, 0.0)
+    assert (session.view.menu, session.selected) == (None, [session.particles["C"]])
+    session.click(1.5, 1.5, "right click")
+    frame = menu(session).frame
+    session.press("click", (frame.left + 5.0, frame.top + 5.0))  # its title
+    assert session.view.menu is not None
+    session.press("i")  # a key that menus do not know
+    assert session.view.menu is None
+    assert session.model.tagged(DiagramShown) == [session.particles["C"]]
+    assert bits.different(bits.columns(session.model), before) == []
+
+
+def test_what_would_do_nothing_cannot_be_chosen(session: Session) -> None:
+    session.press("right click", session.view.camera.middle)
+    assert not next(e for e in menu(session).menu.entries if e.action == "restart").enabled
+    choose(session, "restart")
+    assert session.view.menu is not None
+
+
+@pytest.mark.parametrize("size", SIZES)
+@pytest.mark.parametrize("ratio", [1.0, 1.5])
+def test_menus_open_inside_the_window_with_all_their_entries_to_be_read(
+    size: tuple[int, int], ratio: float
+) -> None:
+    """With the pointer anywhere, of a particle and of the canvas, with and without a toolbar."""
+    session = Session.open("hyperstatic")
+    session.resize(*size, ratio)
+    for legend in (True, False):
+        session.view.legend = legend
+        for share in ((0.0, 0.0), (0.99, 0.02), (0.5, 0.5), (0.03, 0.98), (0.99, 0.99)):
+            for chosen in ([], [session.particles["C"]]):
+                session.select(*chosen)
+                session.view.menu = None
+                session.press("menu", (share[0] * size[0] + 0.5, share[1] * size[1]))
+                if session.view.menu is None:
+                    continue  # the pointer is over the toolbar
+                layout = menu(session)
+                frame = layout.frame
+                assert frame.left >= 0.0
+                assert frame.top >= 0.0
+                assert frame.right <= size[0]
+                assert frame.bottom <= size[1]
+                for number, place in enumerate(layout.entries):
+                    middle = place.left + place.width / 2, place.top + place.height / 2
+                    assert layout.entry_at(middle) == number
+                    assert frame.contains(middle)
+                if size[0] >= 640 * ratio and size[1] >= 480 * ratio:
+                    _check_texts(session)
+
+
+def _check_texts(session: Session) -> None:
+    shown, view = session.stages[-1]
+    marks = [mark for mark in compose(shown, view, load_theme("light")).marks if isinstance(mark, Text)]
+    assert not [mark.text for mark in marks if mark.text.endswith("…")]
+    assert not overlapping(text_boxes(marks))
+
+
+def test_menus_offer_all_that_the_toolbar_has_where_it_is_hidden(session: Session) -> None:
+    session.press("tab")
+    session.press("right click", session.view.camera.middle)
+    offered = {entry.action for entry in menu(session).menu.entries}
+    bar = {action for group in TOOLBAR for action in group if action in offers("pause")}
+    assert {*bar, *ADDED_TOOLS, "toggle legend"} <= offered
+    choose(session, "toggle legend")
+    assert session.view.legend
+
+
+def test_a_recording_of_menus_and_double_clicks_plays_to_the_same_bits(
+    session: Session, tmp_path: Path
+) -> None:
+    session = Session.open("isostatic")
+    file = io.StringIO()
+    Recorder(session, file, "isostatic")
+    session.click(1.0, 1.0, "right click")
+    choose(session, "pin")
+    session.click(0.5, 0.5, "right click")
+    choose(session, "toggle cable")
+    session.press("right click", session.point(1.5, 1.5))
+    choose(session, "place", "double click")
+    session.click(1.0, 1.0, "double click")
+    assert session.scene == "properties"
+    click_button(session, "close")
+    assert session.scene == "pause"
+    path = tmp_path / "recorded.jsonl"
+    path.write_text(file.getvalue(), encoding="utf-8")
+    replayed = session_of(Script(path))
+    assert play(Script(path), replayed) == []
+    assert replayed.particles.count == 4
+    assert bits.different(bits.columns(session.model), bits.columns(replayed.model)) == []
+
+
+# --- double clicks ---------------------------------------------------------------------------------------
+
+
+def test_a_double_click_opens_properties_and_leads_back(session: Session) -> None:
+    session.press("space")
+    session.click(1.5, 1.5)
+    session.click(1.5, 1.5, "double click")
+    assert (session.scene, session.selected) == ("properties", [session.particles["C"]])
+    session.press("escape")
+    assert session.scene == "simulation"
+    session.press("space")
+    session.click(0.75, 2.1, "double click")  # nothing
+    assert session.scene == "pause"
+
+
+def test_a_double_click_elsewhere_is_two_clicks(session: Session) -> None:
+    button = next(
+        button
+        for button in session.view.toolbar.buttons(session.view.camera.viewport, 1.0)
+        if button.tool.action == "faster"
+    )
+    for key in ("click", "double click"):
+        session.press(key, (button.left + 3.0, button.top + 3.0))
+    assert session.clock.factor == 4.0
+
+
+def test_the_second_click_on_a_picture_is_not_meant_for_the_model_that_it_opened(session: Session) -> None:
+    session.press("d")
+    scene = session.scenes.active
+    assert isinstance(scene, FormScene)
+    tiles = [
+        place for place in scene.layout(session).places if not isinstance(place.item, str) and place.top > 100
+    ]
+    pixel = tiles[0].left + 10.0, tiles[0].top + 10.0
+    session.press("click", pixel)
+    assert session.scene == "pause"
+    session.press("double click", pixel)
+    assert (session.scene, session.selected) == ("pause", [])
+
+
+# --- what lies on top takes clicks -----------------------------------------------------------------------
+
+
+def test_clicks_do_not_go_through_the_help(session: Session) -> None:
+    session.press("f1")
+    for button in ("drag", "wheel up"):
+        session.press(button, session.point(1.5, 1.5))
+    assert (session.view.help, session.gesture) == (1, None)
+    session.click(1.5, 1.5)
+    assert (session.view.help, session.selected) == (0, [])
+    session.resize(320, 240)  # several pages: a click in the card goes on, one beside it closes
+    session.press("f1")
+    session.press("click", (170.0, 120.0))
+    assert session.view.help == 2
+    session.press("click", (1.0, 1.0))
+    assert (session.view.help, session.scene) == (0, "pause")
+
+
+def test_clicks_do_not_go_through_panels_and_the_status_bar(session: Session) -> None:
+    session.press("m")
+    session.press("j")
+    session.update_view()
+    session.select(session.particles["A"])
+    panels = session.view.panels
+    at = panels.left + panels.width / 2, panels.top + 80.0
+    for pixel in (at, (500.0, 635.0)):
+        for button in ("click", "drag", "right click", "double click"):
+            session.press(button, pixel)
+        assert session.selected == [session.particles["A"]]
+        assert (session.gesture, session.view.menu, session.scene) == (None, None, "pause")
+
+
+# --- buttons of forms ------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("size", SIZES)
+@pytest.mark.parametrize("key", ["return", "s", "d"])
+def test_properties_save_and_load_have_a_button_that_closes_them(key: str, size: tuple[int, int]) -> None:
+    session = Session.open("hyperstatic")
+    session.resize(*size)
+    session.click(1.5, 1.5)
+    session.press(key)
+    assert session.scene != "pause"
+    click_button(session, "close")
+    assert session.scene == "pause"
+
+
+def test_a_model_is_saved_and_replaced_by_mouse(session: Session, data: Path) -> None:
+    for stiffness in (1000.0, 2000.0):
+        session.rods["AB"].stiffness = stiffness
+        session.press("ctrl+shift+s")
+        click_button(session, "accept")
+        if stiffness == 2000.0:
+            assert "There is a model 'hyperstatic' already" in session.message
+            click_button(session, "accept")
+        assert session.scene == "pause"
+        saved = models.load(data / "models" / "hyperstatic.json")
+        assert saved.rods["AB"].stiffness == stiffness
+
+
+def test_escape_says_what_was_typed_and_not_taken(session: Session) -> None:
+    session.select(session.rods["AB"])
+    session.press("return")
+    session.click_box("stiffness")
+    before = session.boxes["stiffness"]
+    session.type("7")
+    session.press("escape")
+    assert session.scene == "properties"
+    assert (
+        session.message
+        == f"“7” was not taken for the stiffness; it is {before} as before. Return takes what is typed."
+    )
+    session.click_box("stiffness")
+    session.type("8")
+    assert "not taken" not in session.message
+    click_button(session, "close")  # which takes it
+    assert session.rods["AB"].stiffness == 8.0
+
+
+# --- files -----------------------------------------------------------------------------------------------
+
+
+def test_files_that_are_dropped_are_opened_and_wrong_ones_explained(session: Session, tmp_path: Path) -> None:
+    for name in ("isostatic", "tower"):
+        Session.open(name).save(tmp_path / f"{name}.json")
+    (tmp_path / "photo.png").write_bytes(b"\x89PNG")
+    (tmp_path / "broken.json").write_text(
+        '{"format": "pinjoint model", "version": 1, "rodz": []}', encoding="utf-8"
+    )
+    session.press("s")
+    session.press("files " + str(tmp_path / "photo.png"))
+    assert session.scene == "save"
+    assert session.message == (
+        "'photo.png' is no model: Pinjoint opens model files (.json) and recorded sessions (.jsonl)."
+    )
+    session.open_files([tmp_path / "broken.json", tmp_path, tmp_path / "gone.json"])
+    assert "rodz" in session.message
+    assert "is a folder" in session.message
+    assert "gone.json" in session.message
+    session.open_files([tmp_path / "isostatic.json", tmp_path / "photo.png", tmp_path / "tower.json"])
+    assert (session.scene, session.file.name) == ("pause", "tower")
+    assert session.notice.endswith("Opened isostatic and tower; Ctrl+Z goes back.")
+    assert "photo.png" in session.notice
+    session.press("ctrl+z")
+    assert session.file.name == "isostatic"
+    session.press("ctrl+z")
+    assert session.file.name == "hyperstatic"
+
+
+def test_a_recorded_session_that_is_dropped_is_played(session: Session, tmp_path: Path) -> None:
+    path = tmp_path / "lesson.jsonl"
+    path.write_text(
+        '{"format": "pinjoint session", "version": 1, "model": "tower", "title": "T"}\n', encoding="utf-8"
+    )
+    session.press("space")
+    session.open_files([path])
+    assert session.lesson is not None
+    assert session.lesson.title == "T"
+    assert (session.scene, session.file.name) == ("pause", "tower")
