@@ -9,6 +9,7 @@ from typing import Literal
 import numpy as np
 from numpy.typing import NDArray
 
+from components import written
 from components.load import CONSTANT
 from components.model import Model
 from components.tags import DiagramShown, Selected
@@ -34,12 +35,6 @@ _ROD_VALUE = "rods.axial_force"  # keys by which labels keep places
 _ARROW_VALUES = {"load": "particles.applied_force", "reaction": "particles.reaction"}
 _SLIDES = np.array([0.0, 1.0, -1.0, 2.0, -2.0])  # along a rod, in sizes of a label: the middle first
 _BACKING = 0.86  # opacity behind a value
-
-
-def written(force: float, decimals: int = 2) -> str:
-    """A force (kN) as people read it, with the real minus sign and no negative zero."""
-    text = f"{force:.{decimals}f}"
-    return text.replace("-", "−") if float(text) else text.lstrip("-")
 
 
 def scale_step(largest: float, scale: float, room: float) -> float:
@@ -174,7 +169,7 @@ def _label_rods(
     shown = _most_important(sheet, worth, candidates, middle)
     few = len(values) <= _FEW_VALUES
     numbers = values[shown].tolist()
-    texts, size, half = _value_texts(sheet, map(written, numbers), few)
+    texts, size, half = _value_texts(sheet, numbers, few)
     places = _places_by_rods(middle[shown], normal[shown], height[shown], half, few)
     signs = ("zero" if abs(n) <= SMALLEST_FORCE else "tension" if n > 0.0 else "compression" for n in numbers)
     colours = [getattr(sheet.theme, sign) for sign in signs]
@@ -204,9 +199,10 @@ def _most_important(sheet: Sheet, worth: NDArray[np.float64], candidates: Rows, 
     return np.sort(seen[np.lexsort((seen, -worth[seen]))][:most])
 
 
-def _value_texts(sheet: Sheet, numbers: Iterable[str], few: bool) -> tuple[list[str], int, Points]:
-    """Values as they are written among few or many, their font size, and half the size of each label, (n, 2)."""
-    texts = [f"{number} kN" for number in numbers] if few else list(numbers)
+def _value_texts(sheet: Sheet, forces: Iterable[float], few: bool) -> tuple[list[str], int, Points]:
+    """Forces (kN) as they are written among few or many, their font size, and half the size of each label, (n, 2)."""
+    write = written.force if few else written.number
+    texts = [write(force, nothing=SMALLEST_FORCE) for force in forces]
     size = sheet.font(12.0 if few else 11.0)
     half = [half_size(text, size, "semibold", sheet.unit) for text in texts]
     return texts, size, np.array(half).reshape(-1, 2)
@@ -356,9 +352,7 @@ def _label_arrows(
     worth = _worth(sheet, field, which, value)
     shown = _most_important(sheet, worth, np.arange(len(value)), middle)
     sizes = np.abs(value[shown]).tolist()
-    # The smallest that is drawn at all, 0.0001, must not read 0.00.
-    numbers = (written(size, 2 if size >= 0.01 else 4) for size in sizes)
-    texts, font, half = _value_texts(sheet, numbers, few)
+    texts, font, half = _value_texts(sheet, sizes, few)
     places = _places_by_arrows(middle[shown], length[shown], DIRECTIONS[side[shown]], half, sheet.unit)
     # Arrows are few and say little without their value: before the rods.
     ranks, keys = (-worth[shown] - 1e9).tolist(), [(field, number) for number in which[shown].tolist()]
