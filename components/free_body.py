@@ -27,8 +27,25 @@ class Force(NamedTuple):
     y: float
 
 
-def pulls(model: Model) -> tuple[Vectors, Vectors]:
-    """The force in every rod, its damper's included (kN, m), tension positive, and its direction from end to end (m, 2)."""
+class Apart(NamedTuple):
+    """A model taken apart. pull: the force in every rod, its damper's included (kN), tension positive, (m,).
+
+    along: its direction from end to end (m, 2). left_over: the sum of all forces on every joint (kN), mass ×
+    acceleration, 0 where it is rounding only, (n, 2).
+    """
+
+    pull: Vectors
+    along: Vectors
+    left_over: Vectors
+
+
+def apart(model: Model) -> Apart:
+    """A model taken apart as it is now."""
+    pull, along = _pulls(model)
+    return Apart(pull, along, _left_over(model, pull, along))
+
+
+def _pulls(model: Model) -> tuple[Vectors, Vectors]:
     rods, particles = model.rods, model.particles
     first, last = rods.between.astype(np.intp).T
     places = particles.position + particles.displacement
@@ -43,11 +60,9 @@ def pulls(model: Model) -> tuple[Vectors, Vectors]:
     return total, along
 
 
-def left_over(model: Model) -> Vectors:
-    """The sum of all forces on every joint (kN), (n, 2): mass × acceleration; 0 where it is rounding only."""
+def _left_over(model: Model, force: Vectors, along: Vectors) -> Vectors:
     particles = model.particles
     rest = particles.applied_force + particles.reaction
-    force, along = pulls(model)
     for end, sign in ((0, 1.0), (1, -1.0)):
         for axis in (0, 1):
             rest[:, axis] += sign * np.bincount(
@@ -61,10 +76,13 @@ def left_over(model: Model) -> Vectors:
     return found
 
 
-def on_joint(model: Model, row: int) -> list[Force]:
-    """All forces on a joint: of its rods, its loads, its weight, its support, and of inertia."""
+def on_joint(model: Model, row: int, known: Apart | None = None) -> list[Force]:
+    """All forces on a joint: of its rods, its loads, its weight, its support, and of inertia.
+
+    known: the model taken apart, if there are several joints to ask for.
+    """
     particles, rods, environment = model.particles, model.rods, model.environment
-    force, along = pulls(model)
+    force, along, left_over = known or apart(model)
     found = []
     for rod in np.flatnonzero((rods.between == row).any(axis=1)).tolist():
         pull = force[rod] * along[rod] * (1.0 if rods.between[rod, 0] == row else -1.0)
@@ -83,7 +101,7 @@ def on_joint(model: Model, row: int) -> list[Force]:
     for part, name in ((np.array([1.0, 0.0]), "reaction x"), (np.array([0.0, 1.0]), "reaction y")):
         if (reaction := particles.reaction[row] * part).any():
             found.append(Force(name, "reaction", *reaction.tolist()))
-    inertia = -left_over(model)[row]
+    inertia = -left_over[row]
     if inertia.any():
         found.append(Force("inertia −m a", "inertia", *inertia.tolist()))
     return found
@@ -91,7 +109,7 @@ def on_joint(model: Model, row: int) -> list[Force]:
 
 def on_rod(model: Model, row: int) -> list[Force]:
     """The forces of its two joints on a rod."""
-    force, along = pulls(model)
+    force, along = _pulls(model)
     first, last = model.rods.between[row].tolist()
     pull = (force[row] * along[row]).tolist()
     names = model.particles.names

@@ -8,9 +8,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from components import written
-from components.free_body import Force, left_over, on_joint, pulls
+from components.free_body import Force, apart, on_joint
 from systems.render.arrows import FORCES, GAP, arrows, lengths
-from systems.render.clip import bounds
 from systems.render.diagrams import SMALLEST_FORCE
 from systems.render.labels import STRONG, Label, half_size
 from systems.render.marks import Owner, Points, Strokes
@@ -27,7 +26,8 @@ _SMALLEST_SHARE = 1e-3  # of the largest force: a smaller one of inertia is told
 
 def draw_free_bodies(sheet: Sheet) -> None:
     """Rods with gaps at their joints; in each the two opposite forces; and what else acts on every joint."""
-    force, _ = pulls(sheet.model)
+    known = apart(sheet.model)
+    force = known.pull
     long = np.hypot(*(sheet.end - sheet.start).T) >= SHORTEST * sheet.unit
     if len(sheet.rods) > MOST or not long.any():
         sheet.notes.append("zoom in to take rods and joints apart")
@@ -39,9 +39,9 @@ def draw_free_bodies(sheet: Sheet) -> None:
         sheet.notes.append("zoom in to take short rods apart, too")
     largest = _largest(sheet, force)
     _draw_rods(sheet, force, long, largest)
-    inertia = np.hypot(*left_over(sheet.model).T) > _SMALLEST_SHARE * largest
+    inertia = np.hypot(*known.left_over.T) > _SMALLEST_SHARE * largest
     for row in sheet.particles.tolist():
-        others = [f for f in on_joint(sheet.model, row) if f.kind != "rod"]
+        others = [f for f in on_joint(sheet.model, row, known) if f.kind != "rod"]
         others = [f for f in others if f.kind != "inertia" or inertia[row]]
         _draw_others(sheet, row, others, largest)
 
@@ -64,10 +64,9 @@ def _draw_rods(sheet: Sheet, force: NDArray[np.float64], long: NDArray[np.bool_]
     sheet.marks.append(Strokes(start, end, 2.5 * u, sheet.theme.ink, ("rods", rods)))
     sheet.occupancy.line(start, end, STRONG)
     for index in np.flatnonzero(long & (np.abs(force[rods]) <= SMALLEST_FORCE)).tolist():
-        thirds = [start[index] + share * way[index] for share in (0.5, 0.3, 0.7)]
-        places = [place for at in thirds for place in _beside(sheet, "0 kN", at, along[index])]
-        row = int(rods[index])
-        _label(sheet, "0 kN", places, sheet.theme.zero, ("rods.end0", row), ("rods", row))
+        row, own = int(rods[index]), [start[index], end[index]]
+        places = _beside(sheet, "0 kN", *own)
+        _label(sheet, "0 kN", places, sheet.theme.zero, ("rods.end0", row), ("rods", row), own)
     for pulled, name in ((True, "tension"), (False, "compression")):
         bears = long & ((force[rods] > SMALLEST_FORCE) if pulled else (force[rods] < -SMALLEST_FORCE))
         which = np.flatnonzero(bears)
@@ -81,17 +80,9 @@ def _draw_rods(sheet: Sheet, force: NDArray[np.float64], long: NDArray[np.bool_]
             size = np.minimum(lengths(sheet, FORCES, np.abs(force[rods[which]]), largest), 0.5 * room - GAP * u)
             rim = joint[which] + (radius + GAP * u)[:, None] * out[which]
             _draw_pair(sheet, rods[which], rim, rod_end[which], out[which], size, colour, pulled=pulled)
-            middle = 0.5 * (rim + rod_end[which])
-            for row, place, direction in zip(rods[which].tolist(), middle, out[which], strict=True):
-                text = written.force(abs(float(force[row])))
-                _label(
-                    sheet,
-                    text,
-                    _beside(sheet, text, place, direction),
-                    colour,
-                    (f"rods.end{side}", row),
-                    ("rods", row),
-                )
+            for row, *own in zip(rods[which].tolist(), rim, rod_end[which], strict=True):
+                text, key = written.force(abs(float(force[row]))), (f"rods.end{side}", row)
+                _label(sheet, text, _beside(sheet, text, *own), colour, key, ("rods", row), own)
 
 
 def _draw_pair(
@@ -144,9 +135,9 @@ def _draw_others(sheet: Sheet, row: int, forces: list[Force], largest: float) ->
         text = written.force(size)
         half = half_size(text, sheet.font(12.0), "semibold", u)
         far = rim + (length + 4.0 * u + abs(side[0]) * half[0] + abs(side[1]) * half[1]) * side
-        places = [tuple(far.tolist()), *_beside(sheet, text, rim + 0.5 * length * side, side)]
-        key = f"particles.{force.name}"
-        _label(sheet, text, places, colour, (key, row), ("particles", row))
+        own = [rim, rim + length * side]
+        places = [far, *_beside(sheet, text, *own)]
+        _label(sheet, text, places, colour, (f"particles.{force.name}", row), ("particles", row), own)
 
 
 def _directions_of_rods(sheet: Sheet, row: int) -> list[Points]:
@@ -159,22 +150,41 @@ def _directions_of_rods(sheet: Sheet, row: int) -> list[Points]:
     return found
 
 
-def _beside(sheet: Sheet, text: str, middle: Points, along: Points) -> list[tuple[float, float]]:
-    """Where a value may stand beside an arrow: on either side of its middle, then further along."""
+def _beside(sheet: Sheet, text: str, start: Points, end: Points) -> list[Points]:
+    """Where a value may stand beside a line: on either side of its middle, then nearer to its ends."""
     half = half_size(text, sheet.font(12.0), "semibold", sheet.unit)
-    across = np.array([-along[1], along[0]])
+    way = end - start
+    across = np.array([-way[1], way[0]]) / max(float(np.hypot(*way)), 1e-9)
     reach = abs(across[0]) * half[0] + abs(across[1]) * half[1] + 4.0 * sheet.unit
-    steps = [0.0, 9.0 * sheet.unit, -9.0 * sheet.unit]
-    places = [middle + side * reach * across + step * along for step in steps for side in (1.0, -1.0)]
-    return [(float(x), float(y)) for x, y in places]
+    shares = (0.5, 0.75, 0.3, 1.0)
+    return [start + share * way + side * reach * across for share in shares for side in (1.0, -1.0)]
 
 
 def _label(
-    sheet: Sheet, text: str, places: list[tuple[float, float]], colour: Colour, key: tuple[str, int], of: Owner
+    sheet: Sheet,
+    text: str,
+    places: list[Points],
+    colour: Colour,
+    key: tuple[str, int],
+    of: Owner,
+    own: list[Points],
 ) -> None:
-    low, high = bounds(sheet.viewport)
-    places = [place for place in places if low[0] <= place[0] <= high[0] and low[1] <= place[1] <= high[1]]
-    if places:
+    """A value at one of the places in sight that are nearer to its own arrows, a line from and to, than to other rods."""
+    at = np.array(places)
+    at = at[sheet.sees(at)]
+    others = sheet.rods != (of[1] if of[0] == "rods" else -1)
+    distance = _distances(at, sheet.start[others], sheet.end[others]).min(axis=1, initial=np.inf)
+    nearest = at[_distances(at, own[0][None], own[1][None])[:, 0] < distance]
+    if len(nearest):
         backing = faded(sheet.theme.background, 0.86)
-        label = Label(text, places, sheet.font(12.0), colour, -1e9, "semibold", backing, "avoid", key, of)
+        label = Label(text, nearest, sheet.font(12.0), colour, -1e9, "semibold", backing, "avoid", key, of)
         sheet.labels.append(label)
+
+
+def _distances(points: Points, start: Points, end: Points) -> NDArray[np.float64]:
+    """From each of points (n, 2) to each of lines (m, 2), shape (n, m)."""
+    way, to = end - start, points[:, None] - start
+    share = (to * way).sum(axis=2) / np.maximum((way * way).sum(axis=1), 1e-12)
+    away = to - np.clip(share, 0.0, 1.0)[:, :, None] * way
+    found: NDArray[np.float64] = np.hypot(away[..., 0], away[..., 1])
+    return found

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from components.free_body import left_over, on_joint, on_rod, pulls
+from components.free_body import apart, on_joint, on_rod
 from game import Session
 
 MODELS = ["isostatic", "hyperstatic", "braced_portal", "warren_bridge", "tower", "pendulum", "hanging_net"]
@@ -20,7 +20,7 @@ def largest(session: Session) -> float:
     return max(
         np.abs(particles.applied_force).max(),
         np.abs(particles.reaction).max(),
-        np.abs(pulls(session.model)[0]).max(),
+        np.abs(apart(session.model).pull).max(),
     )
 
 
@@ -40,7 +40,7 @@ def test_supports_balance_rods_and_dampers_while_a_structure_moves(name: str) ->
     session = Session.open(name)
     session.run(steps=40)
     held = session.model.particles.fixed
-    assert np.abs(left_over(session.model)[held]).max(initial=0.0) <= 1e-8 * largest(session)
+    assert np.abs(apart(session.model).left_over[held]).max(initial=0.0) <= 1e-8 * largest(session)
 
 
 def test_what_is_left_over_accelerates() -> None:
@@ -49,9 +49,9 @@ def test_what_is_left_over_accelerates() -> None:
     session.settings.time_step = 1e-7
     session.run(time=2e-5)
     joint = session.particles["B"]
-    before, first = np.array(joint.velocity), left_over(session.model)[joint.row]
+    before, first = np.array(joint.velocity), apart(session.model).left_over[joint.row]
     session.run(steps=1)
-    last = left_over(session.model)[joint.row]
+    last = apart(session.model).left_over[joint.row]
     change = joint.mass * (np.array(joint.velocity) - before) / 1e-7 / 1000.0  # kN
     assert 0.5 * (first + last) == pytest.approx(change, rel=1e-6)
     [force] = [force for force in on_joint(session.model, joint.row) if force.kind == "inertia"]

@@ -5,8 +5,9 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
+from components.view import drawn_positions
 from game import Session
-from systems.render.marks import Fills, Picture, Strokes
+from systems.render.marks import Fills, Picture, Strokes, Text
 from systems.render.picture import compose
 from systems.render.theme import load_theme
 
@@ -97,3 +98,22 @@ def test_it_can_be_drawn_of_any_model(model: str, size: tuple[int, int]) -> None
     assert picture_of(session).marks
     session.press("x")
     assert not session.view.free_bodies
+
+
+@pytest.mark.parametrize("model", ["isostatic", "hyperstatic", "braced_portal", "warren_bridge", "tower"])
+@pytest.mark.parametrize("size", [(640, 480), (1024, 640), (1280, 800), (1920, 1080)])
+def test_no_value_of_a_rod_is_nearer_to_another(model: str, size: tuple[int, int]) -> None:
+    session = apart(model, size)
+    places = session.view.camera.to_pixels(drawn_positions(session.model))
+    start, end = places[session.model.rods.between.astype(int).T]
+    for mark in picture_of(session).marks:
+        if isinstance(mark, Text) and mark.of is not None and mark.of[0] == "rods" and mark.text.endswith("kN"):
+            distance = distances(np.array([mark.x, mark.y]), start, end)
+            assert distance.argmin() == mark.of[1], mark
+
+
+def distances(point: np.ndarray, start: np.ndarray, end: np.ndarray) -> np.ndarray:
+    """From a point to each of lines (m, 2)."""
+    way = end - start
+    share = np.clip(((point - start) * way).sum(axis=1) / (way**2).sum(axis=1), 0.0, 1.0)
+    return np.hypot(*(point - start - share[:, None] * way).T)
