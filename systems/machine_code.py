@@ -122,10 +122,10 @@ def adopt(module: ModuleType, name: str, kernels: Iterable[Any]) -> None:
         vars(module)["prange"] = numba.prange
 
 
-def types_of(machine: Mapping[str, Any]) -> bytes:
+def types_of(machine: Mapping[str, Any]) -> dict[str, list[Any]]:
     """For which types of their arguments functions are compiled, by their names."""
     made = {name: f.nopython_signatures for name, f in machine.items() if _is_compiled(f)}
-    return pickle.dumps({name: [signature.args for signature in some] for name, some in made.items()})
+    return {name: [signature.args for signature in some] for name, some in made.items()}
 
 
 def compile_for(function: Any, types: bytes, name: str) -> None:

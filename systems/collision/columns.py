@@ -67,7 +67,8 @@ class Grid(NamedTuple):
     boxes: left, bottom, right, top, shape (n, 4), m. layer: of each disc, shape (n,). levels: the cells of
     layer k have the size cell × 2^levels[k], ascending, shape (64,); inverse: one by that size, 1/m. heads: first entry
     of each bucket; the number of buckets is a power of two. after, before: the next entry in the same bucket and the one
-    before, shape (8 n × layers,). found: the discs that searches find, shape (2 n + 2,); times: of impacts with them, s.
+    before, shape (4 × a power of two,). found: the discs that searches find, shape (2 n + 2,); times: of impacts with
+    them, s.
     """
 
     boxes: Floats
@@ -84,14 +85,15 @@ class Grid(NamedTuple):
     def empty(cls, n: int, layers: int) -> Grid:
         """A grid of n discs with room for so many layers."""
         buckets = 1 << int(np.ceil(np.log2(max(n * layers, 64))))
+        entries = 4 << int(np.ceil(np.log2(max(2 * n * layers, 64))))
         return cls(
             boxes=np.zeros((n, 4)),
             layer=np.zeros(n, dtype=np.int64),
             levels=np.zeros(64, dtype=np.int64),
             inverse=np.zeros(64),
             heads=np.full(buckets, NONE, dtype=np.int32),
-            after=np.zeros(8 * n * layers, dtype=np.int32),
-            before=np.zeros(8 * n * layers, dtype=np.int32),
+            after=np.zeros(entries, dtype=np.int32),
+            before=np.zeros(entries, dtype=np.int32),
             found=np.zeros(2 * n + 2, dtype=np.int64),
             times=np.zeros(2 * n + 2),
         )

@@ -12,6 +12,7 @@ import linecache
 import logging
 import math
 import os
+import pickle
 import threading
 import time
 from collections.abc import Callable, Mapping
@@ -303,7 +304,7 @@ class GeneratedModule:
         """Compile by calling everything, and keep that."""
         from systems.machine_code import types_of
 
-        before, began = self._form, time.perf_counter()
+        before, began = self._form, time.thread_time()
         self._form, self._compiled = self._machine(), True
         Choice.changes += 1
         try:
@@ -311,8 +312,10 @@ class GeneratedModule:
         except BaseException:
             self._form, self._compiled = before, False
             raise
-        cache.write(_types_of(self.key), types_of(vars(self._form)))
-        _keep_note(self.key, (time.perf_counter() - began, self._size))
+        types = types_of(vars(self._form))
+        cache.write(_types_of(self.key), pickle.dumps(types))
+        cost = time.thread_time() - began, self._size
+        _keep_note(self.key, cost if any(types.values()) else None)  # else it is compiled when it is called
 
 
 def tell(sentence: str) -> None:

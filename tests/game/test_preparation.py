@@ -422,6 +422,26 @@ def test_where_it_is_not_known_what_was_compiled_it_is_compiled_anew(
     assert not module.is_compiled()
 
 
+def test_experience_of_compiling_is_of_what_was_compiled_and_of_no_other_process(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(cache, "folder", lambda: tmp_path)
+    source = "from systems.kernels import kept\n\n@kept()\ndef half(x):\n    return 0.5 * x\n"
+
+    def call() -> None:
+        time.sleep(0.5)  # as if others took the processor
+        module.form.half(1.0)
+
+    module = GeneratedModule("called", lambda: (source, {}), call)
+    began = time.thread_time()
+    module.load()
+    seconds = float((tmp_path / f"{module.key}.done").read_text().split()[0])
+    assert 0.0 < seconds <= time.thread_time() - began
+    later = GeneratedModule("called later", lambda: (source + "\n", {}))
+    later.load()
+    assert (tmp_path / f"{later.key}.done").read_text() == ""
+
+
 def test_without_numba_all_jobs_have_the_same_problem(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setitem(sys.modules, "systems.machine_code", None)
     problems = {problem_of(job) for job in [("raster",), ("dop853", FEW, "physics.elasticity")]}

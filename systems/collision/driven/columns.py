@@ -88,6 +88,7 @@ class Whole(IntEnum):
     STEPS = 28  # to take at once
     PUSHED = 29  # 1: contact forces acted in the last step
     EXAMINE = 30  # 1: the next step is one that is looked through, though nothing seems near
+    LOOSE = 31  # 1: contacts need to be closed only so far that impacts in the step are found
 
 
 class Real(IntEnum):

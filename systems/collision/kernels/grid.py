@@ -6,8 +6,9 @@ those of all coarser layers. Discs whose boxes overlap share a cell of the coars
 a very large or very fast disc costs no more than a look at all others. They may share more; they find each other in that
 of the left bottom corner of what overlaps.
 
-The entries 4 (kind × discs + disc), and the three after it, are those of a disc in a layer, with kind = 2 × layer, + 1
-for guests. The entries of a bucket are chained, to and fro. The buckets of neighbouring cells differ.
+Corner × (a power of two) + kind × discs + disc is the entry of a disc in a layer, with kind = 2 × layer, + 1 for guests,
+and corner from 0 to 3 for the cells that its box overlaps, most often one. The entries of a bucket are chained, to and
+fro. The buckets of neighbouring cells differ.
 """
 
 import math
@@ -99,7 +100,13 @@ def layer_of(level, grid, layers):
 @compiled
 def has_room(grid, layers):
     """True if so many layers fit into the arrays."""
-    return 2 * CORNERS * grid.boxes.shape[0] * layers <= grid.after.shape[0]
+    return 2 * grid.boxes.shape[0] * layers <= _plane(grid)
+
+
+@compiled
+def _plane(grid):
+    """The number of entries of a corner, a power of two."""
+    return grid.after.shape[0] // CORNERS
 
 
 @compiled
@@ -126,12 +133,12 @@ def _cells(left, bottom, right, top, k, grid):
 def enter(i, grid, layers):
     """Enter a disc into its layer and all coarser ones."""
     heads, after, before = grid.heads, grid.after, grid.before
-    mask, row = heads.shape[0] - 1, _row(grid)
+    mask, row, plane = heads.shape[0] - 1, _row(grid), _plane(grid)
     left, bottom, right, top = grid.boxes[i]
     for k in range(grid.layer[i], layers):
         kind = _kind(i, k, grid)
         first_x, first_y, last_x, last_y = _cells(left, bottom, right, top, k, grid)
-        entry = CORNERS * (kind * grid.boxes.shape[0] + i)
+        entry = kind * grid.boxes.shape[0] + i
         for y in range(first_y, last_y + 1):
             for x in range(first_x, last_x + 1):
                 bucket = (x + y * row + kind * KIND) & mask
@@ -140,19 +147,19 @@ def enter(i, grid, layers):
                 if following != NONE:
                     before[following] = entry
                 heads[bucket] = entry
-                entry += 1
+                entry += plane
 
 
 @compiled
 def leave(i, grid, layers):
     """Take a disc out of the grid, before its box changes."""
     heads, after, before = grid.heads, grid.after, grid.before
-    mask, row = heads.shape[0] - 1, _row(grid)
+    mask, row, plane = heads.shape[0] - 1, _row(grid), _plane(grid)
     left, bottom, right, top = grid.boxes[i]
     for k in range(grid.layer[i], layers):
         kind = _kind(i, k, grid)
         first_x, first_y, last_x, last_y = _cells(left, bottom, right, top, k, grid)
-        entry = CORNERS * (kind * grid.boxes.shape[0] + i)
+        entry = kind * grid.boxes.shape[0] + i
         for y in range(first_y, last_y + 1):
             for x in range(first_x, last_x + 1):
                 following, previous = after[entry], before[entry]
@@ -162,7 +169,7 @@ def leave(i, grid, layers):
                     after[previous] = following
                 else:
                     heads[(x + y * row + kind * KIND) & mask] = following
-                entry += 1
+                entry += plane
 
 
 @compiled
@@ -194,11 +201,10 @@ def _look_into(entry, kind, i, box, x, y, left_most, lowest, k, count, grid):
     """
     boxes, found, inverse = grid.boxes, grid.found, grid.inverse[k]
     left, bottom, right, top = box
-    first = CORNERS * kind * boxes.shape[0]
-    last = first + CORNERS * boxes.shape[0]
+    first, mask = kind * boxes.shape[0], _plane(grid) - 1
     while entry != NONE:
-        if first <= entry < last:
-            j = (entry - first) // CORNERS
+        j = (entry & mask) - first
+        if 0 <= j < boxes.shape[0]:
             found[count] = j
             near = (
                 (boxes[j, 0] <= right) & (left <= boxes[j, 2]) & (boxes[j, 1] <= top) & (bottom <= boxes[j, 3])

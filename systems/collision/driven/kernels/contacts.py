@@ -26,6 +26,7 @@ from systems.entries import Account, Control
 
 CLOSED_GAP = 1e-13  # of the smaller radius: contacts with a smaller gap are closed
 LOOSELY_CLOSED_GAP = 1e-11  # instead, after STRICT_TRIES: gaps in a row between walls hardly follow forces
+LOOSE_GAP = 1e-7  # of the smaller radius: enough to tell whether the step holds an impact
 COMPLIANCE_GAP = (
     2e-11  # of how far forces move particles: a gap that small is closed; see FIRM in complementarity.py
 )
@@ -79,12 +80,30 @@ def _choose(driven, c, k, place):
 def begin_search(driven):
     """Begin to look for the forces of a step with those of the step before."""
     whole, number = driven.whole, driven.whole[Whole.CHOSEN]
-    whole[Whole.TURN], whole[Whole.REGULAR] = 0, 1
+    whole[Whole.TURN], whole[Whole.REGULAR], whole[Whole.LOOSE] = 0, 1, whole[Whole.FORESEEN] == 0
     for c in range(number):
         driven.search[Tried.FORCES, c] = driven.forces[driven.chosen[c]]
         for d in range(driven.block[0, c], driven.block[1, c]):
             driven.learnt[c, d] = 0.0
             driven.slope[c, d] = 0.0
+
+
+@compiled
+def resume_search(driven, end):
+    """Look for the forces up to another end (s) of a step: from those that were found, and with what was learnt.
+
+    How far forces move particles grows with the square of the time.
+    """
+    whole, real = driven.whole, driven.real
+    if not whole[Whole.REGULAR] or real[Real.NOW] == real[Real.START]:
+        begin_search(driven)
+        return
+    whole[Whole.TURN], whole[Whole.LOOSE] = 0, whole[Whole.FORESEEN] == 0
+    share = ((end - real[Real.START]) / (real[Real.NOW] - real[Real.START])) ** 2
+    for c in range(whole[Whole.CHOSEN]):
+        for d in range(driven.block[0, c], driven.block[1, c]):
+            driven.learnt[c, d] *= share
+            driven.slope[c, d] *= share
 
 
 @compiled
@@ -154,9 +173,12 @@ def judge_forces(driven, control, account, place, speed):
 
 @compiled
 def _measure(driven, after):
-    """Measure the gaps at the end of a step; True if all contacts are closed that push, and none overlaps."""
+    """Measure the gaps at the end of a step; True if all contacts are closed that push, and none overlaps.
+
+    As long as Whole.LOOSE is set, closed within LOOSE_GAP will do; it is cleared where they are closed for good.
+    """
     whole, search = driven.whole, driven.search
-    number, all_closed = whole[Whole.CHOSEN], True
+    number, all_closed, nearly = whole[Whole.CHOSEN], True, whole[Whole.LOOSE] == 1
     closed = CLOSED_GAP if whole[Whole.TURN] < STRICT_TRIES else LOOSELY_CLOSED_GAP
     for c in range(number):
         k = driven.chosen[c]
@@ -171,7 +193,10 @@ def _measure(driven, after):
         search[Tried.GAP, c], search[Tried.ALLOWED, c] = gap, allowed
         wrong = abs(gap) if search[Tried.FORCES, c] > 0.0 else -gap
         all_closed = all_closed and wrong <= allowed
-    return all_closed
+        nearly = nearly and wrong <= LOOSE_GAP * min(driven.size[i], driven.size[j])
+    if all_closed:
+        whole[Whole.LOOSE] = 0
+    return all_closed or nearly
 
 
 @compiled

@@ -17,6 +17,7 @@ from systems.collision.driven.kernels.contacts import (
     choose_contacts,
     judge_forces,
     keep_contacts,
+    resume_search,
     try_forces,
 )
 from systems.collision.driven.kernels.crowd import begin_crowd, is_crowd, judge_crowd, try_crowd
@@ -180,13 +181,16 @@ def _retry(driven, control, account, place, speed, end):
     """Take the step again, to another end (s)."""
     take_back(driven, control, account, place, speed)
     driven.real[Real.END] = end
-    begin_search(driven)
+    resume_search(driven, end)
     return _go_on(driven, Phase.TRYING)
 
 
 @compiled
 def _accept(driven):
-    """The step is as it is to be: take it for good, if it was only foreseen."""
+    """The step is as it is to be: close its contacts for good, and take it, if it was only foreseen."""
+    if driven.whole[Whole.LOOSE]:
+        driven.whole[Whole.LOOSE] = 0
+        return _go_on(driven, Phase.TRIED)
     driven.whole[Whole.PHASE] = Phase.OVER
     return Order.TAKE if driven.whole[Whole.FORESEEN] else Order.GO_ON
 
