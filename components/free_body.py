@@ -19,12 +19,16 @@ Vectors = NDArray[np.float64]
 
 
 class Force(NamedTuple):
-    """A force (kN) on a body. name: what exerts it, such as "rod AB". kind: "rod", "load", "reaction" or "inertia"."""
+    """A force (kN) on a body. name: what exerts it, such as "rod AB". kind: "rod", "load", "reaction" or "inertia".
+
+    load: the row of the load that it is, or −1.
+    """
 
     name: str
     kind: str
     x: float
     y: float
+    load: int = -1
 
 
 class Apart(NamedTuple):
@@ -87,17 +91,18 @@ def on_joint(model: Model, row: int, known: Apart | None = None) -> list[Force]:
     for rod in np.flatnonzero((rods.between == row).any(axis=1)).tolist():
         pull = force[rod] * along[rod] * (1.0 if rods.between[rod, 0] == row else -1.0)
         found.append(Force(model.describe(rods[rod]), "rod", *pull.tolist()))
-    acting = {
-        model.describe(model.loads[k]): factor_at(model.loads.history[k], model.clock.time)
-        * model.loads.force[k]
-        for k in np.flatnonzero(model.loads.on == row).tolist()
-    }
-    acting["force"] = particles.force[row] + environment.force
-    acting["weight"] = particles.mass[row] * (particles.acceleration[row] + environment.acceleration) / 1000.0
-    rest = particles.applied_force[row] - sum(acting.values(), np.zeros(2))
-    scale = np.abs(particles.applied_force[row]).max(initial=1e-12)
-    acting["other"] = np.where(np.abs(rest) > ROUNDING * scale, rest, 0.0)  # drag, laws of mods, a hand
-    found += [Force(name, "load", *vector.tolist()) for name, vector in acting.items() if vector.any()]
+    loads, time, rest = model.loads, model.clock.time, particles.applied_force[row].copy()
+    for k in np.flatnonzero(loads.on == row).tolist():
+        x, y = (factor_at(loads.history[k], time) * loads.force[k]).tolist()
+        rest -= (x, y)
+        found.append(Force(model.describe(loads[k]), "load", x, y, k))
+    weight = particles.mass[row] * (particles.acceleration[row] + environment.acceleration) / 1000.0
+    for name, own in (("force", particles.force[row] + environment.force), ("weight", weight)):
+        rest -= own
+        if own.any():
+            found.append(Force(name, "load", *own.tolist()))
+    if np.abs(rest).max() > ROUNDING * np.abs(particles.applied_force[row]).max():
+        found.append(Force("other", "load", *rest.tolist()))  # drag, laws of mods, a hand
     for part, name in ((np.array([1.0, 0.0]), "reaction x"), (np.array([0.0, 1.0]), "reaction y")):
         if (reaction := particles.reaction[row] * part).any():
             found.append(Force(name, "reaction", *reaction.tolist()))

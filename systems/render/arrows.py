@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 
 import numpy as np
 from numpy.typing import NDArray
@@ -13,7 +13,7 @@ from components.rod import nodes
 from components.tags import DiagramShown
 from systems.render.clip import bounds, clip_segments
 from systems.render.labels import STRONG
-from systems.render.marks import Fills, Mark, Owners, Points, Strokes, owners
+from systems.render.marks import Fills, Mark, Owner, Points, Strokes
 from systems.render.sheet import DIRECTIONS, Rows, Sheet
 from systems.render.supports import crowding
 from systems.render.theme import Colour
@@ -40,6 +40,22 @@ def full_load(model: Model) -> Values:
     return force
 
 
+def whose(model: Model, rows: Rows, *, loads_only: bool = False) -> list[Owner]:
+    """Whose each arrow of what acts on particles is: the load's that is all of it, else the particle's.
+
+    loads_only: the arrow shows forces and loads, no weight.
+    """
+    particles, environment = model.particles, model.environment
+    others = particles.force + environment.force
+    if not loads_only:
+        others = others + particles.mass[:, None] * (particles.acceleration + environment.acceleration)
+    count = np.bincount(model.loads.on, minlength=particles.count)
+    alone = (count == 1) & ~others.any(axis=1)
+    load = np.zeros(particles.count, dtype=np.intp)
+    load[model.loads.on] = np.arange(model.loads.count)
+    return [("loads", int(load[row])) if alone[row] else ("particles", row) for row in rows.tolist()]
+
+
 def lengths(sheet: Sheet, key: tuple[str, int], sizes: Values, largest: float) -> Values:
     """Lengths in pixels of arrows for sizes (n,), on the scale of all of a kind, of which `largest` is the largest.
 
@@ -55,7 +71,8 @@ def lengths(sheet: Sheet, key: tuple[str, int], sizes: Values, largest: float) -
 
 def draw_loads(sheet: Sheet) -> Iterator[Mark]:
     """The force on each particle, its loads at full size included, where no diagram shows it."""
-    force = full_load(sheet.model)
+    model = sheet.model
+    force = full_load(model)
     loaded = (force[:, 0] != 0.0) | (force[:, 1] != 0.0)
     loaded[sheet.tagged(DiagramShown, "particles")] = False
     rows = sheet.particles[loaded[sheet.particles]]
@@ -67,7 +84,9 @@ def draw_loads(sheet: Sheet) -> Iterator[Mark]:
     ahead = np.argmax(along @ DIRECTIONS.T, axis=1)
     crowd = crowding(sheet, rows)
     pushes = crowd[rows, (ahead + 2) % 4] <= crowd[rows, ahead] + 0.1  # towards the particle, if there is room
-    yield from _at_rims(sheet, rows, along, length, sheet.theme.load, pushes)
+    yield from _at_rims(
+        sheet, rows, along, length, sheet.theme.load, pushes, whose(model, rows, loads_only=True)
+    )
 
 
 def draw_velocities(sheet: Sheet) -> Iterator[Mark]:
@@ -108,16 +127,17 @@ def _at_rims(
     length: Values,
     colour: Colour,
     pushes: NDArray[np.bool_] | bool = False,
+    of: Sequence[Owner] = (),
 ) -> list[Mark]:
     """Arrows from the rims of particles outwards, or (pushes) ending there."""
     reach = (sheet.radii[rows] + GAP * sheet.unit)[:, None] * along
     back = -reach - length[:, None] * along
     tail = sheet.centres[rows] + np.where(np.reshape(pushes, (-1, 1)), back, reach)
-    return arrows(sheet, ("particles", rows), tail, along, length, colour)
+    return arrows(sheet, of or [("particles", row) for row in rows.tolist()], tail, along, length, colour)
 
 
 def arrows(
-    sheet: Sheet, whose: Owners, tail: Points, along: Points, length: Values, colour: Colour
+    sheet: Sheet, of: Sequence[Owner], tail: Points, along: Points, length: Values, colour: Colour
 ) -> list[Mark]:
     """Arrows of elements from `tail` (n, 2) along unit vectors (n, 2), of so many pixels (n,)."""
     u = sheet.unit
@@ -129,5 +149,12 @@ def arrows(
     tail, tip, across, neck, head = tail[seen], tip[seen], across[seen], neck[seen], head[seen]
     sheet.occupancy.line(tail, tip, STRONG)
     points = np.stack([tip, neck + 0.5 * head * across, neck - 0.5 * head * across], axis=1)
-    of = owners(whose, seen)
-    return [Strokes(tail, neck, 2.0 * u, colour, of), Fills(points, colour, of)]
+    marks: list[Mark] = []
+    for table in dict.fromkeys(of[index][0] for index in seen.tolist()):
+        chosen = np.array([of[index][0] == table for index in seen.tolist()])
+        rows = table, np.array([of[index][1] for index in seen.tolist()])[chosen]
+        marks += [
+            Strokes(tail[chosen], neck[chosen], 2.0 * u, colour, rows),
+            Fills(points[chosen], colour, rows),
+        ]
+    return marks

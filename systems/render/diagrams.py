@@ -14,7 +14,7 @@ from components.load import CONSTANT
 from components.model import Model
 from components.tags import DiagramShown, Selected
 from components.view import View
-from systems.render.arrows import FORCES, arrows, full_load, lengths
+from systems.render.arrows import FORCES, arrows, full_load, lengths, whose
 from systems.render.labels import FAINT, Key, Label, half_size
 from systems.render.marks import Bars, Owner, Points, Strokes
 from systems.render.sheet import DIRECTIONS, Rows, Sheet, typical_length
@@ -286,9 +286,14 @@ def _draw_forces(
     taken[rows, axis] = outer
     along = DIRECTIONS[direction]
     middle = tail + along * length[:, None] / 2
-    sheet.marks += arrows(sheet, ("particles", rows), tail, along, length, getattr(sheet.theme, name))
+    sheet.marks += arrows(sheet, _of(sheet, name, rows), tail, along, length, getattr(sheet.theme, name))
     sheet.occupancy.block_squares(middle, 0.2 * length)
     _label_arrows(sheet, name, 2 * rows + axis, value, middle, length, outer)
+
+
+def _of(sheet: Sheet, name: str, rows: Rows) -> list[Owner]:
+    """Whose the arrows of forces of one kind on particles are."""
+    return whose(sheet.model, rows) if name == "load" else [("particles", row) for row in rows.tolist()]
 
 
 def _thinned(
@@ -357,7 +362,7 @@ def _label_arrows(
     # Arrows are few and say little without their value: before the rods.
     ranks, keys = (-worth[shown] - 1e9).tolist(), [(field, number) for number in which[shown].tolist()]
     colours = [getattr(sheet.theme, name)] * len(texts)
-    of = [("particles", row) for row in (which[shown] // 2).tolist()]
+    of = _of(sheet, name, which[shown] // 2)
     _add_values(sheet, zip(texts, places, colours, ranks, keys, of, strict=True), font, "spare")
 
 

@@ -101,7 +101,7 @@ def _draw_pair(
     A rod in tension pulls both: the arrows point at each other. In compression they point apart.
     """
     step = size[:, None] * out
-    whose = "rods", rows
+    whose = [("rods", row) for row in rows.tolist()]
     if pulled:
         sheet.marks += arrows(sheet, whose, rim, out, size, colour)
         sheet.marks += arrows(sheet, whose, rod_end, -out, size, colour)
@@ -128,16 +128,15 @@ def _draw_others(sheet: Sheet, row: int, forces: list[Force], largest: float) ->
         rim = centre + (radius + GAP * u) * side + aside
         tail = rim + length * side if pushes else rim
         colour: Colour = sheet.theme.ink if force.kind == "inertia" else getattr(sheet.theme, force.kind)
-        sheet.marks += arrows(
-            sheet, ("particles", np.array([row])), tail[None], out[None], np.array([length]), colour
-        )
+        of = ("loads", force.load) if force.load >= 0 else ("particles", row)
+        sheet.marks += arrows(sheet, [of], tail[None], out[None], np.array([length]), colour)
         sheet.legend.append(force.kind)
         text = written.force(size)
         half = half_size(text, sheet.font(12.0), "semibold", u)
         far = rim + (length + 4.0 * u + abs(side[0]) * half[0] + abs(side[1]) * half[1]) * side
         own = [rim, rim + length * side]
         places = [far, *_beside(sheet, text, *own)]
-        _label(sheet, text, places, colour, (f"particles.{force.name}", row), ("particles", row), own)
+        _label(sheet, text, places, colour, (f"particles.{force.name}", row), of, own)
 
 
 def _directions_of_rods(sheet: Sheet, row: int) -> list[Points]:

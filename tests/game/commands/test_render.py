@@ -61,6 +61,18 @@ def test_walls_have_groups_too(tmp_path: Path) -> None:
     assert len(groups["walls.floor"]) == 3  # a line and two round ends
 
 
+@pytest.mark.parametrize("diagrams", [False, True])
+def test_loads_have_groups_of_their_own(diagrams: bool, tmp_path: Path) -> None:
+    path = tmp_path / "a.svg"
+    words = ["render", "braced_portal", "--at", "0.6", "--output", str(path)]
+    assert main([*words, "--diagrams"] if diagrams else words) == 0
+    groups = {group.get("data-path"): group for group in ET.parse(path).getroot().iter(f"{SVG}g")}
+    [name] = models.load("braced_portal").tables["loads"].names
+    assert groups[f"loads.{name}"].findall(f"{SVG}polygon")  # the head of its arrow
+    texts = [text.text for text in groups[f"loads.{name}"].iter(f"{SVG}text")]
+    assert texts == (["50.00 kN"] if diagrams else [])
+
+
 @pytest.mark.parametrize(
     ("words", "told"),
     [
