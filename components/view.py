@@ -140,9 +140,10 @@ class View:
     theme: the name of its colours. readouts: panels at the right edge; hidden with the legend.
     pointed: what is said of the element under the pointer, beside it.
     shape: a mechanism or mode that is drawn over the model, with its title below the caption.
+    utilisation: rods show in colours how much of their strength they bear.
     largest_force: that (kN) of pictures beside this one, with which its arrows share a scale; 0: none.
     free_bodies: rods and joints are drawn apart, with the forces on each.
-    theory, energy: show theory beside the run, and its energy account, among them.
+    theory, energy, events: show theory beside the run, its energy account, and what happened, among them.
     fitted: the camera shows the whole model, and follows the size of the window until a person zooms or pans.
     shares: the model is fitted beside the panels; else panels may cover it. since: by title, the rank in which each
     panel appeared.
@@ -171,9 +172,11 @@ class View:
     readouts: tuple[Readout, ...] = ()
     since: dict[str, int] = field(default_factory=dict)
     largest_force: float = 0.0
+    utilisation: bool = False
     theory: bool = False
     energy: bool = False
     free_bodies: bool = False
+    events: bool = False
     shape: Shape | None = None
     pointed: Readout | None = None
     fitted: bool = False

@@ -85,7 +85,7 @@ class Session(Context):
             None  # called with every press; set by a recorder
         )
         self.on_resize: Callable[[], None] | None = None  # called after every change of size; set by a recorder
-        self._clicked: Layer | None = None  # what the last click was for
+        self._clicked: Layer | None = None  # what took the last press, if that was a click
         self._blank = Model()  # what the footer is drawn over
         self.offer_tools()
         self.begin_document()
@@ -201,6 +201,7 @@ class Session(Context):
             with heeding_mods(simulation), self.without_frames(), watched(simulation):
                 yield simulation
         finally:
+            document.chronicle.look()
             if not self.time_passes:
                 document.history.end_run()
 
@@ -298,13 +299,14 @@ class Session(Context):
             self.open_files(key.removeprefix(FILES).splitlines())
             return
         pixel = self.pointer if pixel is None else _near(pixel)
-        if key in ("click", "double click") and self._slipped(key, pixel):
-            return
+        here = layer(self, pixel)
+        if key == "double click" and self._clicked not in (None, here):
+            return  # its first click led here, and the second is not meant for what is here
         (name, at), pressed = meaning(self, key, pixel), pixel
         if key == "escape" and self.fault and self.scene not in FORMS:
             self.faults_seen = len(FAULTS)
         elif name is not None:
-            self.notice = ""
+            self.notice, self._clicked = "", here if key == "click" else None
             if self.on_press is not None:
                 self.on_press(key, pressed)
             if self.time_passes:
@@ -322,12 +324,6 @@ class Session(Context):
         self.scenes.apply(self)
         self.offer_tools()
         return scene
-
-    def _slipped(self, key: str, pixel: Vector) -> bool:
-        """True for the second click of a double click whose first one led elsewhere: it is not meant for what is there."""
-        first, now = self._clicked, layer(self, pixel)
-        self._clicked = now if key == "click" else None
-        return key == "double click" and first not in (None, now)
 
     def open_files(self, paths: Iterable[str | Path]) -> None:
         """Open model files and play recorded sessions, as when they are dropped on the window; undo goes back.
@@ -446,9 +442,9 @@ class Session(Context):
             stages.append((self._blank, self.footer))
         return stages
 
-    def update_view(self) -> None:
-        """Bring what the view says about the run up to date."""
-        show(self)
+    def update_view(self, elapsed: float = 0.0) -> None:
+        """Bring what the view says about the run up to date, so many seconds after the last time."""
+        show(self, elapsed)
         self.offer_tools()
 
 

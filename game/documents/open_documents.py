@@ -17,6 +17,7 @@ from components.model import Model
 from components.snapshot import Snapshot
 from game.documents import models
 from game.documents.assessment import Assessment
+from game.documents.chronicle import Chronicle
 from game.documents.history.history import History
 from game.documents.history.log import Edit, Entry
 from game.documents.history.timeline import Timeline
@@ -85,6 +86,7 @@ class OpenDocument:
         self.undeformed: Snapshot | None = None
         self.assessment = Assessment(model, self.simulation)
         self.shapes = Shapes(model)
+        self.chronicle = Chronicle(model, self.simulation)
         self.file = file
         self.recovery: Path | None = None
         self.saved = self._last_edit = model.revision
@@ -124,6 +126,7 @@ class OpenDocument:
         self._note_undeformed()
         if self.at_beginning:
             self.beginning = self.simulation.present()
+            self.chronicle.look()
             self.assessment.begin(self.beginning)
 
     def restart(self) -> None:

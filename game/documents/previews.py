@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+from contextlib import suppress
 from functools import cache
 from importlib.resources import files
 from pathlib import Path
@@ -50,9 +51,7 @@ def with_forces(model: Model) -> Model:
     moved = model.particles.displacement.any() or model.particles.velocity.any()
     force = Structure.of(model).respond(model.particles.displacement, rods.plastic_strain).axial_force
     if not moved and rods.count <= LARGEST_SOLVED:
-        try:
+        with suppress(NoEquilibrium):  # of a mechanism, such as a pendulum
             force = linear(model).axial_force
-        except NoEquilibrium:  # a mechanism, such as a pendulum
-            pass
     model.writable("rods.axial_force")[...] = force
     return model

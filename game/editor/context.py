@@ -21,6 +21,7 @@ from components.toolbar import Toolbar
 from components.view import Preview, Readout, View
 from game.documents import models
 from game.documents.autosave import Autosave
+from game.documents.chronicle import Happening
 from game.documents.document import missing_mods
 from game.documents.history.history import History
 from game.documents.history.timeline import Timeline
@@ -382,6 +383,11 @@ class Context:
         return self.document.assessment.remarks
 
     @property
+    def events(self) -> tuple[Happening, ...]:
+        """What happened in the run so far, in order of time: rods that yield, cables that go slack, collapse, rest."""
+        return self.document.chronicle.happenings
+
+    @property
     def fault(self) -> str:
         """The mod that failed last and why, until Escape is pressed; "" if none did."""
         return FAULTS[-1] if len(FAULTS) > self.faults_seen else ""
@@ -443,6 +449,7 @@ class Context:
         finally:
             self.history.end_run()
             self._go_on()
+            self.document.chronicle.look()
         return bool(self.model.clock.steps == target)
 
     def _go_on(self) -> None:
@@ -470,6 +477,7 @@ class Context:
             return
         with self.timeline.recording():
             self.document.live.frame(elapsed)
+        self.document.chronicle.look()
 
     def has_program(self, simulation: Simulation) -> bool:
         """False while a large model waits for another process to compile its step program (see `awaited`)."""
@@ -599,6 +607,6 @@ class Context:
         Called after actions, never because of time or frames, so that a recording is replayed in the same picture.
         """
         view = self.view
-        own = view.theory or view.energy or view.free_bodies
+        own = view.theory or view.energy or view.events or view.free_bodies
         wanted = own or any(readout.is_large for readout in self.panels())
         view.share(self.model, shares=view.legend and wanted)

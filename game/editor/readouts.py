@@ -25,6 +25,7 @@ if TYPE_CHECKING:  # it imports scipy
 MOST_ELEMENTS = 3  # selected elements with a readout of their own
 SUM = 34  # characters of a line of a sum
 MOST_JOINTS = 6  # whose sums are shown while none is selected
+MOST_EVENTS = 10  # of a run, that are listed
 NOTHING = 1e-12  # of the largest exact value of its kind: round-off, shown as 0
 
 _BEFORE_SIGNS = re.compile("([+−=]) ")  # where a sum may be broken
@@ -40,6 +41,16 @@ def own_readouts(context: Context) -> Iterator[Readout]:
         yield from _theory(context)
     if context.view.energy:
         yield _energy(context)
+    if context.view.events:
+        yield _events(context)
+
+
+def _events(context: Context) -> Readout:
+    """What happened in the run, the latest last."""
+    found = [(event.when, event.message.rstrip(".")) for event in context.events]
+    left_out = len(found) - MOST_EVENTS
+    earlier = [(f"{left_out} earlier", "")] if left_out > 0 else []
+    return Readout("What happened", (*earlier, *found[-MOST_EVENTS:]) or (("nothing yet", ""),))
 
 
 def _energy(context: Context) -> Readout:

@@ -70,7 +70,7 @@ def _in_menu(context: Context, key: str, pixel: Vector) -> Meaning | None:
     view, layout = context.view, menu_of(context.view)
     assert layout is not None
     if key == "return" or (key in BUTTONS and layout.frame.contains(pixel)):
-        number = layout.pointed_at(view.pointer) if key == "return" else layout.entry_at(pixel)
+        number = layout.pointed_at(pixel) if key == "return" else layout.entry_at(pixel)
         entry = layout.menu.entries[number] if number >= 0 else None
         if entry is None or not entry.enabled:
             return None if key == "return" else ("choose entry", pixel)

@@ -80,6 +80,12 @@ def _of_rods(model: Model, rows: NDArray[np.intp]) -> Iterator[Result]:
     if len(rows) == 1:
         (row,) = rows
         yield _result("strain", _number(1000.0 * rods.strain[row], 1000.0 * rods.strain, "‰"), Rod.strain)
+        if not math.isnan(rods.area[row]):
+            stress = 1e-3 * rods.axial_force / np.where(np.isnan(rods.area), np.inf, rods.area)
+            text = _number(stress[row], stress, "MPa")
+            yield Result(
+                SECTION, "stress", text, "Axial force per area of the cross-section; tension positive."
+            )
         yield _result("length", _number(rods.length[row], rods.length, "m"), Rod.length)
         if rods.plastic_strain[row]:
             plastic = 1000.0 * rods.plastic_strain

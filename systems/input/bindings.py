@@ -104,8 +104,10 @@ _BY_PURPOSE: dict[str, tuple[Binding, ...]] = {
     "Results": (
         Binding("i", "toggle diagrams", LIVE, "force diagrams on / off"),
         Binding("x", "toggle free bodies", LIVE, "free bodies: rods and joints apart, on / off"),
+        Binding("a", "toggle utilisation", LIVE, "share of the strength in colours, on / off"),
         Binding("m", "toggle theory", LIVE, "theory beside the run, on / off"),
         Binding("j", "toggle energy", LIVE, "energy account on / off"),
+        Binding("n", "toggle events", LIVE, "what happened, on / off"),
         Binding("b", "next shape", LIVE, "mechanisms, natural modes, none"),
         Binding("k", "force method", (PAUSE,), "force method"),
     ),
@@ -197,6 +199,7 @@ WITHOUT_KEY: tuple[Binding, ...] = (
     Binding("", "toggle cable", LIVE, "cable: tension only"),
     Binding("", "release", (PAUSE,), "release it in the force method"),
     Binding("", "environment", LIVE, "properties of the environment"),
+    Binding("", "more tools", (*LIVE, FORCE_METHOD), "more"),
 )
 
 # The actions of the toolbar, in groups from the top to the bottom.
@@ -206,7 +209,10 @@ TOOLBAR: tuple[tuple[str, ...], ...] = (
     ("toggle diagrams of sets", "back"),
     ("undo", "redo", "copy", "paste", "duplicate", "delete"),
     ("place", "rod", "support", "force", "velocity"),
-    ("toggle diagrams", "toggle free bodies", "toggle theory", "toggle energy", "next shape", "fit", "new grid", "next grid"),
+    (
+        *("toggle diagrams", "toggle free bodies", "toggle theory", "toggle energy"),
+        *("next shape", "fit", "new grid", "next grid"),
+    ),
     ("properties", "force method", "new", "load", "save again", "save"),
     ("screenshot", "toggle full screen", "next theme", "toggle help"),
 )

@@ -10,9 +10,11 @@ from components.round_numbers import round_down
 from components.view import BETWEEN
 from systems.render.marks import Mark, Panel, Stamps, Strokes, Text, boxes
 from systems.render.sheet import Sheet
+from systems.render.structure import HALO_OPACITY
 from systems.render.symbols import dashed
 from systems.render.theme import Colour, faded
 from systems.render.typography import at_most, font_size, line_height, shortened, text_width, wrapped
+from systems.render.utilisation import scale_bar
 
 _EDGE = 14.0  # points between overlays and the edges of the viewport
 _HEADING = 20.0  # points, size of its type
@@ -212,10 +214,13 @@ def _progress(sheet: Sheet, left: float, top: float, width: float) -> list[Mark]
 
 # --- legend ----------------------------------------------------------------------------------------
 
+_BAR_WIDTH = 70.0  # points, of a scale of colours
 _MEANINGS = {
     "tension": "tension (kN)",
     "compression": "compression (kN)",
     "yielding": "yielding",
+    "utilisation": "0 to 100 % of the strength",
+    "first": "first at its strength",
     "slack": "slack cable",
     "load": "load (kN)",
     "reaction": "reaction (kN)",
@@ -235,7 +240,10 @@ def _legend(sheet: Sheet, heading_end: tuple[float, float]) -> tuple[list[Mark],
     if not names or v.width < 240.0 * u:
         return [], heading_end[1]
     pad, swatch, gap, height = 9.0 * u, 16.0 * u, 14.0 * u, 24.0 * u
-    entries = [swatch + 6.0 * u + text_width(_MEANINGS[name], size) for name in names]
+    swatches = [_BAR_WIDTH * u if name == "utilisation" else swatch for name in names]
+    entries = [
+        wide + 6.0 * u + text_width(_MEANINGS[name], size) for name, wide in zip(names, swatches, strict=True)
+    ]
     beside = sum(entries) + gap * (len(names) - 1) + 2 * pad <= right - heading_end[0] - gap
     if not beside and v.height < _SMALL * u:
         return [], heading_end[1]
@@ -246,9 +254,9 @@ def _legend(sheet: Sheet, heading_end: tuple[float, float]) -> tuple[list[Mark],
         left, x = right - width, right - width + pad
         sheet.occupancy.block(left, top, width, height)
         marks.append(Panel(left, top, width, height, 6.0 * u, faded(theme.panel, 0.94), theme.line))
-        for name, entry in zip(names[first:last], entries[first:last], strict=True):
-            marks += _swatch(sheet, name, x, top + height / 2, swatch)
-            marks.append(Text(_MEANINGS[name], x + swatch + 6.0 * u, top + height / 2, size, theme.text))
+        for name, wide, entry in list(zip(names, swatches, entries, strict=True))[first:last]:
+            marks += _swatch(sheet, name, x, top + height / 2, wide)
+            marks.append(Text(_MEANINGS[name], x + wide + 6.0 * u, top + height / 2, size, theme.text))
             x += entry + gap
         top += height + 4.0 * u
     return marks, max(top - 4.0 * u, heading_end[1])
@@ -268,11 +276,15 @@ def _rows(widths: list[float], gap: float, room: float) -> list[tuple[int, int]]
 def _swatch(sheet: Sheet, name: str, x: float, y: float, width: float) -> list[Mark]:
     """A small sample of what a colour means: a diagram, a yielding rod, a slack cable, an arrow."""
     u, theme = sheet.unit, sheet.theme
-    role = {"slack": "ink", "velocity": "ink", "inertia": "ink"}.get(name, name)
+    if name == "utilisation":
+        return scale_bar(theme, x, y, width, u)
+    role = {"slack": "ink", "velocity": "ink", "inertia": "ink", "first": "yielding"}.get(name, name)
     colour = getattr(theme, role)
     ends = np.array([[x, y]]), np.array([[x + width, y]])
     if name in ("load", "reaction", "inertia", "velocity"):
         return [Stamps("arrow", ends[0], width, u, colour, colour)]
+    if name == "first":
+        return [Strokes(*ends, 9.0 * u, faded(colour, HALO_OPACITY))]
     if name == "yielding":
         return [Strokes(*ends, 3.0 * u, colour)]
     if name == "slack":

@@ -32,6 +32,7 @@ from systems.render.supports import draw_supports, support_sides
 from systems.render.theme import Theme
 from systems.render.toolbar import compose_toolbar
 from systems.render.tools import draw_flashes, draw_preview
+from systems.render.utilisation import shade_rods
 
 
 def compose(model: Model | Form | Toolbar, view: View, theme: Theme, placed: Placed | None = None) -> Picture:
@@ -70,6 +71,7 @@ def _draw_structure(sheet: Sheet) -> None:
     draw_halos(sheet)
     sides = support_sides(sheet)
     draw_supports(sheet, sides)
+    shade_rods(sheet)
     draw_rods(sheet)
     draw_particles(sheet)
     sheet.marks += [*draw_loads(sheet), *draw_velocities(sheet)]

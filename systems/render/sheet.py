@@ -35,6 +35,7 @@ class Sheet:
     ends: rows of the particles at the rods' ends (m, 2). rods: rows of the rods that can be seen; start,
     end: their visible parts in pixels, aligned with `rods`. particles: rows of those that can be seen.
     pulled, pushed: rows of the rods that are coloured by their axial force, since they have no room for more.
+    shades: rows of rods and the colours that show a quantity of theirs.
     placed: where labels were in the last picture. legend: names of the colours that occur and mean something.
     notes: scales to be shown. scales: those of arrows in this picture, to be kept in `placed`.
     """
@@ -58,6 +59,7 @@ class Sheet:
     labels: list[Label] = field(default_factory=list)
     legend: list[str] = field(default_factory=list)
     notes: list[str] = field(default_factory=list)
+    shades: list[tuple[Rows, Colour]] = field(default_factory=list)
     scales: Placed = field(default_factory=dict)
 
     @property

@@ -23,6 +23,7 @@ _GHOST_FROM = 4.0  # points of displacement
 _SHAPE_WIDTH, _SHAPE_RADIUS, _SHAPE_FROM = 1.5, 2.5, 0.5  # points; drawn from so large a displacement on
 _SHAPE_OPACITY = 0.75
 HALO_OPACITY = 0.4
+_SHADED = 2.0  # width of rods whose colour shows a quantity, of the usual one
 _HALO = 0.12  # of the length of rods, by which halos stand out, within limits
 _LARGEST_FILLED = 10_000.0  # pixels, well within the 16 bits of filled polygons
 
@@ -101,9 +102,9 @@ def draw_rods(sheet: Sheet) -> None:
     width = _rod_width(sheet)
     by_force = {"compression": sheet.pushed, "tension": sheet.pulled}
     layers = [(wanted, getattr(theme, name)) for name, wanted in by_force.items()]
-    layers.append((yielding, theme.yielding))
+    layers += [*sheet.shades, (yielding, theme.yielding)]
     for colour, mask in sheet.colours_of(sheet.rods, layers, theme.ink):
-        wider = 1.35 if colour == theme.yielding else 1.0
+        wider = _SHADED if sheet.shades else 1.35 if colour == theme.yielding else 1.0
         _draw_lines(sheet, mask, width * wider, colour)
     named = {**by_force, "yielding": yielding}
     sheet.legend += [name for name, wanted in named.items() if len(wanted)]
@@ -212,7 +213,7 @@ def label_names(sheet: Sheet) -> None:
             name, is_marked = sheet.model.tables[table].handles[row].name, row in marked
             size, weight = (sheet.font(12.0), "semibold") if is_marked else (sheet.font(11.0), "regular")
             half, key = half_size(name, size, weight, sheet.unit), (f"{table}.name", row)
-            at = _beside_particle(sheet, row, half) if table == "particles" else _beside_rod(sheet, index, half)
+            at = _beside_particle(sheet, row, half) if table == "particles" else beside_rod(sheet, index, half)
             if is_marked:
                 label = Label(name, at, size, sheet.theme.text, -1e12, weight, backing, key=key)
             else:
@@ -234,7 +235,7 @@ def _beside_particle(sheet: Sheet, row: int, half: tuple[float, float]) -> list[
     return places
 
 
-def _beside_rod(sheet: Sheet, index: int, half: tuple[float, float]) -> list[tuple[float, float]]:
+def beside_rod(sheet: Sheet, index: int, half: tuple[float, float]) -> list[tuple[float, float]]:
     """Beside its middle, on either side, then further along and further away."""
     (x, y), (far_x, far_y) = sheet.start[index].tolist(), sheet.end[index].tolist()
     dx, dy = far_x - x, far_y - y

@@ -30,7 +30,7 @@ Attributes = dict[str, str]
 def as_svg(pictures: Sequence[tuple[Picture, Name]], size: tuple[int, int], title: str) -> bytes:
     """Pictures, each in its viewport of a drawing of that size in pixels, as the contents of an SVG file.
 
-    With each picture comes what gives the paths of its elements. Ids in a second one with elements begin with "2.", and so on.
+    With each picture comes what gives the paths of its elements. Ids in a second one begin with "2.", and so on.
     """
     width, height = (str(length) for length in size)
     root = ET.Element(

@@ -20,11 +20,17 @@ from systems.render.supports import draw_supports, support_sides
 from systems.render.symbols import symbol_parts
 from systems.render.theme import Colour, Theme
 
-_SMALLER, _USUAL = 0.6, 84.0  # symbols in a thumbnail, compared with those in a model; points of height, or smaller yet
+_SMALLER, _USUAL = (
+    0.6,
+    84.0,
+)  # symbols in a thumbnail, compared with those in a model; points of height, or smaller yet
 _EDGE = 4.0  # points that stay free within the card
 _MARGIN = 12.0  # points around a model to begin with
 _TRIES = 4  # at which what is drawn is fitted into the card; arrows and symbols keep their size
-_SAFE, _ENOUGH = 0.99, 1.12  # of the scale that seems to fit, the one to try; how much larger a good one could be
+_SAFE, _ENOUGH = (
+    0.99,
+    1.12,
+)  # of the scale that seems to fit, the one to try; how much larger a good one could be
 _TINT = 0.16  # share of the colour of loads in the paper of discs
 
 
@@ -42,7 +48,10 @@ def thumbnail(model: Model, viewport: Viewport, unit: float, theme: Theme) -> tu
         wide = span > 1e-9
         ratio = float(((room - around)[wide] / span[wide]).min()) if wide.any() else 1.0
         middle = np.array(viewport.middle)
-        if 1.0 <= ratio < _ENOUGH and (np.abs((low + high) / 2 - middle) <= (room - (high - low)) / 2 + 1.0).all():
+        if (
+            1.0 <= ratio < _ENOUGH
+            and (np.abs((low + high) / 2 - middle) <= (room - (high - low)) / 2 + 1.0).all()
+        ):
             break
         camera.pan(tuple((middle - (low + high) / 2).tolist()))
         camera.scale *= min(max(_SAFE * ratio, 0.2), 1.5)
@@ -74,7 +83,8 @@ def _corners(mark: Mark) -> Points:
             shape = np.concatenate([polygon.reshape(-1, 2) for _, polygon in parts])
             across, down = np.array([[1, 0], [0, 1], [-1, 0], [0, -1]])[mark.turns % 4]
             turned = shape @ np.array([[across, down], [-down, across]], dtype=np.float64)
-            return (mark.at[:, None] + turned).reshape(-1, 2)
+            placed: Points = (mark.at[:, None] + turned).reshape(-1, 2)
+            return placed
         case Rectangles():
             return np.concatenate([mark.boxes[:, :2], mark.boxes[:, :2] + mark.boxes[:, 2:]]).astype(np.float64)
         case _:

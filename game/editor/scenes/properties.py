@@ -17,6 +17,7 @@ from game.editor.context import Context, Stage
 from game.editor.scenes.form import FormScene
 from systems.edit.picking import pick
 from systems.forms import answers, properties, results, typing
+from systems.render.form_layout import FormLayout
 
 
 class Properties(FormScene):
@@ -127,6 +128,11 @@ class Properties(FormScene):
         if view.aside is None:
             return [(self.form, view)]
         return [(model, view), (self.form, replace(view, status=context.view.status))]
+
+    def layout(self, context: Context) -> FormLayout:
+        """Where boxes are as results stand above them, whether a picture was drawn or not."""
+        self._read_results(context)
+        return super().layout(context)
 
     def _read_results(self, context: Context) -> None:
         """Let the readings say what the elements do now."""
