@@ -54,16 +54,23 @@ def _events(context: Context) -> Readout:
 
 
 def _energy(context: Context) -> Readout:
+    energies = context.energy.as_dict()
+    nothing = written.ROUNDING * max(map(abs, energies.values()))
     rows = [
-        (name.replace("_", " "), f"{written.given(value, 5)} J")
-        for name, value in context.energy.as_dict().items()
+        (name.replace("_", " "), f"{written.given(value if abs(value) > nothing else 0.0, 5)} J")
+        for name, value in energies.items()
     ]
     error = None if context.busy else context.document.assessment.error()  # which takes a run of its own
     if error is not None:
         shares = error.relative, error.relative_velocity, error.relative_axial_force
         titles = "displacement error", "velocity error", "axial force error"
-        rows += [(title, f"{share:.1e} of the largest") for title, share in zip(titles, shares, strict=True)]
+        rows += [(title, _error(share, " of the largest")) for title, share in zip(titles, shares, strict=True)]
     return Readout("Energy account", tuple(rows))
+
+
+def _error(share: float, of: str = "") -> str:
+    """A relative error, unless it is nothing but rounding."""
+    return f"{written.number(share, 2)}{of}" if share > NOTHING else "below rounding"
 
 
 # --- free bodies -----------------------------------------------------------------------------------------
@@ -140,7 +147,7 @@ def _overview(context: Context, theory: Theories, comparison: Comparison) -> Ite
         if worst is not None:
             yield (
                 f"largest error, {_WAYS[way].split()[0]}",
-                f"{getattr(worst, f'{way}_error'):.1e} ({_symbol(worst)})",
+                _error(getattr(worst, f"{way}_error"), f" ({_symbol(worst)})"),
             )
     if not context.document.assessment.undisturbed and not context.at_beginning:
         yield "edited during the run", "theory is without that"
@@ -182,5 +189,5 @@ def _beside(comparison: Comparison, quantity: str, place: tuple[int, ...]) -> Re
         value, error = getattr(row, way), getattr(row, f"{way}_error", None)
         clear = 0.0 if value is not None and abs(value) <= nothing else value
         shown = "—" if clear is None else f"{written.given(factor * clear, 7)} {unit}"
-        rows.append((title if error is None else f"{title}, error {error:.1e}", shown))
+        rows.append((title if error is None else f"{title}, error {_error(error)}", shown))
     return Readout(row.title[:1].upper() + row.title[1:], tuple(rows))
