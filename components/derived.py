@@ -72,7 +72,20 @@ def derive_constant_force(world: World) -> None:
     world.writable("particles.constant_force")[...] = force
 
 
+def derive_displacement_scale(world: World) -> None:
+    """How much larger displacements are drawn."""
+    settings = world.tables["settings"]
+    prescribed, automatic = settings.prescribed_displacement_scale, settings.automatic_displacement_scale
+    scale = np.where(np.isnan(prescribed), automatic, prescribed)
+    world.writable("settings.displacement_scale")[...] = scale
+
+
 DERIVATIONS = (
+    Derivation(
+        ("settings.displacement_scale",),
+        ("settings.prescribed_displacement_scale", "settings.automatic_displacement_scale"),
+        derive_displacement_scale,
+    ),
     Derivation(
         ("rods.difference", "rods.original_length", "rods.rest_length", "rods.misfit"),
         (

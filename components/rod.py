@@ -215,3 +215,16 @@ def has_strength(world: World) -> bool:
 def has_plastic_strain(world: World) -> bool:
     """True if plastic strain plays a part: some rod has it, or may get it."""
     return can_yield(world) or bool(world.tables["rods"].plastic_strain.any())
+
+
+def utilisation(world: World, force: NDArray[np.float64] | None = None) -> NDArray[np.float64]:
+    """|N| over the strength in that direction, of each rod (m,); NaN where it has none.
+
+    force: axial forces (kN), (m,); None: the present ones.
+    """
+    rods = world.tables["rods"]
+    force = rods.axial_force if force is None else force
+    limit = np.where(force < 0.0, rods.compression_limit, rods.tension_limit)
+    either = np.isfinite(rods.tension_limit) | np.isfinite(rods.compression_limit)
+    share: NDArray[np.float64] = np.where(either, np.abs(force) / limit, np.nan)
+    return share

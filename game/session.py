@@ -32,6 +32,7 @@ from game.editor.menu import IN_MENU
 from game.editor.routing import Layer, for_tools, layer, meaning
 from game.editor.scenes import all_scenes, scene_systems
 from game.editor.scenes.files import FileScene
+from game.editor.sliders import slider_stack, sliders_of
 from game.editor.toolbar import toolbar_of
 from game.editor.view_model import show
 from game.mods import load_all
@@ -267,18 +268,24 @@ class Session(Context):
             self.leave_gesture()
         if name not in IN_MENU:
             self.view.menu = None
+        self.exaggerate()
         try:
             ACTIONS[name](self, pixel if pixel is not None else self.pointer)
         except (Refusal, FieldError) as error:
             self.notice = str(error)
         self.scenes.apply(self)
-        self.make_room()
         self.offer_tools()
+        self.make_room()
+
+    def begin_document(self) -> None:
+        """Show the document that is open now, with its sliders, from the first frame on."""
+        self.view.sliders = sliders_of(self)
+        super().begin_document()
 
     def offer_tools(self) -> None:
-        """Let the toolbar show what can be done now; where it is not seen it stays as it was."""
+        """Let toolbar and sliders show what can be done now; where they are not seen they stay as they were."""
         if not self.scenes.active.covers(self):
-            self.view.toolbar = toolbar_of(self)
+            self.view.toolbar, self.view.sliders = toolbar_of(self), slider_stack(self)
 
     def press(self, key: str, pixel: Vector | None = None) -> None:
         """Press a key, such as "k", "escape" or "ctrl+z"; one that means nothing in this scene does nothing.
@@ -424,6 +431,7 @@ class Session(Context):
     def frame(self, elapsed: float) -> Frame:
         """One frame, `elapsed` s after the last: input, edit, step, events and render. Raises ValueError."""
         frame = Frame(self, _forward("elapsed", elapsed))
+        self.exaggerate()
         try:
             for phase in Phase:
                 self.schedule.run(phase, frame)

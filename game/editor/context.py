@@ -179,6 +179,10 @@ class Scene:
         """The model that a pointer picks from, and its view."""
         return context.model, context.view
 
+    def scaled(self, context: Context) -> list[Settings]:
+        """The settings of the models whose displacements are drawn to the scale that its slider sets."""
+        return [context.settings]
+
     def type(self, context: Context, text: str) -> None:
         """Text was typed."""
 
@@ -600,6 +604,12 @@ class Context:
     def panels(self) -> Iterator[Readout]:
         """The panels of mods beside the model."""
         return (readout for panel in PANELS for readout in panel(self))
+
+    def exaggerate(self) -> None:
+        """Let the automatic displacement scale suit the model, but not in the middle of a drag."""
+        still = not self.time_passes or self.simulation.halted
+        if self.gesture is None and self.document.exaggeration.review(still=still) and still:
+            self.view.follow(self.model)
 
     def make_room(self) -> None:
         """Fit the model beside panels that are large enough to cover it.

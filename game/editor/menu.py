@@ -25,7 +25,12 @@ IN_MENU = (
 )  # keep it open
 
 _PLOT = "probes.plot"  # offered where the mod that plots is there
-_RESULTS = (("properties", "properties"), ("toggle diagrams", "force diagram"), (_PLOT, "plot"))
+_RESULTS = (
+    ("properties", "properties"),
+    ("toggle diagrams", "force diagram"),
+    (_PLOT, "plot"),
+    ("new slider", "slider for it"),
+)
 _SUPPORTS = ("free", "pin", "hold y", "hold x")
 _FROM_HERE = (
     ("force", "force: click its end"),

@@ -18,6 +18,7 @@ from components.view import Readout
 from game.documents.assessment import LARGEST
 from game.editor.context import Context
 from systems.base import StopReason
+from systems.statics.counting import FORMULA, counted
 
 if TYPE_CHECKING:  # it imports scipy
     from systems.statics.verify import Comparison, Row, Theories
@@ -135,6 +136,7 @@ def _theory(context: Context) -> Iterator[Readout]:
 def _overview(context: Context, theory: Theories, comparison: Comparison) -> Iterator[tuple[str, str]]:
     settlement = theory.settlement
     yield from _verdict(context, comparison)
+    yield from _indeterminacy(context)
     if theory.refusal is not None:
         yield "linear theory", "a mechanism" if theory.refusal.status == "mechanism" else "not with cables"
     if theory.exact is None:
@@ -151,6 +153,14 @@ def _overview(context: Context, theory: Theories, comparison: Comparison) -> Ite
             )
     if not context.document.assessment.undisturbed and not context.at_beginning:
         yield "edited during the run", "theory is without that"
+
+
+def _indeterminacy(context: Context) -> Iterator[tuple[str, str]]:
+    """The degree with its formula, and what the rank says beside it."""
+    count, degrees = counted(context.model), context.document.assessment.indeterminacy
+    yield FORMULA, count.numbers
+    if said := count.by_rank(degrees.static, degrees.mechanisms):
+        yield "by rank", said
 
 
 def _verdict(context: Context, comparison: Comparison) -> Iterator[tuple[str, str]]:

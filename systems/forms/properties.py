@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from components.box import NUMBER, TEXT, WORD, Box
-from components.field import Field, Role
+from components.field import SAVED, Field
 from components.form import Form
 from components.handle import Handle
 from components.load import HISTORIES, Load
@@ -77,7 +77,7 @@ def subjects(model: Model, selected: Sequence[Handle]) -> list[Subject]:
     found += [_subject(model, model.describe(load), [load]) for load in _loads_on(model, selected)]
     for section, kind, of_rods in (("All particles", Particle, False), ("All rods", Rod, True)):
         if not selected or kind in kinds:
-            fields = model.tables[Settings.table].fields.values()
+            fields = model.tables[Settings.table].fields_in(*SAVED)
             chosen = tuple(field for field in fields if (field.name in _OF_RODS) is of_rods)
             found.append(Subject(section, (model.settings,), np.zeros(1, dtype=np.intp), chosen))
     return found
@@ -91,7 +91,7 @@ def _loads_on(model: Model, selected: Sequence[Handle]) -> list[Load]:
 
 def _subject(model: Model, section: str, elements: Sequence[Handle]) -> Subject:
     kind = type(elements[0])
-    fields = model.tables[kind.table].fields_in(Role.DOCUMENT, Role.STATE)
+    fields = model.tables[kind.table].fields_in(*SAVED)
     wanted = [field for field in fields if field.dtype in _EDITABLE or field is Load.history]
     wanted = [field for field in wanted if field not in (*_DECIDED, *_OF_SECTION)]
     if len(elements) > 1:

@@ -12,8 +12,8 @@ from components.model import Model
 from components.rod import nodes
 from components.tags import DiagramShown
 from systems.render.clip import bounds, clip_segments
-from systems.render.labels import STRONG
-from systems.render.marks import Fills, Mark, Owner, Points, Strokes
+from systems.render.marks import Fills, Mark, Owner, Owners, Points, Strokes
+from systems.render.occupancy import STRONG
 from systems.render.sheet import DIRECTIONS, Rows, Sheet
 from systems.render.supports import crowding
 from systems.render.theme import Colour
@@ -84,9 +84,8 @@ def draw_loads(sheet: Sheet) -> Iterator[Mark]:
     ahead = np.argmax(along @ DIRECTIONS.T, axis=1)
     crowd = crowding(sheet, rows)
     pushes = crowd[rows, (ahead + 2) % 4] <= crowd[rows, ahead] + 0.1  # towards the particle, if there is room
-    yield from _at_rims(
-        sheet, rows, along, length, sheet.theme.load, pushes, whose(model, rows, loads_only=True)
-    )
+    of = whose(model, rows, loads_only=True)
+    yield from _at_rims(sheet, rows, along, length, sheet.theme.load, "particles.force", pushes, of)
 
 
 def draw_velocities(sheet: Sheet) -> Iterator[Mark]:
@@ -110,7 +109,7 @@ def draw_velocities(sheet: Sheet) -> Iterator[Mark]:
         return
     sheet.legend.append("velocity")
     length = lengths(sheet, VELOCITIES, speed, max(speed.max(), usual))
-    yield from _at_rims(sheet, rows, _directions(velocity[rows]), length, sheet.theme.ink)
+    yield from _at_rims(sheet, rows, _directions(velocity[rows]), length, sheet.theme.ink, "particles.velocity")
 
 
 def _directions(vectors: Values) -> Values:
@@ -126,6 +125,7 @@ def _at_rims(
     along: Values,
     length: Values,
     colour: Colour,
+    kind: str,
     pushes: NDArray[np.bool_] | bool = False,
     of: Sequence[Owner] = (),
 ) -> list[Mark]:
@@ -133,22 +133,40 @@ def _at_rims(
     reach = (sheet.radii[rows] + GAP * sheet.unit)[:, None] * along
     back = -reach - length[:, None] * along
     tail = sheet.centres[rows] + np.where(np.reshape(pushes, (-1, 1)), back, reach)
-    return arrows(sheet, of or [("particles", row) for row in rows.tolist()], tail, along, length, colour)
+    of = of or [("particles", row) for row in rows.tolist()]
+    return arrows(sheet, of, tail, along, length, colour, (kind, rows))
+
+
+def head_length(length: Values, unit: float) -> Values:
+    """Length and width in pixels of the heads of arrows."""
+    return np.minimum(HEAD * unit, _SHORT_HEAD * length)
 
 
 def arrows(
-    sheet: Sheet, of: Sequence[Owner], tail: Points, along: Points, length: Values, colour: Colour
+    sheet: Sheet,
+    of: Sequence[Owner],
+    tail: Points,
+    along: Points,
+    length: Values,
+    colour: Colour,
+    part: Owners,
 ) -> list[Mark]:
-    """Arrows of elements from `tail` (n, 2) along unit vectors (n, 2), of so many pixels (n,)."""
-    u = sheet.unit
+    """Arrows of elements from `tail` (n, 2) along unit vectors (n, 2), of so many pixels (n,).
+
+    part: the key of each among the parts of the picture.
+    """
+    u, (kind, which) = sheet.unit, part
     tip, across = tail + length[:, None] * along, along[:, ::-1] * [-1.0, 1.0]
-    head = np.minimum(HEAD * u, _SHORT_HEAD * length)[:, None]
+    head = head_length(length, u)[:, None]
     neck = tip - head * along
     low, high = bounds(sheet.viewport)
     _, _, seen = clip_segments(tail, tip, low - HEAD * u, high + HEAD * u)  # rims may be beyond all pixels
     tail, tip, across, neck, head = tail[seen], tip[seen], across[seen], neck[seen], head[seen]
-    sheet.occupancy.line(tail, tip, STRONG)
-    points = np.stack([tip, neck + 0.5 * head * across, neck - 0.5 * head * across], axis=1)
+    sheet.occupancy.line(tail, tip, STRONG, (kind, which[seen]))
+    barb = 0.5 * head * across
+    for ends in ((tail, tip), (neck - barb, neck + barb)):
+        sheet.occupancy.parts.symbols((kind, which[seen]), *ends, u)
+    points = np.stack([tip, neck + barb, neck - barb], axis=1)
     marks: list[Mark] = []
     for table in dict.fromkeys(of[index][0] for index in seen.tolist()):
         chosen = np.array([of[index][0] == table for index in seen.tolist()])

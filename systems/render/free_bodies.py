@@ -11,8 +11,9 @@ from components import written
 from components.free_body import Force, apart, on_joint
 from systems.render.arrows import FORCES, GAP, arrows, lengths
 from systems.render.diagrams import SMALLEST_FORCE
-from systems.render.labels import STRONG, Label, half_size
+from systems.render.labels import Label, half_size
 from systems.render.marks import Owner, Points, Strokes
+from systems.render.occupancy import STRONG
 from systems.render.sheet import Sheet
 from systems.render.theme import Colour, faded
 
@@ -103,11 +104,11 @@ def _draw_pair(
     step = size[:, None] * out
     whose = [("rods", row) for row in rows.tolist()]
     if pulled:
-        sheet.marks += arrows(sheet, whose, rim, out, size, colour)
-        sheet.marks += arrows(sheet, whose, rod_end, -out, size, colour)
+        sheet.marks += arrows(sheet, whose, rim, out, size, colour, ("rods.end", rows))
+        sheet.marks += arrows(sheet, whose, rod_end, -out, size, colour, ("rods.end", rows))
     else:
-        sheet.marks += arrows(sheet, whose, rim + step, -out, size, colour)
-        sheet.marks += arrows(sheet, whose, rod_end - step, out, size, colour)
+        sheet.marks += arrows(sheet, whose, rim + step, -out, size, colour, ("rods.end", rows))
+        sheet.marks += arrows(sheet, whose, rod_end - step, out, size, colour, ("rods.end", rows))
 
 
 def _draw_others(sheet: Sheet, row: int, forces: list[Force], largest: float) -> None:
@@ -129,7 +130,8 @@ def _draw_others(sheet: Sheet, row: int, forces: list[Force], largest: float) ->
         tail = rim + length * side if pushes else rim
         colour: Colour = sheet.theme.ink if force.kind == "inertia" else getattr(sheet.theme, force.kind)
         of = ("loads", force.load) if force.load >= 0 else ("particles", row)
-        sheet.marks += arrows(sheet, [of], tail[None], out[None], np.array([length]), colour)
+        part = f"particles.{force.name}", np.array([row])
+        sheet.marks += arrows(sheet, [of], tail[None], out[None], np.array([length]), colour, part)
         sheet.legend.append(force.kind)
         text = written.force(size)
         half = half_size(text, sheet.font(12.0), "semibold", u)

@@ -13,12 +13,13 @@ from systems.render.diagrams import draw_particle_diagrams, draw_rod_diagrams
 from systems.render.free_bodies import draw_free_bodies
 from systems.render.labels import Placed, place_labels
 from systems.render.marks import Picture
-from systems.render.overlays import BAR, draw_notice, draw_overlays, draw_scale
+from systems.render.overlays import BAR, draw_notice, draw_overlays, draw_scale, place_scale
 from systems.render.page import draw_page
 from systems.render.panel import compose_form
 from systems.render.pointed import draw_pointed
 from systems.render.readouts import draw_readouts
 from systems.render.sheet import ABOVE, BELOW, Sheet, measure
+from systems.render.sliders import draw_sliders
 from systems.render.structure import (
     draw_ghost,
     draw_grid,
@@ -95,11 +96,18 @@ def _composed(sheet: Sheet) -> tuple[Picture, list[Rectangle]]:
     for layer in ABOVE:
         sheet.marks += layer(sheet)
     overlays, room = draw_overlays(sheet)
+    overlays += draw_sliders(sheet)
     readouts, panels = draw_readouts(sheet, room)
     overlays += readouts
     overlays += draw_notice(sheet, room)
+    scale = place_scale(sheet, room) if model.particles.count else None
     labels = place_labels(sheet.labels, sheet.occupancy, sheet.unit, sheet.placed)
+    over = [
+        *draw_scale(sheet, scale),
+        *draw_flashes(sheet),
+        *draw_preview(sheet),
+        *overlays,
+        *draw_pointed(sheet),
+    ]
     sheet.placed |= sheet.scales
-    scale = draw_scale(sheet, room) if model.particles.count else []
-    over = [*scale, *draw_flashes(sheet), *draw_preview(sheet), *overlays, *draw_pointed(sheet)]
     return Picture(sheet.viewport, theme.background, [*sheet.marks, *labels, *over]), panels

@@ -13,8 +13,9 @@ from components.model import Model
 from components.tags import Hovered
 from components.view import View, drawn_positions
 from systems.render.clip import bounds, clip_rods
-from systems.render.labels import Label, Occupancy, Placed
+from systems.render.labels import Label, Placed
 from systems.render.marks import Mark, Points
+from systems.render.occupancy import Occupancy
 from systems.render.theme import Colour, Theme
 from systems.render.typography import font_size
 
@@ -37,7 +38,8 @@ class Sheet:
     pulled, pushed: rows of the rods that are coloured by their axial force, since they have no room for more.
     shades: rows of rods and the colours that show a quantity of theirs.
     placed: where labels were in the last picture. legend: names of the colours that occur and mean something.
-    notes: scales to be shown. scales: those of arrows in this picture, to be kept in `placed`.
+    notes: scales to be shown. scales: those of arrows in this picture, to be kept in `placed`. values: how many values
+    there are to show, if there were room for all.
     """
 
     model: Model
@@ -61,6 +63,7 @@ class Sheet:
     notes: list[str] = field(default_factory=list)
     shades: list[tuple[Rows, Colour]] = field(default_factory=list)
     scales: Placed = field(default_factory=dict)
+    values: int = 0
 
     @property
     def viewport(self) -> Viewport:

@@ -10,8 +10,9 @@ from numpy.typing import NDArray
 from components.round_numbers import round_up
 from components.tags import Hovered, Selected
 from systems.render.clip import bounds, clip_segments
-from systems.render.labels import FAINT, STRONG, Label, half_size
+from systems.render.labels import Label, half_size
 from systems.render.marks import Discs, Fills, Points, Rectangles, Strokes
+from systems.render.occupancy import FAINT, STRONG
 from systems.render.sheet import FEW, MANY, Rows, Sheet, typical_length
 from systems.render.symbols import LARGEST_STAMP, RIM, arcs, circle, dashed
 from systems.render.theme import Colour, faded
@@ -108,7 +109,8 @@ def draw_rods(sheet: Sheet) -> None:
         _draw_lines(sheet, mask, width * wider, colour)
     named = {**by_force, "yielding": yielding}
     sheet.legend += [name for name, wanted in named.items() if len(wanted)]
-    sheet.occupancy.line(sheet.start, sheet.end, STRONG)
+    sheet.occupancy.line(sheet.start, sheet.end, STRONG, ("rods", sheet.rods))
+    sheet.occupancy.parts.lines(("rods", sheet.rods), sheet.start, sheet.end, width / 2)
 
 
 def _rod_width(sheet: Sheet) -> float:
@@ -142,8 +144,10 @@ def draw_particles(sheet: Sheet) -> None:
     for chosen, rim in ((rows[small], 0.0), (rows[~small], RIM * sheet.unit)):
         if len(chosen):
             _draw_circles(sheet, chosen, theme.ink, theme.hollow, rim, 0.0)
+    at, radii = sheet.centres[rows], sheet.radii[rows]
+    sheet.occupancy.parts.symbols(("particles", rows), at, at, radii)
     if len(sheet.particles) <= MANY:
-        sheet.occupancy.block_squares(sheet.centres[sheet.particles], 0.8 * sheet.radii[sheet.particles])
+        sheet.occupancy.block_squares(at, 0.8 * radii)
 
 
 def _draw_circles(sheet: Sheet, rows: Rows, ink: Colour, hollow: Colour, rim: float, extra: float) -> None:
@@ -215,10 +219,11 @@ def label_names(sheet: Sheet) -> None:
             half, key = half_size(name, size, weight, sheet.unit), (f"{table}.name", row)
             at = _beside_particle(sheet, row, half) if table == "particles" else beside_rod(sheet, index, half)
             if is_marked:
-                label = Label(name, at, size, sheet.theme.text, -1e12, weight, backing, key=key)
+                label = Label(name, at, size, sheet.theme.text, 1e11, weight, backing, key=key)
             else:
                 label = Label(name, at, size, sheet.theme.muted, 1e12, weight, lines="avoid", key=key)
-            sheet.labels.append(label._replace(of=(table, row)))
+            own = None if is_marked else (table, row)  # what is marked is not taken for another
+            sheet.labels.append(label._replace(of=(table, row), own=own))
 
 
 def _beside_particle(sheet: Sheet, row: int, half: tuple[float, float]) -> list[tuple[float, float]]:

@@ -18,7 +18,7 @@ from systems.render.sheet import BELOW, measure
 from systems.render.structure import draw_particles, draw_rods
 from systems.render.supports import draw_supports, support_sides
 from systems.render.symbols import symbol_parts
-from systems.render.theme import Colour, Theme
+from systems.render.theme import Colour, Theme, faded
 
 _SMALLER, _USUAL = (
     0.6,
@@ -31,6 +31,7 @@ _SAFE, _ENOUGH = (
     0.99,
     1.12,
 )  # of the scale that seems to fit, the one to try; how much larger a good one could be
+_DENSE = 0.4  # opacity of force diagrams
 _TINT = 0.16  # share of the colour of loads in the paper of discs
 
 
@@ -102,7 +103,12 @@ def _marks(model: Model, camera: Camera, unit: float, theme: Theme) -> tuple[Mar
     sheet = measure(model, view, shown)
     for layer in BELOW:
         sheet.marks += layer(sheet)
+    below = len(sheet.marks)
     draw_rod_diagrams(sheet)
+    sheet.marks[below:] = [
+        replace(mark, colour=faded(mark.colour, _DENSE)) if isinstance(mark, Bars) else mark
+        for mark in sheet.marks[below:]
+    ]
     draw_supports(sheet, support_sides(sheet))
     draw_rods(sheet)
     draw_particles(sheet)

@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from components import written
 from components.model import Model
-from components.rod import has_strength
+from components.rod import has_strength, utilisation
 from systems.render.labels import Label, half_size
 from systems.render.marks import Mark, Strokes, boxes
 from systems.render.sheet import FEW, Sheet
@@ -21,15 +21,6 @@ _HALO = 13.0  # points
 _LEAST_TOLD = 0.005  # smaller shares have no number
 
 Values = NDArray[np.float64]
-
-
-def utilisation(model: Model) -> Values:
-    """|N| over the strength in that direction, of each rod (m,); NaN where it is unlimited."""
-    rods = model.rods
-    limit = np.where(rods.axial_force < 0.0, rods.compression_limit, rods.tension_limit)
-    either = np.isfinite(rods.tension_limit) | np.isfinite(rods.compression_limit)
-    share: Values = np.where(either, np.abs(rods.axial_force) / limit, np.nan)
-    return share
 
 
 def first_at_limit(model: Model, share: Values) -> int:

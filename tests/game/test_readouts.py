@@ -55,6 +55,24 @@ def test_what_theory_cannot_answer_is_said(name: str, title: str, said: str) -> 
 
 
 @pytest.mark.parametrize(
+    ("name", "numbers", "rank"),
+    [
+        ("isostatic", "3 + 3 − 2·3 = 0", None),
+        ("hyperstatic", "6 + 3 − 2·4 = 1", None),
+        ("pendulum", "1 + 2 − 2·2 = −1", "no self-stress, 1 mechanism"),
+    ],
+)
+def test_the_degree_is_told_with_its_formula_and_the_rank_where_it_differs(
+    name: str, numbers: str, rank: str | None
+) -> None:
+    session = Session.open(name)
+    session.press("m")
+    rows = shown(session)["Theory beside the run"]
+    assert rows["g = m + r − 2n"] == numbers
+    assert rows.get("by rank") == rank
+
+
+@pytest.mark.parametrize(
     ("name", "title", "said"),
     [
         ("isostatic", "at rest", "where static theory says"),

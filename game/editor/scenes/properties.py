@@ -46,6 +46,7 @@ class Properties(FormScene):
         model, selected = context.model, context.selected
         form = Form(properties.heading(model, selected), lambda box: answers.problem(model, box))
         properties.fill(form, model, selected)
+        results.fill(form, model, selected, known=context.view.forces_known)
         self._read = ()
         return form
 
@@ -66,6 +67,7 @@ class Properties(FormScene):
         if context.model.revision != before:
             self.form.heading.text = properties.heading(context.model, context.selected)
             properties.refresh(self.form, context.model, context.selected)
+            self._read_results(context)
         return refused
 
     def changed(self, context: Context) -> None:
@@ -140,7 +142,7 @@ class Properties(FormScene):
         now = self.form.context, model.revision, known, self.form.heading.text
         if now != self._read:
             self._read = now
-            results.fill(self.form, model, context.selected if known else [])
+            results.fill(self.form, model, context.selected, known=known)
 
     def focus(self, context: Context) -> tuple[Model, View]:
         """The model where it was, and what is seen of it beside the boxes."""

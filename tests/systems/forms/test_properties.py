@@ -93,7 +93,7 @@ def test_a_particle_has_the_boxes_that_the_thesis_names(session: Session) -> Non
     assert session.boxes["applied force y"] == "-160"
     assert session.boxes["constrained x"] == "no"
     assert session.boxes["radius"] == "0.05"
-    together = {"displacement scale": "1", "coefficient of restitution": "1", "time step": "automatic"}
+    together = {"displacement scale": "100", "coefficient of restitution": "1", "time step": "automatic"}
     assert together.items() <= session.boxes.items()
 
 

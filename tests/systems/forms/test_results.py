@@ -82,12 +82,15 @@ def test_results_follow_an_accepted_value_at_once() -> None:
     assert after == pytest.approx(2 * before, rel=1e-3), "twice as stiff at the same strain"
 
 
-def test_what_is_not_known_is_not_shown() -> None:
-    session = at_rest()
-    session.select(session.rods["AB"])
+def test_what_is_not_known_is_not_said_and_boxes_stay_where_they_are() -> None:
+    session = at_rest(tensile_strength=215)
+    session.select(session.rods["AB"], session.particles["A"])
     session.press("return")
+    before = [reading.title for reading in session.scenes.active.form.readings]  # type: ignore[attr-defined]
     session.view.forces_known = False
-    assert readings(session) == {}
+    shown = readings(session)
+    assert [*shown] == before, "they are there before anything is drawn"
+    assert shown["axial force"] == shown["utilisation"] == "—"
 
 
 def test_the_environment_has_no_results() -> None:

@@ -102,7 +102,8 @@ def test_only_marked_elements_show_their_diagrams() -> None:
 def arrows_of(picture: Picture, colour: tuple[int, ...]) -> list[tuple[np.ndarray, np.ndarray]]:
     """Tails and tips of the arrows of one colour."""
     heads = [tip for mark in marks_of(picture, Fills, colour) for tip in mark.corners[:, 0]]
-    return list(zip([tail for m in marks_of(picture, Strokes, colour) for tail in m.start], heads, strict=True))
+    lines = [mark for mark in marks_of(picture, Strokes) if mark.colour == colour]
+    return list(zip([tail for mark in lines for tail in mark.start], heads, strict=True))
 
 
 def test_arrows_point_along_the_force_and_meet_the_rim() -> None:

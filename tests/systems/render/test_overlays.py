@@ -28,7 +28,7 @@ def test_a_problem_is_told_in_full() -> None:
 def test_displacements_too_small_to_be_seen_are_told(displacement: float, told: bool) -> None:
     model = triangle()
     model.particles["B"].displacement = (displacement, 0.0)
-    said = "displacements up to 0.43 mm, too small to see; Return sets their scale"
+    said = "displacements up to 0.43 mm, too small to see; their slider enlarges them"
     assert (said in " ".join(picture_of(model, width=900).texts)) == told
     model.settings.displacement_scale = 100.0
     assert said not in " ".join(picture_of(model, width=900).texts)

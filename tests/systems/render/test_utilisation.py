@@ -6,11 +6,12 @@ import numpy as np
 import pytest
 
 from components.model import Model
+from components.rod import utilisation
 from components.tags import Selected
 from game.session import Session
 from systems.render.marks import Rectangles, Strokes
 from systems.render.theme import load_theme, theme_names
-from systems.render.utilisation import LEVELS, first_at_limit, shade, utilisation
+from systems.render.utilisation import LEVELS, first_at_limit, shade
 from tests.systems.render.pictures import LIGHT, fill, marks_of, picture_of, triangle
 from tests.systems.render.test_themes import VISIONS, lab
 
