@@ -144,6 +144,7 @@ class View:
     shape: a mechanism or mode that is drawn over the model, with its title below the caption.
     utilisation: rods show in colours how much of their strength they bear.
     largest_force: that (kN) of pictures beside this one, with which its arrows share a scale; 0: none.
+    free_bodies: rods and joints are drawn apart, with the forces on each.
     theory, energy, events: show theory beside the run, its energy account, and what happened, among them.
     fitted: the camera shows the whole model, and follows the size of the window until a person zooms or pans.
     shares: the model is fitted beside the panels; else panels may cover it. since: by title, the rank in which each
@@ -177,6 +178,7 @@ class View:
     utilisation: bool = False
     theory: bool = False
     energy: bool = False
+    free_bodies: bool = False
     events: bool = False
     shape: Shape | None = None
     pointed: Readout | None = None

@@ -54,6 +54,7 @@ def on_paper(view: View, camera: Camera | None = None) -> View:
         status=Status(time=None, speed=view.status.speed),
         readouts=(),
         shares=False,
+        aside=None,
         preview=None,
         pointer=None,
         pointed=None,
@@ -73,11 +74,14 @@ def write(
     if background == "white":
         colours = replace(colours, background=_WHITE)
     pictures = [compose(model, view, colours) for model, view in stages]
+    paths = [partial(path_of, model) for model, _ in stages]
     if background == "transparent":
         pictures = [replace(picture, background=None) for picture in pictures]
+    elif len(stages) > 1:  # which leave the place of the toolbar free
+        pictures = [Picture(Viewport(0, 0, *size), colours.background), *pictures]
+        paths = [paths[0], *paths]
     title, suffix = stages[0][0].title or "Pinjoint", path.suffix.lower()
     if suffix == ".svg":
-        paths = [partial(path_of, model) for model, _ in stages]
         made = as_svg(list(zip(pictures, paths, strict=True)), size, title)
     elif suffix == ".pdf":
         made = as_pdf(pictures, size, title)

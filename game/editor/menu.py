@@ -88,14 +88,8 @@ def _of_canvas(context: Context) -> Groups:
     groups: list[list[Entry]] = [
         [("place", "new particle here"), "rod", *ADDED_TOOLS, ("paste", "paste here"), "select all"],
         ["toggle run", "restart", "settle"],
-        [
-            "toggle diagrams",
-            "toggle utilisation",
-            "toggle theory",
-            "toggle energy",
-            "toggle events",
-            "next shape",
-        ],
+        ["toggle diagrams", "toggle free bodies", "toggle utilisation"],
+        ["toggle theory", "toggle energy", "toggle events", "next shape"],
         [binding.action for binding in ADDED_BUTTONS],
         ["fit", "zoom in", "zoom out", "new grid", "next grid", "toggle legend", "next theme"],
         ["environment", "screenshot", "toggle full screen", "toggle help"],

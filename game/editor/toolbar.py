@@ -80,6 +80,7 @@ _PRESSED: dict[str, Condition] = {
     "toggle diagrams": _shows_diagrams,
     "toggle diagrams of sets": _shows_diagrams,
     "properties": lambda context: context.scene == "properties",
+    "toggle free bodies": lambda context: context.view.free_bodies,
     "toggle utilisation": lambda context: context.view.utilisation,
     "toggle theory": lambda context: context.view.theory,
     "toggle energy": lambda context: context.view.energy,

@@ -103,6 +103,7 @@ _BY_PURPOSE: dict[str, tuple[Binding, ...]] = {
     ),
     "Results": (
         Binding("i", "toggle diagrams", LIVE, "force diagrams on / off"),
+        Binding("x", "toggle free bodies", LIVE, "free bodies: rods and joints apart, on / off"),
         Binding("a", "toggle utilisation", LIVE, "share of the strength in colours, on / off"),
         Binding("m", "toggle theory", LIVE, "theory beside the run, on / off"),
         Binding("j", "toggle energy", LIVE, "energy account on / off"),
@@ -209,7 +210,10 @@ TOOLBAR: tuple[tuple[str, ...], ...] = (
     ("toggle diagrams of sets", "back"),
     ("undo", "redo", "copy", "paste", "duplicate", "delete"),
     ("place", "rod", "support", "force", "velocity"),
-    ("toggle diagrams", "toggle theory", "toggle energy", "next shape", "fit", "new grid", "next grid"),
+    (
+        *("toggle diagrams", "toggle free bodies", "toggle theory", "toggle energy"),
+        *("next shape", "fit", "new grid", "next grid"),
+    ),
     ("properties", "force method", "new", "load", "save again", "save"),
     ("screenshot", "toggle full screen", "next theme", "toggle help"),
 )

@@ -9,11 +9,12 @@ from typing import Literal
 import numpy as np
 from numpy.typing import NDArray
 
+from components import written
 from components.load import CONSTANT
 from components.model import Model
 from components.tags import DiagramShown, Selected
 from components.view import View
-from systems.render.arrows import FORCES, arrows, full_load, head_length, lengths
+from systems.render.arrows import FORCES, arrows, full_load, head_length, lengths, whose
 from systems.render.clip import bounds, clip_segments
 from systems.render.labels import Key, Label, half_size
 from systems.render.marks import Bars, Owner, Points, Strokes
@@ -37,12 +38,6 @@ _ARROW_VALUES = {"load": "particles.applied_force", "reaction": "particles.react
 _SLIDES = np.array([0.0, 0.3, -0.3, 0.6, -0.6, 0.9, -0.9])  # of how far a label can go along a rod
 _GAP = 1.0  # points between a rod or an arrow and a value beside it
 _BACKING = 0.86  # opacity behind a value
-
-
-def written(force: float, decimals: int = 2) -> str:
-    """A force (kN) as people read it, with the real minus sign and no negative zero."""
-    text = f"{force:.{decimals}f}"
-    return text.replace("-", "−") if float(text) else text.lstrip("-")
 
 
 def scale_step(largest: float, scale: float, room: float) -> float:
@@ -181,7 +176,7 @@ def _label_rods(
     shown = _most_important(sheet, worth, candidates)
     few = len(values) <= _FEW_VALUES
     numbers = values[shown].tolist()
-    texts, size, half = _value_texts(sheet, map(written, numbers), few)
+    texts, size, half = _value_texts(sheet, numbers, few)
     places = _places_by_rods(start[shown], end[shown], normal[shown], height[shown], half, sheet.unit)
     signs = ("zero" if abs(n) <= SMALLEST_FORCE else "tension" if n > 0.0 else "compression" for n in numbers)
     colours = [getattr(sheet.theme, sign) for sign in signs]
@@ -212,9 +207,10 @@ def _most_important(sheet: Sheet, worth: NDArray[np.float64], candidates: Rows) 
     return np.sort(candidates[np.lexsort((candidates, -worth[candidates]))][:most])
 
 
-def _value_texts(sheet: Sheet, numbers: Iterable[str], few: bool) -> tuple[list[str], int, Points]:
-    """Values as they are written among few or many, their font size, and half the size of each label, (n, 2)."""
-    texts = [f"{number} kN" for number in numbers] if few else list(numbers)
+def _value_texts(sheet: Sheet, forces: Iterable[float], few: bool) -> tuple[list[str], int, Points]:
+    """Forces (kN) as they are written among few or many, their font size, and half the size of each label, (n, 2)."""
+    write = written.force if few else written.number
+    texts = [write(force, nothing=SMALLEST_FORCE) for force in forces]
     size = sheet.font(12.0 if few else 11.0)
     half = [half_size(text, size, "semibold", sheet.unit) for text in texts]
     return texts, size, np.array(half).reshape(-1, 2)
@@ -299,9 +295,14 @@ def _draw_forces(
     along, parts = DIRECTIONS[direction], (_ARROW_VALUES[name], 2 * rows + axis)
     middle = tail + along * length[:, None] / 2
     sheet.explain(name, tail, tail + along * length[:, None])
-    sheet.marks += arrows(sheet, rows, tail, along, length, getattr(sheet.theme, name), parts)
+    sheet.marks += arrows(sheet, _of(sheet, name, rows), tail, along, length, getattr(sheet.theme, name), parts)
     sheet.occupancy.block_squares(middle, np.minimum(0.2 * length, 3.0 * sheet.unit))
     _label_arrows(sheet, name, 2 * rows + axis, value, middle, length, outer, outer == direction)
+
+
+def _of(sheet: Sheet, name: str, rows: Rows) -> list[Owner]:
+    """Whose the arrows of forces of one kind on particles are."""
+    return whose(sheet.model, rows) if name == "load" else [("particles", row) for row in rows.tolist()]
 
 
 def _thinned(
@@ -368,15 +369,13 @@ def _label_arrows(
     sheet.values += len(seen)
     shown = _most_important(sheet, worth, seen)
     sizes = np.abs(value[shown]).tolist()
-    # The smallest that is drawn at all, 0.0001, must not read 0.00.
-    numbers = (written(size, 2 if size >= 0.01 else 4) for size in sizes)
-    texts, font, half = _value_texts(sheet, numbers, few)
+    texts, font, half = _value_texts(sheet, sizes, few)
     outward = DIRECTIONS[side[shown]]
     places = _places_by_arrows(middle[shown], length[shown], outward, pulls[shown], half, sheet.unit)
     # Arrows are few and say little without their value: before the rods.
     ranks, keys = (-worth[shown] - 1e9).tolist(), [(field, number) for number in which[shown].tolist()]
     colours = [getattr(sheet.theme, name)] * len(texts)
-    of = [("particles", row) for row in (which[shown] // 2).tolist()]
+    of = _of(sheet, name, which[shown] // 2)
     anchors = np.stack([middle[shown] + outward * length[shown, None] / 2, outward], axis=1)
     _add_values(sheet, zip(texts, places, colours, ranks, keys, of, keys, anchors, strict=True), font, "spare")
 

@@ -228,6 +228,7 @@ _MEANINGS = {
     "slack": "slack cable",
     "load": "load (kN)",
     "reaction": "reaction (kN)",
+    "inertia": "inertia −m a (kN)",
     "velocity": "velocity",
     "ghost": "undeformed",
 }
@@ -283,10 +284,10 @@ def _swatch(sheet: Sheet, name: str, x: float, y: float, width: float) -> list[M
     u, theme = sheet.unit, sheet.theme
     if name == "utilisation":
         return scale_bar(theme, x, y, width, u)
-    role = {"slack": "ink", "velocity": "ink", "first": "yielding"}.get(name, name)
+    role = {"slack": "ink", "velocity": "ink", "inertia": "ink", "first": "yielding"}.get(name, name)
     colour = getattr(theme, role)
     ends = np.array([[x, y]]), np.array([[x + width, y]])
-    if name in ("load", "reaction", "velocity"):
+    if name in ("load", "reaction", "inertia", "velocity"):
         return [Stamps("arrow", ends[0], width, u, colour, colour)]
     if name == "first":
         return [Strokes(*ends, 9.0 * u, faded(colour, HALO_OPACITY))]

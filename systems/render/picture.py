@@ -10,6 +10,7 @@ from components.toolbar import Toolbar
 from components.view import View
 from systems.render.arrows import draw_loads, draw_velocities
 from systems.render.diagrams import draw_particle_diagrams, draw_rod_diagrams
+from systems.render.free_bodies import draw_free_bodies
 from systems.render.labels import Placed, place_labels
 from systems.render.marks import Picture
 from systems.render.overlays import BAR, draw_notice, draw_overlays, draw_scale, place_scale
@@ -64,12 +65,8 @@ def lies_under(model: Model, view: View, theme: Theme, pixel: Vector) -> bool:
     return any(panel.contains(pixel) for panel in _composed(measure(model, view, theme))[1])
 
 
-def _composed(sheet: Sheet) -> tuple[Picture, list[Rectangle]]:
-    """The picture of a model, and where its panels are."""
-    model, theme = sheet.model, sheet.theme
-    draw_grid(sheet)
-    for layer in BELOW:
-        sheet.marks += layer(sheet)
+def _draw_structure(sheet: Sheet) -> None:
+    """Rods, supports and particles, with diagrams, loads and velocities."""
     draw_rod_diagrams(sheet)
     draw_ghost(sheet)
     draw_halos(sheet)
@@ -81,6 +78,20 @@ def _composed(sheet: Sheet) -> tuple[Picture, list[Rectangle]]:
     sheet.marks += [*draw_loads(sheet), *draw_velocities(sheet)]
     draw_shape(sheet)
     draw_particle_diagrams(sheet, sides)
+
+
+def _composed(sheet: Sheet) -> tuple[Picture, list[Rectangle]]:
+    """The picture of a model, and where its panels are."""
+    model, theme = sheet.model, sheet.theme
+    draw_grid(sheet)
+    for layer in BELOW:
+        sheet.marks += layer(sheet)
+    if sheet.view.free_bodies and sheet.view.forces_known:
+        draw_halos(sheet)
+        draw_free_bodies(sheet)
+        draw_particles(sheet)
+    else:
+        _draw_structure(sheet)
     label_names(sheet)
     for layer in ABOVE:
         sheet.marks += layer(sheet)

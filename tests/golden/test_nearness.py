@@ -8,9 +8,9 @@ import numpy as np
 import pytest
 
 from components.model import Model
+from components.written import number
 from game import Session
 from game.documents import models
-from systems.render.diagrams import written
 from systems.render.labels import LEADER_OPACITY
 from systems.render.marks import Picture, Points, Strokes, Text
 from systems.render.picture import compose
@@ -126,7 +126,7 @@ def _says(text: Text, shaft: Part, model: Model, row: int) -> bool:
     force = (particles.applied_force if text.colour == LIGHT.load else particles.reaction)[row]
     step = np.abs(shaft.points[1] - shaft.points[0])
     size = abs(float(force[int(step[1] > step[0])]))
-    return text.text.removesuffix(" kN") in (written(size), written(size, 4))
+    return text.text.removesuffix(" kN") == number(size)
 
 
 @pytest.mark.parametrize("moment", [at_the_start, in_motion, settled])

@@ -36,6 +36,7 @@ _ACTIONS: dict[str, Action] = {
     "zoom out": lambda context, pixel: context.scenes.active.zoom(context, 1.0 / ZOOM_STEP, pixel),
     "pan": lambda context, dragged: context.scenes.active.pan(context, dragged),
     **{f"toggle {shown}": _toggle(shown) for shown in ("legend", "theory", "energy", "events")},
+    "toggle free bodies": _toggle("free_bodies"),
     **{name: _magnify(by) for name, by in (("larger", 1), ("smaller", -1), ("usual size", 0))},
     "close help": lambda context, pixel: setattr(context.view, "help", 0),
 }
