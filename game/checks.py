@@ -257,7 +257,7 @@ def _driven_by(system: System, simulation: Simulation) -> Iterator[None]:
 def _check_finite(name: str, model: Model) -> None:
     for table in model.tables.values():
         for field in table.fields_in(Role.STATE):
-            if field.dtype is float and not np.isfinite(table.column(field.name)).all():
+            if field.dtype is float and not field.nullable and not np.isfinite(table.column(field.name)).all():
                 raise SystemCheckError(
                     f"{name}: after {STEPS} steps with it, {table.name}.{field.name} is not finite."
                 )

@@ -107,9 +107,9 @@ _BY_PURPOSE: dict[str, tuple[Binding, ...]] = {
         Binding("a", "toggle utilisation", LIVE, "share of the strength in colours, on / off"),
         Binding("m", "toggle theory", LIVE, "theory beside the run, on / off"),
         Binding("j", "toggle energy", LIVE, "energy account on / off"),
-        Binding("q", "toggle events", LIVE, "what happened, on / off"),
+        Binding("ctrl+h", "toggle events", LIVE, "what happened, on / off"),
         Binding("b", "next shape", LIVE, "mechanisms, natural modes, none"),
-        Binding("q", "new slider", LIVE, "slider for the force or stiffness selected"),
+        Binding("ctrl+l", "new slider", LIVE, "slider for the force or stiffness selected"),
         Binding("k", "force method", (PAUSE,), "force method"),
     ),
     "Force method": (

@@ -124,12 +124,12 @@ def test_it_is_said_for_a_few_seconds() -> None:
 
 def test_a_panel_lists_it() -> None:
     session = watched("isostatic_collapse", 6.0)
-    session.press("q")
+    session.press("ctrl+h")
     session.update_view()
     [panel] = [readout for readout in session.view.readouts if readout.title == "What happened"]
     assert panel.rows[0][1] == "Rod BC yields"
     assert panel.rows[0][0] == "0.4345 s, 86.9 % of the load"
-    session.press("q")
+    session.press("ctrl+h")
     session.update_view()
     assert not session.view.readouts
 

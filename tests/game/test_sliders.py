@@ -187,12 +187,12 @@ def test_a_value_that_cannot_be_is_said_and_not_taken() -> None:
 )
 def test_q_makes_a_slider_for_what_is_selected(select: tuple[str, str], title: str, share: float) -> None:
     session = opened()
-    session.press("q")
+    session.press("ctrl+l")
     assert "Select" in session.notice
     session.select(session.table(select[0])[select[1]])
-    session.press("q")
+    session.press("ctrl+l")
     assert place(session, title).control.share == pytest.approx(share, abs=0.11)
-    session.press("q")
+    session.press("ctrl+l")
     assert "already" in session.notice
     assert len(session.model.sliders) == 1
     assert session.undo() == "new slider"
