@@ -204,10 +204,11 @@ def try_crowd(driven, account):
     """Take the step with the forces that are to be tried."""
     clear_support(driven)
     energy, n = 0.0, driven.support.shape[0]
+    share = min(driven.real[Real.CROWD_LENGTH] / driven.kept[Control.STEP_SIZE], 1.0)
     for c in range(driven.whole[Whole.CHOSEN]):
         k = driven.touching[c]
         i, j = driven.pairs[k, 0], driven.pairs[k, 1]
-        energy += driven.pushes[k] * _size(driven, k)
+        energy += share * driven.pushes[k] * _size(driven, k)
         for d in range(2):
             push = 0.001 * driven.pushes[k] * driven.normal[k, d]
             driven.support[i, d] -= push
@@ -225,6 +226,10 @@ def judge_crowd(driven, control, account, place, speed):
     whole, real = driven.whole, driven.real
     h = control[Control.TIME] - real[Real.START]
     if h == 0.0 or whole[Whole.REASON] == StopReason.DIVERGED:
+        if _drop_forces(driven):
+            take_back(driven, control, account, place, speed)
+            whole[Whole.PHASE] = Phase.CROWD_TRYING
+            return Order.GO_ON
         reason = whole[Whole.REASON]
         _give_up(driven, control, account, place, speed)
         whole[Whole.REASON] = reason
@@ -243,6 +248,17 @@ def judge_crowd(driven, control, account, place, speed):
     whole[Whole.CROWDS] += 1
     whole[Whole.PHASE] = Phase.BETWEEN
     return Order.GO_ON
+
+
+@compiled
+def _drop_forces(driven):
+    """Try none; False if none were tried."""
+    dropped = False
+    for c in range(driven.whole[Whole.CHOSEN]):
+        k = driven.touching[c]
+        dropped = dropped or driven.pushes[k] > 0.0
+        driven.pushes[k] = 0.0
+    return dropped
 
 
 @compiled
