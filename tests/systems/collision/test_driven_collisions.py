@@ -369,6 +369,18 @@ def test_a_small_pile_comes_to_rest_under_drag(drag: float) -> None:
     assert abs(session.energy.imbalance) < 1e-9 * session.energy.work
 
 
+@pytest.mark.parametrize(("count", "restitution", "drag"), [(14, 0.8, 2.0), (18, 0.5, 5.0)])
+def test_jammed_rows_come_to_rest_under_drag(count: int, restitution: float, drag: float) -> None:
+    """What a contact force lacked, a gap within its tolerance, was in every step the same, and moved for ever."""
+    places = [(-0.2 + 0.13 * (k % 4) + 0.003 * k, 0.06 + 0.13 * (k // 4)) for k in range(count)]
+    sections = {"environment": GRAVITY | {"drag": drag}, "settings": {"restitution": restitution}}
+    session = Session.open(box([{"position": list(place)} for place in places], **sections))
+    assert session.run(until="rest", limit=6.0) == "at rest"
+    assert_lies(session)
+    supplied = energy_of_discs(session)
+    assert session.model.clock.energy_scale < 5.0 * abs(supplied)  # a larger one would make motion round-off
+
+
 @pytest.mark.parametrize("integrator", ["esdirk4", "dop853"])
 def test_an_integrator_of_either_kind_brings_a_ball_to_rest_on_a_truss(integrator: str) -> None:
     session = Session.open(truss({}, integrator=integrator))
@@ -450,9 +462,7 @@ def test_a_hand_presses_a_disc_onto_a_node() -> None:
 
 @pytest.mark.parametrize("count", [1, 14])
 @pytest.mark.parametrize("integrator", ["dop853", "velocity_verlet"])
-def test_forces_of_a_very_short_step_are_not_taken_for_energy_from_nowhere(
-    integrator: str, count: int
-) -> None:
+def test_forces_of_a_very_short_step_are_not_taken_for_energy_from_nowhere(integrator: str, count: int) -> None:
     """A jam in a step of microseconds pushes a thousand times harder than anything in the next one."""
     discs = [{"position": [-0.25 + 0.1 * (k % 6), 0.05 + 0.1 * (k // 6)]} for k in range(count)]
     discs[-1]["velocity"] = [0.05, 0.0]
