@@ -6,6 +6,7 @@ import numpy as np
 
 from components.load import CONSTANT
 from components.particle import DEFAULT_MASS
+from components.rod import DEFAULT_STIFFNESS
 from components.world import Derivation, World
 
 
@@ -23,6 +24,16 @@ def derive_lengths(world: World) -> None:
     rest[...] = np.where(np.isnan(prescribed), original, prescribed)
     thermal_strain = rods.thermal_expansion * rods.temperature_change
     world.writable("rods.misfit")[...] = original - rest * (1.0 + thermal_strain)
+
+
+def derive_stiffness(world: World) -> None:
+    """EA of every rod: prescribed, else E·A, else that of a rod of which nothing is known."""
+    rods = world.tables["rods"]
+    with np.errstate(over="ignore", under="ignore"):  # too large numbers are reported before a run
+        known = rods.youngs_modulus * rods.area
+    prescribed = rods.prescribed_stiffness
+    automatic = np.where(np.isnan(known), DEFAULT_STIFFNESS, known)
+    world.writable("rods.stiffness")[...] = np.where(np.isnan(prescribed), automatic, prescribed)
 
 
 def derive_masses(world: World) -> None:
@@ -61,7 +72,20 @@ def derive_constant_force(world: World) -> None:
     world.writable("particles.constant_force")[...] = force
 
 
+def derive_displacement_scale(world: World) -> None:
+    """How much larger displacements are drawn."""
+    settings = world.tables["settings"]
+    prescribed, automatic = settings.prescribed_displacement_scale, settings.automatic_displacement_scale
+    scale = np.where(np.isnan(prescribed), automatic, prescribed)
+    world.writable("settings.displacement_scale")[...] = scale
+
+
 DERIVATIONS = (
+    Derivation(
+        ("settings.displacement_scale",),
+        ("settings.prescribed_displacement_scale", "settings.automatic_displacement_scale"),
+        derive_displacement_scale,
+    ),
     Derivation(
         ("rods.difference", "rods.original_length", "rods.rest_length", "rods.misfit"),
         (
@@ -72,6 +96,11 @@ DERIVATIONS = (
             "particles.position",
         ),
         derive_lengths,
+    ),
+    Derivation(
+        ("rods.stiffness",),
+        ("rods.prescribed_stiffness", "rods.youngs_modulus", "rods.area"),
+        derive_stiffness,
     ),
     Derivation(
         ("particles.mass", "particles.mobility"),

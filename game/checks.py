@@ -11,7 +11,7 @@ from typing import Any
 
 import numpy as np
 
-from components.field import Column, Role, same
+from components.field import SAVED, Column, Role, same
 from components.model import Model
 from components.suggestions import missing
 from game.documents import models
@@ -151,7 +151,7 @@ def columns_of(model: Model) -> dict[str, Column]:
     return {
         f"{table.name}.{field.name}": table.column(field.name).copy()
         for table in model.tables.values()
-        for field in table.fields_in(Role.DOCUMENT, Role.STATE)
+        for field in table.fields_in(*SAVED)
     }
 
 

@@ -15,7 +15,7 @@ from systems.physics.system import (
     ElasticityAfterYielding,
     Slackness,
 )
-from systems.plasticity.system import Strength, Yielding
+from systems.plasticity.system import FirstYield, Strength, Yielding
 
 SYSTEMS: list[Callable[[], System]] = []  # that mods add; made anew for every session
 
@@ -31,6 +31,7 @@ def step_systems() -> list[StepSystem]:
         Drag(),
         Strength(),
         Yielding(),
+        FirstYield(),
         Collision(),
         *varying_loads(),
     ]

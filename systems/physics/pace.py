@@ -58,7 +58,7 @@ def loaded_mode(model: Model) -> tuple[float, float] | None:
     """
     if model.rods.count == 0 or not (model.particles.mobility > 0.0).any():
         return None
-    displacement = _static_displacement(model)
+    displacement = _static_displacement(model, _exciting_forces(model))
     if displacement is None:
         return None
     rods = model.rods
@@ -72,12 +72,36 @@ def loaded_mode(model: Model) -> tuple[float, float] | None:
     return (frequency, damping) if frequency > 0.0 else None
 
 
-def _static_displacement(model: Model) -> Array | None:
-    """Linear displacement (n, 2) under the present loads, m; None where it is not small."""
-    free = np.flatnonzero(model.particles.mobility.ravel() > 0.0)
+def expected_displacement(model: Model) -> Array | None:
+    """Linear displacement (n, 2), m, under the loads at their full values, lack of fit, temperature and moved supports.
+
+    None where it is not small, as that of a mechanism.
+    """
+    particles, rods = model.particles, model.rods
+    moved = np.where(particles.mobility > 0.0, 0.0, particles.displacement)
+    ends, axis = _ends_and_axes(model)
+    elongation = rods.misfit + ((moved[ends[:, 1]] - moved[ends[:, 0]]) * axis).sum(axis=1)
+    tension = (rods.stiffness / rods.rest_length * elongation)[:, None] * axis
+    force = _forces(model).reshape(-1, 2)
+    np.add.at(force, ends[:, 0], tension)
+    np.add.at(force, ends[:, 1], -tension)
+    displacement = _static_displacement(model, force.ravel())
+    return None if displacement is None else displacement + moved
+
+
+def _exciting_forces(model: Model) -> Array:
+    """The forces of the loads (2n,); without any, some that excite all directions."""
     force = _forces(model)
-    if not force[free].any():  # then any will do that excites all directions
+    if not force[model.particles.mobility.ravel() > 0.0].any():
         force = np.ones_like(force) * np.where(np.arange(len(force)) % 2, -1.0, 0.3)
+    return force
+
+
+def _static_displacement(model: Model, force: Array) -> Array | None:
+    """Linear displacement (n, 2) under forces (2n,) in kN, m; None where it is not small."""
+    free = np.flatnonzero(model.particles.mobility.ravel() > 0.0)
+    if not len(free):
+        return np.zeros((model.particles.count, 2))
     solve = _solved_in_full if model.particles.count <= DENSE else _solved_sparsely
     displacement = np.zeros(2 * model.particles.count)
     try:

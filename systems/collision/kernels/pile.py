@@ -116,7 +116,7 @@ def step(discs, grid, constraints, pile, report, numbers, counts):
         if active > SMALL_PILE:
             depth = max(depth, min(DEPTH * numbers[Number.SMALLEST], ROUGHNESS * h * fastest))
         find_impulses(active, depth / h, pile)
-        if supplies_energy(active, h, discs, pile, numbers, counts):
+        if supplies_energy(active, h, discs, pile, numbers):
             continue
         if stays_within_reach(h, discs, pile):
             break

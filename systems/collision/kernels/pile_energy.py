@@ -4,26 +4,28 @@ Newton's law of restitution supplies energy where discs bounce that are jammed: 
 must part at both ends, and bends upwards as fast as that takes. So the energy of every part of the pile, the discs that
 push one another, is compared with that before the step. Velocities v₁ that hold during the whole step change it by
     p·N v₁ − ½ |v₁ − v₀|²_M.
-Without bounces, this is no more than what pushing discs out of one another takes if p·(N v₁ + gap/h) ≤ 0, which exact
-impulses satisfy; others are reduced until they do.
+A part that gains by its bounces is solved anew without. Then p·(N v₁ + gap/h) ≤ 0, which impulses that are not exact are
+reduced to, leaves it as gain only what undoes overlaps, which gave as much when the discs sank in; and all parts together
+never gain more than the run has lost so far, but for what lifts everything by a thousandth of a radius.
 """
 
-from systems.collision.columns import Count, Disc, Motion, Number, Part, PileContact, PilePair
+from systems.collision.columns import Disc, Motion, Number, Part, PileContact, PilePair
 from systems.collision.kernels import compiled
 from systems.collision.kernels.pile_solver import KEPT, PLASTIC, opening, without_contacts
 
 ROUND_OFF = 1e-12  # of the energy of a part
 SAME = 0.999  # of a bias that is a gap by the length of a step, in spite of round-off
-MISLED = 0.99  # share of impulses that may be kept, below which they are sought anew, from none
+MISLED = 0.5  # share of impulses that may be kept, below which those of the step before misled, as in a row come loose
+LIFT = 1e-3  # of the smallest radius, by which a run may lift all discs above where they began
 
 
 @compiled
-def supplies_energy(active, h, discs, pile, numbers, counts):
+def supplies_energy(active, h, discs, pile, numbers):
     """True if a part would gain energy: its discs are now bound by a stricter law, and the step must be solved anew."""
     _find_parts(active, discs, pile)
     _measure_discs(h, discs, pile)
     _measure_contacts(active, h, pile)
-    spare = numbers[Number.LOSS]
+    spare = numbers[Number.LOSS] + _lifting(LIFT * numbers[Number.SMALLEST], discs)
     for i in range(discs.shape[0]):
         spare -= max(pile.parts[Part.GAIN, i], 0.0)
     anew, reduced = False, False
@@ -33,9 +35,7 @@ def supplies_energy(active, h, discs, pile, numbers, counts):
             pile.parts[Part.LAW, i] = law
             anew = True
         reduced |= pile.parts[Part.SHARE, pile.part[i]] < 1.0
-    if anew:
-        _forget_forces(pile, counts)
-    elif reduced:
+    if reduced and not anew:
         _reduce(active, h, discs, pile)
     return anew
 
@@ -64,7 +64,7 @@ def _first(i, part):
 
 @compiled
 def _measure_discs(h, discs, pile):
-    """Sum up the energy of the parts, what they gain, and what they may if discs are pushed out of one another."""
+    """Sum up the energy of the parts, what they gain, and how far the impulses change their motion."""
     parts, speed, root = pile.parts, pile.motion[Motion.SPEED], pile.motion[Motion.ROOT]
     for quantity in range(Part.GAIN, parts.shape[0]):
         for i in range(discs.shape[0]):
@@ -82,8 +82,19 @@ def _measure_discs(h, discs, pile):
 
 
 @compiled
+def _lifting(height, discs):
+    """Energy that lifts all discs by a height."""
+    energy = 0.0
+    for i in range(discs.shape[0]):
+        for d in range(2):
+            if discs[i, Disc.WX + d] > 0.0:
+                energy += height * abs(discs[i, Disc.GX + d]) / discs[i, Disc.WX + d]
+    return energy
+
+
+@compiled
 def _measure_contacts(active, h, pile):
-    """Find what may supply energy to the parts, and the work that their impulses do beyond what the biases demand."""
+    """Sum up what pushing discs out of one another takes, and the work of impulses beyond what the biases demand."""
     parts = pile.parts
     for c in range(active):
         impulse = pile.contacts[c, PileContact.IMPULSE]
@@ -108,23 +119,13 @@ def _law_of_gain(p, spare, parts):
     parts[Part.SHARE, p] = 1.0
     if gain <= ROUND_OFF * parts[Part.ENERGY, p]:
         return 0.0
-    if spare < 0.0 and parts[Part.PUSHED_OUT, p] > 0.0:
-        return KEPT
-    if gain <= parts[Part.PUSHED_OUT, p]:
-        return 0.0
-    if parts[Part.BOUNCED, p] > 0.0:
-        return PLASTIC
-    if parts[Part.WORK, p] > 0.0:
+    if parts[Part.BOUNCED, p] == 0.0 and parts[Part.WORK, p] > 0.0:
         parts[Part.SHARE, p] = max(1.0 - parts[Part.WORK, p] / parts[Part.CHANGE, p], 0.0)
+    if spare < 0.0:
+        return KEPT
+    if parts[Part.BOUNCED, p] > 0.0:
+        return PLASTIC if gain > parts[Part.PUSHED_OUT, p] else 0.0
     return PLASTIC if parts[Part.SHARE, p] < MISLED else 0.0
-
-
-@compiled
-def _forget_forces(pile, counts):
-    """Forget the forces of the step before in contacts that may not bounce: they may mislead, as in a row come loose."""
-    for k in range(counts[Count.LISTED]):
-        if max(pile.parts[Part.LAW, pile.pairs[k, 0]], pile.parts[Part.LAW, pile.pairs[k, 1]]) > 0.0:
-            pile.forces[k] = 0.0
 
 
 @compiled

@@ -81,7 +81,8 @@ def _make_contact(c, k, h, discs, pile, numbers):
     contacts[c, PileContact.BIAS] = bias / root
     for d in range(4):
         contacts[c, PileContact.AX + d] /= root
-    contacts[c, PileContact.IMPULSE] = contacts[c, PileContact.PREVIOUS] = pile.forces[k] * h * root
+    first = pile.forces[k] * h * root if law == 0.0 else 0.0
+    contacts[c, PileContact.IMPULSE] = contacts[c, PileContact.PREVIOUS] = first
     for d in range(2):
         motion[Motion.SPEED, 2 * i + d] += contacts[c, PileContact.AX + d] * contacts[c, PileContact.IMPULSE]
         motion[Motion.SPEED, 2 * j + d] += contacts[c, PileContact.BX + d] * contacts[c, PileContact.IMPULSE]
