@@ -369,16 +369,25 @@ def test_a_small_pile_comes_to_rest_under_drag(drag: float) -> None:
     assert abs(session.energy.imbalance) < 1e-9 * session.energy.work
 
 
-@pytest.mark.parametrize(("count", "restitution", "drag"), [(14, 0.8, 2.0), (18, 0.5, 5.0)])
-def test_jammed_rows_come_to_rest_under_drag(count: int, restitution: float, drag: float) -> None:
-    """What a contact force lacked, a gap within its tolerance, was in every step the same, and moved for ever."""
+@pytest.mark.parametrize(
+    ("count", "restitution", "drag", "integrator"),
+    [(14, 0.8, 2.0, "dop853"), (18, 0.5, 5.0, "dop853"), (14, 0.5, 2.0, "velocity_verlet")],
+)
+def test_jammed_rows_come_to_rest_under_drag(
+    count: int, restitution: float, drag: float, integrator: str
+) -> None:
+    """What a contact force lacked, a gap within its tolerance, was in every step the same, and moved for ever.
+
+    In the last of them a jam at the end of a step of 5 µs counted as energy that was missing from then on.
+    """
     places = [(-0.2 + 0.13 * (k % 4) + 0.003 * k, 0.06 + 0.13 * (k // 4)) for k in range(count)]
-    sections = {"environment": GRAVITY | {"drag": drag}, "settings": {"restitution": restitution}}
+    settings = {"restitution": restitution, "integrator": integrator}
+    sections = {"environment": GRAVITY | {"drag": drag}, "settings": settings}
     session = Session.open(box([{"position": list(place)} for place in places], **sections))
     assert session.run(until="rest", limit=6.0) == "at rest"
     assert_lies(session)
     supplied = energy_of_discs(session)
-    assert session.model.clock.energy_scale < 5.0 * abs(supplied)  # a larger one would make motion round-off
+    assert session.model.clock.energy_scale < 10.0 * abs(supplied)  # a larger one would make motion round-off
 
 
 @pytest.mark.parametrize("integrator", ["esdirk4", "dop853"])
@@ -478,6 +487,22 @@ def test_forces_of_a_very_short_step_are_not_taken_for_energy_from_nowhere(integ
     assert_inside(session)
     assert energy_of_discs(session) <= 0.5 * 0.05**2
     assert session.model.clock.energy_scale < 20.0  # of round-off a larger one would make motion
+
+
+def test_a_state_that_is_returned_to_is_under_its_own_contact_forces() -> None:
+    """Those of the discarded state once counted in the energy that the steps from there on are compared with."""
+    disc = {"position": [0.0, 0.1], "velocity": [0.05, 0.0]}
+    settings = {"restitution": 0.0, "integrator": "velocity_verlet"}
+    session = Session.open(box([disc], environment=GRAVITY | {"drag": 0.5}, settings=settings))
+    simulation = session.simulation
+    simulation.advance(0)
+    simulation.program.observe()
+    before, unbalanced = simulation.present(), simulation.program.unbalanced.copy()
+    session.run(time=0.3)
+    assert persistent_contacts(session.model) is not None
+    simulation.programs.return_to(before)
+    simulation.program.observe()
+    assert simulation.program.unbalanced.tolist() == unbalanced.tolist()
 
 
 def test_a_step_that_is_cut_does_not_outlast_the_run() -> None:
