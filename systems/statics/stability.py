@@ -23,8 +23,9 @@ def is_held(model: Model, *, at_first: bool = False) -> bool:
     length = np.maximum(np.hypot(*along.T), 1e-300)
     axial, across = rods.stiffness / rods.rest_length, np.zeros(rods.count)
     if not at_first:
-        axial = axial * ~(rods.yielding | (rods.tension_only & (rods.axial_force <= 0.0)))
-        across = rods.axial_force / length
+        force = rods.axial_force
+        axial = axial * ~(rods.yielding | (rods.tension_only & (force <= 0.0)))
+        across = force / length
     dyads = along[:, :, None] * along[:, None, :] / (length**2)[:, None, None]
     block = axial[:, None, None] * dyads + across[:, None, None] * (np.eye(2) - dyads)
     size = 2 * particles.count
