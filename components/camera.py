@@ -10,6 +10,7 @@ from numpy.typing import ArrayLike, NDArray
 from components.field import Vector
 
 DEFAULT_SCALE = 100.0  # points per metre at the default zoom
+LEAST_MARGIN = 0.2  # of the room, where a margin would take more
 SMALLEST_SCALE, LARGEST_SCALE = 1e-6, 1e9
 
 
@@ -115,7 +116,7 @@ class Camera:
     def _fit(self, points: NDArray[np.float64], margin: float, within: Viewport, largest: float) -> None:
         low, high = points.min(axis=0), points.max(axis=0)
         size = np.array([within.width, within.height], dtype=np.float64)
-        room = np.maximum(size - 2.0 * np.minimum(margin, 0.2 * size), 1.0)
+        room = np.maximum(size - 2.0 * np.minimum(margin, LEAST_MARGIN * size), 1.0)
         extent = np.maximum(high - low, 1e-9)
         scale = float((room / extent).min())
         self.centre = (float((low[0] + high[0]) / 2), float((low[1] + high[1]) / 2))

@@ -68,7 +68,10 @@ class Group:
 
 @runtime_checkable
 class Custom(Protocol):
-    """A command of a mod, for data outside the tables; applying it returns its exact inverse."""
+    """A command for data outside the tables; applying it returns its exact inverse.
+
+    A class attribute `concerns_runs = False` says that no run depends on the data.
+    """
 
     def apply(self, world: Any) -> Command:
         """Make the change in a World; returns the inverse."""

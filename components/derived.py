@@ -8,6 +8,7 @@ from numpy.typing import ArrayLike
 from components.field import Column
 from components.load import CONSTANT
 from components.particle import DEFAULT_MASS
+from components.rod import DEFAULT_STIFFNESS
 from components.world import Derivation, World
 
 
@@ -25,6 +26,16 @@ def derive_lengths(world: World) -> None:
     rest[...] = np.where(np.isnan(prescribed), original, prescribed)
     thermal_strain = rods.thermal_expansion * rods.temperature_change
     world.writable("rods.misfit")[...] = original - rest * (1.0 + thermal_strain)
+
+
+def derive_stiffness(world: World) -> None:
+    """EA of every rod: prescribed, else E·A, else that of a rod of which nothing is known."""
+    rods = world.tables["rods"]
+    with np.errstate(over="ignore", under="ignore"):  # too large numbers are reported before a run
+        known = rods.youngs_modulus * rods.area
+    prescribed = rods.prescribed_stiffness
+    automatic = np.where(np.isnan(known), DEFAULT_STIFFNESS, known)
+    world.writable("rods.stiffness")[...] = np.where(np.isnan(prescribed), automatic, prescribed)
 
 
 def derive_masses(world: World) -> None:
@@ -195,7 +206,20 @@ def derive_constant_moment(world: World) -> None:
     np.add.at(moment, loads.on[constant], loads.moment[constant])
 
 
+def derive_displacement_scale(world: World) -> None:
+    """How much larger displacements are drawn."""
+    settings = world.tables["settings"]
+    prescribed, automatic = settings.prescribed_displacement_scale, settings.automatic_displacement_scale
+    scale = np.where(np.isnan(prescribed), automatic, prescribed)
+    world.writable("settings.displacement_scale")[...] = scale
+
+
 DERIVATIONS = (
+    Derivation(
+        ("settings.displacement_scale",),
+        ("settings.prescribed_displacement_scale", "settings.automatic_displacement_scale"),
+        derive_displacement_scale,
+    ),
     Derivation(
         ("rods.difference", "rods.original_length", "rods.rest_length", "rods.misfit"),
         (
@@ -206,6 +230,11 @@ DERIVATIONS = (
             "particles.position",
         ),
         derive_lengths,
+    ),
+    Derivation(
+        ("rods.stiffness",),
+        ("rods.prescribed_stiffness", "rods.youngs_modulus", "rods.area"),
+        derive_stiffness,
     ),
     Derivation(
         ("particles.mass", "particles.mobility"),

@@ -45,10 +45,15 @@ class Role(Enum):
     """Who makes a fact, and therefore what saving, undo and snapshots do with it."""
 
     DOCUMENT = "document"  # a person made it: saved, changed by commands, undoable
+    LOOK = "look"  # likewise, but it only says how the model is drawn: no run depends on it
     STATE = "state"  # time made it: saved, kept by snapshots
     DERIVED = "derived"  # computed from the others: never saved
 
     __hash__ = object.__hash__  # each is one of a kind, and looked up at every change
+
+
+MADE = (Role.DOCUMENT, Role.LOOK)  # by a person
+SAVED = (*MADE, Role.STATE)
 
 
 class FieldError(Mistake, ValueError):
@@ -125,7 +130,7 @@ class Field(Generic[T]):
             )
         if self.dtype == "reference":
             self.minimum, self.maximum = 0, _LARGEST_REFERENCE
-        if self.dtype is float and self.role is Role.DOCUMENT:
+        if self.dtype is float and self.role in MADE:
             self._limit()
         if not self.shown[1]:
             self.shown = self.unit, 1.0
@@ -348,7 +353,8 @@ class Field(Generic[T]):
 
 ENDS = ("start", "end")  # of rods: the parts of what each end has of its own
 
-# Fields that time makes, and Fields that are computed from others.
+# Fields that say how a model is drawn, that time makes, and that are computed from others.
+look = partial(Field, role=Role.LOOK)
 state = partial(Field, role=Role.STATE)
 derived = partial(Field, role=Role.DERIVED)
 

@@ -39,9 +39,7 @@ class Tile(Handle):
     picture: Field[Any] = Field(dtype=object, doc="The model to draw; None: not read yet.")
     symbol: Field[str] = Field(dtype=str, doc="A sign in place of a picture.")
     hidden: Field[bool] = Field(doc="Filtered out.", dtype=bool)
-    rest: Field[bool] = Field(
-        doc="Stands for those of its section for which one row has no room.", dtype=bool
-    )
+    rest: Field[bool] = Field(doc="Stands for those of its section for which one row has no room.", dtype=bool)
 
 
 class Reading(Handle):

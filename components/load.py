@@ -150,6 +150,15 @@ def factor_at(history: History, time: float) -> float:
     return float(kind.mod.call("a load's factor", factor, time, values, 0, otherwise=np.nan, declared=float))
 
 
+def load_factor(world: World, time: float) -> float | None:
+    """The factor at a time (s) that all varying loads share, 1 being the whole load; None if there are none, or several."""
+    histories = [history for history in world.tables["loads"].history if history["kind"] != CONSTANT["kind"]]
+    if not histories or any(history != histories[0] for history in histories):
+        return None
+    factor = factor_at(histories[0], time)
+    return None if math.isnan(factor) else factor
+
+
 def flattened(parameters: Iterable[Any]) -> list[float]:
     """Numbers in order, lists preceded by their length."""
     values: list[float] = []

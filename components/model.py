@@ -13,6 +13,7 @@ from components.load import Load
 from components.particle import Particle
 from components.rod import Rod
 from components.settings import Settings
+from components.slider import Slider
 from components.table import Table
 from components.world import World
 
@@ -26,10 +27,21 @@ class Model(World):
     foreign: by entity, what its element of the model file held for mods' components, kept verbatim.
     foreign_kinds: the elements of kinds of mods that are not loaded, as in ADDED, kept likewise.
     foreign_versions: the versions of the mods that wrote what the file held, by name.
+    sliders: what can be moved on the canvas; the command SetSliders changes them.
     """
 
     # With more than 29 attributes in its dict, every access to a world would take longer.
-    __slots__ = ("clock", "environment", "foreign_versions", "grids", "loads", "particles", "rods", "settings")
+    __slots__ = (
+        "clock",
+        "environment",
+        "foreign_versions",
+        "grids",
+        "loads",
+        "particles",
+        "rods",
+        "settings",
+        "sliders",
+    )
 
     def __init__(self) -> None:
         super().__init__((*KINDS, *ADDED.values()), DERIVATIONS)
@@ -45,3 +57,4 @@ class Model(World):
         self.foreign: dict[int, dict[str, Any]] = {}
         self.foreign_kinds: dict[str, Any] = {}
         self.foreign_versions: dict[str, str] = {}
+        self.sliders: tuple[Slider, ...] = ()

@@ -14,6 +14,8 @@ from components.particle import Particle, rods_without_length
 from components.table import Table, flags
 from components.world import World
 
+DEFAULT_STIFFNESS = 164640.0  # kN, of a rod of which no other is known
+
 
 class Rod(Handle):
     """A pin-jointed bar: elastic or elastic–perfectly plastic, with an axial damper. Tension is positive."""
@@ -29,7 +31,35 @@ class Rod(Handle):
         title="ends",
         doc="The particles at its two ends: in files names, in Python rows.",
     )
-    stiffness: Field[float] = Field("kN", default=164640.0, above=0.0, doc="EA: force per unit of strain.")
+    prescribed_stiffness: Field[float | None] = Field(
+        "kN",
+        default=None,
+        nullable=True,
+        above=0.0,
+        title="stiffness",
+        key="stiffness",
+        doc="EA: force per unit of strain; automatic: Young's modulus × area, 164640 kN where one is unknown.",
+        overrides="stiffness",
+    )
+    youngs_modulus: Field[float | None] = Field(
+        "kN/m²",
+        default=None,
+        nullable=True,
+        absent="unknown",
+        above=0.0,
+        title="Young's modulus",
+        doc="E of the material: steel 210 GPa, aluminium 70, concrete 30, timber 11.",
+        shown=("GPa", 1e-6),
+    )
+    area: Field[float | None] = Field(
+        "m²",
+        default=None,
+        nullable=True,
+        absent="unknown",
+        above=0.0,
+        doc="A of the cross-section: E·A is the stiffness, axial force / A the stress.",
+        shown=("cm²", 1e4),
+    )
     prescribed_rest_length: Field[float | None] = Field(
         "m",
         default=None,
@@ -99,6 +129,15 @@ class Rod(Handle):
         doc="c of end moments c [4 2; 2 4] × rates of the slopes; automatic: damping × EI/EA.",
     )
     plastic_strain: Field[float] = state(doc="Permanent part of the strain.")
+    yielded_at: Field[float | None] = state(
+        "s", default=None, nullable=True, absent="not yet", doc="When the run first brought it to a strength."
+    )
+    stiffness: Field[float] = derived(
+        "kN",
+        default=DEFAULT_STIFFNESS,
+        doc="EA: prescribed, or Young's modulus × area, or 164640 kN where one is unknown.",
+        overridden_by="prescribed_stiffness",
+    )
     rest_length: Field[float] = derived(
         "m",
         doc="Prescribed, or the distance between the original positions.",
@@ -253,11 +292,28 @@ def has_cables(world: World) -> bool:
 
 def can_yield(world: World) -> bool:
     """True if plasticity is on and some rod has a strength."""
+    return bool(world.tables["settings"].plasticity[0]) and has_strength(world)
+
+
+def has_strength(world: World) -> bool:
+    """True if some rod has a strength, whether plasticity is on or not."""
     rods = world.tables["rods"]
-    limited = (rods.tension_limit < np.inf) | (rods.compression_limit < np.inf)
-    return bool(world.tables["settings"].plasticity[0]) and bool(limited.any())
+    return bool(((rods.tension_limit < np.inf) | (rods.compression_limit < np.inf)).any())
 
 
 def has_plastic_strain(world: World) -> bool:
     """True if plastic strain plays a part: some rod has it, or may get it."""
     return can_yield(world) or bool(world.tables["rods"].plastic_strain.any())
+
+
+def utilisation(world: World, force: NDArray[np.float64] | None = None) -> NDArray[np.float64]:
+    """|N| over the strength in that direction, of each rod (m,); NaN where it has none.
+
+    force: axial forces (kN), (m,); None: the present ones.
+    """
+    rods = world.tables["rods"]
+    force = rods.axial_force if force is None else force
+    limit = np.where(force < 0.0, rods.compression_limit, rods.tension_limit)
+    either = np.isfinite(rods.tension_limit) | np.isfinite(rods.compression_limit)
+    share: NDArray[np.float64] = np.where(either, np.abs(force) / limit, np.nan)
+    return share

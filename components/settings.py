@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from components.field import Field
+from components.field import Field, derived, look
 from components.handle import Handle
 
 AUTOMATIC = "automatic"
@@ -43,9 +43,21 @@ class Settings(Handle):
         default=True,
         doc="Islands of rods at rest are left out of the steps until something reaches them.",
     )
-    displacement_scale: Field[float] = Field(
-        default=1.0, minimum=0.0, doc="Displacements are drawn this much larger."
+    prescribed_displacement_scale: Field[float | None] = look(
+        default=None,
+        nullable=True,
+        minimum=0.0,
+        title="displacement scale",
+        key="displacement_scale",
+        doc="Displacements are drawn this much larger; automatic: as much as shows them, 1 for large motions.",
+        overrides="displacement_scale",
     )
-    diagram_scale: Field[float] = Field(
+    diagram_scale: Field[float] = look(
         "px/kN", default=1.0, minimum=0.0, title="force diagram scale", doc="Size of the force diagrams."
+    )
+    automatic_displacement_scale: Field[float] = derived(default=1.0, doc="The one that suits the model.")
+    displacement_scale: Field[float] = derived(
+        default=1.0,
+        doc="Prescribed, or the automatic one.",
+        overridden_by="prescribed_displacement_scale",
     )

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import dataclass
 
 from components.camera import Rectangle, Viewport
@@ -36,30 +37,36 @@ class Button(Rectangle):
     tool: Tool
 
 
+Groups = tuple[tuple[Tool, ...], ...]
+
+
 @dataclass(frozen=True)
 class Toolbar:
-    """Tools in groups, from the top; the last group stands at the bottom."""
+    """Tools in groups, from the top; the last group stands at the bottom.
+
+    more: the tool that leads to the groups for which there is no room.
+    """
 
     groups: tuple[tuple[Tool, ...], ...] = ()
+    more: Tool | None = None
 
     def strip(self, window: Viewport, unit: float) -> Viewport:
         """The part of a window that the toolbar takes, with `unit` pixels per point; of no width where it is hidden.
 
-        The toolbar has as few columns as the height allows, and is hidden where MOST_COLUMNS are too high.
+        The toolbar has as few columns as the height allows; where MOST_COLUMNS are too high, groups are folded into
+        `more`, and where that does not help it is hidden.
         """
-        columns = self._columns(window, unit)
+        columns, _ = self._shown(window, unit)
         width = round((columns * BUTTON[0] + 2 * EDGE) * unit) if columns else 0
         return Viewport(window.left, window.top, width, window.height)
 
     def buttons(self, window: Viewport, unit: float) -> list[Button]:
         """Where the buttons are; none where it is hidden."""
-        columns = self._columns(window, unit)
-        if not columns:
-            return []
+        columns, groups = self._shown(window, unit)
         (width, height), buttons = BUTTON, []
         top = EDGE
-        for group in self.groups:
-            if group is self.groups[-1]:
+        for number, group in enumerate(groups):
+            if number == len(groups) - 1:
                 top = window.height / unit - EDGE - _rows(group, columns) * height
             for index, tool in enumerate(group):
                 row, column = divmod(index, columns)
@@ -69,16 +76,33 @@ class Toolbar:
             top += _rows(group, columns) * height + GAP
         return buttons
 
-    def _columns(self, window: Viewport, unit: float) -> int:
-        if not self.groups or window.width < LEAST_WIDTH * unit:
-            return 0
-        fitting = (n for n in range(1, MOST_COLUMNS + 1) if self._height(n) * unit <= window.height)
-        return next(fitting, 0)
+    def folded(self, window: Viewport, unit: float) -> tuple[tuple[Tool, ...], ...]:
+        """The groups for which there is no room."""
+        _, groups = self._shown(window, unit)
+        return tuple(group for group in self.groups[:-1] if group not in groups)
 
-    def _height(self, columns: int) -> float:
-        """Points that it takes in that many columns."""
-        rows = sum(_rows(group, columns) for group in self.groups)
-        return rows * BUTTON[1] + (len(self.groups) - 1) * GAP + 2 * EDGE
+    def _shown(self, window: Viewport, unit: float) -> tuple[int, Groups]:
+        """The number of columns and the groups in them; none where it is hidden."""
+        if not self.groups or window.width < LEAST_WIDTH * unit:
+            return 0, ()
+        for groups in self._kept():
+            for columns in range(1, MOST_COLUMNS + 1):
+                if _height(groups, columns) * unit <= window.height:
+                    return columns, groups
+        return 0, ()
+
+    def _kept(self) -> Iterator[Groups]:
+        """All groups; then without the last ones, but for that at the bottom."""
+        yield self.groups
+        if self.more is not None:
+            for count in range(len(self.groups) - 2, 1, -1):
+                yield (*self.groups[:count], (self.more, *self.groups[-1]))
+
+
+def _height(groups: Groups, columns: int) -> float:
+    """Points that groups take in that many columns."""
+    rows = sum(_rows(group, columns) for group in groups)
+    return rows * BUTTON[1] + (len(groups) - 1) * GAP + 2 * EDGE
 
 
 def _rows(group: tuple[Tool, ...], columns: int) -> int:

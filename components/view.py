@@ -13,6 +13,7 @@ from components.field import Vector
 from components.kind import all_points
 from components.menu import Menu
 from components.model import Model
+from components.slider import Place, SliderStack, under
 from components.toolbar import Toolbar
 
 # Sizes of type and symbols that a person can choose, relative to the usual one.
@@ -136,12 +137,15 @@ class View:
     tool: "place", "rod", "support", "force" or "velocity" while clicks and drags make one, or "".
     preview: what is being drawn. toolbar: what can be clicked at the left edge; hidden with the legend.
     flashes: points (m) where particles collided just now, shape (k, 2).
+    sliders: what can be moved at the lower left; none with the legend hidden.
     menu: the list of what can be done somewhere, while it is open.
     theme: the name of its colours. readouts: panels at the right edge; hidden with the legend.
     pointed: what is said of the element under the pointer, beside it.
     shape: a mechanism or mode that is drawn over the model, with its title below the caption.
+    utilisation: rods show in colours how much of their strength they bear.
     largest_force: that (kN) of pictures beside this one, with which its arrows share a scale; 0: none.
-    theory, energy: show theory beside the run, and its energy account, among them.
+    free_bodies: rods and joints are drawn apart, with the forces on each.
+    theory, energy, events: show theory beside the run, its energy account, and what happened, among them.
     fitted: the camera shows the whole model, and follows the size of the window until a person zooms or pans.
     shares: the model is fitted beside the panels; else panels may cover it. since: by title, the rank in which each
     panel appeared.
@@ -165,13 +169,17 @@ class View:
     caption: tuple[str, ...] = ()
     page: Page | None = None
     toolbar: Toolbar = field(default_factory=Toolbar)
+    sliders: SliderStack = field(default_factory=SliderStack)
     menu: Menu | None = None
     theme: str = "light"
     readouts: tuple[Readout, ...] = ()
     since: dict[str, int] = field(default_factory=dict)
     largest_force: float = 0.0
+    utilisation: bool = False
     theory: bool = False
     energy: bool = False
+    free_bodies: bool = False
+    events: bool = False
     shape: Shape | None = None
     pointed: Readout | None = None
     fitted: bool = False
@@ -229,8 +237,18 @@ class View:
         return replace(c, left=c.left if at_left else c.left + c.width - width, width=width)
 
     def covers(self, pixel: Vector) -> bool:
-        """True if the toolbar or boxes to type into are at a pixel of the window, not the model."""
-        return self.strip.contains(pixel) or (self.aside is not None and self.aside.contains(pixel))
+        """True if the toolbar, a slider or boxes to type into are at a pixel of the window, not the model."""
+        taken = self.strip.contains(pixel) or under(self.slider_places, pixel) is not None
+        return taken or (self.aside is not None and self.aside.contains(pixel))
+
+    @property
+    def slider_places(self) -> list[Place]:
+        """Where the sliders are: at the lower left of the canvas, above panels that take its lower half."""
+        c, panels = self.canvas, self.panels
+        beside = not self.shares or panels.width < c.width or panels == c
+        return self.sliders.places(
+            c if beside else replace(c, height=c.height - panels.height), self.pixel_ratio
+        )
 
     @property
     def panels(self) -> Viewport:
@@ -247,7 +265,8 @@ class View:
     def room(self) -> Viewport:
         """The part of the canvas that a model is fitted into."""
         c, panels = self.canvas, self.panels
-        if not self.shares or panels == c:
+        c = replace(c, height=max(c.height - self.sliders.reserve(c, self.pixel_ratio, MARGIN), 1))
+        if not self.shares or panels == self.canvas:
             return c
         if panels.width < c.width:
             return replace(c, width=c.width - panels.width)

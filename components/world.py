@@ -15,7 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from components.commands import Assign, Command, Create, Custom, Delete, Group, Removed, Restore
-from components.field import Column, Field, FieldError, Role, same
+from components.field import MADE, Column, Field, FieldError, Role, same
 from components.handle import Handle, set_entity
 from components.suggestions import missing
 from components.table import Table, flags, grown
@@ -41,7 +41,8 @@ class World:
     """A model: tables of entities. Documents change by `execute`; state by columns that `writable` grants.
 
     on_command: called with the inverse of every executed command (the undo log listens here).
-    before_change: called before any command is applied (a running simulation notes what it starts from).
+    before_change: called before any command is applied on which runs depend (a running simulation notes what it
+        starts from).
     before_command: called before a command begins; its exceptions stop the command.
     revision: grows by one at every change of anything.
     changing: a command is being applied; code that is interrupted now would leave half of it.
@@ -236,7 +237,7 @@ class World:
     def writable(self, name: str) -> Column:
         """A state or derived column as a writable view, marked as changed. Documents change by commands."""
         table, field = name.split(".")
-        if self.tables[table].fields[field].role is Role.DOCUMENT:
+        if self.tables[table].fields[field].role in MADE:
             raise ValueError(f"Column {name} is part of the document; change it by a command.")
         return self.tables[table].writable(field)
 
@@ -372,7 +373,7 @@ class World:
 
     def apply(self, command: Command) -> Command:
         """Apply a command without telling the log; returns its exact inverse."""
-        if self.before_change is not None:
+        if self.before_change is not None and self._concerns_runs(command):
             self.before_change()
         match command:
             case Create():
@@ -387,6 +388,17 @@ class World:
                 return Group(tuple(reversed([self.apply(part) for part in commands])), title)
             case Custom():
                 return command.apply(self)
+
+    def _concerns_runs(self, command: Command) -> bool:
+        """False for a command that only changes how the model is drawn, and for a group, whose parts are asked."""
+        match command:
+            case Assign(table, field):
+                return self.tables[table].fields[field].role is not Role.LOOK
+            case Group():
+                return False
+            case Custom():
+                return getattr(command, "concerns_runs", True)
+        return True
 
     def _create(self, command: Create) -> Command:
         self.activate()

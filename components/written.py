@@ -67,6 +67,24 @@ def vector(values: Iterable[float], digits: int = GIVEN_DIGITS) -> str:
     return f"({', '.join(given(value, digits) for value in values)})"
 
 
+def total(terms: Iterable[float]) -> str:
+    """A sum with its numbers filled in, to the digits of the largest: "20.1 − 140.1 + 120.0 = 0".
+
+    Terms that are 0 to these digits are left out; the sum is of all.
+    """
+    known = list(terms)
+    largest = max(map(abs, known), default=0.0)
+    if largest == 0.0:
+        return "0"
+    decimals = max(DIGITS - 1 - math.floor(math.log10(largest)), 0)
+    found, least = sum(known), 0.5 * 10.0**-decimals
+    shown = [term for term in known if abs(term) >= least]
+    first, *others = (f"{abs(term):.{decimals}f}" for term in shown)
+    signed = [f"{'−' if term < 0.0 else '+'} {text}" for term, text in zip(shown[1:], others, strict=True)]
+    result = "0" if abs(found) <= ROUNDING * largest else f"{found:.{decimals}f}".replace("-", "−")
+    return " ".join([f"{'−' * (shown[0] < 0.0)}{first}", *signed, "=", result])
+
+
 def strain(value: float, *, nothing: float = 0.0) -> str:
     """Elongation per length."""
     return f"{number(1000.0 * value, nothing=1000.0 * nothing)} ‰"

@@ -140,7 +140,10 @@ def place_on(
 
 
 class App:
-    """The window and its session. place: where it was last. preparation: compiles in another process; without it, compiling stops the frames."""
+    """The window and its session.
+
+    preparation: compiles in another process; without it, compiling stops the frames. place: where it was last.
+    """
 
     def __init__(
         self,
@@ -158,8 +161,8 @@ class App:
             displays = pygame.display.get_desktop_sizes()
             self._display_height = float(displays[0][1])
             size, position = place_on(displays, place, seen=pygame.display.get_driver() not in UNSEEN)
-            at = {} if position is None else {"position": position}
-            self.window = pygame.Window("Pinjoint", size, resizable=True, allow_high_dpi=True, **at)
+            at = pygame.WINDOWPOS_UNDEFINED if position is None else position
+            self.window = pygame.Window("Pinjoint", size, at, resizable=True, allow_high_dpi=True)
         except pygame.error as error:
             raise NoDisplay(str(error)) from None
         self.window.minimum_size = SMALLEST_SIZE

@@ -11,7 +11,7 @@ from typing import Any
 
 import numpy as np
 
-from components.field import Column, Role, same
+from components.field import SAVED, Column, Role, same
 from components.model import Model
 from components.suggestions import missing
 from game.documents import models
@@ -152,7 +152,7 @@ def columns_of(model: Model) -> dict[str, Column]:
     return {
         f"{table.name}.{field.name}": table.column(field.name).copy()
         for table in model.tables.values()
-        for field in table.fields_in(Role.DOCUMENT, Role.STATE)
+        for field in table.fields_in(*SAVED)
     }
 
 
@@ -258,7 +258,7 @@ def _driven_by(system: System, simulation: Simulation) -> Iterator[None]:
 def _check_finite(name: str, model: Model) -> None:
     for table in model.tables.values():
         for field in table.fields_in(Role.STATE):
-            if field.dtype is float and not np.isfinite(table.column(field.name)).all():
+            if field.dtype is float and not field.nullable and not np.isfinite(table.column(field.name)).all():
                 raise SystemCheckError(
                     f"{name}: after {STEPS} steps with it, {table.name}.{field.name} is not finite."
                 )

@@ -15,7 +15,7 @@ from typing import Any, Protocol
 
 import msgspec
 
-from components.field import ENDS, Field, FieldError, Role
+from components.field import ENDS, SAVED, Field, FieldError, Role
 from components.handle import Handle
 from components.mistake import Mistake
 from components.model import Model
@@ -75,7 +75,7 @@ Keys = Callable[[Table[Any]], Mapping[str, Field[Any]]]  # the facts of a table 
 
 def settable(table: Table[Any]) -> Mapping[str, Field[Any]]:
     """The facts that a person can set, by the keys of model files."""
-    fields = () if table.name in _SET_BY_TIME else table.fields_in(Role.DOCUMENT, Role.STATE)
+    fields = () if table.name in _SET_BY_TIME else table.fields_in(*SAVED)
     return {field.name if field.component else field.key: field for field in fields if field.references is None}
 
 

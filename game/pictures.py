@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 
 from components.camera import Camera, Viewport
 from components.model import Model
+from components.slider import SliderStack
 from components.toolbar import Toolbar
 from components.view import MARGIN, Plot, Status, View, drawn_places
 from game.documents import models
@@ -35,6 +36,7 @@ def render(
     session: Session, path: str | Path, size: Size, theme: str = "light", background: Background = "theme"
 ) -> None:
     """Draw a session to a file in the format of its suffix, without a display. Raises OSError if it cannot be written."""
+    session.exaggerate()
     session.update_view()
     view = on_paper(session.view, Camera(viewport=Viewport(0, 0, *size)))
     view.camera.fit(drawn_places(session.model), MARGIN, view.room, view.pixel_ratio)
@@ -42,15 +44,17 @@ def render(
 
 
 def on_paper(view: View, camera: Camera | None = None) -> View:
-    """A view without what only a person at the window needs: status bar, panels, toolbar, and what is pointed at."""
+    """A view without what only a person at the window needs: bars, panels, sliders, and what is pointed at."""
     return replace(
         view,
         camera=camera or view.camera,
         toolbar=Toolbar(),
+        sliders=SliderStack(),
         heading="",
         status=Status(time=None, speed=view.status.speed),
         readouts=(),
         shares=False,
+        aside=None,
         preview=None,
         pointer=None,
         pointed=None,
@@ -70,11 +74,14 @@ def write(
     if background == "white":
         colours = replace(colours, background=_WHITE)
     pictures = [compose(model, view, colours) for model, view in stages]
+    paths = [partial(path_of, model) for model, _ in stages]
     if background == "transparent":
         pictures = [replace(picture, background=None) for picture in pictures]
+    elif len(stages) > 1:  # which leave the place of the toolbar free
+        pictures = [Picture(Viewport(0, 0, *size), colours.background), *pictures]
+        paths = [paths[0], *paths]
     title, suffix = stages[0][0].title or "Pinjoint", path.suffix.lower()
     if suffix == ".svg":
-        paths = [partial(path_of, model) for model, _ in stages]
         made = as_svg(list(zip(pictures, paths, strict=True)), size, title)
     elif suffix == ".pdf":
         made = as_pdf(pictures, size, title)
@@ -108,7 +115,8 @@ def frame(
     session.update_view()
     status = replace(session.view.status, hint="")  # a picture takes no keys
     camera = Camera(viewport=Viewport(0, 0, *size))
-    view = replace(session.view, camera=camera, toolbar=Toolbar(), heading="", status=status)
+    view = replace(session.view, camera=camera, toolbar=Toolbar(), sliders=SliderStack(), status=status)
+    view.heading = ""
     view.camera.fit(around, MARGIN, view.room, view.pixel_ratio)
     return as_colours([compose(session.model, view, load_theme(theme), placed)], size)
 

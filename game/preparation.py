@@ -29,7 +29,7 @@ from systems.physics.system import (
     ElasticityAfterYielding,
     Slackness,
 )
-from systems.plasticity.system import Strength, Yielding
+from systems.plasticity.system import FirstYield, Strength, Yielding
 from systems.program.compiler import LARGE, UNCOMPILED, Choice, Compile, GeneratedModule, tell
 from systems.program.program import module_of
 from systems.program.writer import form_of
@@ -41,7 +41,7 @@ BY_AN_EDIT: Sequence[
     tuple[Set[str], str]
 ] = (  # systems that an edit brings, and which one they take the place of
     ({Pull.name}, ""),
-    ({ElasticityAfterYielding.name, Strength.name, Yielding.name}, Elasticity.name),
+    ({ElasticityAfterYielding.name, Strength.name, Yielding.name, FirstYield.name}, Elasticity.name),
     ({"loads.ramp"}, ""),
     ({Slackness.name, AxialDampingOfCables.name}, AxialDamping.name),
     ({Drag.name}, ""),

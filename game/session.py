@@ -32,6 +32,7 @@ from game.editor.menu import IN_MENU
 from game.editor.routing import Layer, for_tools, layer, meaning
 from game.editor.scenes import all_scenes, scene_systems
 from game.editor.scenes.files import FileScene
+from game.editor.sliders import slider_stack, sliders_of
 from game.editor.toolbar import toolbar_of
 from game.editor.view_model import show
 from game.mods import load_all
@@ -85,7 +86,7 @@ class Session(Context):
             None  # called with every press; set by a recorder
         )
         self.on_resize: Callable[[], None] | None = None  # called after every change of size; set by a recorder
-        self._clicked: Layer | None = None  # what the last click was for
+        self._clicked: Layer | None = None  # what took the last press, if that was a click
         self._blank = Model()  # what the footer is drawn over
         self.offer_tools()
         self.begin_document()
@@ -200,6 +201,7 @@ class Session(Context):
         try:
             with heeding_mods(simulation), self.without_frames(), watched(simulation):
                 yield simulation
+                document.chronicle.look()
         finally:
             if not self.time_passes:
                 document.history.end_run()
@@ -266,18 +268,24 @@ class Session(Context):
             self.leave_gesture()
         if name not in IN_MENU:
             self.view.menu = None
+        self.exaggerate()
         try:
             ACTIONS[name](self, pixel if pixel is not None else self.pointer)
         except (Refusal, FieldError) as error:
             self.notice = str(error)
         self.scenes.apply(self)
-        self.make_room()
         self.offer_tools()
+        self.make_room()
+
+    def begin_document(self) -> None:
+        """Show the document that is open now, with its sliders, from the first frame on."""
+        self.view.sliders = sliders_of(self)
+        super().begin_document()
 
     def offer_tools(self) -> None:
-        """Let the toolbar show what can be done now; where it is not seen it stays as it was."""
+        """Let toolbar and sliders show what can be done now; where they are not seen they stay as they were."""
         if not self.scenes.active.covers(self):
-            self.view.toolbar = toolbar_of(self)
+            self.view.toolbar, self.view.sliders = toolbar_of(self), slider_stack(self)
 
     def press(self, key: str, pixel: Vector | None = None) -> None:
         """Press a key, such as "k", "escape" or "ctrl+z"; one that means nothing in this scene does nothing.
@@ -298,13 +306,14 @@ class Session(Context):
             self.open_files(key.removeprefix(FILES).splitlines())
             return
         pixel = self.pointer if pixel is None else _near(pixel)
-        if key in ("click", "double click") and self._slipped(key, pixel):
-            return
+        here = layer(self, pixel)
+        if key == "double click" and self._clicked not in (None, here):
+            return  # its first click led here, and the second is not meant for what is here
         (name, at), pressed = meaning(self, key, pixel), pixel
         if key == "escape" and self.fault and self.scene not in FORMS:
             self.faults_seen = len(FAULTS)
         elif name is not None:
-            self.notice = ""
+            self.notice, self._clicked = "", here if key == "click" else None
             if self.on_press is not None:
                 self.on_press(key, pressed)
             if self.time_passes:
@@ -322,12 +331,6 @@ class Session(Context):
         self.scenes.apply(self)
         self.offer_tools()
         return scene
-
-    def _slipped(self, key: str, pixel: Vector) -> bool:
-        """True for the second click of a double click whose first one led elsewhere: it is not meant for what is there."""
-        first, now = self._clicked, layer(self, pixel)
-        self._clicked = now if key == "click" else None
-        return key == "double click" and first not in (None, now)
 
     def open_files(self, paths: Iterable[str | Path]) -> None:
         """Open model files and play recorded sessions, as when they are dropped on the window; undo goes back.
@@ -428,6 +431,7 @@ class Session(Context):
     def frame(self, elapsed: float) -> Frame:
         """One frame, `elapsed` s after the last: input, edit, step, events and render. Raises ValueError."""
         frame = Frame(self, _forward("elapsed", elapsed))
+        self.exaggerate()
         try:
             for phase in Phase:
                 self.schedule.run(phase, frame)
@@ -446,9 +450,9 @@ class Session(Context):
             stages.append((self._blank, self.footer))
         return stages
 
-    def update_view(self) -> None:
-        """Bring what the view says about the run up to date."""
-        show(self)
+    def update_view(self, elapsed: float = 0.0) -> None:
+        """Bring what the view says about the run up to date, so many seconds after the last time."""
+        show(self, elapsed)
         self.offer_tools()
 
 

@@ -197,9 +197,11 @@ class Commit(StepSystem):
         branch(elongation, rate, …) is the number of the branch of the law that the rod is about to follow;
         margin(branch, elongation, rate, dt, …) is positive while the rod stays on it, has no unit, and is 0
         where it leaves it.
+    notes: it only notes what happens, in a column that no law reads; so nothing changes with time because of it.
     """
 
     account: ClassVar[str] = "dissipated_plastic"
+    notes: ClassVar[bool] = False
     branch: ClassVar[str | Callable[..., Any]] = ""
     margin: ClassVar[str | Callable[..., Any]] = ""
 

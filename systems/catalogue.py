@@ -19,7 +19,7 @@ from systems.physics.system import (
     Slackness,
     TurningDrag,
 )
-from systems.plasticity.system import Strength, Yielding
+from systems.plasticity.system import FirstYield, Strength, Yielding
 
 SYSTEMS: list[Callable[[], System]] = []  # that mods add; made anew for every session
 
@@ -39,6 +39,7 @@ def step_systems() -> list[StepSystem]:
         TurningDrag(),
         Strength(),
         Yielding(),
+        FirstYield(),
         Collision(),
         *varying_loads(),
     ]

@@ -33,6 +33,7 @@ def render_gif(
     from game.pictures import frame
 
     status, moments = _run(session, until, limit)
+    session.exaggerate()
     places = []
     for moment in moments:
         moment.restore(session.model)

@@ -36,6 +36,9 @@ def command(words: Sequence[str]) -> int:
     parser.add_argument("--until-rest", action="store_true", help="run until at rest first (a GIF's default)")
     parser.add_argument("--at", type=positive, metavar="T", help="run to this time (s) first")
     parser.add_argument("--diagrams", action="store_true", help="show all force diagrams")
+    parser.add_argument(
+        "--utilisation", action="store_true", help="colour rods by the share of their strength that they bear"
+    )
     shape = parser.add_mutually_exclusive_group()
     shape.add_argument("--mechanism", type=int, metavar="N", help="draw a motion that elongates no rod over it")
     shape.add_argument(
@@ -59,6 +62,7 @@ def command(words: Sequence[str]) -> int:
     _check_background(options)
     session = session_of(options)
     session.view.all_diagrams = options.diagrams
+    session.view.utilisation = options.utilisation
     draw = _animate if options.output.lower().endswith(".gif") else _draw
     with writing(options.output, "--output"):
         status = draw(session, options, (width, height))

@@ -16,9 +16,11 @@ from systems.statics.events import Event
 
 if TYPE_CHECKING:  # they import scipy
     from systems.run.measured_error import MeasuredError
+    from systems.statics.theory import Indeterminacy
     from systems.statics.verify import Comparison, Theories
 
 Moment = tuple[int, float]  # of a run: the revision of its last edit, and the time (s)
+_SHAPE = ("rods.between", "particles.position", "particles.fixed")  # on which the degrees depend
 LARGEST = 2000  # rods up to which theory is found without being asked for; more would take noticeable time
 
 
@@ -32,6 +34,7 @@ class Assessment:
         self._disturbed_at = math.inf  # the first step with an edit or a pull
         self._theories: tuple[int, Theories] | None = None
         self._remarks: tuple[Moment, tuple[Event, ...]] | None = None
+        self._degrees: tuple[tuple[int, ...], Indeterminacy] | None = None
         self._error: tuple[Moment, MeasuredError | None] | None = None
 
     def begin(self, beginning: Snapshot) -> None:
@@ -61,6 +64,16 @@ class Assessment:
             start = Start(*(begun.column(self._model, name).copy() for name in names)) if begun else None
             self._theories = revision, theories(self._model, start)
         return self._theories[1]
+
+    @property
+    def indeterminacy(self) -> Indeterminacy:
+        """Static and kinematic degrees by rank, found anew when the geometry or the supports change."""
+        from systems.statics.theory import indeterminacy
+
+        shape = tuple(self._model.version(name) for name in _SHAPE)
+        if self._degrees is None or self._degrees[0] != shape:
+            self._degrees = shape, indeterminacy(self._model)
+        return self._degrees[1]
 
     @property
     def _begun(self) -> Snapshot | None:

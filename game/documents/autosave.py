@@ -13,7 +13,7 @@ from typing import Any, cast
 
 import msgspec
 
-from components.field import Column, Role
+from components.field import SAVED, Column
 from components.handle import Handle
 from components.model import Model
 from components.table import Table
@@ -21,6 +21,7 @@ from game.documents import library, models
 from game.documents.document import gathered
 from game.documents.locks import lock_file
 from game.documents.open_documents import OpenDocument
+from game.documents.sliders import slider_entries
 from systems.base import Phase, System
 
 INTERVAL = 2.0  # s between recovery files of the same model, at least
@@ -130,7 +131,7 @@ class Autosave(System):
     def _put(self, path: Path, still: _Still) -> None:
         began = time.monotonic()
         with contextlib.suppress(models.ModelError, ValueError):  # what no file can hold; saving says so
-            content = msgspec.json.encode(gathered(cast(Model, still)))
+            content = msgspec.json.encode(gathered(cast(Model, still), still.sliders))
             try:
                 models.replace(path, content)
                 self._trouble = ""
@@ -176,6 +177,7 @@ class _Still:
         self.foreign = dict(model.foreign)
         self.foreign_kinds = dict(model.foreign_kinds)
         self.foreign_versions = dict(model.foreign_versions)
+        self.sliders = slider_entries(model)
         self.tables = {name: _StillTable(table) for name, table in model.tables.items()}
 
     def describe(self, handle: Handle) -> str:
@@ -187,7 +189,7 @@ class _StillTable:
     def __init__(self, table: Table[Any]) -> None:
         self.count = table.count
         self.handles: tuple[Handle, ...] = tuple(table.handles)
-        fields = table.fields_in(Role.DOCUMENT, Role.STATE)
+        fields = table.fields_in(*SAVED)
         self._columns = {field.name: table.column(field.name).copy() for field in fields}
 
     def __getitem__(self, row: int) -> Handle:

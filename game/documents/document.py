@@ -17,7 +17,7 @@ from components.clock import Clock
 from components.commands import Assign
 from components.departure import Departure
 from components.environment import Environment
-from components.field import Column, Field, FieldError, Role
+from components.field import MADE, SAVED, Column, Field, FieldError
 from components.grid import Grid
 from components.handle import Handle
 from components.load import Load
@@ -26,11 +26,14 @@ from components.model import ADDED, Model
 from components.particle import Particle, check_spin, check_velocities
 from components.rod import Rod
 from components.settings import Settings
+from components.slider import Slider
 from components.suggestions import missing, remedy
 from components.table import Table, fields_of
 from components.wording import cut, is_broken, quoted
 from game.documents.mod_data import DATA as FOREIGN
 from game.documents.mod_data import MODS, known_versions, upgraded, versions_in
+from game.documents.sliders import KEY as SLIDERS
+from game.documents.sliders import SliderError, read_sliders, slider_entries
 
 FORMAT = "pinjoint model"
 VERSION = 1
@@ -54,7 +57,6 @@ REQUIRED: Mapping[str, tuple[str, ...]] = MappingProxyType(
     {"particles": ("name", "position"), "rods": ("name", "between"), "loads": ("on",)}
 )
 _HEADER = ("format", "version", "title", "description")
-_SAVED = (Role.DOCUMENT, Role.STATE)
 
 Columns = Mapping[str, Column]
 
@@ -103,7 +105,7 @@ class _Section:
 
 def _parsed(document: Any) -> Model:
     document = _with_data_of_mods(_migrated(_by_elements(document)))
-    _refuse_unknown(document, (*_HEADER, *SECTIONS, FOREIGN, MODS), "$")
+    _refuse_unknown(document, (*_HEADER, *SECTIONS, SLIDERS, FOREIGN, MODS), "$")
     model = Model()
     model.foreign_versions = dict(document.get(MODS, {}))
     model.title = _text(document, "title")
@@ -113,8 +115,17 @@ def _parsed(document: Any) -> Model:
             _read(model, _section(f"$.{name}", kind, document[name]))
     if FOREIGN in document:
         _read_added(model, document[FOREIGN])
+    if SLIDERS in document:
+        model.sliders = _sliders(model, document[SLIDERS])
     _read_departure(model)
     return model
+
+
+def _sliders(model: Model, entries: Any) -> tuple[Slider, ...]:
+    try:
+        return read_sliders(model, entries)
+    except SliderError as error:
+        raise ModelError(str(error)) from None
 
 
 def _read_departure(model: Model) -> None:
@@ -209,7 +220,7 @@ def _required(kind: type[Handle]) -> Sequence[str]:
 
 
 def _saved_fields(kind: type[Handle]) -> list[Field[Any]]:
-    return [field for field in fields_of(kind) if field.role in _SAVED]
+    return [field for field in fields_of(kind) if field.role in SAVED]
 
 
 def _components(kind: type[Handle]) -> dict[str, dict[str, Field[Any]]]:
@@ -470,7 +481,7 @@ class Gathered(msgspec.Struct, frozen=True, tag_field="format", tag=BY_COLUMNS):
     """A document by facts instead of by elements, which is many times as fast to make of a model and to write.
 
     sections, added: the number of elements of a kind and what they hold, by the key in documents.
-    versions: of mods, by name.
+    versions: of mods, by name. sliders: as in documents.
     """
 
     version: int
@@ -480,6 +491,7 @@ class Gathered(msgspec.Struct, frozen=True, tag_field="format", tag=BY_COLUMNS):
     added: dict[str, tuple[Count, list[Part]]]
     foreign_kinds: dict[str, Any]
     versions: dict[str, str]
+    sliders: list[Any] = []
 
 
 def document(model: Model) -> dict[str, Any]:
@@ -487,12 +499,14 @@ def document(model: Model) -> dict[str, Any]:
     return _spread(gathered(model))
 
 
-def gathered(model: Model) -> Gathered:
-    """The same document by facts, which `parse` takes, too. Raises ModelError."""
+def gathered(model: Model, sliders: list[Any] | None = None) -> Gathered:
+    """The same document by facts, which `parse` takes, too. Raises ModelError. sliders: as the document holds them."""
     sections = {name: _parts(model, kind) for name, kind in SECTIONS.items()}
     added = {name: _parts(model, kind) for name, kind in ADDED.items() if kind.table in model.tables}
     versions = known_versions(model.foreign_versions)
-    return Gathered(VERSION, model.title, model.description, sections, added, model.foreign_kinds, versions)
+    sliders = slider_entries(model) if sliders is None else sliders
+    title, description = model.title, model.description
+    return Gathered(VERSION, title, description, sections, added, model.foreign_kinds, versions, sliders)
 
 
 def _spread(facts: Gathered) -> dict[str, Any]:
@@ -504,6 +518,7 @@ def _spread(facts: Gathered) -> dict[str, Any]:
             made |= {name: elements} if elements else {}
         elif elements[0] or kind is not Clock:
             made[name] = elements[0]
+    made |= {SLIDERS: facts.sliders} if facts.sliders else {}
     added = {name: elements for name, counted in facts.added.items() if (elements := _elements(*counted))}
     added |= facts.foreign_kinds
     made |= {FOREIGN: dict(sorted(added.items()))} if added else {}
@@ -546,7 +561,7 @@ def _parts(model: Model, kind: type[Handle], rows: NDArray[np.int64] | None = No
         column = table.column(field.name)[chosen]
         _refuse_non_finite(model, table, chosen, field, column)
         held: list[int] | None = None
-        if field.component or not (field.key in always or (kind.single and field.role is Role.DOCUMENT)):
+        if field.component or not (field.key in always or (kind.single and field.role in MADE)):
             special = np.flatnonzero(_differs_from_default(field, column))
             if len(special) < len(column):
                 held, column = special.tolist(), column[special]

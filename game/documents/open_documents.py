@@ -11,12 +11,14 @@ from typing import Any
 import numpy as np
 
 from components.collision_state import PersistentContacts
-from components.field import Role
+from components.field import SAVED
 from components.load import load_ends
 from components.model import Model
 from components.snapshot import Snapshot
 from game.documents import models
 from game.documents.assessment import Assessment
+from game.documents.chronicle import Chronicle
+from game.documents.exaggeration import Exaggeration
 from game.documents.history.history import History
 from game.documents.history.log import Edit, Entry
 from game.documents.history.timeline import Timeline
@@ -85,12 +87,16 @@ class OpenDocument:
         self.undeformed: Snapshot | None = None
         self.assessment = Assessment(model, self.simulation)
         self.shapes = Shapes(model)
+        self.exaggeration = Exaggeration(model)
+        self.chronicle = Chronicle(model, self.simulation)
         self.file = file
         self.recovery: Path | None = None
         self.saved = self._last_edit = model.revision
 
     def _changed(self, entry: Entry) -> None:
         self._last_edit = self.model.revision
+        if isinstance(entry, Edit) and entry.clock is None:
+            return  # it only changed how the model is drawn
         self.timeline.clear()
         if isinstance(entry, Edit):
             self.assessment.disturb()
@@ -193,7 +199,7 @@ class OpenDocument:
     @property
     def newest(self) -> int:
         """The revision of the newest change to anything that a file holds."""
-        return self.model.newest(Role.DOCUMENT, Role.STATE)
+        return self.model.newest(*SAVED)
 
     @property
     def unsaved(self) -> bool:

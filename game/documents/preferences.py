@@ -65,9 +65,10 @@ def preferred_place() -> tuple[int, int, int, int] | None:
 
 
 def remember(entry: str, choice: str | float | list[int]) -> None:
-    """Keep a choice, the "theme", the "magnification" or the place of the "window"; where nothing can be written, it is not kept.
+    """Keep a choice: the "theme", the "magnification" or the place of the "window".
 
-    A file that cannot be read, such as one with a slip in keys written by hand, is put aside.
+    Where nothing can be written, it is not kept. A file that cannot be read, such as one with a slip in keys written
+    by hand, is put aside.
     """
     path, entries = settings_path(), _read()
     with suppress(OSError):

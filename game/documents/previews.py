@@ -20,7 +20,36 @@ LARGEST_SHOWN = 2000  # rods, up to which forces can be told apart in one
 
 def preview(source: str | Path) -> Model:
     """A model to look at only: a file as it was saved, an example at a moment when something happens. Raises ModelError."""
-    return _example(source) if isinstance(source, str) else with_forces(models.load(source))
+    if isinstance(source, str):
+        return _example(source)
+    model = models.load(source)
+    if has_moved(model) and model.rods.count <= LARGEST_SHOWN and not bends(model):  # statics knows bars
+        # Here only, since most pictures do without.
+        from systems.statics.equations import Structure
+
+        moved = Structure.of(model).respond(model.particles.displacement, model.rods.plastic_strain)
+        model.writable("rods.axial_force")[...] = moved.axial_force
+    return model
+
+
+def solved(path: Path) -> Model | None:
+    """A small structure that never moved, with forces of linear theory; None if a file has no such. Raises ModelError."""
+    from systems.statics.events import NoEquilibrium
+    from systems.statics.theory import linear  # scipy
+
+    model = models.load(path)
+    if has_moved(model) or not 0 < model.rods.count <= LARGEST_SOLVED or bends(model):
+        return None
+    try:
+        model.writable("rods.axial_force")[...] = linear(model).axial_force
+    except NoEquilibrium:  # of a mechanism, such as a pendulum
+        return None
+    return model
+
+
+def has_moved(model: Model) -> bool:
+    """True if the state of a model is another than the original one."""
+    return bool(model.particles.displacement.any() or model.particles.velocity.any())
 
 
 @cache
@@ -36,24 +65,3 @@ def _states() -> dict[str, dict[str, Any]]:
     """By example and column what differs then from its beginning; tests/golden/previews.py computes it."""
     states: dict[str, dict[str, Any]] = json.loads((files("assets") / "previews.json").read_text("utf-8"))
     return states
-
-
-def with_forces(model: Model) -> Model:
-    """The model with the axial forces of its displacements; of a small one that never moved, those of linear theory."""
-    # Here only, since a start without small pictures does without.
-    from systems.statics.equations import Structure
-    from systems.statics.events import NoEquilibrium
-    from systems.statics.theory import linear  # scipy
-
-    rods = model.rods
-    if not 0 < rods.count <= LARGEST_SHOWN or bends(model):  # statics knows bars only
-        return model
-    moved = model.particles.displacement.any() or model.particles.velocity.any()
-    force = Structure.of(model).respond(model.particles.displacement, rods.plastic_strain).axial_force
-    if not moved and rods.count <= LARGEST_SOLVED:
-        try:
-            force = linear(model).axial_force
-        except NoEquilibrium:  # a mechanism, such as a pendulum
-            pass
-    model.writable("rods.axial_force")[...] = force
-    return model

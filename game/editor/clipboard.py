@@ -10,7 +10,7 @@ import msgspec
 import numpy as np
 from numpy.typing import NDArray
 
-from components.field import Role, Vector
+from components.field import SAVED, Vector
 from components.handle import Handle
 from components.load import Load
 from components.model import ADDED, Model
@@ -127,9 +127,7 @@ def _added() -> list[Kind]:
 def _columns(model: Model, kind: Kind, rows: Rows, place: Rows) -> dict[str, Any]:
     """Values of some rows by Field; references by the new places of particles."""
     table = model.tables[kind.table]
-    columns: dict[str, Any] = {
-        field.name: table.column(field.name)[rows] for field in table.fields_in(Role.DOCUMENT, Role.STATE)
-    }
+    columns: dict[str, Any] = {field.name: table.column(field.name)[rows] for field in table.fields_in(*SAVED)}
     for reference in columns.keys() & REFERENCES:
         columns[reference] = place[columns[reference]]
     columns["name"] = columns["name"].tolist()

@@ -21,6 +21,7 @@ from components.toolbar import Toolbar
 from components.view import Preview, Readout, View
 from game.documents import models
 from game.documents.autosave import Autosave
+from game.documents.chronicle import Happening
 from game.documents.document import missing_mods
 from game.documents.history.history import History
 from game.documents.history.timeline import Timeline
@@ -177,6 +178,10 @@ class Scene:
     def focus(self, context: Context) -> tuple[Model, View]:
         """The model that a pointer picks from, and its view."""
         return context.model, context.view
+
+    def scaled(self, context: Context) -> list[Settings]:
+        """The settings of the models whose displacements are drawn to the scale that its slider sets."""
+        return [context.settings]
 
     def type(self, context: Context, text: str) -> None:
         """Text was typed."""
@@ -382,6 +387,11 @@ class Context:
         return self.document.assessment.remarks
 
     @property
+    def events(self) -> tuple[Happening, ...]:
+        """What happened in the run so far, in order of time: rods that yield, cables that go slack, collapse, rest."""
+        return self.document.chronicle.happenings
+
+    @property
     def fault(self) -> str:
         """The mod that failed last and why, until Escape is pressed; "" if none did."""
         return FAULTS[-1] if len(FAULTS) > self.faults_seen else ""
@@ -443,6 +453,7 @@ class Context:
         finally:
             self.history.end_run()
             self._go_on()
+            self.document.chronicle.look()
         return bool(self.model.clock.steps == target)
 
     def _go_on(self) -> None:
@@ -470,6 +481,7 @@ class Context:
             return
         with self.timeline.recording():
             self.document.live.frame(elapsed)
+        self.document.chronicle.look()
 
     def has_program(self, simulation: Simulation) -> bool:
         """False while a large model waits for another process to compile its step program (see `awaited`)."""
@@ -593,11 +605,18 @@ class Context:
         """The panels of mods beside the model."""
         return (readout for panel in PANELS for readout in panel(self))
 
+    def exaggerate(self) -> None:
+        """Let the automatic displacement scale suit the model, but not in the middle of a drag."""
+        still = not self.time_passes or self.simulation.halted
+        if self.gesture is None and self.document.exaggeration.review(still=still) and still:
+            self.view.follow(self.model)
+
     def make_room(self) -> None:
         """Fit the model beside panels that are large enough to cover it.
 
         Called after actions, never because of time or frames, so that a recording is replayed in the same picture.
         """
         view = self.view
-        wanted = view.theory or view.energy or any(readout.is_large for readout in self.panels())
+        own = view.theory or view.energy or view.events or view.free_bodies
+        wanted = own or any(readout.is_large for readout in self.panels())
         view.share(self.model, shares=view.legend and wanted)

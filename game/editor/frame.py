@@ -76,4 +76,4 @@ class ShowView(System):
 
     def process(self, frame: Any) -> None:
         """Status line, panels, previews, flashes, the toolbar."""
-        frame.session.update_view()
+        frame.session.update_view(frame.elapsed)

@@ -19,12 +19,18 @@ Groups = Sequence[Sequence[Entry]]
 
 IN_MENU = (
     "open menu",
+    "more tools",
     "choose entry",
     *(f"menu {way}" for way in ("up", "down", "left", "right")),
 )  # keep it open
 
 _PLOT = "probes.plot"  # offered where the mod that plots is there
-_RESULTS = (("properties", "properties"), ("toggle diagrams", "force diagram"), (_PLOT, "plot"))
+_RESULTS = (
+    ("properties", "properties"),
+    ("toggle diagrams", "force diagram"),
+    (_PLOT, "plot"),
+    ("new slider", "slider for it"),
+)
 _SUPPORTS = ("free", "pin", "hold y", "hold x")
 _FROM_HERE = (
     ("force", "force: click its end"),
@@ -82,7 +88,8 @@ def _of_canvas(context: Context) -> Groups:
     groups: list[list[Entry]] = [
         [("place", "new particle here"), "rod", *ADDED_TOOLS, ("paste", "paste here"), "select all"],
         ["toggle run", "restart", "settle"],
-        ["toggle diagrams", "toggle theory", "toggle energy", "next shape"],
+        ["toggle diagrams", "toggle free bodies", "toggle utilisation"],
+        ["toggle theory", "toggle energy", "toggle events", "next shape"],
         [binding.action for binding in ADDED_BUTTONS],
         ["fit", "zoom in", "zoom out", "new grid", "next grid", "toggle legend", "next theme"],
         ["environment", "screenshot", "toggle full screen", "toggle help"],

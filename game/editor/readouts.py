@@ -2,48 +2,116 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+import re
+from collections.abc import Iterator, Sequence
+from textwrap import wrap
 from typing import TYPE_CHECKING
 
 from components import written
 from components.field import FieldError
+from components.free_body import Force, on_joint, on_rod
 from components.handle import Handle
+from components.model import Model
 from components.particle import Particle
 from components.rod import Rod
 from components.view import Readout
 from game.documents.assessment import LARGEST
 from game.editor.context import Context
 from systems.base import StopReason
+from systems.statics.counting import FORMULA, counted
 
 if TYPE_CHECKING:  # it imports scipy
     from systems.statics.verify import Comparison, Row, Theories
 
 MOST_ELEMENTS = 3  # selected elements with a readout of their own
+SUM = 34  # characters of a line of a sum
+MOST_JOINTS = 6  # whose sums are shown while none is selected
+MOST_EVENTS = 10  # of a run, that are listed
 NOTHING = 1e-12  # of the largest exact value of its kind: round-off, shown as 0
 
+_BEFORE_SIGNS = re.compile("([+−=]) ")  # where a sum may be broken
 _SHOWN = {"axial_force": ("N", "kN", 1.0), "reaction": ("R", "kN", 1.0), "displacement": ("u", "mm", 1000.0)}
 _WAYS = {"simulation": "run", "linear": "linear theory", "exact": "exact theory"}
 
 
 def own_readouts(context: Context) -> Iterator[Readout]:
     """The readouts that a person switched on."""
+    if context.view.free_bodies:
+        yield from _equilibrium(context)
     if context.view.theory:
         yield from _theory(context)
     if context.view.energy:
         yield _energy(context)
+    if context.view.events:
+        yield _events(context)
+
+
+def _events(context: Context) -> Readout:
+    """What happened in the run, the latest last."""
+    found = [(event.when, event.message.rstrip(".")) for event in context.events]
+    left_out = len(found) - MOST_EVENTS
+    earlier = [(f"{left_out} earlier", "")] if left_out > 0 else []
+    return Readout("What happened", (*earlier, *found[-MOST_EVENTS:]) or (("nothing yet", ""),))
 
 
 def _energy(context: Context) -> Readout:
+    energies = context.energy.as_dict()
+    nothing = written.ROUNDING * max(map(abs, energies.values()))
     rows = [
-        (name.replace("_", " "), f"{written.given(value, 5)} J")
-        for name, value in context.energy.as_dict().items()
+        (name.replace("_", " "), f"{written.given(value if abs(value) > nothing else 0.0, 5)} J")
+        for name, value in energies.items()
     ]
     error = None if context.busy else context.document.assessment.error()  # which takes a run of its own
     if error is not None:
         shares = error.relative, error.relative_velocity, error.relative_axial_force
         titles = "displacement error", "velocity error", "axial force error"
-        rows += [(title, f"{share:.1e} of the largest") for title, share in zip(titles, shares, strict=True)]
+        rows += [(title, _error(share, " of the largest")) for title, share in zip(titles, shares, strict=True)]
     return Readout("Energy account", tuple(rows))
+
+
+def _error(share: float, of: str = "") -> str:
+    """A relative error, unless it is nothing but rounding."""
+    return f"{written.number(share, 2)}{of}" if share > NOTHING else "below rounding"
+
+
+# --- free bodies -----------------------------------------------------------------------------------------
+
+
+def _equilibrium(context: Context) -> Iterator[Readout]:
+    """The forces on selected joints and rods and their sums, or without any the sums of all joints."""
+    model, chosen = context.model, [h for h in context.selected if isinstance(h, Particle | Rod)]
+    if not context.view.forces_known:
+        return
+    for handle in chosen[:MOST_ELEMENTS]:
+        forces = on_joint(model, handle.row) if isinstance(handle, Particle) else on_rod(model, handle.row)
+        rows = [(force.name, _parts(force, forces)) for force in forces]
+        yield Readout(f"Free body: {model.describe(handle)}", (*rows, *_sums(forces)))
+    if not chosen:
+        shown = [row for particle in list(model.particles)[:MOST_JOINTS] for row in _sums_of(model, particle)]
+        more = model.particles.count - MOST_JOINTS
+        rest = [(f"and {more} more", "select one")] if more > 0 else []
+        yield Readout("Free bodies: sums of forces (kN)", (*shown, *rest))
+
+
+def _parts(force: Force, forces: Sequence[Force]) -> str:
+    """Both parts of a force; 0 where one is nothing beside the largest force on its body."""
+    nothing = written.ROUNDING * max(max(abs(other.x), abs(other.y)) for other in forces)
+    x, y = (written.number(part, nothing=nothing) for part in (force.x, force.y))
+    return f"x {x}   y {y} kN"
+
+
+def _sums_of(model: Model, particle: Particle) -> Iterator[tuple[str, str]]:
+    for title, total in _sums(on_joint(model, particle.row)):
+        yield f"{particle.name} {title}" if title else "", total
+
+
+def _sums(forces: Sequence[Force]) -> Iterator[tuple[str, str]]:
+    """The sums of both parts with their numbers."""
+    for axis in ("x", "y"):
+        total = written.total(getattr(force, axis) for force in forces)
+        lines = wrap(_BEFORE_SIGNS.sub("\\1\xa0", total), SUM)
+        for number, line in enumerate(lines):
+            yield "" if number else f"ΣF{axis}", line.replace("\xa0", " ")
 
 
 # --- theory ----------------------------------------------------------------------------------------------
@@ -68,6 +136,7 @@ def _theory(context: Context) -> Iterator[Readout]:
 def _overview(context: Context, theory: Theories, comparison: Comparison) -> Iterator[tuple[str, str]]:
     settlement = theory.settlement
     yield from _verdict(context, comparison)
+    yield from _indeterminacy(context)
     if theory.refusal is not None:
         yield "linear theory", "a mechanism" if theory.refusal.status == "mechanism" else "not with cables"
     if theory.exact is None:
@@ -80,10 +149,18 @@ def _overview(context: Context, theory: Theories, comparison: Comparison) -> Ite
         if worst is not None:
             yield (
                 f"largest error, {_WAYS[way].split()[0]}",
-                f"{getattr(worst, f'{way}_error'):.1e} ({_symbol(worst)})",
+                _error(getattr(worst, f"{way}_error"), f" ({_symbol(worst)})"),
             )
     if not context.document.assessment.undisturbed and not context.at_beginning:
         yield "edited during the run", "theory is without that"
+
+
+def _indeterminacy(context: Context) -> Iterator[tuple[str, str]]:
+    """The degree with its formula, and what the rank says beside it."""
+    count, degrees = counted(context.model), context.document.assessment.indeterminacy
+    yield FORMULA, count.numbers
+    if said := count.by_rank(degrees.static, degrees.mechanisms):
+        yield "by rank", said
 
 
 def _verdict(context: Context, comparison: Comparison) -> Iterator[tuple[str, str]]:
@@ -122,5 +199,5 @@ def _beside(comparison: Comparison, quantity: str, place: tuple[int, ...]) -> Re
         value, error = getattr(row, way), getattr(row, f"{way}_error", None)
         clear = 0.0 if value is not None and abs(value) <= nothing else value
         shown = "—" if clear is None else f"{written.given(factor * clear, 7)} {unit}"
-        rows.append((title if error is None else f"{title}, error {error:.1e}", shown))
+        rows.append((title if error is None else f"{title}, error {_error(error)}", shown))
     return Readout(row.title[:1].upper() + row.title[1:], tuple(rows))

@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 from components.field import Vector
+from components.slider import under
 from game.editor.context import Context
 from game.editor.view_model import pages_of_help
-from systems.input.bindings import FORMS, LIVE, MENU, action_for
+from systems.input.bindings import FORCE_METHOD, FORMS, LIVE, MENU, action_for
 from systems.render.help import help_closed_by
 from systems.render.menu import menu_of
 from systems.render.picture import lies_under
@@ -20,13 +21,21 @@ CLICKS = (
 )  # the pointer may slip a little in a click
 BUTTONS = (*CLICKS, "right click")
 AT_POINTER = (*BUTTONS, "wheel up", "wheel down")
+ON_SLIDER = {
+    **dict.fromkeys(("click", "ctrl+click"), "click slider"),
+    "double click": "double click slider",
+    **dict.fromkeys(("drag", "ctrl+drag"), "drag slider"),
+    "wheel up": "slider up",
+    "wheel down": "slider down",
+}
 
-Layer = tuple[str, bool, bool, bool]  # the scene, and whether a menu, the help, or the toolbar takes clicks
+# The scene, whether a menu, the help, or the toolbar takes clicks, and the title of the slider that does.
+Layer = tuple[str, bool, bool, bool, str]
 Meaning = tuple[str | None, Vector]  # the name of an action, if any, and the pixel where it acts
 
 
 def meaning(context: Context, key: str, pixel: Vector) -> Meaning:
-    """What a key or button means with the pointer at a pixel: to an open menu, the help, the toolbar, or the scene."""
+    """What a key or button means at a pixel: to an open menu, the help, the toolbar, a slider, or the scene."""
     view = context.view
     if view.menu is not None and (found := _in_menu(context, key, pixel)) is not None:
         return found
@@ -35,6 +44,8 @@ def meaning(context: Context, key: str, pixel: Vector) -> Meaning:
     if for_tools(context, key, pixel):
         on_toolbar = view.strip.contains(pixel)
         return _on_toolbar(context, key, pixel) if on_toolbar else action_for(LIVE[0], key), pixel
+    if key in AT_POINTER and _slider_at(context, pixel):
+        return ON_SLIDER.get(key), pixel
     to_model = key in BUTTONS and context.scene in LIVE and not context.performing
     if to_model and lies_under(context.model, view, load_theme(view.theme), pixel):
         return None, pixel
@@ -56,7 +67,8 @@ def for_tools(context: Context, key: str, pixel: Vector) -> bool:
 def layer(context: Context, pixel: Vector) -> Layer:
     """What takes a click at a pixel."""
     view = context.view
-    return context.scene, view.menu is not None, view.help > 0, view.strip.contains(pixel)
+    slider = _slider_at(context, pixel)
+    return context.scene, view.menu is not None, view.help > 0, view.strip.contains(pixel), slider
 
 
 def scene_meaning(scene: str, key: str) -> str | None:
@@ -65,15 +77,25 @@ def scene_meaning(scene: str, key: str) -> str | None:
     return action_for(scene, "click") if found is None and key == "double click" else found
 
 
+def _slider_at(context: Context, pixel: Vector) -> str:
+    """The title of the slider at a pixel, "" if there is none."""
+    if context.scene not in (*LIVE, FORCE_METHOD):
+        return ""
+    place = under(context.focus[1].slider_places, pixel)
+    return place.control.title if place is not None else ""
+
+
 def _in_menu(context: Context, key: str, pixel: Vector) -> Meaning | None:
     """What a key means to the open menu; None: it is not for the menu, which it closes."""
-    view, layout = context.view, menu_of(context.view)
+    layout = menu_of(context.view)
     assert layout is not None
+    if key in BUTTONS and pixel == layout.menu.pointed:
+        return "close menu", pixel  # the pointer has not moved: what came to lie under it is not meant
     if key == "return" or (key in BUTTONS and layout.frame.contains(pixel)):
-        number = layout.pointed_at(view.pointer) if key == "return" else layout.entry_at(pixel)
+        number = layout.pointed_at(pixel) if key == "return" else layout.entry_at(pixel)
         entry = layout.menu.entries[number] if number >= 0 else None
         if entry is None or not entry.enabled:
-            return None if key == "return" else ("choose entry", pixel)
+            return "choose entry", pixel  # nothing
         return entry.action, layout.menu.at
     if key in CLICKS:
         return "close menu", pixel

@@ -11,7 +11,7 @@ from components.tags import DiagramShown
 from components.toolbar import Tool, Toolbar
 from game.editor.context import Context
 from game.editor.gestures.drawing import Drawing
-from systems.input.bindings import Binding, toolbar
+from systems.input.bindings import Binding, offers, toolbar
 
 Condition = Callable[[Context], bool]
 
@@ -19,7 +19,11 @@ Condition = Callable[[Context], bool]
 def toolbar_of(context: Context) -> Toolbar:
     """The buttons of the active scene; those whose keys would do nothing now are not enabled."""
     groups = toolbar(context.scenes.active.tools)
-    return Toolbar(tuple(tuple(tool(context, binding) for binding in group) for group in groups))
+    more = offers(context.scenes.active.tools).get("more tools")
+    return Toolbar(
+        tuple(tuple(tool(context, binding) for binding in group) for group in groups),
+        None if more is None else tool(context, more),
+    )
 
 
 def tool(context: Context, binding: Binding, title: str = "") -> Tool:
@@ -76,8 +80,11 @@ _PRESSED: dict[str, Condition] = {
     "toggle diagrams": _shows_diagrams,
     "toggle diagrams of sets": _shows_diagrams,
     "properties": lambda context: context.scene == "properties",
+    "toggle free bodies": lambda context: context.view.free_bodies,
+    "toggle utilisation": lambda context: context.view.utilisation,
     "toggle theory": lambda context: context.view.theory,
     "toggle energy": lambda context: context.view.energy,
+    "toggle events": lambda context: context.view.events,
     "next shape": lambda context: context.view.shape is not None,
     "free": _held(False, False),
     "pin": _held(True, True),
@@ -99,5 +106,6 @@ _NEEDS: dict[str, Condition] = {
     "next grid": lambda context: context.model.grids.count > 0,
     "force method": lambda context: context.model.rods.count > 0,
     **dict.fromkeys(("release x", "release y"), _guided(lambda guide: guide.axis_wanted is not None)),
+    "pick unknown": _guided(lambda guide: guide.part == 2),
     "release another": _guided(lambda guide: guide.can_release_another),
 }

@@ -7,7 +7,7 @@ from numpy.typing import NDArray
 
 from components.model import Model
 from components.tags import Hovered
-from components.view import Preview, Readout, Status
+from components.view import Preview, Readout, Status, drawn_positions
 from game.editor.context import Context
 from game.editor.gestures.drawing import TOOL_HINTS
 from game.editor.host import Waiting
@@ -20,15 +20,22 @@ from systems.render.help import help_pages
 
 COMPILING = "Compiling the step program, which models of this size wait for once:"
 FLASH = 0.15  # s shown, for which an impact is marked
+MOST_WATCHED = 2000  # particles, up to which it is told that they left the picture
 MOST_FLASHES = 500  # impacts marked at a time
 
 
-def show(context: Context) -> None:
-    """Let the view show the session as it is now."""
+def show(context: Context, elapsed: float) -> None:
+    """Let the view show the session as it is now, so many seconds after the last time."""
     view, scene = context.view, context.scenes.active
     view.forces_known = context.waited_for(context.simulation) is None
     awaited = _awaited(context)
-    said = _told(awaited) or (scene.message if scene.mod is not None else "") or context.notice
+    said = _told(awaited) or (scene.message if scene.mod is not None else "")
+    lately = context.document.chronicle.told(elapsed) if context.scene in LIVE else ""
+    lasting = (
+        [context.notice]
+        if context.notice
+        else [*(remark.message for remark in context.remarks), _gone(context)]
+    )
     view.preview = _preview(context)
     view.flashes = _flashes(context)
     view.heading = scene.heading
@@ -44,7 +51,7 @@ def show(context: Context) -> None:
         state=_state_word(context),
         hint=_drawing_hint(context) or scene.hint(context),
         problem=_problem(context),
-        notice=said or " ".join(remark.message for remark in context.remarks),
+        notice=said or " ".join(filter(None, [lately, *lasting])),
         share=awaited.share if awaited is not None else None,
     )
 
@@ -64,6 +71,23 @@ def _show_readouts(context: Context) -> None:
         readout.title: since.get(readout.title, latest + number)
         for number, readout in enumerate(view.readouts, start=1)
     }
+
+
+def _gone(context: Context) -> str:
+    """The sentence that what moves has left the picture, "" if it has not."""
+    model, view = context.model, context.view
+    if context.scene not in LIVE or not 0 < model.particles.count <= MOST_WATCHED or context.at_beginning:
+        return ""
+    x, y = view.camera.to_pixels(drawn_positions(model)).T
+    v, reach = view.canvas, model.particles.radius * view.camera.scale
+    inside = (x > v.left - reach) & (x < v.right + reach) & (y > v.top - reach) & (y < v.bottom + reach)
+    moving = ~model.particles.fixed.all(axis=1) & model.particles.displacement.any(axis=1)
+    gone = np.flatnonzero(moving & ~inside)
+    if not len(gone) or (moving & inside).sum() > len(gone):
+        return ""
+    if (moving & inside).any():
+        return f"{', '.join(model.particles.names[row] for row in gone[:3])} left the picture: Home shows all."
+    return "All that moves has left the picture: Home shows it."
 
 
 def _point_out(context: Context) -> None:

@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 
 from components.commands import Assign
-from components.field import Column, Role
+from components.field import MADE, Column
 from components.handle import Handle
 from components.model import Model
 from components.particle import Particle
@@ -24,13 +24,13 @@ from game.force_method import PARTS
 from systems.run.real_time import RealTimeRunner
 from systems.run.simulation import Simulation
 from systems.schedule import Schedule
+from systems.statics.counting import counted
 from systems.statics.equations import largest
 from systems.statics.force_method import (
     ForceMethodError,
     SetState,
     Solution,
     Unknown,
-    counted_indeterminacy,
     solve,
     unit_force,
 )
@@ -42,11 +42,15 @@ SWING = 3.0  # s in which a mechanism is shown to move there and back
 
 @dataclass
 class Set:
-    """One of the three systems: its model, its view and its run in real time."""
+    """One of the three systems: its model, its view and its run in real time.
+
+    suited: the scale that shows its own displacements well.
+    """
 
     model: Model
     view: View
     live: RealTimeRunner
+    suited: float = 1.0
 
     @property
     def simulation(self) -> Simulation:
@@ -64,9 +68,8 @@ class Set:
 
     def scale_to(self, state: SetState) -> None:
         """Choose drawing scales for the displacements and forces of a final state."""
-        settings, drawn = self.model.settings, DRAWN_SHARE * extent(self.model)
-        settings.displacement_scale = _scale_to(drawn, largest(state.displacement))
-        settings.diagram_scale = _scale_to(DIAGRAM_HEIGHT, largest(state.axial_force))
+        self.suited = _scale_to(DRAWN_SHARE * extent(self.model), largest(state.displacement))
+        self.model.settings.diagram_scale = _scale_to(DIAGRAM_HEIGHT, largest(state.axial_force))
 
     def settle(self) -> None:
         """Skip the rest of the motion: go to its equilibrium, if there is one."""
@@ -119,9 +122,15 @@ class Guide:
         self.mechanism: Mechanism | None = None
         self.axis_wanted: Particle | None = None
         real = solve(model, [])
-        self.degree = counted_indeterminacy(model)
+        self.count = counted(model)
         self.sets = [self._make_set([], unit=None)]
         self.sets[0].scale_to(real.real)
+        self._scale_alike()
+
+    @property
+    def degree(self) -> int:
+        """The degree of static indeterminacy."""
+        return self.count.degree
 
     @property
     def unknown(self) -> Unknown | None:
@@ -133,12 +142,20 @@ class Guide:
     def _make_set(self, released: Sequence[Unknown], unit: Unknown | None) -> Set:
         """A copy of the structure without some unknowns, under the real load or only a unit force."""
         copy = base_structure(self.model, released)
+        known = self.sets[0].model.settings if released else None  # a person may have chosen its scale
+        copy.settings.displacement_scale = known.prescribed_displacement_scale if known is not None else None
         if unit is not None:
             _unload(copy)
             copy.assign(list(copy.particles), "force", unit_force(self.model, unit).tolist())
         return Set(
             copy, view_like(self._view), RealTimeRunner(Simulation(copy, self._schedule, "force method"))
         )
+
+    def _scale_alike(self) -> None:
+        """Draw the displacements of all sets to the smallest of their scales: who moves further is softer."""
+        scale = min(one.suited for one in self.sets)
+        for one in self.sets:
+            one.model.writable("settings.automatic_displacement_scale")[0] = scale
 
     @property
     def running(self) -> list[Set]:
@@ -171,6 +188,7 @@ class Guide:
         if self.part == 5 and self.solution is not None:
             self.sets.append(self._make_set(self.released, unit=self.released[-1]))
             self.sets[2].scale_to(self.solution.units[-1])
+            self._scale_alike()
         elif self.part == PARTS:
             self._apply_forces()
         return True
@@ -229,6 +247,7 @@ class Guide:
         base = self._make_set(wanted, unit=None)
         base.scale_to(self.solution.base)
         self.sets = [self.sets[0], base]
+        self._scale_alike()
         self.part = 3
 
     def _forget_refusal(self) -> None:
@@ -246,10 +265,10 @@ class Guide:
             axial_force += p * unit.axial_force
         third.model.assign(list(third.model.particles), "force", force.tolist())
         third.scale_to(SetState(displacement, axial_force))
-        for name in ("displacement_scale", "diagram_scale"):  # equal, so that the pictures add up, too
-            scale = min(getattr(one.model.settings, name) for one in self.sets)
-            for one in self.sets:
-                setattr(one.model.settings, name, scale)
+        self._scale_alike()
+        scale = min(one.model.settings.diagram_scale for one in self.sets)
+        for one in self.sets:  # equal, so that the pictures add up, too
+            one.model.settings.diagram_scale = scale
 
 
 def view_like(view: View) -> View:
@@ -261,7 +280,7 @@ def elastic_copy(model: Model) -> Model:
     """The same structure without yielding, at rest at the beginning of time; only moved supports are displaced."""
     copy = Model()
     for name, table in model.tables.items():
-        kept = [field.name for field in table.fields_in(Role.DOCUMENT)] + ["plastic_strain"] * (name == "rods")
+        kept = [field.name for field in table.fields_in(*MADE)] + ["plastic_strain"] * (name == "rods")
         columns = {field: table.column(field) for field in kept}
         if name == "particles":
             columns["displacement"] = np.where(table.fixed, table.displacement, 0.0)

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, overload
 from components import written
 from components.view import BETWEEN
 from game.force_method import PARTS
+from systems.statics.counting import FORMULA
 
 if TYPE_CHECKING:  # they import scipy
     from game.force_method.guide import Guide
@@ -103,7 +104,12 @@ def working(guide: Guide) -> tuple[str, ...]:
     """The compatibility equations with their numbers, and their solution (part 7)."""
     solution = guide.solution
     if guide.part == 1:
-        return (_degree(guide.degree), "Yielding is switched off: superposition needs linear behaviour.")
+        formula = f"{FORMULA} = {guide.count.numbers}"
+        return (
+            formula,
+            _degree(guide.degree),
+            "Yielding is switched off: superposition needs linear behaviour.",
+        )
     if solution is None or guide.part < PARTS:
         return ()
     lines = _one_equation(solution) if len(solution.unknowns) == 1 else _equations(solution)

@@ -12,8 +12,9 @@ from components import Field, FieldError, Handle, Pieces, Selected, Table, Vecto
 from components.tags import Hovered
 from game.mods import App
 from systems.render.clip import bounds, clip_segments
-from systems.render.labels import STRONG, Label, half_size
+from systems.render.labels import Label, half_size
 from systems.render.marks import Discs, Mark, Points, Strokes
+from systems.render.occupancy import STRONG
 from systems.render.sheet import Rows, Sheet
 from systems.render.structure import HALO_OPACITY
 from systems.render.theme import Colour, faded
@@ -64,6 +65,7 @@ def draw(sheet: Sheet) -> Iterator[Mark]:
     width = WIDTH * sheet.unit
     start, end, rows = clip_segments(ends[:, 0], ends[:, 1], low - 2 * width, high + 2 * width)
     sheet.occupancy.line(start, end, STRONG)
+    sheet.occupancy.parts.lines(("walls", rows), start, end, width / 2)
     selected, hovered = (sheet.tagged(tag, "walls") for tag in (Selected, Hovered))
     for marked, halo in ((hovered, sheet.theme.hover), (selected, sheet.theme.selected)):
         chosen = sheet.chosen(marked, rows)
@@ -95,7 +97,7 @@ def name_wall(sheet: Sheet, row: int, start: NDArray[np.float64], end: NDArray[n
         for side in (-1.0, 1.0)
     ]
     backing = faded(sheet.theme.background, 0.86)
-    label = Label(name, places, size, sheet.theme.text, -1e12, "semibold", backing, of=("walls", row))
+    label = Label(name, places, size, sheet.theme.text, 1e11, "semibold", backing, of=("walls", row))
     sheet.labels.append(label)
 
 

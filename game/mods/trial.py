@@ -7,7 +7,7 @@ from contextlib import contextmanager, suppress
 from pathlib import Path
 from typing import Any
 
-from components.field import Field, FieldError, Role
+from components.field import MADE, Field, FieldError
 from components.load import HISTORIES
 from components.model import ADDED, Model
 from components.suggestions import missing
@@ -215,7 +215,7 @@ def _sample(mod: Mod) -> Model:
         if history.mod is mod:
             model.create(type(model.loads[0]), 1, on=2, force=(0.1, 0.0), history={"kind": name})
     for table in model.tables.values():
-        for field in table.fields_in(Role.DOCUMENT) if table.count else ():
+        for field in table.fields_in(*MADE) if table.count else ():
             if field.component.partition(".")[0] == mod.name:
                 _fill(field, table.handles[0])
     return model

@@ -35,10 +35,11 @@ class Hover(System):
         """Move the mark if the pointer is over something else now."""
         model, view = frame.session.focus
         pointer = frame.session.view.pointer
-        if self._looked == (model.context, model.revision, view.camera, view.canvas, pointer, view.menu):
+        shown = view.canvas, pointer, view.menu, view.sliders
+        if self._looked == (model.context, model.revision, view.camera, *shown):
             return
         self._mark(model, view, pointer)
-        self._looked = (model.context, model.revision, replace(view.camera), view.canvas, pointer, view.menu)
+        self._looked = (model.context, model.revision, replace(view.camera), *shown)
 
     def _mark(self, model: Model, view: View, pointer: Vector | None) -> None:
         hit = None

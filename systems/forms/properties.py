@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from decimal import Decimal
 from typing import Any
 
@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from components.box import NUMBER, TEXT, WORD, Box
-from components.field import Field, Role
+from components.field import SAVED, Field
 from components.form import Form
 from components.handle import Handle
 from components.load import HISTORIES, Load
@@ -26,7 +26,9 @@ MIXED = "mixed"
 KIND = "kind"  # the part of a history that is its kind
 EXACT, DIGITS = 12, 9  # significant digits: numbers with so few are shown in full, others rounded
 _OF_RODS = ("diagram_scale", "plasticity", "sleeping")  # settings that concern rods; the others particles
-_DECIDED = (Particle.asleep,)  # anew after every edit
+_DECIDED = (Particle.asleep, Rod.yielded_at)  # by the run
+CROSS_SECTION = "Cross-section"
+_OF_SECTION = (Rod.youngs_modulus, Rod.area)  # which may give the stiffness instead of a person
 OF_BENDING = (  # set by files, scripts and --set
     *(Particle.rotation, Particle.angular_velocity, Particle.fixed_rotation, Particle.moment),
     *(Particle.prescribed_inertia, Rod.bending_stiffness, Rod.hinged, Rod.distributed_force),
@@ -72,10 +74,15 @@ def subjects(model: Model, selected: Sequence[Handle]) -> list[Subject]:
     if not selected:
         found = [_subject(model, heading(model, []), [model.environment])]
         found += [_subject(model, model.describe(grid), [grid]) for grid in model.grids if grid.shown]
+    found += [
+        replace(subject, section=CROSS_SECTION, fields=_OF_SECTION)
+        for subject in found
+        if isinstance(subject.elements[0], Rod)
+    ]
     found += [_subject(model, model.describe(load), [load]) for load in _loads_on(model, selected)]
     for section, kind, of_rods in (("All particles", Particle, False), ("All rods", Rod, True)):
         if not selected or kind in kinds:
-            fields = model.tables[Settings.table].fields.values()
+            fields = model.tables[Settings.table].fields_in(*SAVED)
             chosen = tuple(field for field in fields if (field.name in _OF_RODS) is of_rods)
             found.append(Subject(section, (model.settings,), np.zeros(1, dtype=np.intp), chosen))
     return found
@@ -89,9 +96,9 @@ def _loads_on(model: Model, selected: Sequence[Handle]) -> list[Load]:
 
 def _subject(model: Model, section: str, elements: Sequence[Handle]) -> Subject:
     kind = type(elements[0])
-    fields = model.tables[kind.table].fields_in(Role.DOCUMENT, Role.STATE)
+    fields = model.tables[kind.table].fields_in(*SAVED)
     wanted = [field for field in fields if field.dtype in _EDITABLE or field is Load.history]
-    wanted = [field for field in wanted if field not in (*_DECIDED, *OF_BENDING)]
+    wanted = [field for field in wanted if field not in (*_DECIDED, *_OF_SECTION, *OF_BENDING)]
     if len(elements) > 1:
         wanted = [field for field in wanted if field.name != "name"]
     rows = model.row_of_entity[[element.entity for element in elements]].astype(np.intp)

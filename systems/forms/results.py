@@ -16,7 +16,7 @@ from components.handle import Handle
 from components.load import CONSTANT, Load, factor_at
 from components.model import Model
 from components.particle import Particle
-from components.rod import Rod
+from components.rod import Rod, utilisation
 
 SECTION = "Results"
 RESIDUAL = 1e-12  # of a length (m), force (kN) or speed (m/s): nothing, where all of them are as small
@@ -32,22 +32,43 @@ class Result(NamedTuple):
     explanation: str
 
 
-def fill(form: Form, model: Model, selected: Sequence[Handle]) -> None:
-    """Let a form show the results of some elements."""
-    found = [*results(model, selected)]
+def fill(form: Form, model: Model, selected: Sequence[Handle], *, known: bool) -> None:
+    """Let a form show the results of some elements. known: forces are; else their readings stand there empty."""
+    found = [*results(model, selected, known=known)]
+    columns = [list(column) for column in zip(*found, strict=True)]
+    if [reading.title for reading in form.readings] == (columns[1] if found else []):
+        form.assign(list(form.readings), "text", columns[2] if found else [])
+        return
     form.delete(list(form.readings))
     if found:
-        columns = map(list, zip(*found, strict=True))
         form.create(Reading, len(found), **dict(zip(Result._fields, columns, strict=True)))
 
 
-def results(model: Model, selected: Sequence[Handle]) -> Iterator[Result]:
-    """What one element does now, or the extremes of several of a kind."""
-    rows = model.rows_of(selected)
+def results(model: Model, selected: Sequence[Handle], *, known: bool = True) -> Iterator[Result]:
+    """What one element does now, or the extremes of several of a kind.
+
+    Which there are depends on the model only, not on what is known, since boxes stand below them.
+    """
+    rows, columns = model.rows_of(selected), _Columns(model, known)
     if len(rows["rods"]):
-        yield from _of_rods(model, rows["rods"])
+        yield from _of_rods(columns, rows["rods"])
     if len(rows["particles"]):
-        yield from _of_particles(model, rows["particles"])
+        yield from _of_particles(columns, rows["particles"])
+
+
+class _Columns:
+    """The columns of a model; those that need its forces are not computed before these are known, but NaN."""
+
+    def __init__(self, model: Model, known: bool) -> None:
+        self.model, self._known = model, known
+
+    def __call__(self, name: str) -> Any:
+        """A computed column, such as "rods.axial_force"."""
+        if self._known:
+            return self.model.column(name)
+        table, field = name.split(".")
+        rows = self.model.tables[table]
+        return np.full((rows.count, *rows.fields[field].shape), np.nan)
 
 
 def told(model: Model, handle: Handle, *, forces_known: bool) -> list[tuple[str, str]]:
@@ -66,9 +87,9 @@ def told(model: Model, handle: Handle, *, forces_known: bool) -> list[tuple[str,
 # --- rods ---------------------------------------------------------------------------------------------
 
 
-def _of_rods(model: Model, rows: NDArray[np.intp]) -> Iterator[Result]:
-    rods, names = model.rods, model.rods.column("name")
-    force = rods.axial_force
+def _of_rods(columns: _Columns, rows: NDArray[np.intp]) -> Iterator[Result]:
+    rods, names = columns.model.rods, columns.model.rods.column("name")
+    force = columns("rods.axial_force")
     if len(rows) == 1:
         yield _result("axial force", _number(force[rows[0]], force, "kN"), Rod.axial_force)
     else:
@@ -76,49 +97,48 @@ def _of_rods(model: Model, rows: NDArray[np.intp]) -> Iterator[Result]:
             row = rows[pick(force[rows])]
             text = f"{_number(force[row], force, 'kN')} ({names[row]})" if seen[row] else "none"
             yield _result(f"largest {title}", text, Rod.axial_force)
-    yield from _utilisation(model, rows)
+    yield from _utilisation(columns, rows)
     if len(rows) == 1:
         (row,) = rows
-        yield _result("strain", _number(1000.0 * rods.strain[row], 1000.0 * rods.strain, "‰"), Rod.strain)
-        yield _result("length", _number(rods.length[row], rods.length, "m"), Rod.length)
+        strain, length = 1000.0 * columns("rods.strain"), columns("rods.length")
+        yield _result("strain", _number(strain[row], strain, "‰"), Rod.strain)
+        if not math.isnan(rods.area[row]):
+            stress = 1e-3 * force / np.where(np.isnan(rods.area), np.inf, rods.area)
+            told = "Axial force per area of the cross-section; tension positive."
+            yield Result(SECTION, "stress", _number(stress[row], stress, "MPa"), told)
+        yield _result("length", _number(length[row], length, "m"), Rod.length)
         if rods.plastic_strain[row]:
             plastic = 1000.0 * rods.plastic_strain
             yield _result("plastic strain", _number(plastic[row], plastic, "‰"), Rod.plastic_strain)
 
 
-def _utilisation(model: Model, rows: NDArray[np.intp]) -> Iterator[Result]:
-    """The share of its strength that a rod bears; of several the largest."""
-    used = utilisation(model)[rows]
-    if np.isfinite(used).any():
+def _utilisation(columns: _Columns, rows: NDArray[np.intp]) -> Iterator[Result]:
+    """The share of its strength that a rod bears, where it has one; of several the largest."""
+    rods = columns.model.rods
+    if not np.isfinite(np.minimum(rods.tension_limit, rods.compression_limit)[rows]).any():
+        return
+    used, text = utilisation(columns.model, columns("rods.axial_force"))[rows], "—"
+    if not np.isnan(used).all():
         most = int(np.nanargmax(used))
-        whose = f" ({model.rods.column('name')[rows[most]]})" if len(rows) > 1 else ""
-        title = "largest utilisation" if len(rows) > 1 else "utilisation"
+        whose = f" ({rods.column('name')[rows[most]]})" if len(rows) > 1 else ""
         text = f"{written.share(used[most])}{whose}"
-        yield Result(SECTION, title, text, "Axial force, as a share of the strength in its direction.")
-
-
-def utilisation(model: Model) -> NDArray[np.float64]:
-    """|axial force| / strength in its direction, of every rod (m,); NaN where that is unlimited."""
-    rods = model.rods
-    limit = np.where(rods.axial_force < 0.0, rods.compression_limit, rods.tension_limit)
-    share: NDArray[np.float64] = np.where(np.isfinite(limit), np.abs(rods.axial_force) / limit, np.nan)
-    return share
+    title = "largest utilisation" if len(rows) > 1 else "utilisation"
+    yield Result(SECTION, title, text, "Axial force, as a share of the strength in its direction.")
 
 
 # --- particles ----------------------------------------------------------------------------------------
 
 
-def _of_particles(model: Model, rows: NDArray[np.intp]) -> Iterator[Result]:
-    particles, one = model.particles, len(rows) == 1
-    moved = 1000.0 * particles.displacement
-    if one:
+def _of_particles(columns: _Columns, rows: NDArray[np.intp]) -> Iterator[Result]:
+    particles = columns.model.particles
+    moved, reactions = 1000.0 * particles.displacement, columns("particles.reaction")
+    if len(rows) == 1:
         (row,) = rows
         yield _vector("displacement", moved[row], moved, "mm", Particle.displacement)
         held = particles.fixed[row]
         if held.any():
-            reaction = [r if h else math.nan for r, h in zip(particles.reaction[row], held, strict=True)]
-            yield _vector("reaction", reaction, particles.reaction, "kN", Particle.reaction)
-        force = particles.applied_force
+            yield _vector("reaction", reactions[row], reactions, "kN", Particle.reaction, held)
+        force = columns("particles.applied_force")
         yield _vector("external force", force[row], force, "kN", Particle.applied_force)
         speed = np.hypot(*particles.velocity.T)
         yield _result("speed", _number(speed[row], speed, "m/s"), Particle.velocity)
@@ -128,8 +148,8 @@ def _of_particles(model: Model, rows: NDArray[np.intp]) -> Iterator[Result]:
     text = f"{_number(distance[most], distance, 'mm')} ({particles.column('name')[most]})"
     yield _result("largest displacement", text, Particle.displacement)
     if particles.fixed[rows].any():
-        total = particles.reaction[rows].sum(axis=0)
-        yield _vector("sum of reactions", total, particles.reaction, "kN", Particle.reaction)
+        total = reactions[rows].sum(axis=0)
+        yield _vector("sum of reactions", total, reactions, "kN", Particle.reaction)
 
 
 # --- loads, and elements of mods -----------------------------------------------------------------------
@@ -165,18 +185,27 @@ def _result(title: str, text: str, field: Field[Any]) -> Result:
     return Result(SECTION, title, text, field.doc)
 
 
-def _vector(title: str, values: Sequence[float], column: Any, unit: str, field: Field[Any]) -> Result:
-    """Both components; NaN: there is none."""
+def _vector(
+    title: str,
+    values: Sequence[float],
+    column: Any,
+    unit: str,
+    field: Field[Any],
+    shown: Sequence[bool] = (True, True),
+) -> Result:
+    """The components that are to be shown."""
     parts = [
         f"{axis} {_number(value, column)}"
-        for axis, value in zip(_AXES, values, strict=True)
-        if not math.isnan(value)
+        for axis, value, wanted in zip(_AXES, values, shown, strict=True)
+        if wanted
     ]
-    return _result(title, f"{'   '.join(parts)} {unit}" if parts else "—", field)
+    return _result(title, f"{'   '.join(parts)} {unit}", field)
 
 
 def _number(value: float, column: Any, unit: str = "") -> str:
     """A value with its unit; 0 where it is nothing beside the largest in the model."""
+    if math.isnan(value):
+        return "—"
     largest = np.abs(column).max(initial=0.0)
     nothing = max(written.ROUNDING * largest, RESIDUAL)
     return f"{written.number(float(value), nothing=nothing)} {unit}".rstrip()

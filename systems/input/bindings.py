@@ -76,8 +76,8 @@ _BY_PURPOSE: dict[str, tuple[Binding, ...]] = {
         Binding("drag", "drag", (PAUSE,), "move it; or select in a box"),
         Binding("drag", "drag", (SIMULATION,), "pull it; or select in a box"),
         Binding("ctrl+drag", "drag to add", LIVE, "add what is in a box"),
-        Binding("drag to", "drag to", LIVE, ""),
-        Binding("drop", "drop", LIVE, ""),
+        Binding("drag to", "drag to", (*LIVE, FORCE_METHOD), ""),
+        Binding("drop", "drop", (*LIVE, FORCE_METHOD), ""),
         Binding("escape", "escape", (SIMULATION,), "put the tool away, or pause"),
         Binding("escape", "escape", (PAUSE,), "drop tool or selection"),
         Binding("return", "properties", LIVE, "properties of the selected elements"),
@@ -103,9 +103,13 @@ _BY_PURPOSE: dict[str, tuple[Binding, ...]] = {
     ),
     "Results": (
         Binding("i", "toggle diagrams", LIVE, "force diagrams on / off"),
+        Binding("x", "toggle free bodies", LIVE, "free bodies: rods and joints apart, on / off"),
+        Binding("a", "toggle utilisation", LIVE, "share of the strength in colours, on / off"),
         Binding("m", "toggle theory", LIVE, "theory beside the run, on / off"),
         Binding("j", "toggle energy", LIVE, "energy account on / off"),
+        Binding("ctrl+h", "toggle events", LIVE, "what happened, on / off"),
         Binding("b", "next shape", LIVE, "mechanisms, natural modes, none"),
+        Binding("ctrl+l", "new slider", LIVE, "slider for the force or stiffness selected"),
         Binding("k", "force method", (PAUSE,), "force method"),
     ),
     "Force method": (
@@ -121,8 +125,7 @@ _BY_PURPOSE: dict[str, tuple[Binding, ...]] = {
         Binding("return", "accept", (PROPERTIES,), "accept the box; without one, go back"),
         Binding("return", "accept", (SAVE,), "save"),
         Binding("return", "accept", (LOAD,), "open"),
-        Binding("escape", "cancel", (PROPERTIES,), "restore the box; without one, apply all and go back"),
-        Binding("escape", "cancel", (SAVE, LOAD), "restore the box; without one, go back"),
+        Binding("escape", "cancel", FORMS, "restore the box; without one, go back"),
         Binding("tab", "next box", FORMS, "next box", repeats=True),
         Binding("shift+tab", "previous box", FORMS, "previous box", repeats=True),
         Binding("click", "click form", (PROPERTIES,), "select a box, turn a switch; elsewhere, accept"),
@@ -143,6 +146,7 @@ _BY_PURPOSE: dict[str, tuple[Binding, ...]] = {
         Binding("ctrl+c", "copy text", FORMS, "copy"),
         Binding("ctrl+x", "cut text", FORMS, "cut"),
         Binding("ctrl+v", "paste text", FORMS, "paste"),
+        Binding("ctrl+l", "slider of box", (PROPERTIES,), "slider for the number in the box"),
         Binding("wheel up", "scroll up", FORMS, "scroll up"),
         Binding("wheel down", "scroll down", FORMS, "scroll down"),
         Binding("page up", "page up", FORMS, "", repeats=True),
@@ -196,6 +200,7 @@ WITHOUT_KEY: tuple[Binding, ...] = (
     Binding("", "toggle cable", LIVE, "cable: tension only"),
     Binding("", "release", (PAUSE,), "release it in the force method"),
     Binding("", "environment", LIVE, "properties of the environment"),
+    Binding("", "more tools", (*LIVE, FORCE_METHOD), "more"),
 )
 
 # The actions of the toolbar, in groups from the top to the bottom.
@@ -205,7 +210,10 @@ TOOLBAR: tuple[tuple[str, ...], ...] = (
     ("toggle diagrams of sets", "back"),
     ("undo", "redo", "copy", "paste", "duplicate", "delete"),
     ("place", "rod", "support", "force", "velocity"),
-    ("toggle diagrams", "toggle theory", "toggle energy", "next shape", "fit", "new grid", "next grid"),
+    (
+        *("toggle diagrams", "toggle free bodies", "toggle theory", "toggle energy"),
+        *("next shape", "fit", "new grid", "next grid"),
+    ),
     ("properties", "force method", "new", "load", "save again", "save"),
     ("screenshot", "toggle full screen", "next theme", "toggle help"),
 )

@@ -60,7 +60,7 @@ def loaded_mode(model: Model) -> tuple[float, float] | None:
     """
     if model.rods.count == 0 or not free_coordinates(model).any():
         return None
-    displacement = _static_displacement(model)
+    displacement = _static_displacement(model, _exciting_forces(model))
     if displacement is None:
         return None
     if bends(model):
@@ -90,13 +90,37 @@ def _mode_of_frame(model: Model, displacement: Array) -> tuple[float, float] | N
     return (frequency, damped) if frequency > 0.0 else None
 
 
-def _static_displacement(model: Model) -> Array | None:
-    """Linear displacement under the present loads (m), (n, 2), or with rotations (n, 3); None where it is not small."""
+def expected_displacement(model: Model) -> Array | None:
+    """Linear displacement (n, 2), m, under the loads at their full values, lack of fit, temperature and moved supports.
+
+    None where it is not small, as that of a mechanism.
+    """
+    particles, rods = model.particles, model.rods
+    moved = np.where(particles.mobility > 0.0, 0.0, particles.displacement)
+    ends, axis = _ends_and_axes(model)
+    elongation = rods.misfit + ((moved[ends[:, 1]] - moved[ends[:, 0]]) * axis).sum(axis=1)
+    tension = (rods.stiffness / rods.rest_length * elongation)[:, None] * axis
+    force = _forces(model).reshape(free_coordinates(model).shape)
+    np.add.at(force[:, :2], ends[:, 0], tension)
+    np.add.at(force[:, :2], ends[:, 1], -tension)
+    displacement = _static_displacement(model, force.ravel())
+    return None if displacement is None else displacement[:, :2] + moved
+
+
+def _exciting_forces(model: Model) -> Array:
+    """The forces of the loads (2n,), of models that bend (3n,); without any, some that excite all directions."""
+    force = _forces(model)
+    if not force[free_coordinates(model).ravel()].any():
+        force = np.ones_like(force) * np.where(np.arange(len(force)) % 2, -1.0, 0.3)
+    return force
+
+
+def _static_displacement(model: Model, force: Array) -> Array | None:
+    """Linear displacement (n, 2), m, under forces (2n,) in kN; of models that bend with rotations; None where not small."""
     movable = free_coordinates(model)
     free = np.flatnonzero(movable.ravel())
-    force = _forces(model)
-    if not force[free].any():  # then any will do that excites all directions
-        force = np.ones_like(force) * np.where(np.arange(len(force)) % 2, -1.0, 0.3)
+    if not len(free):
+        return np.zeros(movable.shape)
     solve = _solved_in_full if model.particles.count <= DENSE else _solved_sparsely
     displacement = np.zeros(movable.size)
     try:

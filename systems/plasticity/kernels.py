@@ -58,6 +58,16 @@ def margin(
 
 
 @compiled
+def first_yield(time, axial_force, rods_tension_limit, rods_compression_limit, rods_yielded_at):
+    """When the rod first came to a strength: the end of a step, which some integrators let end there; and no energy."""
+    nearly = 1.0 - AT_LIMIT
+    at_limit = axial_force >= rods_tension_limit * nearly or axial_force <= -rods_compression_limit * nearly
+    if at_limit and math.isnan(rods_yielded_at):
+        return time, 0.0
+    return rods_yielded_at, 0.0
+
+
+@compiled
 def yielded(
     elongation,
     rods_stiffness,

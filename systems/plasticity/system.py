@@ -35,3 +35,17 @@ class Yielding(Commit):
 
     def needs(self, model: Model) -> bool:
         return can_yield(model)
+
+
+class FirstYield(Commit):
+    """Notes when each rod first comes to a strength."""
+
+    name = "plasticity.first_yield"
+    unneeded = Yielding.unneeded
+    kernel = "systems.plasticity.kernels:first_yield"
+    notes = True
+    reads = ("rods.tension_limit", "rods.compression_limit")
+    writes = ("rods.yielded_at",)
+
+    def needs(self, model: Model) -> bool:
+        return can_yield(model)

@@ -145,6 +145,8 @@ class Bound:
     def follows_time(self) -> bool:
         """Whether its result changes with time while nothing moves. Loads are apart: their histories say when they end."""
         times = ("time",) if self.each else ("time", "dt")
+        if isinstance(self.system, Commit) and self.system.notes:
+            return False
         return self.each != "loads" and any(name in self.parameters for name in times)
 
     @property

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 
 import numpy as np
 from numpy.typing import NDArray
@@ -12,8 +12,8 @@ from components.model import Model
 from components.rod import nodes
 from components.tags import DiagramShown
 from systems.render.clip import bounds, clip_segments
-from systems.render.labels import STRONG
-from systems.render.marks import Fills, Mark, Points, Strokes
+from systems.render.marks import Fills, Mark, Owner, Owners, Points, Strokes
+from systems.render.occupancy import STRONG
 from systems.render.sheet import DIRECTIONS, Rows, Sheet
 from systems.render.supports import crowding
 from systems.render.theme import Colour
@@ -40,6 +40,22 @@ def full_load(model: Model) -> Values:
     return force
 
 
+def whose(model: Model, rows: Rows, *, loads_only: bool = False) -> list[Owner]:
+    """Whose each arrow of what acts on particles is: the load's that is all of it, else the particle's.
+
+    loads_only: the arrow shows forces and loads, no weight.
+    """
+    particles, environment = model.particles, model.environment
+    others = particles.force + environment.force
+    if not loads_only:
+        others = others + particles.mass[:, None] * (particles.acceleration + environment.acceleration)
+    count = np.bincount(model.loads.on, minlength=particles.count)
+    alone = (count == 1) & ~others.any(axis=1)
+    load = np.zeros(particles.count, dtype=np.intp)
+    load[model.loads.on] = np.arange(model.loads.count)
+    return [("loads", int(load[row])) if alone[row] else ("particles", row) for row in rows.tolist()]
+
+
 def lengths(sheet: Sheet, key: tuple[str, int], sizes: Values, largest: float) -> Values:
     """Lengths in pixels of arrows for sizes (n,), on the scale of all of a kind, of which `largest` is the largest.
 
@@ -55,19 +71,20 @@ def lengths(sheet: Sheet, key: tuple[str, int], sizes: Values, largest: float) -
 
 def draw_loads(sheet: Sheet) -> Iterator[Mark]:
     """The force on each particle, its loads at full size included, where no diagram shows it."""
-    force = full_load(sheet.model)
+    model = sheet.model
+    force = full_load(model)
     loaded = (force[:, 0] != 0.0) | (force[:, 1] != 0.0)
     loaded[sheet.tagged(DiagramShown, "particles")] = False
     rows = sheet.particles[loaded[sheet.particles]]
     if sheet.view.all_diagrams or not 0 < len(rows) <= MOST:
         return
-    sheet.legend.append("load")
     along, size = _directions(force[rows]), np.hypot(*force[rows].T)
     length = lengths(sheet, FORCES, size, max(float(np.hypot(*force.T).max()), sheet.view.largest_force))
     ahead = np.argmax(along @ DIRECTIONS.T, axis=1)
     crowd = crowding(sheet, rows)
     pushes = crowd[rows, (ahead + 2) % 4] <= crowd[rows, ahead] + 0.1  # towards the particle, if there is room
-    yield from _at_rims(sheet, rows, along, length, sheet.theme.load, pushes)
+    of = whose(model, rows, loads_only=True)
+    yield from _at_rims(sheet, rows, along, length, sheet.theme.load, "load", pushes, of)
 
 
 def draw_velocities(sheet: Sheet) -> Iterator[Mark]:
@@ -89,9 +106,8 @@ def draw_velocities(sheet: Sheet) -> Iterator[Mark]:
     rows, speed = rows[seen], speed[seen]
     if not len(rows):
         return
-    sheet.legend.append("velocity")
     length = lengths(sheet, VELOCITIES, speed, max(speed.max(), usual))
-    yield from _at_rims(sheet, rows, _directions(velocity[rows]), length, sheet.theme.ink)
+    yield from _at_rims(sheet, rows, _directions(velocity[rows]), length, sheet.theme.ink, "velocity")
 
 
 def _directions(vectors: Values) -> Values:
@@ -107,25 +123,55 @@ def _at_rims(
     along: Values,
     length: Values,
     colour: Colour,
+    name: str,
     pushes: NDArray[np.bool_] | bool = False,
+    of: Sequence[Owner] = (),
 ) -> list[Mark]:
     """Arrows from the rims of particles outwards, or (pushes) ending there."""
     reach = (sheet.radii[rows] + GAP * sheet.unit)[:, None] * along
     back = -reach - length[:, None] * along
     tail = sheet.centres[rows] + np.where(np.reshape(pushes, (-1, 1)), back, reach)
-    return arrows(sheet, rows, tail, along, length, colour)
+    sheet.explain(name, tail, tail + length[:, None] * along)
+    of = of or [("particles", row) for row in rows.tolist()]
+    return arrows(sheet, of, tail, along, length, colour, (f"particles.{name}", rows))
 
 
-def arrows(sheet: Sheet, rows: Rows, tail: Points, along: Points, length: Values, colour: Colour) -> list[Mark]:
-    """Arrows of particles from `tail` (n, 2) along unit vectors (n, 2), of so many pixels (n,)."""
-    u = sheet.unit
+def head_length(length: Values, unit: float) -> Values:
+    """Length and width in pixels of the heads of arrows."""
+    return np.minimum(HEAD * unit, _SHORT_HEAD * length)
+
+
+def arrows(
+    sheet: Sheet,
+    of: Sequence[Owner],
+    tail: Points,
+    along: Points,
+    length: Values,
+    colour: Colour,
+    part: Owners,
+) -> list[Mark]:
+    """Arrows of elements from `tail` (n, 2) along unit vectors (n, 2), of so many pixels (n,).
+
+    part: the key of each among the parts of the picture.
+    """
+    u, (kind, which) = sheet.unit, part
     tip, across = tail + length[:, None] * along, along[:, ::-1] * [-1.0, 1.0]
-    head = np.minimum(HEAD * u, _SHORT_HEAD * length)[:, None]
+    head = head_length(length, u)[:, None]
     neck = tip - head * along
     low, high = bounds(sheet.viewport)
     _, _, seen = clip_segments(tail, tip, low - HEAD * u, high + HEAD * u)  # rims may be beyond all pixels
     tail, tip, across, neck, head = tail[seen], tip[seen], across[seen], neck[seen], head[seen]
-    sheet.occupancy.line(tail, tip, STRONG)
-    points = np.stack([tip, neck + 0.5 * head * across, neck - 0.5 * head * across], axis=1)
-    of = ("particles", rows[seen])
-    return [Strokes(tail, neck, 2.0 * u, colour, of), Fills(points, colour, of)]
+    sheet.occupancy.line(tail, tip, STRONG, (kind, which[seen]))
+    barb = 0.5 * head * across
+    for ends in ((tail, tip), (neck - barb, neck + barb)):
+        sheet.occupancy.parts.symbols((kind, which[seen]), *ends, u)
+    points = np.stack([tip, neck + barb, neck - barb], axis=1)
+    marks: list[Mark] = []
+    for table in dict.fromkeys(of[index][0] for index in seen.tolist()):
+        chosen = np.array([of[index][0] == table for index in seen.tolist()])
+        rows = table, np.array([of[index][1] for index in seen.tolist()])[chosen]
+        marks += [
+            Strokes(tail[chosen], neck[chosen], 2.0 * u, colour, rows),
+            Fills(points[chosen], colour, rows),
+        ]
+    return marks

@@ -9,13 +9,16 @@ from typing import Literal
 import numpy as np
 from numpy.typing import NDArray
 
+from components import written
 from components.load import CONSTANT
 from components.model import Model
 from components.tags import DiagramShown, Selected
 from components.view import View
-from systems.render.arrows import FORCES, arrows, full_load, lengths
-from systems.render.labels import FAINT, Key, Label, half_size
+from systems.render.arrows import FORCES, arrows, full_load, head_length, lengths, whose
+from systems.render.clip import bounds, clip_segments
+from systems.render.labels import Key, Label, half_size
 from systems.render.marks import Bars, Owner, Points, Strokes
+from systems.render.occupancy import FAINT
 from systems.render.sheet import DIRECTIONS, Rows, Sheet, typical_length
 from systems.render.supports import NO_SUPPORT, crowding
 from systems.render.symbols import SUPPORT_DEPTH
@@ -32,14 +35,9 @@ _SQUARE = 20.0  # points, the side of squares of which each shows one of more ar
 _TOLD = 1.5  # factor by which a new value must be larger to replace one of the last picture
 _ROD_VALUE = "rods.axial_force"  # keys by which labels keep places
 _ARROW_VALUES = {"load": "particles.applied_force", "reaction": "particles.reaction"}
-_SLIDES = np.array([0.0, 1.0, -1.0, 2.0, -2.0])  # along a rod, in sizes of a label: the middle first
+_SLIDES = np.array([0.0, 0.3, -0.3, 0.6, -0.6, 0.9, -0.9])  # of how far a label can go along a rod
+_GAP = 1.0  # points between a rod or an arrow and a value beside it
 _BACKING = 0.86  # opacity behind a value
-
-
-def written(force: float, decimals: int = 2) -> str:
-    """A force (kN) as people read it, with the real minus sign and no negative zero."""
-    text = f"{force:.{decimals}f}"
-    return text.replace("-", "−") if float(text) else text.lstrip("-")
 
 
 def scale_step(largest: float, scale: float, room: float) -> float:
@@ -94,7 +92,7 @@ def draw_rod_diagrams(sheet: Sheet) -> None:
     for name, mask in (("tension", pulled), ("compression", pushed), ("zero", nothing)):
         if mask.any():
             _draw_rectangles(sheet, name, rows[mask], start[mask], end[mask], rise[mask])
-    _label_rods(sheet, rows, values, (start + end) / 2, normal, height)
+    _label_rods(sheet, rows, values, start, end, normal, height)
 
 
 def _shown_rods(sheet: Sheet) -> tuple[NDArray[np.float64], Rows, Points, Points]:
@@ -146,6 +144,7 @@ def _draw_rectangles(sheet: Sheet, name: str, rows: Rows, start: Points, end: Po
     outlined = typical_length(sheet.start, sheet.end) > 16.0 * sheet.unit
     bars = Bars(start, end, rise, faded(colour, 0.16 if outlined else 0.5), ("rods", rows))
     sheet.marks.append(bars)
+    sheet.occupancy.parts.diagrams(("rods", rows), start, end, rise)
     if outlined:
         corners = bars.corners
         first, last = corners[:, :-1].reshape(-1, 2), corners[:, 1:].reshape(-1, 2)
@@ -154,33 +153,38 @@ def _draw_rectangles(sheet: Sheet, name: str, rows: Rows, start: Points, end: Po
             Strokes(first, last, 1.25 * sheet.unit, faded(colour, 0.9), ("rods", np.repeat(rows, 3)))
         )
     if name != "zero":
-        sheet.legend.append(name)
+        sheet.explain(name, np.concatenate([start, start + rise]), np.concatenate([end, end + rise]))
 
 
 def _label_rods(
     sheet: Sheet,
     rows: Rows,
     values: NDArray[np.float64],
-    middle: Points,
+    start: Points,
+    end: Points,
     normal: Points,
     height: NDArray[np.float64],
 ) -> None:
+    """The values of the rods, along those parts of them that are seen."""
+    start, end, seen = clip_segments(start, end, *bounds(sheet.viewport))
+    rows, values, normal, height = rows[seen], values[seen], normal[seen], height[seen]
+    sheet.values += len(rows)
     selected = sheet.chosen(sheet.tagged(Selected, "rods"), rows)
-    candidates = np.arange(len(rows))
-    if typical_length(sheet.start, sheet.end) < _SHORTEST_WITH_VALUE * sheet.unit:
-        candidates = np.flatnonzero(selected)
-        sheet.notes.append("zoom in to read forces")
+    is_short = typical_length(sheet.start, sheet.end) < _SHORTEST_WITH_VALUE * sheet.unit
+    candidates = np.flatnonzero(selected) if is_short else np.arange(len(rows))
     worth = _worth(sheet, _ROD_VALUE, rows, values) + 1e6 * selected
-    shown = _most_important(sheet, worth, candidates, middle)
+    shown = _most_important(sheet, worth, candidates)
     few = len(values) <= _FEW_VALUES
     numbers = values[shown].tolist()
-    texts, size, half = _value_texts(sheet, map(written, numbers), few)
-    places = _places_by_rods(middle[shown], normal[shown], height[shown], half, few)
+    texts, size, half = _value_texts(sheet, numbers, few)
+    places = _places_by_rods(start[shown], end[shown], normal[shown], height[shown], half, sheet.unit)
     signs = ("zero" if abs(n) <= SMALLEST_FORCE else "tension" if n > 0.0 else "compression" for n in numbers)
     colours = [getattr(sheet.theme, sign) for sign in signs]
     keys = [(_ROD_VALUE, row) for row in rows[shown].tolist()]
     of = [("rods", row) for row in rows[shown].tolist()]
-    values_of = zip(texts, places, colours, (-worth[shown]).tolist(), keys, of, strict=True)
+    middle = (start + end)[shown] / 2 + (normal * height[:, None])[shown]
+    anchors = np.stack([middle, normal[shown]], axis=1)
+    values_of = zip(texts, places, colours, (-worth[shown]).tolist(), keys, of, of, anchors, strict=True)
     _add_values(sheet, values_of, size, "spare" if few else "cover")
 
 
@@ -196,17 +200,17 @@ def _worth(sheet: Sheet, field: str, rows: Rows, values: NDArray[np.float64]) ->
     return worth * np.where(sheet.chosen(told, rows), _TOLD, 1.0)
 
 
-def _most_important(sheet: Sheet, worth: NDArray[np.float64], candidates: Rows, at: Points) -> Rows:
-    """Of the candidates at visible points those worth most, as many as leave most of the picture free."""
+def _most_important(sheet: Sheet, worth: NDArray[np.float64], candidates: Rows) -> Rows:
+    """Of the candidates those worth most, as many as leave most of the picture free."""
     area = sheet.viewport.width * sheet.viewport.height / sheet.unit**2
     most = int(0.25 * area / (46.0 * 18.0))
-    seen = candidates[sheet.sees(at[candidates])]
-    return np.sort(seen[np.lexsort((seen, -worth[seen]))][:most])
+    return np.sort(candidates[np.lexsort((candidates, -worth[candidates]))][:most])
 
 
-def _value_texts(sheet: Sheet, numbers: Iterable[str], few: bool) -> tuple[list[str], int, Points]:
-    """Values as they are written among few or many, their font size, and half the size of each label, (n, 2)."""
-    texts = [f"{number} kN" for number in numbers] if few else list(numbers)
+def _value_texts(sheet: Sheet, forces: Iterable[float], few: bool) -> tuple[list[str], int, Points]:
+    """Forces (kN) as they are written among few or many, their font size, and half the size of each label, (n, 2)."""
+    write = written.force if few else written.number
+    texts = [write(force, nothing=SMALLEST_FORCE) for force in forces]
     size = sheet.font(12.0 if few else 11.0)
     half = [half_size(text, size, "semibold", sheet.unit) for text in texts]
     return texts, size, np.array(half).reshape(-1, 2)
@@ -214,35 +218,36 @@ def _value_texts(sheet: Sheet, numbers: Iterable[str], few: bool) -> tuple[list[
 
 def _add_values(
     sheet: Sheet,
-    values: Iterable[tuple[str, Points, Colour, float, Key, Owner]],
+    values: Iterable[tuple[str, Points, Colour, float, Key, Owner, Owner, Points]],
     size: int,
     lines: Literal["spare", "cover"],
 ) -> None:
-    """Labels of values: text, places, colour, rank, key and owner of each."""
+    """Labels of values: text, places, colour, rank, key, owner, own part and anchor of each."""
     backing = faded(sheet.theme.background, _BACKING)
     sheet.labels += [
-        Label(text, places, size, colour, rank, "semibold", backing, lines, key, of)
-        for text, places, colour, rank, key, of in values
+        Label(text, places, size, colour, rank, "semibold", backing, lines, key, of, own, anchor)
+        for text, places, colour, rank, key, of, own, anchor in values
     ]
 
 
 def _places_by_rods(
-    middle: Points, normal: Points, height: NDArray[np.float64], half: Points, few: bool
-) -> list[Points]:
-    """Where the value of each rod may stand: in its diagram if it fits, else beyond, else behind the rod.
+    start: Points, end: Points, normal: Points, height: NDArray[np.float64], half: Points, u: float
+) -> Points:
+    """Where the value of each rod may stand, (n, k, 2): in its diagram if it fits, beyond, behind the rod, on it.
 
-    Among many rods a value stands on its own rod first: beside the rod, it could be read as that of another.
-    reach: half the extent of a label along the normal of its rod. slide: a step along the rod.
+    reach: half the extent of a label along the normal of its rod. slide: how far it can move along the rod.
     """
     normal_x, normal_y = np.abs(normal).T
-    reach, slide = normal_x * half[:, 0] + normal_y * half[:, 1], normal_y * half[:, 0] + normal_x * half[:, 1]
-    distance = np.stack([height / 2, height + reach, height / 2, -reach], axis=1)
-    step = slide[:, None] * _SLIDES
-    across, along = normal[:, None, None, :], np.stack([-normal[:, 1], normal[:, 0]], axis=1)[:, None, None, :]
-    places = middle[:, None, None, :] + distance[:, :, None, None] * across + step[:, None, :, None] * along
-    places = places.reshape(len(middle), distance.shape[1] * step.shape[1], 2)
-    inside = (height > 2.0 * reach) | (not few)
-    return [row if fits else row[len(_SLIDES) :] for row, fits in zip(places, inside.tolist(), strict=True)]
+    reach, extent = normal_x * half[:, 0] + normal_y * half[:, 1], normal_y * half[:, 0] + normal_x * half[:, 1]
+    beside, fits = reach + _GAP * u, height > 2.0 * reach
+    beyond, nothing = height + beside, np.zeros(len(height))
+    across = [np.where(fits, 0.5 * height, beyond), beyond, np.where(fits, beside, -beside), -beside, nothing]
+    slide = np.maximum(np.hypot(*(end - start).T) / 2 - extent, 0.0)[:, None] * _SLIDES
+    along = np.stack([-normal[:, 1], normal[:, 0]], axis=1)
+    offset = np.stack(across, axis=1)[:, :, None, None] * normal[:, None, None, :]
+    places = (start + end)[:, None, None, :] / 2 + offset + slide[:, None, :, None] * along[:, None, None, :]
+    found: Points = places.reshape(len(start), len(across) * len(_SLIDES), 2)
+    return found
 
 
 def draw_particle_diagrams(sheet: Sheet, sides: NDArray[np.int64]) -> None:
@@ -282,17 +287,22 @@ def _draw_forces(
     taken: NDArray[np.int64],
 ) -> None:
     """Arrows of forces of one kind along an axis each, with their values."""
-    sheet.legend.append(name)
     # Model y is up, pixels' y is down: a positive vertical force points in direction 3.
     direction = np.where(axis == 0, np.where(value > 0, 0, 2), np.where(value > 0, 3, 1))
     length = lengths(sheet, FORCES, np.abs(value), largest)
     tail, outer = _arrow_places(sheet, rows, direction, length, sides, taken[rows, axis])
     taken[rows, axis] = outer
-    along = DIRECTIONS[direction]
+    along, parts = DIRECTIONS[direction], (_ARROW_VALUES[name], 2 * rows + axis)
     middle = tail + along * length[:, None] / 2
-    sheet.marks += arrows(sheet, rows, tail, along, length, getattr(sheet.theme, name))
-    sheet.occupancy.block_squares(middle, 0.2 * length)
-    _label_arrows(sheet, name, 2 * rows + axis, value, middle, length, outer)
+    sheet.explain(name, tail, tail + along * length[:, None])
+    sheet.marks += arrows(sheet, _of(sheet, name, rows), tail, along, length, getattr(sheet.theme, name), parts)
+    sheet.occupancy.block_squares(middle, np.minimum(0.2 * length, 3.0 * sheet.unit))
+    _label_arrows(sheet, name, 2 * rows + axis, value, middle, length, outer, outer == direction)
+
+
+def _of(sheet: Sheet, name: str, rows: Rows) -> list[Owner]:
+    """Whose the arrows of forces of one kind on particles are."""
+    return whose(sheet.model, rows) if name == "load" else [("particles", row) for row in rows.tolist()]
 
 
 def _thinned(
@@ -350,33 +360,44 @@ def _label_arrows(
     middle: Points,
     length: NDArray[np.float64],
     side: NDArray[np.int64],
+    pulls: NDArray[np.bool_],
 ) -> None:
     """The size of the force at each arrow; which: twice the particle's row, one more if it is vertical."""
     few, field = len(value) <= _FEW_VALUES, _ARROW_VALUES[name]
     worth = _worth(sheet, field, which, value)
-    shown = _most_important(sheet, worth, np.arange(len(value)), middle)
+    seen = np.flatnonzero(sheet.sees(middle))
+    sheet.values += len(seen)
+    shown = _most_important(sheet, worth, seen)
     sizes = np.abs(value[shown]).tolist()
-    # The smallest that is drawn at all, 0.0001, must not read 0.00.
-    numbers = (written(size, 2 if size >= 0.01 else 4) for size in sizes)
-    texts, font, half = _value_texts(sheet, numbers, few)
-    places = _places_by_arrows(middle[shown], length[shown], DIRECTIONS[side[shown]], half, sheet.unit)
+    texts, font, half = _value_texts(sheet, sizes, few)
+    outward = DIRECTIONS[side[shown]]
+    places = _places_by_arrows(middle[shown], length[shown], outward, pulls[shown], half, sheet.unit)
     # Arrows are few and say little without their value: before the rods.
     ranks, keys = (-worth[shown] - 1e9).tolist(), [(field, number) for number in which[shown].tolist()]
     colours = [getattr(sheet.theme, name)] * len(texts)
-    of = [("particles", row) for row in (which[shown] // 2).tolist()]
-    _add_values(sheet, zip(texts, places, colours, ranks, keys, of, strict=True), font, "spare")
+    of = _of(sheet, name, which[shown] // 2)
+    anchors = np.stack([middle[shown] + outward * length[shown, None] / 2, outward], axis=1)
+    _add_values(sheet, zip(texts, places, colours, ranks, keys, of, keys, anchors, strict=True), font, "spare")
 
 
 def _places_by_arrows(
-    middle: Points, length: NDArray[np.float64], outward: Points, half: Points, u: float
+    middle: Points,
+    length: NDArray[np.float64],
+    outward: Points,
+    pulls: NDArray[np.bool_],
+    half: Points,
+    u: float,
 ) -> Points:
-    """Where the value of each arrow may stand, (n, k, 2): beyond its outer end, beside it, beside that end."""
+    """Where the value of each arrow may stand, (n, k, 2): beyond its outer end, beside its head, it, that end.
+
+    pulls: whether the head is at the outer end.
+    """
     level = outward[:, 0] != 0.0
     deep, width = np.where(level, half.T, half.T[::-1])
-    outer, nothing = length / 2, np.zeros(len(middle))
-    beyond, beside = outer + deep, width + 7.5 * u
+    outer, nothing, wing = length / 2, np.zeros(len(middle)), head_length(length, u) / 2
+    beyond, beside = outer + deep + _GAP * u, wing + width + _GAP * u
     along, across = [beyond], [nothing]
-    for place in (nothing, deep - outer, outer, beyond):
+    for place in ((outer - 2.0 * wing) * np.where(pulls, 1.0, -1.0), nothing, deep - outer, outer, beyond):
         along += [place, place]
         across += [beside, -beside]
     along += [nothing, nothing]

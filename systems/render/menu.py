@@ -47,7 +47,8 @@ class MenuLayout:
         wide = self.column * len(columns)
         self.fits = high <= window.height - 2 * edge and width + (2 * _PAD + _CHECK) * unit <= self.column + 0.5
         x, y = menu.at
-        left = x if x + wide <= window.right - edge else x - wide
+        beside = x + max(round(unit), 1)
+        left = beside if beside + wide <= window.right - edge else x - wide
         top = y if y + high <= window.bottom - edge else y - high
         left = min(max(left, window.left + edge), max(window.right - edge - wide, window.left))
         top = min(max(top, window.top + edge), max(window.bottom - edge - high, window.top))

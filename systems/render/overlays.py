@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
+
 import numpy as np
 
 from components import written
@@ -10,9 +12,11 @@ from components.round_numbers import round_down
 from components.view import BETWEEN
 from systems.render.marks import Mark, Panel, Stamps, Strokes, Text, boxes
 from systems.render.sheet import Sheet
+from systems.render.structure import HALO_OPACITY
 from systems.render.symbols import dashed
 from systems.render.theme import Colour, faded
 from systems.render.typography import at_most, font_size, line_height, shortened, text_width, wrapped
+from systems.render.utilisation import scale_bar
 
 _EDGE = 14.0  # points between overlays and the edges of the viewport
 _HEADING = 20.0  # points, size of its type
@@ -20,6 +24,8 @@ _SMALL = 300.0  # points; lower viewports leave out optional overlays
 _FEW_LINES = 3  # of a notice
 _NOISE = 1e-6  # pixels; smaller displacements count as none
 BAR = 28.0  # points, height of the status bar
+_ROW, _ROWS_BESIDE = 28.0, 2  # of the legend: points, and how many stand beside the heading
+_STRIP = 19.0  # points, height of the scale
 
 
 def draw_overlays(sheet: Sheet) -> tuple[list[Mark], tuple[float, float]]:
@@ -212,21 +218,26 @@ def _progress(sheet: Sheet, left: float, top: float, width: float) -> list[Mark]
 
 # --- legend ----------------------------------------------------------------------------------------
 
+_BAR_WIDTH = 70.0  # points, of a scale of colours
 _MEANINGS = {
     "tension": "tension (kN)",
     "compression": "compression (kN)",
     "yielding": "yielding",
+    "utilisation": "0 to 100 % of the strength",
+    "first": "first at its strength",
     "slack": "slack cable",
     "load": "load (kN)",
     "reaction": "reaction (kN)",
+    "inertia": "inertia −m a (kN)",
     "velocity": "velocity",
+    "ghost": "undeformed",
 }
 
 
 def _legend(sheet: Sheet, heading_end: tuple[float, float]) -> tuple[list[Mark], float]:
-    """The colours that occur and what they mean, in a row top right; and the lower end of all at the top.
+    """The colours that occur and what they mean, in rows top right; and the lower end of all at the top.
 
-    It stands beside the heading if there is room, else below it, in several rows if it must.
+    They stand beside the heading if one or two rows have room there, else below it.
     """
     v, u, theme, size = sheet.viewport, sheet.unit, sheet.theme, sheet.font(11.0)
     names = [name for name in _MEANINGS if name in sheet.legend] if sheet.view.legend else []
@@ -234,22 +245,26 @@ def _legend(sheet: Sheet, heading_end: tuple[float, float]) -> tuple[list[Mark],
     if not names or v.width < 240.0 * u:
         return [], heading_end[1]
     pad, swatch, gap, height = 9.0 * u, 16.0 * u, 14.0 * u, 24.0 * u
-    entries = [swatch + 6.0 * u + text_width(_MEANINGS[name], size) for name in names]
-    beside = sum(entries) + gap * (len(names) - 1) + 2 * pad <= right - heading_end[0] - gap
+    swatches = [_BAR_WIDTH * u if name == "utilisation" else swatch for name in names]
+    entries = [
+        wide + 6.0 * u + text_width(_MEANINGS[name], size) for name, wide in zip(names, swatches, strict=True)
+    ]
+    room, whole = right - heading_end[0] - gap - 2 * pad, right - v.left - 10.0 * u - 2 * pad
+    beside = max(entries) <= room and len(_rows(entries, gap, room)) <= _ROWS_BESIDE
     if not beside and v.height < _SMALL * u:
         return [], heading_end[1]
     top = v.top + 10.0 * u if beside else heading_end[1] + 8.0 * u
     marks: list[Mark] = []
-    for first, last in _rows(entries, gap, right - v.left - 10.0 * u - 2 * pad):
+    for first, last in _rows(entries, gap, room if beside else whole):
         width = sum(entries[first:last]) + gap * (last - first - 1) + 2 * pad
         left, x = right - width, right - width + pad
         sheet.occupancy.block(left, top, width, height)
         marks.append(Panel(left, top, width, height, 6.0 * u, faded(theme.panel, 0.94), theme.line))
-        for name, entry in zip(names[first:last], entries[first:last], strict=True):
-            marks += _swatch(sheet, name, x, top + height / 2, swatch)
-            marks.append(Text(_MEANINGS[name], x + swatch + 6.0 * u, top + height / 2, size, theme.text))
+        for name, wide, entry in list(zip(names, swatches, entries, strict=True))[first:last]:
+            marks += _swatch(sheet, name, x, top + height / 2, wide)
+            marks.append(Text(_MEANINGS[name], x + wide + 6.0 * u, top + height / 2, size, theme.text))
             x += entry + gap
-        top += height + 4.0 * u
+        top += _ROW * u
     return marks, max(top - 4.0 * u, heading_end[1])
 
 
@@ -267,14 +282,18 @@ def _rows(widths: list[float], gap: float, room: float) -> list[tuple[int, int]]
 def _swatch(sheet: Sheet, name: str, x: float, y: float, width: float) -> list[Mark]:
     """A small sample of what a colour means: a diagram, a yielding rod, a slack cable, an arrow."""
     u, theme = sheet.unit, sheet.theme
-    role = {"slack": "ink", "velocity": "ink"}.get(name, name)
+    if name == "utilisation":
+        return scale_bar(theme, x, y, width, u)
+    role = {"slack": "ink", "velocity": "ink", "inertia": "ink", "first": "yielding"}.get(name, name)
     colour = getattr(theme, role)
     ends = np.array([[x, y]]), np.array([[x + width, y]])
-    if name in ("load", "reaction", "velocity"):
+    if name in ("load", "reaction", "inertia", "velocity"):
         return [Stamps("arrow", ends[0], width, u, colour, colour)]
+    if name == "first":
+        return [Strokes(*ends, 9.0 * u, faded(colour, HALO_OPACITY))]
     if name == "yielding":
         return [Strokes(*ends, 3.0 * u, colour)]
-    if name == "slack":
+    if name in ("slack", "ghost"):
         return [Strokes(*dashed(*ends, width / 5)[:2], 1.25 * u, colour)]
     return [Panel(x, y - 5.0 * u, width, 10.0 * u, 1.0 * u, faded(colour, 0.18), colour)]
 
@@ -282,45 +301,78 @@ def _swatch(sheet: Sheet, name: str, x: float, y: float, width: float) -> list[M
 # --- scale -----------------------------------------------------------------------------------------
 
 
-def draw_scale(sheet: Sheet, room: tuple[float, float]) -> list[Mark]:
-    """A round length to scale, and by how much displacements and diagrams are scaled.
+@dataclass(frozen=True)
+class Scale:
+    """Where the scale stands, in pixels: a ruler of that length, which means so many metres (0: none), and a text."""
 
-    At the bottom or at the top, where it hides nothing; else only the exaggeration, or nothing.
+    left: float
+    top: float
+    metres: float
+    ruler: float
+    room: float
+    notes: list[str]
+
+
+def place_scale(sheet: Sheet, room: tuple[float, float]) -> Scale | None:
+    """A place along the edges where the scale hides nothing, which is taken; None if there is none.
+
+    There is room for how many values are hidden, before that is known; this is said alone, and over rods, in need.
     """
     v, u, size = sheet.viewport, sheet.unit, sheet.font(11.0)
-    longest = min(120.0 * u, 0.25 * v.width) / sheet.view.camera.scale
-    metres = round_down(longest)
-    notes = _displacements(sheet) + sheet.notes
-    for length, said in (
-        (metres * sheet.view.camera.scale, [written.scale_length(metres), *notes]),
-        (0.0, notes),
-    ):
+    metres = round_down(min(120.0 * u, 0.25 * v.width) / sheet.view.camera.scale)
+    notes, length = _displacements(sheet) + sheet.notes, metres * sheet.view.camera.scale
+    choices = [(metres, length, notes), (0.0, 0.0, notes), *([(0.0, 0.0, list[str]())] if sheet.values else [])]
+    for metres, length, said in choices:
         ruler = length + 8.0 * u if length else 0.0
-        room_beside = v.width - ruler - 2 * _EDGE * u
-        text = shortened("   ".join(said), room_beside, size)
-        width, height = ruler + text_width(text, size) + 12.0 * u, 19.0 * u
-        left, top, hidden = _freest(sheet, width, height, room)
-        if (hidden == 0 and text_width("   ".join(said), size) <= room_beside) or not length:
-            break
-    if not said or hidden:
+        text = "   ".join(_said(metres, sheet.values, said))
+        width = text_width(text, size)
+        if not text or width > v.width - ruler - 2 * _EDGE * u:
+            continue
+        scale = Scale(*_freest(sheet, ruler + width + 12.0 * u, room), metres, length, width, said)
+        box = scale.left, scale.top, ruler + width + 12.0 * u, _STRIP * u
+        in_need = not said and not sheet.occupancy.is_taken(*box)
+        if in_need or not sheet.occupancy.crossed(*box):
+            sheet.occupancy.block(*box)
+            return scale
+    return None
+
+
+def draw_scale(sheet: Sheet, scale: Scale | None) -> list[Mark]:
+    """A round length to scale, how many values are hidden, and by how much displacements and diagrams are scaled."""
+    hidden = sheet.values - sum(1 for field, _ in sheet.placed if not field.endswith(".name"))
+    said = _said(scale.metres, hidden, scale.notes) if scale else []
+    if scale is None or not said:
         return []
-    x, y = round(left + 6.0 * u), round(top + 6.0 * u)
+    u, size = sheet.unit, sheet.font(11.0)
+    ruler = scale.ruler + 8.0 * u if scale.ruler else 0.0
+    text = shortened("   ".join(said), scale.room, size)
+    x, y = round(scale.left + 6.0 * u), round(scale.top + 6.0 * u)
+    width = ruler + text_width(text, size) + 12.0 * u
     return [
-        Panel(left, top, width, height, 4.0 * u, faded(sheet.theme.background, 0.8)),
-        *([_ruler(sheet, x, y, round(length))] if length else []),
+        Panel(scale.left, scale.top, width, _STRIP * u, 4.0 * u, faded(sheet.theme.background, 0.8)),
+        *([_ruler(sheet, x, y, round(scale.ruler))] if scale.ruler else []),
         Text(text, x + ruler, y + 4.0 * u, size, sheet.theme.muted),
     ]
 
 
-def _freest(sheet: Sheet, width: float, height: float, room: tuple[float, float]) -> tuple[float, float, int]:
-    """Left and top of the place along the edges where a box hides least, and how much that is."""
+def _said(metres: float, hidden: int, notes: list[str]) -> list[str]:
+    """What is said beside the ruler, if so many values are hidden."""
+    values = "1 value" if hidden == 1 else f"{hidden} values"
+    length = [written.scale_length(metres)] if metres else []
+    return [*length, *([f"{values} hidden: zoom in"] if hidden else []), *notes]
+
+
+def _freest(sheet: Sheet, width: float, room: tuple[float, float]) -> tuple[float, float]:
+    """Left and top of the place along the edges where a strip hides least."""
     v, u, (top, bottom) = sheet.viewport, sheet.unit, room
+    height = _STRIP * u
     low, high = bottom - height - 6.0 * u, top + 6.0 * u
     first, last = v.left + 8.0 * u, v.right - width - 8.0 * u
     places = [(first, low), ((first + last) / 2, low), (last, low), (first, high), (last, high)]
-    hidden = [sheet.occupancy.crossed(x, y, width, height) for x, y in places]
-    best = hidden.index(min(hidden))
-    return *places[best], hidden[best]
+    places.append((first, max(high - _ROW * u, v.top)))  # beside the last row of the legend
+    occupancy = sheet.occupancy
+    hides = [(occupancy.is_taken(*at, width, height), occupancy.crossed(*at, width, height)) for at in places]
+    return places[hides.index(min(hides))]
 
 
 def _ruler(sheet: Sheet, x: int, y: int, length: int) -> Mark:
@@ -330,15 +382,15 @@ def _ruler(sheet: Sheet, x: int, y: int, length: int) -> Mark:
 
 
 def _displacements(sheet: Sheet) -> list[str]:
-    """The exaggeration of displacements, or a hint to exaggerate where a structure seems not to move."""
+    """The exaggeration of displacements, if no slider shows it, or a hint where a structure seems not to move."""
     model, scale = sheet.model, sheet.model.settings.displacement_scale
     if scale != 1.0:
-        return [f"displacements ×{scale:g}"]
+        return [] if sheet.view.slider_places else [f"displacements ×{scale:g}"]
     largest = float(np.abs(model.particles.displacement).max(initial=0.0)) if model.rods.count else 0.0
     if not _NOISE < largest * sheet.view.camera.scale < sheet.unit:
         return []
     return [
-        f"displacements up to {written.given(1000.0 * largest, 2)} mm, too small to see; Return sets their scale"
+        f"displacements up to {written.given(1000.0 * largest, 2)} mm, too small to see; their slider enlarges them"
     ]
 
 

@@ -234,12 +234,20 @@ class _Writer:
         u, theme, size, small = self.unit, self.theme, self.font(12.5), self.font(11.0)
         middle, left = place.top + place.height / 2, place.left + 40.0 * u
         room = place.right - left - 6.0 * u
-        at = np.array([[place.left + 21.0 * u, middle]])
+        x = place.left + 21.0 * u
+        at = np.array([[x, middle]])
         return [
             *self._card(place, tile, 8.0 * u),
             Stamps("disc", at, 12.0 * u, u, faded(theme.focus, 0.14), theme.background),
-            Text(tile.symbol, *at[0].tolist(), self.font(15.0), theme.focus, anchor="centre"),
-            Text(shortened(tile.title, room, size, "semibold"), left, middle - 7.5 * u, size, theme.text, "semibold"),
+            Text(tile.symbol, x, middle, self.font(15.0), theme.focus, anchor="centre"),
+            Text(
+                shortened(tile.title, room, size, "semibold"),
+                left,
+                middle - 7.5 * u,
+                size,
+                theme.text,
+                "semibold",
+            ),
             Text(shortened(tile.caption, room, small), left, middle + 8.5 * u, small, theme.muted),
         ]
 

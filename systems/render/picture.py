@@ -10,14 +10,16 @@ from components.toolbar import Toolbar
 from components.view import View
 from systems.render.arrows import draw_loads, draw_velocities
 from systems.render.diagrams import draw_particle_diagrams, draw_rod_diagrams
+from systems.render.free_bodies import draw_free_bodies
 from systems.render.labels import Placed, place_labels
 from systems.render.marks import Picture
-from systems.render.overlays import BAR, draw_notice, draw_overlays, draw_scale
+from systems.render.overlays import BAR, draw_notice, draw_overlays, draw_scale, place_scale
 from systems.render.page import draw_page
 from systems.render.panel import compose_form
 from systems.render.pointed import draw_pointed
 from systems.render.readouts import draw_readouts
 from systems.render.sheet import ABOVE, BELOW, Sheet, measure
+from systems.render.sliders import draw_sliders
 from systems.render.structure import (
     draw_ghost,
     draw_grid,
@@ -31,6 +33,7 @@ from systems.render.supports import draw_supports, support_sides
 from systems.render.theme import Theme
 from systems.render.toolbar import compose_toolbar
 from systems.render.tools import draw_flashes, draw_preview
+from systems.render.utilisation import shade_rods
 
 
 def compose(model: Model | Form | Toolbar, view: View, theme: Theme, placed: Placed | None = None) -> Picture:
@@ -62,31 +65,49 @@ def lies_under(model: Model, view: View, theme: Theme, pixel: Vector) -> bool:
     return any(panel.contains(pixel) for panel in _composed(measure(model, view, theme))[1])
 
 
+def _draw_structure(sheet: Sheet) -> None:
+    """Rods, supports and particles, with diagrams, loads and velocities."""
+    draw_rod_diagrams(sheet)
+    draw_ghost(sheet)
+    draw_halos(sheet)
+    sides = support_sides(sheet)
+    draw_supports(sheet, sides)
+    shade_rods(sheet)
+    draw_rods(sheet)
+    draw_particles(sheet)
+    sheet.marks += [*draw_loads(sheet), *draw_velocities(sheet)]
+    draw_shape(sheet)
+    draw_particle_diagrams(sheet, sides)
+
+
 def _composed(sheet: Sheet) -> tuple[Picture, list[Rectangle]]:
     """The picture of a model, and where its panels are."""
     model, theme = sheet.model, sheet.theme
     draw_grid(sheet)
     for layer in BELOW:
         sheet.marks += layer(sheet)
-    draw_rod_diagrams(sheet)
-    draw_ghost(sheet)
-    draw_halos(sheet)
-    sides = support_sides(sheet)
-    draw_supports(sheet, sides)
-    draw_rods(sheet)
-    draw_particles(sheet)
-    sheet.marks += [*draw_loads(sheet), *draw_velocities(sheet)]
-    draw_shape(sheet)
-    draw_particle_diagrams(sheet, sides)
+    if sheet.view.free_bodies and sheet.view.forces_known:
+        draw_halos(sheet)
+        draw_free_bodies(sheet)
+        draw_particles(sheet)
+    else:
+        _draw_structure(sheet)
     label_names(sheet)
     for layer in ABOVE:
         sheet.marks += layer(sheet)
     overlays, room = draw_overlays(sheet)
+    overlays += draw_sliders(sheet)
     readouts, panels = draw_readouts(sheet, room)
     overlays += readouts
     overlays += draw_notice(sheet, room)
+    scale = place_scale(sheet, room) if model.particles.count else None
     labels = place_labels(sheet.labels, sheet.occupancy, sheet.unit, sheet.placed)
+    over = [
+        *draw_scale(sheet, scale),
+        *draw_flashes(sheet),
+        *draw_preview(sheet),
+        *overlays,
+        *draw_pointed(sheet),
+    ]
     sheet.placed |= sheet.scales
-    scale = draw_scale(sheet, room) if model.particles.count else []
-    over = [*scale, *draw_flashes(sheet), *draw_preview(sheet), *overlays, *draw_pointed(sheet)]
     return Picture(sheet.viewport, theme.background, [*sheet.marks, *labels, *over]), panels

@@ -12,9 +12,10 @@ from components.camera import Viewport
 from components.model import Model
 from components.tags import Hovered
 from components.view import View, drawn_positions
-from systems.render.clip import bounds, clip_rods
-from systems.render.labels import Label, Occupancy, Placed
+from systems.render.clip import bounds, clip_rods, clip_segments
+from systems.render.labels import Label, Placed
 from systems.render.marks import Mark, Points
+from systems.render.occupancy import Occupancy
 from systems.render.theme import Colour, Theme
 from systems.render.typography import font_size
 
@@ -35,8 +36,10 @@ class Sheet:
     ends: rows of the particles at the rods' ends (m, 2). rods: rows of the rods that can be seen; start,
     end: their visible parts in pixels, aligned with `rods`. particles: rows of those that can be seen.
     pulled, pushed: rows of the rods that are coloured by their axial force, since they have no room for more.
+    shades: rows of rods and the colours that show a quantity of theirs.
     placed: where labels were in the last picture. legend: names of the colours that occur and mean something.
-    notes: scales to be shown. scales: those of arrows in this picture, to be kept in `placed`.
+    notes: scales to be shown. scales: those of arrows in this picture, to be kept in `placed`. values: how many values
+    there are to show, if there were room for all.
     """
 
     model: Model
@@ -58,7 +61,9 @@ class Sheet:
     labels: list[Label] = field(default_factory=list)
     legend: list[str] = field(default_factory=list)
     notes: list[str] = field(default_factory=list)
+    shades: list[tuple[Rows, Colour]] = field(default_factory=list)
     scales: Placed = field(default_factory=dict)
+    values: int = 0
 
     @property
     def viewport(self) -> Viewport:
@@ -75,6 +80,13 @@ class Sheet:
         for axis in (0, 1):
             inside &= (points[:, axis] >= low[axis]) & (points[:, axis] <= high[axis])
         return inside
+
+    def explain(self, name: str, start: Points, end: Points) -> None:
+        """Let the legend say what a colour means if any of the lines from `start` to `end`, each (n, 2), can be seen."""
+        if name not in self.legend and len(start):
+            seen = self.sees(start).any() or self.sees(end).any()
+            if seen or len(clip_segments(start, end, *bounds(self.viewport))[2]):
+                self.legend.append(name)
 
     def tagged(self, tag: type, table: str) -> Rows:
         """Rows of the entities of one table that carry a tag; nothing is pointed at in a picture without a pointer."""

@@ -10,8 +10,9 @@ from numpy.typing import NDArray
 from components.round_numbers import round_up
 from components.tags import Hovered, Selected
 from systems.render.clip import bounds, clip_segments
-from systems.render.labels import FAINT, STRONG, Label, half_size
+from systems.render.labels import Label, half_size
 from systems.render.marks import Discs, Fills, Points, Rectangles, Strokes
+from systems.render.occupancy import FAINT, STRONG
 from systems.render.sheet import FEW, MANY, Rows, Sheet, typical_length
 from systems.render.symbols import LARGEST_STAMP, RIM, arcs, circle, dashed
 from systems.render.theme import Colour, faded
@@ -23,6 +24,7 @@ _GHOST_FROM = 4.0  # points of displacement
 _SHAPE_WIDTH, _SHAPE_RADIUS, _SHAPE_FROM = 1.5, 2.5, 0.5  # points; drawn from so large a displacement on
 _SHAPE_OPACITY = 0.75
 HALO_OPACITY = 0.4
+_SHADED = 2.0  # width of rods whose colour shows a quantity, of the usual one
 _HALO = 0.12  # of the length of rods, by which halos stand out, within limits
 _LARGEST_FILLED = 10_000.0  # pixels, well within the 16 bits of filled polygons
 
@@ -71,6 +73,7 @@ def draw_ghost(sheet: Sheet) -> None:
     start, end, seen = clip_segments(original[first], original[last], *bounds(sheet.viewport))
     if len(start):
         sheet.occupancy.line(start, end, FAINT)
+        sheet.explain("ghost", start, end)
         start, end, of = dashed(start, end, _DASH * sheet.unit)
         sheet.marks.append(Strokes(start, end, sheet.unit, sheet.theme.ghost, ("rods", rows[seen][of])))
 
@@ -101,13 +104,16 @@ def draw_rods(sheet: Sheet) -> None:
     width = _rod_width(sheet)
     by_force = {"compression": sheet.pushed, "tension": sheet.pulled}
     layers = [(wanted, getattr(theme, name)) for name, wanted in by_force.items()]
-    layers.append((yielding, theme.yielding))
+    layers += [*sheet.shades, (yielding, theme.yielding)]
     for colour, mask in sheet.colours_of(sheet.rods, layers, theme.ink):
-        wider = 1.35 if colour == theme.yielding else 1.0
+        wider = _SHADED if sheet.shades else 1.35 if colour == theme.yielding else 1.0
         _draw_lines(sheet, mask, width * wider, colour)
     named = {**by_force, "yielding": yielding}
-    sheet.legend += [name for name, wanted in named.items() if len(wanted)]
-    sheet.occupancy.line(sheet.start, sheet.end, STRONG)
+    for name, wanted in named.items():
+        shown = sheet.chosen(wanted, sheet.rods)
+        sheet.explain(name, sheet.start[shown], sheet.end[shown])
+    sheet.occupancy.line(sheet.start, sheet.end, STRONG, ("rods", sheet.rods))
+    sheet.occupancy.parts.lines(("rods", sheet.rods), sheet.start, sheet.end, width / 2)
 
 
 def _rod_width(sheet: Sheet) -> float:
@@ -128,7 +134,7 @@ def _draw_lines(sheet: Sheet, mask: NDArray[np.bool_] | slice, width: float, col
     if slack.any():
         first, last, of = dashed(start[slack], end[slack], _DASH * sheet.unit)
         sheet.marks.append(Strokes(first, last, thin, colour, ("rods", rows[slack][of])))
-        sheet.legend.append("slack")
+        sheet.explain("slack", first, last)
     for kind, thick in ((~cables, width), (cables & ~slack, thin)):
         if kind.any():
             sheet.marks.append(Strokes(start[kind], end[kind], thick, colour, ("rods", rows[kind])))
@@ -141,8 +147,10 @@ def draw_particles(sheet: Sheet) -> None:
     for chosen, rim in ((rows[small], 0.0), (rows[~small], RIM * sheet.unit)):
         if len(chosen):
             _draw_circles(sheet, chosen, theme.ink, theme.hollow, rim, 0.0)
+    at, radii = sheet.centres[rows], sheet.radii[rows]
+    sheet.occupancy.parts.symbols(("particles", rows), at, at, radii)
     if len(sheet.particles) <= MANY:
-        sheet.occupancy.block_squares(sheet.centres[sheet.particles], 0.8 * sheet.radii[sheet.particles])
+        sheet.occupancy.block_squares(at, 0.8 * radii)
 
 
 def _draw_circles(sheet: Sheet, rows: Rows, ink: Colour, hollow: Colour, rim: float, extra: float) -> None:
@@ -212,12 +220,13 @@ def label_names(sheet: Sheet) -> None:
             name, is_marked = sheet.model.tables[table].handles[row].name, row in marked
             size, weight = (sheet.font(12.0), "semibold") if is_marked else (sheet.font(11.0), "regular")
             half, key = half_size(name, size, weight, sheet.unit), (f"{table}.name", row)
-            at = _beside_particle(sheet, row, half) if table == "particles" else _beside_rod(sheet, index, half)
+            at = _beside_particle(sheet, row, half) if table == "particles" else beside_rod(sheet, index, half)
             if is_marked:
-                label = Label(name, at, size, sheet.theme.text, -1e12, weight, backing, key=key)
+                label = Label(name, at, size, sheet.theme.text, 1e11, weight, backing, key=key)
             else:
                 label = Label(name, at, size, sheet.theme.muted, 1e12, weight, lines="avoid", key=key)
-            sheet.labels.append(label._replace(of=(table, row)))
+            own = None if is_marked else (table, row)  # what is marked is not taken for another
+            sheet.labels.append(label._replace(of=(table, row), own=own))
 
 
 def _beside_particle(sheet: Sheet, row: int, half: tuple[float, float]) -> list[tuple[float, float]]:
@@ -234,7 +243,7 @@ def _beside_particle(sheet: Sheet, row: int, half: tuple[float, float]) -> list[
     return places
 
 
-def _beside_rod(sheet: Sheet, index: int, half: tuple[float, float]) -> list[tuple[float, float]]:
+def beside_rod(sheet: Sheet, index: int, half: tuple[float, float]) -> list[tuple[float, float]]:
     """Beside its middle, on either side, then further along and further away."""
     (x, y), (far_x, far_y) = sheet.start[index].tolist(), sheet.end[index].tolist()
     dx, dy = far_x - x, far_y - y

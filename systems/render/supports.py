@@ -71,4 +71,5 @@ def draw_supports(sheet: Sheet, sides: NDArray[np.int64]) -> None:
             colours, of = (sheet.theme.ink, sheet.theme.hollow), ("particles", rows)
             sheet.marks.append(Stamps(symbol, apex, size, sheet.unit, *colours, side, of))
             middle = apex + DIRECTIONS[side] * size / 2
+            sheet.occupancy.parts.symbols(of, middle, middle, size / 2)
             sheet.occupancy.block_squares(middle[:MANY], np.full(len(middle[:MANY]), size / 2))

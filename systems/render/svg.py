@@ -30,7 +30,7 @@ Attributes = dict[str, str]
 def as_svg(pictures: Sequence[tuple[Picture, Name]], size: tuple[int, int], title: str) -> bytes:
     """Pictures, each in its viewport of a drawing of that size in pixels, as the contents of an SVG file.
 
-    With each picture comes what gives the paths of its elements. Ids in a second picture begin with "2.", and so on.
+    With each picture comes what gives the paths of its elements. Ids in a second one begin with "2.", and so on.
     """
     width, height = (str(length) for length in size)
     root = ET.Element(
@@ -44,12 +44,15 @@ def as_svg(pictures: Sequence[tuple[Picture, Name]], size: tuple[int, int], titl
         },
     )
     ET.SubElement(root, "title").text = UNPRINTABLE.sub("�", title)
-    for number, (picture, path) in enumerate(pictures, start=1):
+    number = 0
+    for picture, path in pictures:
         drawn = root if len(pictures) == 1 else _frame(root, picture)
         v = picture.viewport
         if picture.background is not None:
             ET.SubElement(drawn, "rect", _box(v.left, v.top, v.width, v.height) | _fill(picture.background))
-        for owner, parts in grouped(picture):
+        groups = grouped(picture)
+        number += any(owner is not None for owner, _ in groups)
+        for owner, parts in groups:
             into = drawn
             if owner is not None:
                 name = _NOT_IN_IDS.sub(lambda found: quote(found[0], errors="replace"), path(owner))

@@ -24,6 +24,7 @@ class Theme:
     sketch: what is about to be drawn; mechanisms and modes.
     tension, compression, zero, yielding: rods by their axial force.
     load, reaction: what acts on particles, and what their supports answer.
+    scale_low, scale_middle, scale_high: the share of a strength that a rod bears: 0, 50 and 100 %.
     curve_1, …: curves of plots, in their order.
     problem, problem_panel: why something stopped, and what it is written on.
     running, resting, halted: the state's dot in the status bar.
@@ -49,6 +50,9 @@ class Theme:
     yielding: Colour
     load: Colour
     reaction: Colour
+    scale_low: Colour
+    scale_middle: Colour
+    scale_high: Colour
     curve_1: Colour
     curve_2: Colour
     curve_3: Colour

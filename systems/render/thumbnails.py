@@ -18,13 +18,20 @@ from systems.render.sheet import BELOW, measure
 from systems.render.structure import draw_particles, draw_rods
 from systems.render.supports import draw_supports, support_sides
 from systems.render.symbols import symbol_parts
-from systems.render.theme import Colour, Theme
+from systems.render.theme import Colour, Theme, faded
 
-_SMALLER, _USUAL = 0.6, 84.0  # symbols in a thumbnail, compared with those in a model; points of height, or smaller yet
+_SMALLER, _USUAL = (
+    0.6,
+    84.0,
+)  # symbols in a thumbnail, compared with those in a model; points of height, or smaller yet
 _EDGE = 4.0  # points that stay free within the card
 _MARGIN = 12.0  # points around a model to begin with
 _TRIES = 4  # at which what is drawn is fitted into the card; arrows and symbols keep their size
-_SAFE, _ENOUGH = 0.99, 1.12  # of the scale that seems to fit, the one to try; how much larger a good one could be
+_SAFE, _ENOUGH = (
+    0.99,
+    1.12,
+)  # of the scale that seems to fit, the one to try; how much larger a good one could be
+_DENSE = 0.4  # opacity of force diagrams
 _TINT = 0.16  # share of the colour of loads in the paper of discs
 
 
@@ -42,7 +49,10 @@ def thumbnail(model: Model, viewport: Viewport, unit: float, theme: Theme) -> tu
         wide = span > 1e-9
         ratio = float(((room - around)[wide] / span[wide]).min()) if wide.any() else 1.0
         middle = np.array(viewport.middle)
-        if 1.0 <= ratio < _ENOUGH and (np.abs((low + high) / 2 - middle) <= (room - (high - low)) / 2 + 1.0).all():
+        if (
+            1.0 <= ratio < _ENOUGH
+            and (np.abs((low + high) / 2 - middle) <= (room - (high - low)) / 2 + 1.0).all()
+        ):
             break
         camera.pan(tuple((middle - (low + high) / 2).tolist()))
         camera.scale *= min(max(_SAFE * ratio, 0.2), 1.5)
@@ -74,7 +84,8 @@ def _corners(mark: Mark) -> Points:
             shape = np.concatenate([polygon.reshape(-1, 2) for _, polygon in parts])
             across, down = np.array([[1, 0], [0, 1], [-1, 0], [0, -1]])[mark.turns % 4]
             turned = shape @ np.array([[across, down], [-down, across]], dtype=np.float64)
-            return (mark.at[:, None] + turned).reshape(-1, 2)
+            placed: Points = (mark.at[:, None] + turned).reshape(-1, 2)
+            return placed
         case Rectangles():
             return np.concatenate([mark.boxes[:, :2], mark.boxes[:, :2] + mark.boxes[:, 2:]]).astype(np.float64)
         case _:
@@ -92,7 +103,12 @@ def _marks(model: Model, camera: Camera, unit: float, theme: Theme) -> tuple[Mar
     sheet = measure(model, view, shown)
     for layer in BELOW:
         sheet.marks += layer(sheet)
+    below = len(sheet.marks)
     draw_rod_diagrams(sheet)
+    sheet.marks[below:] = [
+        replace(mark, colour=faded(mark.colour, _DENSE)) if isinstance(mark, Bars) else mark
+        for mark in sheet.marks[below:]
+    ]
     draw_supports(sheet, support_sides(sheet))
     draw_rods(sheet)
     draw_particles(sheet)

@@ -16,7 +16,7 @@ from scipy.sparse import csc_matrix, diags
 from components.model import Model
 from components.numeric_range import incomputable
 from components.particle import Particle
-from components.rod import Rod, nodes
+from components.rod import Rod
 from components.suggestions import missing
 from systems.statics.equations import Array, Structure, compatibility, normalised
 from systems.statics.explain import cables_named, describe_motion
@@ -86,12 +86,6 @@ class Solution:
             if isinstance(unknown.element, Rod):
                 axial_force[unknown.element.row] = force
         return SetState(displacement, axial_force)
-
-
-def counted_indeterminacy(model: Model) -> int:
-    """Degree of static indeterminacy of a structure that is no mechanism: rods + constraints − 2 × nodes."""
-    used = nodes(model)
-    return int(model.rods.count + model.particles.fixed[used].sum() - 2 * used.sum())
 
 
 def find_unknown(model: Model, name: str) -> Unknown:

@@ -31,10 +31,25 @@ vectors, paths also take `.x` and `.y`; where several elements are meant, `*` st
 (`session.settings.tolerance`, `--set settings.tolerance=1e-12`).
 
 * **set**: a person makes it. It is saved, and edits of it can be undone.
+* **drawn**: likewise, but only pictures depend on it: it can be changed in a run without touching that.
 * **moves**: time changes it. It is saved, and can be set, too.
 * **computed**: it follows from the rest and can only be read; **or set**: a value of one's own replaces it.
 """
-ROLES = {Role.DOCUMENT: "set", Role.STATE: "moves", Role.DERIVED: "computed"}
+SLIDERS = """
+## sliders
+
+Numbers that a person moves on the canvas, in model files only:
+
+```json
+"sliders": [{"of": "loads.wind.force.x", "from": 0, "to": 200},
+            {"of": ["rods.AB.stiffness", "rods.BC.stiffness"], "from": 1e4, "to": 1e6, "logarithmic": true, "title": "EA"}]
+```
+
+* `of`: the path of a number, or several, which all get the value.
+* `from`, `to`: its left and its right end, in the units above; either may be larger.
+* `logarithmic`: equal ways are equal ratios. `title`: what it is called; left out, after its first path.
+"""
+ROLES = {Role.DOCUMENT: "set", Role.LOOK: "drawn", Role.STATE: "moves", Role.DERIVED: "computed"}
 
 
 def page() -> str:
@@ -43,7 +58,7 @@ def page() -> str:
     sections = [section(kind, kind.table) for kind in kinds]
     ours = [(name, kind) for name, kind in ADDED.items() if kind.__module__.startswith("game.included")]
     sections += [section(kind, kind.table, f" (in files `components` / `{name}`)") for name, kind in ours]
-    return "\n".join([HEAD, *sections, histories()])
+    return "\n".join([HEAD, *sections, histories()]) + SLIDERS
 
 
 def histories() -> str:

@@ -96,7 +96,8 @@ def model_file(tmp_path: Path) -> Path:
 
 def stiffness_in(path: Path) -> float:
     """That of the first rod in a file."""
-    return float(models.load(path).rods.stiffness[0])
+    model = models.load(path)
+    return float(model.rods.stiffness[0])
 
 
 def kept(keeper: Autosave, session: Session) -> None:

@@ -10,7 +10,7 @@ from components.particle import Particle
 from game import Session
 from game.documents import models
 from game.editor.scenes.force_method import ForceMethod
-from game.force_method import words
+from game.force_method import PARTS, words
 from game.force_method.guide import Guide, elastic_copy
 from systems.render.marks import Text
 from systems.render.page import draw_page
@@ -343,6 +343,49 @@ def test_in_the_end_all_sets_are_drawn_to_one_scale_so_that_they_add_up() -> Non
     guide = released(session, "BD")
     settings = [one.model.settings for one in guide.sets]
     assert len({(one.displacement_scale, one.diagram_scale) for one in settings}) == 1
+
+
+def test_displacements_of_all_sets_are_drawn_to_one_scale_in_every_part() -> None:
+    """Else the released structure, which moves further, would look stiffer than the real one."""
+    session = Session.open("hyperstatic")
+    session.press("k")
+    session.press("k")
+    guide = guide_of(session)
+    guide.pick(guide.sets[0].model.rods["BD"])
+    for part in range(3, PARTS + 1):
+        assert guide.part == part
+        assert {one.model.settings.displacement_scale for one in guide.sets} == {100.0}
+        session.press("k")
+
+
+def test_the_slider_of_the_displacements_scales_all_sets_and_those_to_come() -> None:
+    session = Session.open("hyperstatic")
+    session.resize(1000, 720)
+    session.press("k")
+    session.press("k")
+    guide = guide_of(session)
+    guide.pick(guide.sets[0].model.rods["BD"])
+    scales = {one.model.settings.displacement_scale for one in guide.sets}
+    [place] = session.focus[1].slider_places
+    left, right, y = place.track
+    session.press("drag", ((left + right) / 2, y))
+    session.press("drag to", (right, y))
+    session.press("drop", (right, y))
+    session.press("k")
+    session.press("k")
+    assert len(guide.sets) == 3
+    assert {one.model.settings.displacement_scale for one in guide.sets} == {1000.0}
+    session.press("double click", (left, y))
+    assert {one.model.settings.displacement_scale for one in guide.sets} == scales
+
+
+def test_the_degree_is_shown_with_its_formula() -> None:
+    session = Session.open("hyperstatic")
+    session.press("k")
+    scene = session.scenes.active
+    assert isinstance(scene, ForceMethod)
+    assert scene.guide is not None
+    assert words.working(scene.guide)[0] == "g = m + r − 2n = 6 + 3 − 2·4 = 1"
 
 
 def test_a_large_structure_is_worked_on_after_a_picture_that_says_so() -> None:

@@ -176,6 +176,11 @@ class Person:
         return self.xdotool("getwindowname", self.window)
 
     @property
+    def geometry(self) -> str:
+        """Where the window is, and how large."""
+        return self.xdotool("getwindowgeometry", self.window)
+
+    @property
     def taken(self) -> list[dict[str, Any]]:
         """What the program has taken so far: its recording, as far as lines are complete."""
         text = self._record.read_text(encoding="utf-8") if self._record.exists() else ""
@@ -290,3 +295,23 @@ def test_a_triangle_from_drawing_to_closing_the_window(person: Person) -> None:
     assert saved.clock.time > 0.0
     assert saved.particles.displacement[1, 1] < 0.0
     assert saved.particles.displacement[2].tolist() == [0.0, 0.0]
+
+
+def test_the_window_is_where_it_was_and_unsaved_work_is_kept(person: Person, display: str) -> None:
+    person.xdotool("windowsize", person.window, "900", "600")
+    person.xdotool("windowmove", person.window, "60", "40")
+    person.wait_for("the size", lambda: "900x600" in person.geometry)
+    person.xdotool("mousemove", "--window", person.window, "500", "300")
+    person.xdotool("key", "p")
+    person.wait_for("a particle", lambda: any(entry["input"] == "p" for entry in person.taken))
+    person.close_window()
+    assert person.program.wait(PATIENCE) == 0
+    (kept,) = (person.models.parent / "autosave").glob("*.json")
+    assert models.load(kept).particles.count == 1
+    later = Person(display, person.models.parent.parent)
+    try:
+        later.find_window()
+        assert "60,40" in later.geometry
+        assert "900x600" in later.geometry
+    finally:
+        later.leave()

@@ -14,6 +14,7 @@ os.environ.setdefault("SDL_VIDEODRIVER", "dummy")
 
 import pygame
 
+from components.tags import Hovered
 from components.view import drawn_positions, magnified
 from game import Session
 from game.documents.library import data_in
@@ -198,6 +199,22 @@ def _menu_of_canvas(window: Window) -> Session:
     return session
 
 
+def _free_bodies(window: Window) -> Session:
+    """Rods and joints apart, and the equilibrium of one."""
+    session = pressed(window, "e", "x", source="isostatic")
+    session.select(session.particles["B"])
+    return session
+
+
+def _pointed(window: Window) -> Session:
+    """What a rod says under the pointer."""
+    session = pressed(window, "i", "e", source="isostatic")
+    rod = session.rods["BC"]
+    session.point(*drawn_positions(session.model)[list(rod.between)].mean(axis=0).tolist())
+    session.model.tag_only([rod], Hovered)
+    return session
+
+
 PICKED = ("k", "click")
 SCENES: dict[str, Scene] = {
     "empty": lambda window: pressed(window, source=EMPTY),
@@ -212,6 +229,8 @@ SCENES: dict[str, Scene] = {
     "simulation-at-rest": _simulation_at_rest,
     "panels": _panels,
     "notice": _notice,
+    "free-bodies": _free_bodies,
+    "pointed": _pointed,
     "properties": _properties,
     "properties-of-all": _all_properties,
     "save": _save,
@@ -237,6 +256,7 @@ ALONE_IN_LAYOUT = {
 IN_OTHER_SIZES = (
     ("usual", "force-method-4"),
     ("usual", "drawing-a-wall"),
+    ("usual", "free-bodies"),
     ("large", "simulation-at-rest"),
     ("large", "properties"),
     ("large", "force-method"),

@@ -55,7 +55,10 @@ TEXTS = (
     "rod 1",
     "",
 )
-MOUSE = ("click", "click", "ctrl+click", "drag", "ctrl+drag", "wheel up", "wheel down", "drag middle")
+MOUSE = (
+    *("click", "click", "double click", "right click", "ctrl+click", "drag", "ctrl+drag"),
+    *("wheel up", "wheel down", "drag middle"),
+)
 OFTEN = {  # keys that are pressed more often than others, so that every scene is seen as much as any
     "simulation": ("l", "p", "i", "drag", "space"),
     "pause": ("p", "p", "l", "l", "l", "c", "f", "v", "k", "k", "k", "return", "space", "space", "e", "h"),

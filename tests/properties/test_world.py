@@ -27,7 +27,11 @@ from components.table import fields_of
 
 KINDS: dict[str, type[Handle]] = {kind.table: kind for kind in (Particle, Rod, Load, Grid)}
 REFERENCES = {"rods": "between", "loads": "on"}
-OVERRIDES = {"mass": "prescribed_mass", "rest_length": "prescribed_rest_length"}
+OVERRIDES = {
+    "mass": "prescribed_mass",
+    "rest_length": "prescribed_rest_length",
+    "stiffness": "prescribed_stiffness",
+}
 SINGLES = {"environment": "drag", "settings": "restitution", "clock": "time"}
 
 Element = dict[str, Any]
@@ -54,7 +58,10 @@ VALUES: dict[str, dict[str, st.SearchStrategy[Any]]] = {
     },
     "rods": {
         "name": text,
-        "stiffness": positive,
+        "stiffness": st.none() | positive,
+        "prescribed_stiffness": st.none() | positive,
+        "youngs_modulus": st.none() | positive,
+        "area": st.none() | positive,
         "density": st.just(0.0) | positive,
         "tensile_strength": st.none() | st.floats(0.0, 1e3),
         "plastic_strain": st.floats(-1.0, 1.0),
@@ -134,6 +141,14 @@ def require_valid(document: Document) -> None:
     for rod in document["rods"]:
         if rod["prescribed_rest_length"] is None and distance(document, rod) == 0.0:
             raise Refused
+
+
+def stiffness(rod: Element) -> float:
+    if rod["prescribed_stiffness"] is not None:
+        return float(rod["prescribed_stiffness"])
+    if rod["youngs_modulus"] is None or rod["area"] is None:
+        return 164640.0
+    return float(rod["youngs_modulus"] * rod["area"])
 
 
 def lumped_mass(document: Document, particle: Element) -> float:
@@ -457,6 +472,7 @@ class Editing(RuleBasedStateMachine):
         assert rods.original_length.tolist() == pytest.approx(lengths, rel=1e-15)
         rest = [r["prescribed_rest_length"] or d for r, d in zip(self.document["rods"], lengths, strict=True)]
         assert rods.rest_length.tolist() == pytest.approx(rest, rel=1e-15)
+        assert rods.stiffness.tolist() == [stiffness(rod) for rod in self.document["rods"]]
         masses = [lumped_mass(self.document, particle) for particle in self.document["particles"]]
         assert particles.mass.tolist() == pytest.approx(masses, rel=1e-13)
         held = np.array([particle["fixed"] for particle in self.document["particles"]], dtype=bool)

@@ -141,7 +141,7 @@ class Monkey:
 
     def _mouse(self) -> str:
         at, post, new = self._place(), pygame.event.post, pygame.event.Event
-        kind = self.random.choice(("click", "click", "click", "down", "move", "up", "wheel", "pan"))
+        kind = self.random.choice(("click", "click", "click", "down", "move", "up", "wheel", "pan", "menu"))
         held = (1, 0, 0) if self._down else (0, 0, 0)
         pygame.key.set_mods(self.random.choice((0, 0, 0, pygame.KMOD_LCTRL)))
         if kind == "wheel":
@@ -156,6 +156,9 @@ class Monkey:
         if kind in ("click", "up"):
             post(new(pygame.MOUSEBUTTONUP, pos=at, button=pygame.BUTTON_LEFT))
             self._down = False
+        if kind == "menu":
+            for event in (pygame.MOUSEBUTTONDOWN, pygame.MOUSEBUTTONUP):
+                post(new(event, pos=at, button=pygame.BUTTON_RIGHT))
         return f"{kind} at {at}"
 
     def _resize(self) -> str:

@@ -128,6 +128,7 @@ def test_in_simulation_what_the_model_needs_acts_and_the_rest_says_why_not(
         "physics.axial_damping",
         "plasticity.strength",
         "plasticity.yielding",
+        "plasticity.first_yield",
         "physics.dop853",
     ]
     why = found["left_out"]

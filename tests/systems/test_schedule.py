@@ -155,6 +155,7 @@ YIELDING = (
     "physics.axial_damping",
     "plasticity.strength",
     "plasticity.yielding",
+    "plasticity.first_yield",
 )
 RAMP, DRAG = ("loads.ramp",), ("physics.drag",)
 

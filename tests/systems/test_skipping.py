@@ -37,7 +37,7 @@ def needed(model: dict[str, Any]) -> set[str]:
         else set()
     )
     if yields:
-        systems |= {"plasticity.strength", "plasticity.yielding"}
+        systems |= {"plasticity.strength", "plasticity.yielding", "plasticity.first_yield"}
     cables = any(rod.get("tension_only") for rod in rods)
     if cables:
         systems.add("physics.slackness")
@@ -81,7 +81,7 @@ def test_every_system_is_left_out_of_some_plan() -> None:
     [
         (
             lambda s: setattr(s.rods["AB"], "tensile_strength", 10.0),
-            {"plasticity.strength", "plasticity.yielding"},
+            {"plasticity.strength", "plasticity.yielding", "plasticity.first_yield"},
         ),
         (lambda s: setattr(s.environment, "drag", 1.0), {"physics.drag"}),
     ],

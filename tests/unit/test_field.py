@@ -41,6 +41,8 @@ PURE_RATIOS = {
     "strain",
     "restitution",
     "displacement_scale",
+    "automatic_displacement_scale",
+    "prescribed_displacement_scale",
 }
 
 

@@ -14,9 +14,12 @@ from hypothesis import strategies as st
 from scipy.linalg import eigh
 
 from components.model import Model
+from components.particle import Particle
+from components.rod import Rod
 from game.commands.command_line import main
 from game.commands.reports.verify import influence
 from game.documents import models
+from systems.statics.counting import counted
 from systems.statics.events import NoEquilibrium
 from systems.statics.settle import settle
 from systems.statics.theory import indeterminacy, linear, mechanisms, self_stress
@@ -369,6 +372,33 @@ def test_verify_prints_tables(capsys: pytest.CaptureFixture[str], words: tuple[s
     assert len(words) > 1 or lines[0].startswith("isostatic: verified, simulation and exact theory agree to ")
     assert main(["verify", "isostatic", "--influence", "nothing"]) == 2
     assert "nothing" in capsys.readouterr().err
+
+
+@pytest.mark.parametrize(
+    ("name", "said"),
+    [
+        ("isostatic", "g = m + r − 2n = 3 + 3 − 2·3 = 0"),
+        ("hyperstatic", "g = m + r − 2n = 6 + 3 − 2·4 = 1"),
+        ("pendulum", "g = m + r − 2n = 1 + 2 − 2·2 = −1; by rank: no self-stress, 1 mechanism"),
+        ("snap_through", "g = m + r − 2n = 2 + 4 − 2·3 = 0"),
+    ],
+)
+def test_the_rule_is_told_with_its_numbers(capsys: pytest.CaptureFixture[str], name: str, said: str) -> None:
+    main(["verify", name, "--theory-only"])
+    assert said in capsys.readouterr().out.splitlines()
+
+
+@pytest.mark.parametrize("seed", range(20))
+def test_the_rule_counts_self_stresses_less_mechanisms(seed: int) -> None:
+    """Maxwell's rule and the rank agree in the difference, with loose particles and free bodies, too."""
+    random = np.random.default_rng(seed)
+    model = Model()
+    model.create(Particle, 7, position=random.random((7, 2)), fixed=random.random((7, 2)) < 0.3)
+    pairs = [(i, j) for i in range(6) for j in range(i) if random.random() < 0.5]
+    if pairs:
+        model.create(Rod, len(pairs), between=pairs)
+    found = indeterminacy(model)
+    assert counted(model).degree == found.static - found.mechanisms
 
 
 @pytest.mark.parametrize(

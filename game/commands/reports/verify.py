@@ -12,6 +12,7 @@ from components.model import Model
 from game.commands import output
 from game.commands.output import aligned, as_written
 from game.session import Session
+from systems.statics.counting import FORMULA, Count, counted
 from systems.statics.equations import Array
 from systems.statics.events import NoEquilibrium, event_record
 from systems.statics.explain import describe_motion
@@ -111,6 +112,7 @@ def _found_by_theory(model: Model, name: str, theory: Theories) -> Found:
         "status": NOT_VERIFIED,
         "message": "",
         "indeterminacy": asdict(indeterminacy(model)),
+        "count": _count(model),
         "cables": [name for name, cable in zip(rods, model.rods.tension_only, strict=True) if cable],
         "mechanisms": [
             {
@@ -247,10 +249,26 @@ def _degrees(found: Found) -> str:
     return f"kinematically indeterminate to degree {moving} ({mechanisms}), {stressed}{cables}"
 
 
+def _count(model: Model) -> Found:
+    """The numbers of Maxwell's rule, with its degree."""
+    count = counted(model)
+    return {**asdict(count), "degree": count.degree}
+
+
+def _formula(found: Found) -> str:
+    """Maxwell's rule with its numbers, and what the rank says where there are mechanisms."""
+    numbers, degrees = dict(found["count"]), found["indeterminacy"]
+    del numbers["degree"]
+    count = Count(**numbers)
+    said = count.by_rank(degrees["static"], degrees["mechanisms"])
+    return f"{FORMULA} = {count.numbers}{f'; by rank: {said}' if said else ''}"
+
+
 def _verify_lines(found: Found) -> Iterator[str]:
     yield f"{found['model']}: {_verdict(found)}"
     yield from filter(None, [found["message"]])
     if found["rods"]:
+        yield _formula(found)
         yield _degrees(found)
     for mechanism in found["mechanisms"][:SHOWN]:
         yield f"mechanism: {mechanism['description']}"

@@ -46,17 +46,22 @@ class History:
     def _before_change(self) -> None:
         # Of the changes of a transaction only the first finds all earlier edits accounted for.
         if self._clock is None or self._simulation.armed:
-            self._clock = self._simulation.checkpoint("clock")
+            through_time = (
+                self._run is not None and self._key is not None
+            )  # undone together with time between them
+            self._clock = self._simulation.checkpoint(*(() if through_time else ("clock",)))
         self._simulation.before_change()
 
     def _record(self, inverse: Command) -> None:
-        assert self._clock is not None
         edit, self._clock = Edit(inverse, self._clock, self._key), None
-        run, self._run = self._run, None
-        if run is not None and not self._add_run(run):
-            edit = replace(edit, clock=run.before)
+        run, concerns_runs = self._run, edit.clock is not None
         if self._key is not None and _key_of(self._done.last) == self._key:
+            self._run = None if concerns_runs else run
             edit = merged(self._done.pop(), edit)
+        elif run is not None and self._add_run(run):
+            self._run = None
+        elif run is not None and concerns_runs:
+            self._run, edit = None, replace(edit, clock=run.before)
         self._add(edit)
         self._on_change(edit)
         if run is not None:
@@ -76,10 +81,19 @@ class History:
             self._key = outer
 
     def retract(self, key: Hashable) -> None:
-        """Take back the last entry, if it has this key, as if it had never been."""
-        if _key_of(self._done.last) == key:
+        """Take back the last entry, if it has this key, as if it had never been.
+
+        While time passes, the time that went by since stays, and the entry with it.
+        """
+        last = self._done.last
+        if not isinstance(last, Edit) or last.key != key:
+            return
+        if self._run is None:
             self.undo()
             self._undone.pop()
+        else:
+            with self.as_one(key):
+                self._model.execute(last.inverse)
 
     # --- runs ----------------------------------------------------------------------------------------
 
@@ -148,14 +162,20 @@ class History:
             self._simulation.resume(entry.before)
             title = "run"
         else:
-            # The whole state counts if a run without time went before that only moved overlapping discs apart.
-            now = self._simulation.checkpoint(*(() if entry.clock.whole else ("clock",)))
-            target.push(Edit(self._model.apply(entry.inverse), now, entry.key))
-            self._simulation.resume(entry.clock)
+            target.push(Edit(self._model.apply(entry.inverse), self._like(entry.clock), entry.key))
+            if entry.clock is not None:
+                self._simulation.resume(entry.clock)
             title = _title(entry.inverse)
         self._clock = None
         self._on_change(entry)
         return title
+
+    def _like(self, before: Checkpoint | None) -> Checkpoint | None:
+        """A checkpoint of the present with as much as one before the edits has: all of the state if time passed between
+        them, or if a run without time went before that only moved overlapping discs apart."""
+        if before is None:
+            return None
+        return self._simulation.checkpoint(*(() if before.whole else ("clock",)))
 
 
 def _key_of(entry: Entry | None) -> Hashable | None:
@@ -173,7 +193,8 @@ def merged(earlier: Entry, later: Edit) -> Edit:
     if all(isinstance(command, Assign) for command in (*old, *new)):
         known = {_target(command) for command in old}
         new = tuple(command for command in new if _target(command) not in known)
-    return replace(earlier, inverse=Group((*new, *old), _title(earlier.inverse)))
+    inverse = Group((*new, *old), _title(earlier.inverse))
+    return replace(earlier, inverse=inverse, clock=earlier.clock or later.clock)
 
 
 def _parts(command: Command) -> tuple[Command, ...]:

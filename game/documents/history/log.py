@@ -18,12 +18,19 @@ from systems.run.checkpoint import Checkpoint
 class Edit:
     """One step that a person took; applying `inverse` takes it back.
 
-    clock: the clock to return to then. key: edits in a row with the same key are one entry.
+    clock: the clock to return to then, with all of the state if time passed during the edit; None: no run depends on
+    what was edited. key: edits in a row with the same key are one entry. stored: as of a run.
     """
 
     inverse: Command
-    clock: Checkpoint
+    clock: Checkpoint | None
     key: Hashable | None = None
+    stored: int | None = None
+
+    @property
+    def whole(self) -> Checkpoint | None:
+        """The checkpoint with all of the state, if there is one."""
+        return self.clock if self.clock is not None and self.clock.whole else None
 
 
 @dataclass(frozen=True, slots=True)
@@ -37,6 +44,11 @@ class Run:
     before: Checkpoint
     single: bool = False
     stored: int | None = None
+
+    @property
+    def whole(self) -> Checkpoint:
+        """The checkpoint with all of the state."""
+        return self.before
 
 
 Entry = Edit | Run
@@ -91,8 +103,8 @@ class Log:
     def push(self, entry: Entry) -> None:
         """Add the newest entry."""
         self._entries.append(entry)
-        if isinstance(entry, Run):
-            self._held += entry.before.state.size
+        if entry.whole is not None:
+            self._held += entry.whole.state.size
             while self._held > self._memory and self._store_oldest():
                 pass
 
@@ -100,10 +112,10 @@ class Log:
         """Take the newest entry out, its state in memory again."""
         entry = self._entries.pop()
         self._oldest = min(self._oldest, len(self._entries))
-        if isinstance(entry, Run):
-            if entry.stored is not None:
-                return replace(entry, before=replace(entry.before, state=self._store.read(entry.stored)))
-            self._held -= entry.before.state.size
+        if entry.stored is not None:
+            return _with_state(entry, self._store.read(entry.stored), None)
+        if entry.whole is not None:
+            self._held -= entry.whole.state.size
         return entry
 
     def clear(self) -> None:
@@ -114,13 +126,20 @@ class Log:
     def _store_oldest(self) -> bool:
         """Move the oldest state that is in memory to the disk; False if that cannot be done."""
         entry = self._entries[self._oldest]
-        if isinstance(entry, Run):
+        if entry.whole is not None:
             try:
-                stored = self._store.put(entry.before.state)
+                stored = self._store.put(entry.whole.state)
             except OSError:  # no room on the disk either
                 return False
-            before = replace(entry.before, state=_NOTHING)
-            self._entries[self._oldest] = replace(entry, before=before, stored=stored)
-            self._held -= entry.before.state.size
+            self._entries[self._oldest] = _with_state(entry, _NOTHING, stored)
+            self._held -= entry.whole.state.size
         self._oldest += 1
         return True
+
+
+def _with_state(entry: Entry, state: Snapshot, stored: int | None) -> Entry:
+    """The entry with another state in its checkpoint."""
+    if isinstance(entry, Run):
+        return replace(entry, before=replace(entry.before, state=state), stored=stored)
+    assert entry.clock is not None
+    return replace(entry, clock=replace(entry.clock, state=state), stored=stored)

@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import replace
 
 from components.field import Vector
+from components.menu import Menu
 from components.particle import Particle
 from components.rod import Rod
 from game.editor.actions.editing import all_of
@@ -34,6 +35,14 @@ def _open_menu(context: Context, pixel: Vector) -> None:
     context.view.menu = menu_at(context, pixel)
 
 
+@action("more tools", while_drawing=True)
+def _more_tools(context: Context, pixel: Vector) -> None:
+    """The tools for which the toolbar has no room."""
+    view = context.view
+    groups = view.toolbar.folded(view.camera.viewport, view.pixel_ratio)
+    context.view.menu = Menu("", groups, pixel, pointed=pixel) if groups else None
+
+
 def _to_entry(way: str) -> Action:
     """An arrow key in an open menu."""
 
@@ -41,12 +50,12 @@ def _to_entry(way: str) -> Action:
         layout = menu_of(context.view)
         if layout is None:
             return
-        here, count = layout.pointed_at(context.view.pointer), len(layout.entries)
+        here, count = layout.pointed_at(pixel), len(layout.entries)
         if way in ("up", "down"):
             chosen = (here + 1) % count if way == "down" else (max(here, 0) - 1) % count
         else:
             chosen = layout.beside(here, 1 if way == "right" else -1)
-        context.view.menu = replace(layout.menu, chosen=chosen, pointed=context.view.pointer)
+        context.view.menu = replace(layout.menu, chosen=chosen, pointed=pixel)
 
     return act
 
@@ -62,7 +71,7 @@ def _close_menu(context: Context, pixel: Vector) -> None:
 
 @action("choose entry", while_drawing=True)
 def _choose_nothing(context: Context, pixel: Vector) -> None:
-    """A press on the menu that hits no entry; one that does performs the action of the entry."""
+    """A press that comes to no entry, or to one that would do nothing; others perform the action of the entry."""
 
 
 @action("open", while_drawing=True)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from components.field import Vector
+from components.rod import has_strength
 from game.documents.shapes import NoShape
 from game.editor.context import Action, Context, action
 from game.editor.view_model import pages_of_help
@@ -34,7 +35,8 @@ _ACTIONS: dict[str, Action] = {
     "zoom in": lambda context, pixel: context.scenes.active.zoom(context, ZOOM_STEP, pixel),
     "zoom out": lambda context, pixel: context.scenes.active.zoom(context, 1.0 / ZOOM_STEP, pixel),
     "pan": lambda context, dragged: context.scenes.active.pan(context, dragged),
-    **{f"toggle {shown}": _toggle(shown) for shown in ("legend", "theory", "energy")},
+    **{f"toggle {shown}": _toggle(shown) for shown in ("legend", "theory", "energy", "events")},
+    "toggle free bodies": _toggle("free_bodies"),
     **{name: _magnify(by) for name, by in (("larger", 1), ("smaller", -1), ("usual size", 0))},
     "close help": lambda context, pixel: setattr(context.view, "help", 0),
 }
@@ -50,6 +52,15 @@ def _next_shape(context: Context, pixel: Vector) -> None:
     except NoShape as error:
         raise Refusal(str(error)) from None
     context.view.shape = context.document.shapes.shown
+
+
+@action("toggle utilisation", while_drawing=True)
+def _toggle_utilisation(context: Context, pixel: Vector) -> None:
+    """Show how much of its strength each rod bears, or hide it."""
+    view = context.view
+    if not view.utilisation and not has_strength(context.model):
+        raise Refusal("No rod has a strength: select some and give them a tensile or compressive one (Return).")
+    view.utilisation = not view.utilisation
 
 
 @action("next theme", while_drawing=True)

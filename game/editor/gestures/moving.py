@@ -19,7 +19,7 @@ from systems.edit.placing import check_free, snapped, snapped_to_points
 from systems.edit.pull import hand_on
 
 
-class _Placing(Gesture):
+class Placing(Gesture):
     """A drag of which every move changes the document; all its moves are one entry of the log."""
 
     hint = "let go to place     Esc put back"
@@ -34,7 +34,7 @@ class _Placing(Gesture):
         """The elements stay where they are."""
 
 
-class Move(_Placing):
+class Move(Placing):
     """Drags elements, by their original positions."""
 
     def __init__(self, context: Context, hit: Handle, pixel: Vector) -> None:
@@ -75,7 +75,7 @@ class Move(_Placing):
         return f"{leader.name}{others}: {written.place(target)}"  # type: ignore[attr-defined]
 
 
-class MovePoint(_Placing):
+class MovePoint(Placing):
     """Drags one point of an element, such as the end of a wall."""
 
     def __init__(self, context: Context, grip: Grip) -> None:

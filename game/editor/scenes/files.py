@@ -4,12 +4,14 @@ from __future__ import annotations
 
 import time
 from collections.abc import Sequence
+from contextlib import suppress
+from pathlib import Path
 from typing import Any, NamedTuple
 
 from components.box import FILE_NAME, Box
 from components.form import Form, Tile
 from game.documents import library, models
-from game.documents.previews import preview
+from game.documents.previews import LARGEST_SOLVED, has_moved, preview, solved
 from game.editor.context import Context
 from game.editor.scenes.form import FormScene
 from systems.base import Phase, System
@@ -26,10 +28,11 @@ class FileScene(FormScene):
     def __init__(self) -> None:
         super().__init__()
         self._unread: list[Tile] = []
+        self._unsolved: list[Tile] = []  # whose pictures could show forces that take longer to find
 
     def exit(self, context: Context) -> None:
         super().exit(context)
-        self._unread = []
+        self._unread, self._unsolved = [], []
 
     def new_form(self, heading: str, name: str, offers: Sequence[Offer], accept: str) -> Form:
         """A form with a box for the name, a button, and a tile for each offer, its picture to be read later."""
@@ -38,7 +41,7 @@ class FileScene(FormScene):
         if offers:
             columns = map(list, zip(*offers, strict=True))
             form.create(Tile, len(offers), **dict(zip(Offer._fields, columns, strict=True)))
-        self._unread = [tile for tile in form.tiles if not tile.symbol]
+        self._unread, self._unsolved = [tile for tile in form.tiles if not tile.symbol], []
         return form
 
     @property
@@ -74,7 +77,9 @@ class FileScene(FormScene):
     def _neighbour(self, context: Context, direction: str) -> Tile | None:
         """The tile next to the chosen one in a direction; the first visible tile if none is chosen yet."""
         layout, chosen = self.layout(context), self.form.chosen
-        rows = [[item for item in row if isinstance(item, Tile)] for row in layout.rows if not isinstance(row, str)]
+        rows = [
+            [item for item in row if isinstance(item, Tile)] for row in layout.rows if not isinstance(row, str)
+        ]
         at = next(((row, row.index(chosen)) for row in rows if chosen in row), None)
         if at is None:
             return next((place.item for place in layout.places if isinstance(place.item, Tile)), None)
@@ -94,14 +99,21 @@ class FileScene(FormScene):
     # --- pictures ----------------------------------------------------------------------------------
 
     def busy(self, context: Context) -> bool:
-        return self._next_unread(context) is not None
+        return bool(self._unsolved) or self._next_unread(context) is not None
 
     def read_pictures(self, context: Context) -> None:
-        """Read the next missing pictures among the visible tiles, few in a frame so that typing stays fluent."""
+        """Read the next missing pictures among the visible tiles, few in a frame so that typing stays fluent.
+
+        Once all are there, forces are found for small structures that never moved, one in a frame.
+        """
         until = time.perf_counter() + READING
+        if self._unsolved and self._next_unread(context) is None:
+            _solve(self._unsolved.pop(0))
         while (tile := self._next_unread(context)) is not None:
             self._unread.remove(tile)
             _read_picture(tile)
+            if isinstance(tile.source, Path) and tile.picture is not None and not has_moved(tile.picture):
+                self._unsolved.append(tile)
             if time.perf_counter() >= until:
                 break
 
@@ -149,6 +161,14 @@ def saved_models() -> list[Offer]:
         for p in library.saved()
         if (name := models.name_of(p))
     ]
+
+
+def _solve(tile: Tile) -> None:
+    """Let a picture show forces, if it is of a small structure that never moved."""
+    with suppress(OSError, models.ModelError):
+        found = solved(tile.source) if tile.exists and tile.picture.rods.count <= LARGEST_SOLVED else None
+        if found is not None:
+            tile.picture = found
 
 
 def _read_picture(tile: Tile) -> None:

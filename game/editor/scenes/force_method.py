@@ -12,8 +12,11 @@ import numpy as np
 from components.camera import Camera, Viewport
 from components.field import Vector
 from components.model import Model
+from components.settings import Settings
+from components.slider import SliderStack
 from components.view import Page, Status, View
 from game.editor.context import Context, Scene
+from game.editor.sliders import scale_control
 from game.force_method import PARTS, words
 from systems.base import Phase, System
 from systems.render.diagrams import largest_force
@@ -28,8 +31,13 @@ MOST_OF_HEIGHT = 0.45  # of the window that the equations and the table take at 
 LARGE = 500  # rods; work on larger structures is announced in a picture first
 LOW = 1.8  # width / height of a place from which a structure stands beside its caption
 LEAST_WIDTH, LEAST_HEIGHT, LEAST_LOW = 140.0, 160.0, 90.0  # points of a set; below or beside its caption
+HIGH = 340.0  # points of a set in which a slider has room below supports and reactions
 MOVED = 0.08  # of the size of a structure: about what drawn displacements add to it
-CAPTION, SCALE, MARGIN = 66.0, 28.0, 40.0  # points above, below and at most about a structure in its set
+CAPTION, SCALE, MARGIN = (
+    66.0,
+    48.0,
+    40.0,
+)  # points above, below (its slider) and at most about a structure in its set
 
 
 @dataclass
@@ -198,7 +206,15 @@ class ForceMethod(Scene):
                 _fit(model, view)
             view.caption = captions[index]
             shown.append((model, view))
+        if self.shown_guide is not None and self.shown_guide.mechanism is None:
+            first, control = shown[0][1], scale_control(self.shown_guide.sets[0].model.settings)
+            high = first.camera.viewport.height >= HIGH * ratio
+            first.sliders = SliderStack((control,)) if high else SliderStack()
         return shown
+
+    def scaled(self, context: Context) -> list[Settings]:
+        """All sets are drawn to one scale."""
+        return [one.model.settings for one in self.shown_guide.sets] if self.shown_guide else []
 
     # --- looking closer: all sets alike ----------------------------------------------------------------
 

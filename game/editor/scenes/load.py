@@ -114,6 +114,8 @@ class Load(FileScene):
         ]
         self.form.assign(tiles, "hidden", hidden)
         self.form.heading.first = 0
+        if words and all(hidden):
+            self.say("No model or lesson has that in its name. Backspace takes characters away again.")
 
     def hint(self, context: Context) -> str:
         layout = self.layout(context)

@@ -17,6 +17,7 @@ from game.editor.context import Context, Stage
 from game.editor.scenes.form import FormScene
 from systems.edit.picking import pick
 from systems.forms import answers, properties, results, typing
+from systems.render.form_layout import FormLayout
 
 
 class Properties(FormScene):
@@ -45,6 +46,7 @@ class Properties(FormScene):
         model, selected = context.model, context.selected
         form = Form(properties.heading(model, selected), lambda box: answers.problem(model, box))
         properties.fill(form, model, selected)
+        results.fill(form, model, selected, known=context.view.forces_known)
         self._read = ()
         return form
 
@@ -65,6 +67,7 @@ class Properties(FormScene):
         if context.model.revision != before:
             self.form.heading.text = properties.heading(context.model, context.selected)
             properties.refresh(self.form, context.model, context.selected)
+            self._read_results(context)
         return refused
 
     def changed(self, context: Context) -> None:
@@ -128,13 +131,18 @@ class Properties(FormScene):
             return [(self.form, view)]
         return [(model, view), (self.form, replace(view, status=context.view.status))]
 
+    def layout(self, context: Context) -> FormLayout:
+        """Where boxes are as results stand above them, whether a picture was drawn or not."""
+        self._read_results(context)
+        return super().layout(context)
+
     def _read_results(self, context: Context) -> None:
         """Let the readings say what the elements do now."""
         model, known = context.model, context.view.forces_known
         now = self.form.context, model.revision, known, self.form.heading.text
         if now != self._read:
             self._read = now
-            results.fill(self.form, model, context.selected if known else [])
+            results.fill(self.form, model, context.selected, known=known)
 
     def focus(self, context: Context) -> tuple[Model, View]:
         """The model where it was, and what is seen of it beside the boxes."""

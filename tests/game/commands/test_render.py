@@ -16,6 +16,7 @@ import pytest
 from game.app import App
 from game.commands.command_line import main
 from game.documents import models
+from systems.render.theme import load_theme
 
 SVG = "{http://www.w3.org/2000/svg}"
 RUN = ["isostatic", "--until-rest", "--diagrams"]
@@ -61,6 +62,18 @@ def test_walls_have_groups_too(tmp_path: Path) -> None:
     assert len(groups["walls.floor"]) == 3  # a line and two round ends
 
 
+@pytest.mark.parametrize("diagrams", [False, True])
+def test_loads_have_groups_of_their_own(diagrams: bool, tmp_path: Path) -> None:
+    path = tmp_path / "a.svg"
+    words = ["render", "braced_portal", "--at", "0.6", "--output", str(path)]
+    assert main([*words, "--diagrams"] if diagrams else words) == 0
+    groups = {group.get("data-path"): group for group in ET.parse(path).getroot().iter(f"{SVG}g")}
+    [name] = models.load("braced_portal").tables["loads"].names
+    assert groups[f"loads.{name}"].findall(f"{SVG}polygon")  # the head of its arrow
+    texts = [text.text for text in groups[f"loads.{name}"].iter(f"{SVG}text")]
+    assert texts == (["50.00 kN"] if diagrams else [])
+
+
 @pytest.mark.parametrize(
     ("words", "told"),
     [
@@ -92,4 +105,18 @@ def test_pictures_of_the_window(tmp_path: Path, monkeypatch: pytest.MonkeyPatch)
     assert "AB" in texts
     assert "Paused" not in texts
     assert pygame.image.load(tmp_path / "pinjoint.png").get_size() == app.render.surface.get_size()
+    app.close()
+
+
+def test_a_picture_of_several_sets_is_whole(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Toolbar and message bar leave no hole in it."""
+    monkeypatch.chdir(tmp_path)
+    app = App(models.load("hyperstatic"))
+    app.next_frame(wait=False)
+    for key in ("k", "f12", "escape", "return", "f12"):
+        app.session.press(key)
+        app.next_frame(wait=False)
+    for name in ("pinjoint.png", "pinjoint-2.png"):
+        corner = colours(tmp_path / name)[0, 0, :3]
+        assert tuple(corner) == load_theme(app.session.view.theme).background[:3]
     app.close()

@@ -2,9 +2,12 @@
 
 from __future__ import annotations
 
+from pathlib import Path
+
 import pytest
 
 from game import Session
+from game.documents import models
 from game.editor.scenes.properties import Properties
 from systems.forms.results import results
 from tests.reference.models import triangle
@@ -79,14 +82,64 @@ def test_results_follow_an_accepted_value_at_once() -> None:
     assert after == pytest.approx(2 * before, rel=1e-3), "twice as stiff at the same strain"
 
 
-def test_what_is_not_known_is_not_shown() -> None:
-    session = at_rest()
-    session.select(session.rods["AB"])
+def test_what_is_not_known_is_not_said_and_boxes_stay_where_they_are() -> None:
+    session = at_rest(tensile_strength=215)
+    session.select(session.rods["AB"], session.particles["A"])
     session.press("return")
+    before = [reading.title for reading in session.scenes.active.form.readings]  # type: ignore[attr-defined]
     session.view.forces_known = False
-    assert readings(session) == {}
+    shown = readings(session)
+    assert [*shown] == before, "they are there before anything is drawn"
+    assert shown["axial force"] == shown["utilisation"] == "—"
 
 
 def test_the_environment_has_no_results() -> None:
     session = at_rest()
     assert [*results(session.model, [])] == []
+
+
+# --- E and A ---------------------------------------------------------------------------------------------
+
+
+def test_the_stiffness_follows_from_youngs_modulus_and_area_and_the_stress_is_shown() -> None:
+    session = at_rest()
+    rod = session.rods["BC"]
+    session.select(rod)
+    session.press("return")
+    assert "stress" not in readings(session)
+    for title, text in (("stiffness", "a"), ("young's modulus", "210"), ("area", "20")):
+        session.click_box(title)
+        session.type(text)
+        session.press("return")
+    assert (rod.youngs_modulus, rod.area) == pytest.approx((210e6, 20e-4))
+    assert rod.stiffness == pytest.approx(420_000.0)
+    assert session.boxes["stiffness"] == "420000"
+    force = rod.axial_force
+    assert readings(session)["stress"] == f"{force / 20e-4 / 1000:.4g} MPa".replace("-", "−")
+    session.press("escape")
+    session.undo()
+    assert (rod.youngs_modulus, rod.area, rod.stiffness) == (None, None, 164640.0)
+
+
+def test_a_stiffness_of_its_own_counts_more_than_e_and_a() -> None:
+    session = Session.open(triangle(youngs_modulus=210e6, area=1e-3, stiffness=500.0))
+    rod = session.rods["AB"]
+    assert rod.stiffness == 500.0
+    rod.stiffness = None  # type: ignore[assignment]
+    assert rod.stiffness == pytest.approx(210e3)
+    rod.area = 2e-3
+    assert rod.stiffness == pytest.approx(420e3)
+    rod.area = None
+    assert rod.stiffness == 164640.0, "of a rod of which nothing is known"
+
+
+def test_a_file_keeps_e_and_a_and_old_files_keep_their_stiffness(tmp_path: Path) -> None:
+    path = tmp_path / "bars.json"
+    models.save(models.parse(triangle(youngs_modulus=70e6, area=3e-4)), path)
+    again = models.load(path)
+    assert (again.rods.youngs_modulus[0], again.rods.area[0]) == (70e6, 3e-4)
+    assert again.rods.stiffness[0] == 70e6 * 3e-4
+    models.save(models.parse(triangle(stiffness=0.1 + 0.2)), path)
+    assert "area" not in path.read_text(encoding="utf-8")
+    old = models.load(path)
+    assert old.rods.stiffness[0] == 0.1 + 0.2

@@ -78,6 +78,7 @@ def test_roles_follow_each_other_as_in_a_step() -> None:
         "plasticity.yielding",
         "physics.elasticity_after_yielding",
         "plasticity.strength",
+        "plasticity.first_yield",
         "physics.axial_damping",
     ]
     assert [b.role for some in roles.values() for b in some] == [
@@ -85,6 +86,7 @@ def test_roles_follow_each_other_as_in_a_step() -> None:
         StepRole.HISTORY,
         StepRole.SUMMED,
         StepRole.REPLACING,
+        StepRole.LATE_HISTORY,
         StepRole.RATE,
     ]
 

@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 from components.model import Model
 from components.particle import Particle
 from components.tags import DiagramShown
-from systems.render.diagrams import diagram_factor, scale_step, written
+from systems.render.diagrams import diagram_factor, scale_step
 from systems.render.marks import Bars, Fills, Picture, Strokes
 from systems.render.picture import compose
 from tests.systems.render.pictures import LIGHT, fill, marks_of, picture_of, triangle, view_of
@@ -18,9 +18,9 @@ from tests.systems.render.pictures import LIGHT, fill, marks_of, picture_of, tri
 
 def test_values_of_the_thesis_triangle() -> None:
     texts = picture_of(triangle(), all_diagrams=True).texts
-    for value in ("−28.34", "−198.03", "20.07", "120.00", "160.00", "20.01", "139.99"):
+    for value in ("−28.34", "−198.0", "20.07", "120.0", "160.0", "20.01", "140.0"):
         assert f"{value} kN" in texts
-    assert texts.count("120.00 kN") == 2  # the load at B and the reaction at C
+    assert texts.count("120.0 kN") == 2  # the load at B and the reaction at C
     assert {"A", "B", "C", "AB", "BC", "CA"} <= set(texts)
 
 
@@ -86,7 +86,7 @@ def test_a_rod_without_force_is_black_and_reads_zero() -> None:
     (black,) = marks_of(picture, Bars, LIGHT.zero)
     assert len(black.corners) == 2
     assert LIGHT.zero[:3] == (0, 0, 0)
-    assert picture.texts.count("0.00 kN") == 2
+    assert picture.texts.count("0 kN") == 2
 
 
 def test_only_marked_elements_show_their_diagrams() -> None:
@@ -96,13 +96,14 @@ def test_only_marked_elements_show_their_diagrams() -> None:
     texts = picture_of(model).texts
     assert "20.07 kN" in texts
     assert "20.01 kN" in texts
-    assert not {"−28.34 kN", "−198.03 kN", "120.00 kN"} & set(texts)
+    assert not {"−28.34 kN", "−198.0 kN", "120.0 kN"} & set(texts)
 
 
 def arrows_of(picture: Picture, colour: tuple[int, ...]) -> list[tuple[np.ndarray, np.ndarray]]:
     """Tails and tips of the arrows of one colour."""
     heads = [tip for mark in marks_of(picture, Fills, colour) for tip in mark.corners[:, 0]]
-    return list(zip([tail for m in marks_of(picture, Strokes, colour) for tail in m.start], heads, strict=True))
+    lines = [mark for mark in marks_of(picture, Strokes) if mark.colour == colour]
+    return list(zip([tail for mark in lines for tail in mark.start], heads, strict=True))
 
 
 def test_arrows_point_along_the_force_and_meet_the_rim() -> None:
@@ -124,7 +125,7 @@ def test_arrows_point_along_the_force_and_meet_the_rim() -> None:
         assert np.linalg.norm(tail - pixels[row]) == pytest.approx(radius + 2.0)
     lengths = {row: np.hypot(*whole) for row, (_, whole) in by_row.items()}
     assert lengths[2] == pytest.approx(1.5 * lengths[1])
-    assert {"1.00 kN", "2.00 kN", "3.00 kN", "0.0001 kN"} <= set(picture.texts)
+    assert {"1.000 kN", "2.000 kN", "3.000 kN", "0.0001100 kN"} <= set(picture.texts)
 
 
 def test_a_load_on_a_crowded_side_pushes_from_the_free_one() -> None:
@@ -134,11 +135,3 @@ def test_a_load_on_a_crowded_side_pushes_from_the_free_one() -> None:
     top = view.camera.to_pixels((1.0, 1.0))
     [tip] = [tip for tail, tip in arrows_of(compose(model, view, LIGHT), LIGHT.load) if tail[1] < tip[1]]
     np.testing.assert_allclose(tip, top - [0, 0.05 * view.camera.scale + 2.0])
-
-
-@pytest.mark.parametrize(
-    ("force", "text"),
-    [(-28.34277, "−28.34"), (198.0, "198.00"), (-0.0049, "0.00"), (0.0, "0.00"), (-0.005001, "−0.01")],
-)
-def test_written_forces(force: float, text: str) -> None:
-    assert written(force) == text

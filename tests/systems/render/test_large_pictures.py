@@ -10,8 +10,8 @@ from components.model import Model
 from components.tags import Selected
 from components.view import View
 from systems.render.clip import clip_rods, clip_segments
-from systems.render.labels import FAINT, STRONG, Occupancy
 from systems.render.marks import Bars, Picture, Strokes
+from systems.render.occupancy import FAINT, STRONG, Occupancy
 from systems.render.picture import compose
 from systems.render.theme import load_theme
 from tests.benchmarks.models import lattice

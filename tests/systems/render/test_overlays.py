@@ -28,7 +28,7 @@ def test_a_problem_is_told_in_full() -> None:
 def test_displacements_too_small_to_be_seen_are_told(displacement: float, told: bool) -> None:
     model = triangle()
     model.particles["B"].displacement = (displacement, 0.0)
-    said = "displacements up to 0.43 mm, too small to see; Return sets their scale"
+    said = "displacements up to 0.43 mm, too small to see; their slider enlarges them"
     assert (said in " ".join(picture_of(model, width=900).texts)) == told
     model.settings.displacement_scale = 100.0
     assert said not in " ".join(picture_of(model, width=900).texts)
@@ -43,6 +43,24 @@ def test_legend_names_only_what_occurs() -> None:
     fill(model, "rods.yielding", [False, True, False])
     assert meanings & set(picture_of(model).texts) == {"yielding"}
     assert not meanings & set(picture_of(model, legend=False, all_diagrams=True).texts)
+
+
+def test_legend_leaves_out_what_is_not_in_the_picture() -> None:
+    model = triangle()
+    model.rods["BC"].compressive_strength = 198.0
+    fill(model, "rods.yielding", [False, True, False])
+    view = view_of(model, all_diagrams=True)
+    view.camera.zoom(20.0, view.camera.to_pixels((0.5, 0.0)))
+    texts = set(compose(model, view, LIGHT).texts)
+    assert "tension (kN)" in texts
+    assert not {"compression (kN)", "yielding", "load (kN)", "reaction (kN)"} & texts
+
+
+def test_legend_explains_the_undeformed_structure_where_it_is_drawn() -> None:
+    model = triangle()
+    assert "undeformed" not in picture_of(model).texts
+    model.particles["B"].displacement = (0.2, 0.0)
+    assert "undeformed" in picture_of(model).texts
 
 
 def test_heading_and_displacement_scale_are_written() -> None:

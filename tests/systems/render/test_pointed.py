@@ -30,7 +30,7 @@ def point_at(session: Session, handle: Handle) -> None:
     if handle.table == "rods":
         place = places[list(session.model.rods.between[handle.row])].mean(axis=0)
     else:
-        place = places[handle.row] if handle.table == "particles" else handle.start
+        place = places[handle.row] if handle.table == "particles" else handle.start  # type: ignore[attr-defined]
     session.view.pointer = tuple(session.view.camera.to_pixels(place).tolist())
     session.model.tag_only([handle], Hovered)
     session.update_view()

@@ -7,8 +7,9 @@ from pathlib import Path
 import pytest
 
 from components.camera import Viewport
-from game.documents import models
-from game.documents.previews import preview
+from game import Session
+from game.documents import library, models
+from game.documents.previews import preview, solved
 from systems.render.marks import Bars
 from systems.render.theme import load_theme
 from systems.render.thumbnails import extent, thumbnail
@@ -34,6 +35,33 @@ def test_forces_are_shown_in_colour() -> None:
 
 def test_a_model_that_never_moved_shows_forces_of_linear_theory(tmp_path: Path) -> None:
     models.save(models.parse(triangle()), tmp_path / "mine.json")
-    shown = preview(tmp_path / "mine.json")
+    shown = solved(tmp_path / "mine.json")
+    assert shown is not None
     assert shown.rods["BC"].axial_force == pytest.approx(-197.99, abs=0.01)
     assert not shown.particles.displacement.any()
+
+
+def test_a_model_that_was_run_shows_the_forces_with_which_it_was_saved(tmp_path: Path) -> None:
+    session = Session.open(triangle(tensile_strength=215))
+    session.settle()
+    session.save(tmp_path / "mine.json")
+    shown = preview(tmp_path / "mine.json")
+    assert shown.rods["BC"].axial_force == pytest.approx(session.rods["BC"].axial_force)
+    assert solved(tmp_path / "mine.json") is None
+
+
+def test_pictures_are_there_before_forces_that_take_longer(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setenv(library.DATA_VARIABLE, str(tmp_path))
+    session = Session.open(triangle())
+    (tmp_path / "models").mkdir()
+    session.save(tmp_path / "models" / "mine.json")
+    session.press("d")
+    tiles = session.scenes.active.form.tiles  # type: ignore[attr-defined]
+    seen = []
+    while session.busy:
+        session.frame(0.01)
+        seen.append([tiles[0].picture is not None and tiles[0].picture.rods.axial_force.any(), len(seen)])
+    assert not seen[0][0]
+    assert seen[-1][0]

@@ -12,6 +12,7 @@ from game.editor.actions import ACTIONS
 from systems.input.bindings import ADDED_BUTTONS, ADDED_TOOLS, BINDINGS, TOOLBAR
 from systems.render.icons import ADDED, icon, icons
 from systems.render.marks import Stamps
+from systems.render.menu import menu_of
 from systems.render.picture import compose
 from systems.render.theme import load_theme
 
@@ -52,7 +53,7 @@ def test_every_tool_is_an_action_with_a_key_and_an_icon() -> None:
         assert icon(action)
         assert any(binding.action == action and binding.title for binding in BINDINGS)
     added = [binding.action for binding in ADDED_BUTTONS]
-    assert {*icons(), *ADDED} == {*offered, *added, "pause"}
+    assert {*icons(), *ADDED} == {*offered, *added, "pause", "more tools"}
 
 
 @pytest.mark.parametrize("size", SIZES)
@@ -89,7 +90,26 @@ def test_tab_and_small_windows_hide_it() -> None:
     session.press("tab")
     assert session.view.strip.width > 0
     assert opened(size=(320, 240)).view.strip.width == 0
-    assert opened(size=(1000, 300)).view.strip.width == 0
+    assert opened(size=(1000, 100)).view.strip.width == 0
+
+
+@pytest.mark.parametrize("size", [(640, 360), (512, 384), (1000, 300), (640, 240)])
+def test_where_height_is_short_groups_are_folded_into_a_menu(size: tuple[int, int]) -> None:
+    session = opened(size=size)
+    view, found = session.view, buttons(session)
+    everything = {tool.action for group in view.toolbar.groups for tool in group}
+    assert {"toggle run", "toggle help", "more tools"} <= set(found)
+    assert all(button.top + button.height <= size[1] for button in found.values())
+    corners = [(button.left + 1.0, button.top + 1.0) for button in found.values()]
+    assert len({*corners}) == len(found)
+    push(session, "more tools")
+    assert view.menu is not None
+    assert {*found, *(entry.action for entry in view.menu.entries)} == everything | {"more tools"}
+    layout = menu_of(view)
+    assert layout is not None
+    place = layout.entries[[entry.action for entry in view.menu.entries].index("save")]
+    session.press("click", (place.left + 2.0, place.top + 2.0))
+    assert session.scene == "save"
 
 
 @pytest.mark.parametrize("key", ["click", "ctrl+click", "drag"])

@@ -1,0 +1,187 @@
+"""Chronicle: what happened in the run of a document, when, and at which load, in words."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from components import written
+from components.field import Column, Role
+from components.load import load_factor
+from components.model import Model
+from components.rod import can_yield, has_cables
+from systems.base import StopReason
+from systems.run.simulation import Simulation
+from systems.statics.stability import LARGEST, is_held
+
+COLLAPSED = (
+    4.0  # plastic strain over that at which a rod yields, beyond which one that nothing resists is no overshoot
+)
+MOST_NAMED = 3  # elements in a sentence
+TOLD, MOST_TOLD = 5.0, 2  # s for which a person is told of something, and of how much at a time
+
+
+@dataclass(frozen=True)
+class Happening:
+    """Something that happened in a run.
+
+    kind: "yield", "collapse", "snap-through", "slack", "rest", "diverged", or the name of an event of a mod.
+    time: s. message: a sentence. elements: names of those concerned. load_factor: that of the loads then, if they share one.
+    """
+
+    kind: str
+    time: float
+    message: str
+    elements: tuple[str, ...] = ()
+    load_factor: float | None = None
+
+    @property
+    def when(self) -> str:
+        """The time, and the share of the load unless that is all of it: "0.4345 s, 86.9 % of the load"."""
+        if self.load_factor is None or self.load_factor == 1.0:
+            return written.time(self.time)
+        return f"{written.time(self.time)}, {written.share(self.load_factor)} of the load"
+
+
+class Chronicle:
+    """What happened in a run so far, without what was taken back.
+
+    Yielding, rest, divergence and events of mods are read from the state, which knows their instants. Cables that go slack,
+    collapses and snap-throughs are found by looking, in a window at every frame: they are dated to the look.
+    """
+
+    def __init__(self, model: Model, simulation: Simulation) -> None:
+        self._model, self._simulation = model, simulation
+        self._seen: list[Happening] = []
+        self._stands = (-1, False)  # revision of the document, and whether it is no mechanism
+        self._slack: frozenset[str] | None = None  # names of cables at the last look
+        self._looked = -1.0
+        self._yielded: tuple[Column, list[Happening]] = np.empty(0), []
+        self._factors: tuple[int, dict[float, float | None]] = -1, {}
+        self._known: set[Happening] = set()
+        self._telling: list[tuple[Happening, float]] = []
+
+    @property
+    def happenings(self) -> tuple[Happening, ...]:
+        """All of the run, in order of time."""
+        now = self._model.clock.time
+        found = [*self._yields(), *self._events(), *(seen for seen in self._seen if seen.time <= now)]
+        found.sort(key=lambda happening: happening.time)
+        return (*found, *self._end())
+
+    def look(self) -> None:
+        """Note what can only be found by looking at the state as it is now."""
+        model, now = self._model, self._model.clock.time
+        if now < self._looked:  # time was taken back
+            self._seen = [seen for seen in self._seen if seen.time <= now]
+            self._slack = None
+        if now == self._looked or model.rods.count == 0:
+            return
+        self._looked = now
+        if has_cables(model):
+            self._look_at_cables()
+        if model.rods.count <= LARGEST:
+            self._look_at_stability()
+
+    def told(self, elapsed: float) -> str:
+        """What happened lately, in sentences: each for TOLD seconds, of which so many passed since the last call."""
+        now = self.happenings
+        new = [happening for happening in now if happening not in self._known]
+        self._known = set(now)
+        left = [(happening, seconds - elapsed) for happening, seconds in self._telling if seconds > elapsed]
+        self._telling = [pair for pair in left if pair[0] in self._known] + [(one, TOLD) for one in new]
+        del self._telling[:-MOST_TOLD]
+        return " ".join(f"{one.message[:-1]} ({one.when})." for one, _ in self._telling)
+
+    # --- from the state ------------------------------------------------------------------------------
+
+    def _yields(self) -> list[Happening]:
+        """Rods that came to a strength, those of one instant together."""
+        if not can_yield(self._model):
+            return []
+        rods = self._model.rods
+        at = rods.column("yielded_at")
+        if np.array_equal(at, self._yielded[0], equal_nan=True):
+            return self._yielded[1]
+        names, found = rods.column("name"), []
+        for time in np.unique(at[~np.isnan(at)]).tolist():
+            some = tuple(names[at == time].tolist())
+            found.append(self._happening("yield", time, f"{_rods(some)} yield{'s' * (len(some) == 1)}.", some))
+        self._yielded = at.copy(), found
+        return found
+
+    def _events(self) -> list[Happening]:
+        """Events that systems of mods declared."""
+        found = []
+        for event in self._simulation.events:
+            some = event.fallen or event.risen
+            what = event.event.rpartition(".")[2].replace("_", " ")
+            message = f"{what[:1].upper()}{what[1:]}: {_listed(some)}."
+            found.append(self._happening(event.event, event.time, message, some))
+        return found
+
+    def _end(self) -> list[Happening]:
+        """How the run ended by itself, if it did."""
+        simulation = self._simulation
+        if not simulation.halted:
+            return []
+        if simulation.reason is StopReason.DIVERGED:
+            return [self._happening("diverged", self._model.clock.time, "The run stops: it diverges.")]
+        return [self._happening("rest", simulation.moved_until, "All comes to rest.")] * bool(
+            self._model.clock.steps
+        )
+
+    def _happening(self, kind: str, time: float, message: str, some: tuple[str, ...] = ()) -> Happening:
+        """What happened, with the load then, which is found once, since frames ask again and again."""
+        edited = self._model.newest(Role.DOCUMENT)
+        if self._factors[0] != edited:
+            self._factors = edited, {}
+        factors = self._factors[1]
+        if time not in factors:
+            factors[time] = load_factor(self._model, time)
+        return Happening(kind, time, message, some, factors[time])
+
+    # --- by looking ----------------------------------------------------------------------------------
+
+    def _see(self, kind: str, message: str, some: tuple[str, ...] = (), time: float | None = None) -> None:
+        """Note something; each kind once for the same elements, since structures vibrate."""
+        if not any((seen.kind, seen.elements) == (kind, some) for seen in self._seen):
+            self._seen.append(self._happening(kind, self._looked if time is None else time, message, some))
+
+    def _look_at_cables(self) -> None:
+        rods = self._model.rods
+        slack = rods.tension_only & (rods.axial_force <= 0.0)
+        names = frozenset(rods.column("name")[slack].tolist())
+        for name in sorted(names - (names if self._slack is None else self._slack)):
+            self._see("slack", f"Cable {name} goes slack.", (name,))
+        self._slack = names
+
+    def _look_at_stability(self) -> None:
+        """A structure that is held no more collapses if rods yield on and on; else it snaps through."""
+        model, rods = self._model, self._model.rods
+        edited = model.newest(Role.DOCUMENT)
+        if self._stands[0] != edited:
+            self._stands = edited, is_held(model, at_first=True)
+        if not (self._stands[1] and model.clock.steps) or is_held(model):
+            return
+        yielding = np.flatnonzero(rods.yielding) if can_yield(model) else np.empty(0, dtype=np.intp)
+        limit = np.minimum(rods.tension_limit, rods.compression_limit) / rods.stiffness
+        worn = yielding[np.abs(rods.plastic_strain[yielding]) > COLLAPSED * limit[yielding]]
+        if len(worn):  # what yields less may do so in an overshoot that ends before it matters
+            names, at = tuple(rods.column("name")[worn].tolist()), rods.column("yielded_at")[worn].max()
+            why = f"{_rods(names)} yield{'s' * (len(names) == 1)} and nothing else resists"
+            self._see("collapse", f"The structure collapses: {why}.", time=float(at))
+        elif not len(yielding) and not any(seen.kind == "collapse" for seen in self._seen):
+            self._see("snap-through", "The structure snaps through: its shape holds no more.")
+
+
+def _rods(names: tuple[str, ...]) -> str:
+    return f"{'Rod' if len(names) == 1 else 'Rods'} {_listed(names)}"
+
+
+def _listed(names: tuple[str, ...]) -> str:
+    """Names, of many the first and how many more."""
+    if len(names) <= MOST_NAMED:
+        return ", ".join(names)
+    return f"{', '.join(names[:MOST_NAMED])} and {len(names) - MOST_NAMED} more"

@@ -1,0 +1,148 @@
+"""Exaggeration: the automatic factor by which displacements are drawn larger, so that a person sees them."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+from numpy.typing import NDArray
+
+from components.field import Role
+from components.model import Model
+from components.numeric_range import incomputable
+from components.obstacles import obstacles
+from components.round_numbers import round_down
+from game.documents.shapes import extent
+from systems.islands import lowest_joined
+from systems.physics.pace import expected_displacement, loaded_mode
+
+DRAWN = 0.08  # of the structure's size: the largest displacement as drawn, at most, when a factor is chosen
+KEPT = (0.02, 0.25)  # of the size, drawn, within which a factor stays as it is
+FROM = 5.0  # the smallest factor; what would need less is seen without one
+TRUE = 1.0  # the factor of motions that are seen without one
+LEAST = 1e-7  # of the size: smaller displacements are rounding
+LARGEST = 2000  # rods up to which displacements are expected by theory; larger structures are looked at
+LARGEST_YIELDING = 60  # rods up to which statics with yielding takes no noticeable time
+
+Displacement = NDArray[np.float64]
+
+
+class Exaggeration:
+    """Chooses the automatic factor of one model, in round steps, and keeps it while it shows enough and not too much.
+
+    It follows from the displacements that theory expects and, while time stands still, from those that there are: never
+    from a frame of a run, so that a picture does not jump with what vibrates, and a recording is replayed in the same.
+    """
+
+    def __init__(self, model: Model) -> None:
+        self._model = model
+        self._seen: tuple[int, ...] = ()
+        self._expected: tuple[int, float] = -1, 0.0
+
+    def review(self, *, still: bool) -> bool:
+        """Choose anew if the model was edited, or moved and stands `still` now; True if the drawn factor changed."""
+        model = self._model
+        seen = model.newest(Role.DOCUMENT, Role.LOOK), model.newest(Role.STATE) if still else -1
+        if model.settings.prescribed_displacement_scale is not None or seen == self._seen:
+            return False
+        self._seen = seen
+        before, found = model.settings.automatic_displacement_scale, self._chosen(still)
+        if found != before:
+            model.writable("settings.automatic_displacement_scale")[0] = found
+        return found != before
+
+    def _chosen(self, still: bool) -> float:
+        """The factor that suits the model, the present one if it does."""
+        model, present = self._model, float(self._model.settings.automatic_displacement_scale)
+        size = extent(model) if model.particles.count else 0.0
+        if not 0.0 < size < math.inf or _moves_far(model):
+            return TRUE
+        largest = max(self._largest_expected(), _amplitude(model) if still else 0.0)
+        if not math.isfinite(largest):
+            return TRUE
+        if largest < LEAST * size:
+            return present
+        most = min(DRAWN * size, 0.5 * _gap(model)) / largest
+        if KEPT[0] <= present * largest / size <= KEPT[1] and present <= max(most * KEPT[1] / DRAWN, TRUE):
+            return present
+        return round_down(most) if most >= FROM else TRUE
+
+    def _largest_expected(self) -> float:
+        """The largest displacement that theory expects (m), infinite if not a small one; 0 of a large structure."""
+        model = self._model
+        if model.rods.count > LARGEST:
+            return 0.0
+        revision = model.newest(Role.DOCUMENT)
+        if self._expected[0] != revision:
+            found = None if incomputable(model) else expected_displacement(model)
+            if found is not None and _yields(model, found):
+                found = _with_yielding(model, found)
+            size = math.inf if found is None else float(np.abs(found).max(initial=0.0))
+            self._expected = revision, size
+        return self._expected[1]
+
+
+def _yields(model: Model, displacement: Displacement) -> bool:
+    """True if a rod is stressed beyond its strength, or a cable pushed, by small displacements (n, 2) in m."""
+    rods = model.rods
+    ends = rods.between.astype(np.intp)
+    axis = rods.difference / np.where(rods.original_length > 0.0, rods.original_length, 1.0)[:, None]
+    elongation = rods.misfit + ((displacement[ends[:, 1]] - displacement[ends[:, 0]]) * axis).sum(axis=1)
+    force = rods.stiffness / rods.rest_length * elongation
+    beyond = (force > rods.tension_limit) | (force < -rods.compression_limit)
+    return bool((beyond & model.settings.plasticity | rods.tension_only & (force < 0.0)).any())
+
+
+def _with_yielding(model: Model, elastic: Displacement) -> Displacement | None:
+    """The displacement (n, 2) of statics (m) from the beginning; None if the model collapses.
+
+    Of larger structures the elastic one, unless they have no rod to spare.
+    """
+    if model.rods.count > LARGEST_YIELDING:
+        return elastic if model.rods.count > (model.particles.mobility > 0.0).sum() else None
+    from systems.statics.settle import Start, settle  # scipy
+
+    supports = np.where(model.particles.fixed, elastic, 0.0)
+    final = settle(model, start=Start(supports, np.zeros(model.rods.count))).final
+    return final.displacement if final.balanced else None
+
+
+def _moves_far(model: Model) -> bool:
+    """True if anything moves freely: a mechanism by its count of rods, a loose particle, one that meets an obstacle."""
+    particles, rods = model.particles, model.rods
+    free = particles.mobility > 0.0
+    if rods.count < max(int(free.sum()), 1) or (model.settings.collisions and len(obstacles(model))):
+        return True
+    jointed = np.zeros(particles.count, dtype=bool)
+    jointed[rods.between.ravel()] = True
+    return bool((free.any(axis=1) & ~jointed).any())
+
+
+def _amplitude(model: Model) -> float:
+    """The largest displacement that there is, or that a vibration as fast as the present one leads to (m)."""
+    particles = model.particles
+    displacement, velocity = particles.displacement, particles.velocity
+    if velocity.any() and model.rods.count <= LARGEST and not incomputable(model):
+        mode = loaded_mode(model)
+        if mode is not None:
+            displacement = np.hypot(displacement, velocity / mode[0])
+    return float(np.abs(displacement).max(initial=0.0))
+
+
+def _gap(model: Model) -> float:
+    """The smallest gap (m) between structures that would collide; infinite if there is one only, or none collides."""
+    particles = model.particles
+    if not model.settings.collisions:
+        return math.inf
+    root = lowest_joined(particles.count, model.rods.between.astype(np.intp))
+    if (root == 0).all():
+        return math.inf
+    if particles.count > LARGEST:
+        return 0.0
+    position, radius, gap = particles.position, particles.radius, math.inf
+    for body in np.unique(root).tolist():
+        own = root == body
+        for place, reach in zip(position[own], radius[own], strict=True):
+            away = np.hypot(*(position[~own] - place).T) - radius[~own] - reach
+            gap = min(gap, float(away.min()))
+    return max(gap, 0.0)

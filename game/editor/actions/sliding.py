@@ -1,0 +1,92 @@
+"""Actions of the sliders on the canvas: moving them, making and removing them."""
+
+from __future__ import annotations
+
+from components.field import Vector
+from components.slider import Place, under
+from game.editor.context import Action, Context, action
+from game.editor.gestures.sliding import Slide
+from game.editor.scenes.form import FormScene
+from game.editor.sliders import (
+    SCALE,
+    add_slider_for,
+    add_usual_slider,
+    move_to,
+    remove_slider,
+    scale_to,
+    slider_of,
+)
+from systems.edit import Refusal
+
+WHEEL = 0.02  # of its length, by which the wheel moves a slider
+
+
+def _under(context: Context, pixel: Vector) -> Place | None:
+    return under(context.focus[1].slider_places, pixel)
+
+
+@action("drag slider")
+def _drag_slider(context: Context, pixel: Vector) -> None:
+    place = _under(context, pixel)
+    if place is not None and not place.button.contains(pixel):
+        context.gesture = Slide(context, place, pixel)
+
+
+@action("click slider")
+def _click_slider(context: Context, pixel: Vector) -> None:
+    """Take the knob to a pixel on its line; on the button, remove the slider, or let the scale be automatic."""
+    place = _under(context, pixel)
+    if place is None:
+        return
+    if not place.button.contains(pixel):
+        Slide(context, place, pixel)
+    elif place.control.key == SCALE:
+        automatic(context)
+    else:
+        remove_slider(context, place.control.key)
+        context.notice = f"Slider removed: {place.control.title}. Ctrl+Z brings it back."
+
+
+@action("double click slider")
+def _double_click_slider(context: Context, pixel: Vector) -> None:
+    """The second click of two lets the displacement scale be automatic; of others it is another click."""
+    place = _under(context, pixel)
+    if place is not None and place.control.key == SCALE and not place.button.contains(pixel):
+        scale_to(context, None)
+    else:
+        _click_slider(context, pixel)
+
+
+def automatic(context: Context) -> None:
+    """Let the displacement scale follow from the model, or keep it as it is from now on."""
+    [settings, *_] = context.scenes.active.scaled(context)
+    is_automatic = settings.prescribed_displacement_scale is None
+    scale_to(context, settings.displacement_scale if is_automatic else None)
+
+
+def _step(by: float) -> Action:
+    def act(context: Context, pixel: Vector) -> None:
+        place = _under(context, pixel)
+        if place is None or place.control.share is None:
+            return
+        value = slider_of(context, place.control.key).value_at(place.control.share + by)
+        with context.history.as_one(("slider", place.control.key)):
+            move_to(context, place.control.key, value)
+
+    return act
+
+
+@action("slider of box")
+def _slider_of_box(context: Context, pixel: Vector) -> None:
+    """A slider for what the selected box of properties holds."""
+    scene = context.scenes.active
+    box = scene.form.selected if isinstance(scene, FormScene) else None
+    if box is None:
+        raise Refusal("Click the box of the number first; then this makes a slider for it.")
+    add_slider_for(context, box)
+
+
+action("slider up")(_step(WHEEL))
+action("slider down")(_step(-WHEEL))
+action("automatic displacement scale")(lambda context, pixel: automatic(context))
+action("new slider")(lambda context, pixel: add_usual_slider(context))

@@ -1,0 +1,226 @@
+"""Sliders of a session: what they show, what moving them does, and new ones for any number of an element."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from typing import Any
+
+from components.box import Box
+from components.field import Field
+from components.handle import Handle
+from components.load import Load
+from components.model import Model
+from components.numeric_range import incomputable
+from components.particle import Particle
+from components.rod import Rod
+from components.round_numbers import round_up
+from components.settings import Settings
+from components.slider import Aim, Control, SetSliders, Slider, SliderStack
+from game.documents.shapes import extent
+from game.documents.sliders import unmovable
+from game.editor.context import Context
+from systems.edit import Refusal
+from systems.edit.arrows import usual_force
+from systems.input.bindings import LIVE
+
+SCALE = -1  # the key of the control of the displacement scale
+SCALES = Slider((), 1.0, 1000.0, logarithmic=True)  # of displacements, unless the model needs more
+ABOVE = 28.0  # points, of the status bar
+DECADES = 10.0  # a new slider of a stiffness goes from the value / 10 to the value × 10
+NOTHING = {"K": 50.0, "kN": 10.0, "m/s²": 10.0, "m/s": 1.0}  # by unit: how far a new slider of a 0 goes
+
+
+# --- what is shown -------------------------------------------------------------------------------------------
+
+
+def slider_stack(context: Context) -> SliderStack:
+    """The sliders on the canvas of the active scene."""
+    return sliders_of(context) if context.view.legend and context.scene in LIVE else SliderStack()
+
+
+def sliders_of(context: Context) -> SliderStack:
+    """The sliders of the open document: the displacement scale at the bottom, then those of the model."""
+    model = context.model
+    scale = [scale_control(model.settings)] if model.rods.count else []
+    own = (_control(model, key, slider) for key, slider in enumerate(model.sliders))
+    return SliderStack((*scale, *(control for control in own if control is not None)), ABOVE)
+
+
+def scale_control(settings: Settings) -> Control:
+    """The control of the displacement scale."""
+    scale, automatic = settings.displacement_scale, settings.prescribed_displacement_scale is None
+    share = scales(settings).share_of(max(scale, 1.0))
+    return Control(SCALE, "displacements", f"× {scale:.4g}", share, "auto", pressed=automatic)
+
+
+def scales(settings: Settings) -> Slider:
+    """The range of displacement scales: from 1 to 1000, or to as much as the model needs."""
+    most = max(SCALES.last, 10.0 * settings.automatic_displacement_scale, settings.displacement_scale)
+    return Slider((), SCALES.first, 10.0 ** math.ceil(math.log10(most) - 1e-9), logarithmic=True)
+
+
+def _control(model: Model, key: int, slider: Slider) -> Control | None:
+    """What a slider of a model shows; None if nothing that it moves exists (any more)."""
+    found = [(aim, handle) for aim in slider.aims for handle in aim.handles(model.tables)[:1]]
+    if not found:
+        return None
+    aim, handle = found[0]
+    field, value = model.tables[aim.table].fields[aim.field], _value(aim, handle)
+    unit, factor = field.shown
+    text = field.absent if value is None else _written(value * factor, unit)
+    share = None if value is None else slider.share_of(value)
+    return Control(key, slider.title or _title(model, aim, handle, field), text, share, "×")
+
+
+def _written(value: float, unit: str) -> str:
+    """A number to four digits with its unit."""
+    return f"{float(f'{value:.4g}'):.10g} {unit}".strip().replace("-", "−")
+
+
+def _title(model: Model, aim: Aim, handle: Handle, field: Field[Any]) -> str:
+    """Whose number a slider moves, and which, as short as model files call it."""
+    whose = f"all {aim.table}" if aim.element is None else getattr(handle, "name", model.describe(handle))
+    return f"{whose}: {field.key.replace('_', ' ')} {aim.axis}".rstrip()
+
+
+def _value(aim: Aim, handle: Handle) -> float | None:
+    """The number that a slider shows: the one in use, where its own is automatic."""
+    value = getattr(handle, aim.field)
+    overrides = getattr(type(handle), aim.field).overrides
+    if value is None and overrides is not None:
+        value = getattr(handle, overrides)
+    if value is None:
+        return None
+    return float(value["xy".index(aim.axis)] if aim.axis else value)
+
+
+# --- moving --------------------------------------------------------------------------------------------------
+
+
+def slider_of(context: Context, key: int) -> Slider:
+    """The slider with a key. Raises Refusal if it was removed meanwhile."""
+    if key == SCALE:
+        return scales(context.scenes.active.scaled(context)[0])
+    if key >= len(context.model.sliders):
+        raise Refusal("This slider was removed meanwhile.")
+    return context.model.sliders[key]
+
+
+def move_to(context: Context, key: int, value: float) -> None:
+    """Give what a slider moves a value, as one edit. Raises FieldError for a value that cannot be."""
+    model = context.model
+    if key == SCALE:
+        scale_to(context, value)
+        return
+    slider = slider_of(context, key)
+    control = _control(model, key, slider)
+    with model.transaction(control.title if control is not None else "nothing"):
+        for aim in slider.aims:
+            handles = aim.handles(model.tables)
+            model.assign(handles, aim.field, [_with(aim, handle, value) for handle in handles])
+
+
+def scale_to(context: Context, scale: float | None) -> None:
+    """Draw displacements to a scale; None: to the automatic one."""
+    for settings in context.scenes.active.scaled(context):
+        settings.displacement_scale = scale
+
+
+def _with(aim: Aim, handle: Handle, value: float) -> Any:
+    """The value of a Field whose component a slider sets."""
+    if not aim.axis:
+        return value
+    x, y = getattr(handle, aim.field)
+    return (value, y) if aim.axis == "x" else (x, value)
+
+
+# --- making and removing -------------------------------------------------------------------------------------
+
+
+def add_slider(context: Context, elements: Sequence[Handle], field: str, axis: str = "") -> Slider:
+    """Put a slider for a Field of elements, or its component "x" or "y", on the canvas. Raises Refusal.
+
+    It moves all of them together. One that there is already is not made again.
+    """
+    model, first = context.model, elements[0]
+    known = model.tables[first.table].fields
+    found = known[known[field].overridden_by or field]
+    if problem := unmovable(found, axis):
+        raise Refusal(problem)
+    aims = tuple(Aim(element.table, element, found.name, axis) for element in elements)
+    there = next((slider for slider in model.sliders if slider.aims == aims), None)
+    if there is not None:
+        raise Refusal(f"There is a slider for {_title(model, aims[0], first, found)} already.")
+    value = _value(aims[0], first)
+    if value is None:
+        raise Refusal(f"{found.title.capitalize()} is {found.absent}; give it a number first.")
+    slider = _limited(_around(model, found, value, aims), found)
+    _set(context, (*model.sliders, slider), "new slider")
+    context.notice = f"Slider at the lower left: {_title(model, aims[0], first, found)}"
+    return slider
+
+
+def add_slider_for(context: Context, box: Box) -> Slider:
+    """Put a slider for the number in a box of properties on the canvas. Raises Refusal."""
+    _, field, axis = f"{box.target}.".split(".")[:3]
+    return add_slider(context, box.elements, field, axis)
+
+
+def _around(model: Model, field: Field[Any], value: float, aims: tuple[Aim, ...]) -> Slider:
+    """A slider with a range that suits a Field with that value."""
+    if field.name in ("position", "displacement") and not incomputable(model):
+        reach = round_up(0.25 * extent(model)) or 1.0
+        return Slider(aims, value - reach, value + reach)
+    if field.above is not None and field.unit.startswith("kN"):
+        return Slider(aims, value / DECADES, value * DECADES, logarithmic=True)
+    if field.above is not None:
+        return Slider(aims, 0.5 * value, 1.5 * value)
+    if value != 0.0:
+        return Slider(aims, 0.0, math.copysign(round_up(2.0 * abs(value)), value))
+    reach = round_up(usual_force(model)) if field.name == "force" else NOTHING.get(field.unit, 1.0)
+    return Slider(aims, -reach, reach)
+
+
+def _limited(slider: Slider, field: Field[Any]) -> Slider:
+    """The slider within the limits of the Field."""
+    low = -math.inf if field.minimum is None else field.minimum
+    high = math.inf if field.maximum is None else field.maximum
+    first, last = (min(max(end, low), high) for end in (slider.first, slider.last))
+    return Slider(slider.aims, first, last, slider.logarithmic)
+
+
+def add_usual_slider(context: Context) -> None:
+    """A slider for what is moved most of the selected elements: their force, their stiffness. Raises Refusal."""
+    chosen = context.selected
+    for kind in (Load, Particle, Rod):
+        elements = [handle for handle in chosen if isinstance(handle, kind)]
+        if elements:
+            add_slider(context, *_usual(context.model, elements))
+            return
+    raise Refusal(
+        "Select the particle or the rod whose force or stiffness a slider is to move, then press this again."
+    )
+
+
+def _usual(model: Model, elements: Sequence[Handle]) -> tuple[Sequence[Handle], str, str]:
+    """Elements, and their Field and axis that people move most."""
+    first = elements[0]
+    if isinstance(first, Rod):
+        return elements, "stiffness", ""
+    if isinstance(first, Particle) and not any(first.force):
+        loads = [load for load in model.loads if load.on == first.row]
+        elements, first = (loads[:1], loads[0]) if loads else (elements, first)
+    x, y = first.force  # type: ignore[attr-defined]
+    return elements, "force", "x" if abs(x) > abs(y) else "y"
+
+
+def remove_slider(context: Context, key: int) -> None:
+    """Take a slider off the canvas; what it moved stays as it is."""
+    sliders = context.model.sliders
+    _set(context, sliders[:key] + sliders[key + 1 :], "slider removed")
+
+
+def _set(context: Context, sliders: tuple[Slider, ...], title: str) -> None:
+    with context.model.transaction(title):
+        context.model.execute(SetSliders(sliders))

@@ -1,0 +1,304 @@
+"""Nearness: what a picture shows of each element, and which places of labels are nearer to their own than to all else."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, fields, replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from components.camera import Viewport
+from systems.render.clip import bounds
+from systems.render.marks import Owner, Owners, Points
+
+LINE, DIAGRAM, SYMBOL = range(3)  # kinds of parts
+NOBODY = -1  # code of what is not there
+_SIDE = 48.0  # points: of the squares in which parts are searched for, in pieces that are no longer
+_CROWD = 64  # pieces of a square that leave no room for labels
+_REACH = 160.0  # points around labels within which parts matter
+_FARTHEST = 80.0  # points from its own, beyond which no label stands by itself
+_MOST_PIECES = 1000  # of one part
+_ROWS = 40  # bits of a code that are left for rows
+_FACTOR, _MARGIN = 1.25, 2.0  # by how much, in points, all else is further away than the own element
+_LEAST_MARGIN = 0.1  # points
+
+Numbers = NDArray[np.float64]
+Codes = NDArray[np.int64]
+Indices = NDArray[np.intp]
+Truths = NDArray[np.bool_]
+
+
+@dataclass(frozen=True)
+class Boxes:
+    """Where labels may stand: `middle` and `half` the size of each box (n, 2), those of one label together.
+
+    of: the label of each box.
+    """
+
+    middle: Points
+    half: Points
+    of: Indices
+
+
+class Parts:
+    """Lines, symbols and diagrams of elements in a picture, and which of them are near labels once these are known.
+
+    What a part belongs to is a key such as ("rods", 3); arrows have keys of their own, such as ("particles.reaction", 7).
+    """
+
+    def __init__(self, viewport: Viewport, unit: float) -> None:
+        self.viewport, self.unit = viewport, unit
+        self._tables: dict[str, int] = {}
+        self._kept: list[_Bands] = []
+        self._seen: _Bands
+        self._pieces: _Pieces
+        self._squares: _Squares
+
+    def lines(self, of: Owners, start: Points, end: Points, half: float) -> None:
+        """Add lines from `start` to `end`, each (n, 2), of half that width."""
+        self._add(of, start, end, np.zeros_like(start), np.full(len(start), half), LINE)
+
+    def diagrams(self, of: Owners, start: Points, end: Points, rise: Points) -> None:
+        """Add rectangles on lines from `start` to `end`, `rise` high, each (n, 2)."""
+        self._add(of, start, end, rise, np.zeros(len(start)), DIAGRAM)
+
+    def symbols(self, of: Owners, start: Points, end: Points, half: float | Numbers) -> None:
+        """Add arrows and the like, all within `half` of the line from `start` to `end`, a point for circles."""
+        wide = np.broadcast_to(np.asarray(half, dtype=np.float64), len(start))
+        self._add(of, start, end, np.zeros_like(start), wide, SYMBOL)
+
+    def _add(self, of: Owners, start: Points, end: Points, rise: Points, half: Numbers, kind: int) -> None:
+        codes = self.code((of[0], 0)) + np.asarray(of[1], dtype=np.int64)
+        self._kept.append(_Bands(start, end, rise, half, codes, np.full(len(start), kind)))
+
+    def code(self, key: Owner | None) -> int:
+        """What stands for a key in the arguments of the others."""
+        if key is None:
+            return NOBODY
+        return (self._tables.setdefault(key[0], len(self._tables)) << _ROWS) + key[1]
+
+    def own_is_nearest(self, boxes: Boxes, own: Codes, kin: Codes, clearly: Truths, which: Truths) -> Truths:
+        """For each box whether it is nearer to what its label belongs to than to all else; True where that is nothing.
+
+        own, kin: by label, codes of what it belongs to, and of what it is in no danger to be taken for. clearly: by
+        box, whether by a margin that is seen. which: the boxes that matter. Lines are compared with the own line, all
+        else with the nearest of the own parts, so that a value stands well in its own diagram.
+        """
+        to_line, to_any = self._own_distances(boxes, own)
+        some = which & (own[boxes.of] != NOBODY) & (to_line < _FARTHEST * self.unit)
+        factor, margin = np.where(clearly, _FACTOR, 1.0), np.where(clearly, _MARGIN, _LEAST_MARGIN) * self.unit
+        limits = [np.where(some, away * factor + margin, 0.0) for away in (to_line, to_any, to_any)]
+        return np.where(some, self.are_clear(boxes, own, kin, np.stack(limits), some), own[boxes.of] == NOBODY)
+
+    def are_clear(
+        self, boxes: Boxes, own: Codes, kin: Codes, limits: Numbers, which: Truths | None = None
+    ) -> Truths:
+        """For each box whether nothing is as near as `limits` (3, n) in pixels, for lines, diagrams and symbols.
+
+        What may be even on it has a negative limit. own, kin: by label, codes of what does not count. which: the boxes
+        that matter.
+        """
+        clear: Truths = np.ones(len(boxes.of), dtype=bool)
+        if not self._kept or not len(boxes.of):
+            return clear
+        some = np.arange(len(boxes.of)) if which is None else np.flatnonzero(which)
+        reach = boxes.half[some] + limits.max(axis=0)[some, None]
+        meets, piece, is_full = self._squares.meeting(boxes.middle[some] - reach, boxes.middle[some] + reach)
+        clear[some[is_full]] = False
+        box, pieces = some[meets], self._pieces
+        label = boxes.of[box]
+        strange = clear[box] & (pieces.of[piece] != own[label]) & (pieces.of[piece] != kin[label])
+        box, piece = box[strange], piece[strange]
+        limit = limits[pieces.kind[piece], box]
+        clear[box[_are_within(boxes, box, pieces, piece, limit)]] = False
+        return clear
+
+    def gather(self, points: Points) -> None:
+        """Find the parts near points (n, 2), about which alone one can ask. To be called when all parts are there."""
+        low, high = bounds(self.viewport)
+        squares = _Squares(low, high, _SIDE * self.unit)
+        wanted = squares.around(points, math.ceil(_REACH / _SIDE))
+        found = []
+        for bands in self._kept:
+            finite: Truths = np.isfinite((bands.start + bands.end + bands.rise).sum(axis=1))
+            bands = bands if finite.all() else bands.some(finite)
+            middle = 0.5 * (bands.start + bands.end)
+            long = np.abs(bands.end - bands.start).max(axis=1, initial=0.0) + bands.half > _SIDE * self.unit
+            found.append(bands.some(wanted[squares.of(middle)] | long))
+        if found:
+            columns = ([getattr(bands, column.name) for bands in found] for column in fields(_Bands))
+            self._seen = _Bands(*map(np.concatenate, columns))
+            self._pieces = _cut(self._seen, _SIDE * self.unit)
+            squares.fill(self._pieces)
+        self._squares = squares
+
+    def _own_distances(self, boxes: Boxes, own: Codes) -> tuple[Numbers, Numbers]:
+        """From each box to the line of its own element, and to any of its parts, at most; infinite without one."""
+        to_any = np.full(len(boxes.of), np.inf)
+        if not self._kept or not len(boxes.of):
+            return to_any, to_any
+        order = np.argsort(self._seen.of, kind="stable")
+        left, right = (np.searchsorted(self._seen.of[order], own, side) for side in ("left", "right"))
+        many = (right - left)[boxes.of]
+        box, bands = (
+            np.repeat(np.arange(len(boxes.of)), many),
+            self._seen.some(order[ranges(left[boxes.of], many)]),
+        )
+        start, end = bands.start + bands.rise, bands.end + bands.rise
+        away = _to_segments(boxes.middle[box], boxes.half[box], start, end)
+        away = np.where((start == end).all(axis=1), np.maximum(away - bands.half, 0.0), away)
+        nothing = np.zeros(len(box))
+        outlines = _cut(replace(bands, half=nothing), np.inf)
+        away[_are_within(boxes, box, outlines, np.arange(len(box)), nothing)] = 0.0
+        np.minimum.at(to_any, box, away)
+        lines, to_line = bands.kind == LINE, to_any.copy()
+        to_line[box[lines]] = np.inf
+        np.minimum.at(to_line, box[lines], away[lines])
+        return to_line, to_any
+
+
+@dataclass(frozen=True)
+class _Bands:
+    """Lines from `start` to `end`, widened by `half` all around, or on one side by `rise`."""
+
+    start: Points
+    end: Points
+    rise: Points
+    half: Numbers
+    of: Codes
+    kind: Indices
+
+    def some(self, which: Truths | Indices) -> _Bands:
+        return _Bands(*(getattr(self, column.name)[which] for column in fields(self)))
+
+
+@dataclass(frozen=True)
+class _Pieces:
+    """Rectangles about `middle`, `reach` (n, 2) along and across the unit vectors `along`, widened by `half`.
+
+    extent: half the size of the upright box around each, (n, 2).
+    """
+
+    middle: Points
+    along: Points
+    reach: Points
+    half: Numbers
+    of: Codes
+    kind: Indices
+    extent: Points
+
+
+def _cut(bands: _Bands, longest: float) -> _Pieces:
+    """Rectangles that are no longer than `longest`."""
+    step = bands.end - bands.start
+    length = np.hypot(step[:, 0], step[:, 1])
+    count = np.clip(np.ceil(length / longest), 1, _MOST_PIECES).astype(np.intp)
+    which, number = np.repeat(np.arange(len(count)), count), ranges(np.zeros_like(count), count)
+    height = np.hypot(bands.rise[:, 0], bands.rise[:, 1])
+    along = np.where(length[:, None] > 0.0, step / np.maximum(length, 1e-300)[:, None], [1.0, 0.0])[which]
+    share = ((number + 0.5) / count[which])[:, None]
+    middle = bands.start[which] + step[which] * share + 0.5 * bands.rise[which]
+    reach = np.stack([0.5 * length / count, 0.5 * height], axis=1)[which]
+    half = bands.half[which]
+    extent = np.abs(along) * reach[:, :1] + np.abs(along[:, ::-1]) * reach[:, 1:] + half[:, None]
+    return _Pieces(middle, along, reach, half, bands.of[which], bands.kind[which], extent)
+
+
+def ranges(first: Indices, count: Indices) -> Indices:
+    """The numbers first, first + 1, …, `count` of them, for each of several, one after the other."""
+    ends = np.cumsum(count)
+    found: Indices = np.arange(ends[-1] if len(ends) else 0) + np.repeat(first - (ends - count), count)
+    return found
+
+
+class _Squares:
+    """Squares of a picture, and which pieces are in each; those at the rim hold what lies beyond, too."""
+
+    def __init__(self, low: Points, high: Points, side: float) -> None:
+        self.low, self.side = low, side
+        self.size = np.maximum(np.ceil((high - low) / side), 1.0).astype(np.intp)
+        self.first = np.zeros(int(self.size.prod()) + 1, dtype=np.intp)  # by square, among `pieces`
+        self.pieces = np.empty(0, dtype=np.intp)
+        self.full = np.zeros(len(self.first) - 1, dtype=bool)
+
+    def _cells(self, points: Points) -> Indices:
+        """Column and row of the squares that hold points (n, 2)."""
+        return np.clip((points - self.low) / self.side, 0, self.size - 1).astype(np.intp)
+
+    def of(self, points: Points) -> Indices:
+        """The squares that hold points (n, 2)."""
+        column, row = self._cells(points).T
+        found: Indices = row * self.size[0] + column
+        return found
+
+    def around(self, points: Points, reach: int) -> Truths:
+        """Which squares are no more than `reach` squares away from points (n, 2)."""
+        found = np.zeros((self.size[1] + 2 * reach, self.size[0] + 2 * reach), dtype=bool)
+        column, row = (np.unique(self._cells(points), axis=0)).T
+        for right in range(2 * reach + 1):
+            for down in range(2 * reach + 1):
+                found[row + down, column + right] = True
+        return found[reach:-reach, reach:-reach].ravel()
+
+    def _rows(self, low: Points, high: Points) -> tuple[Indices, Indices, Indices]:
+        """Of upright boxes, for each row of squares that they touch: which box, and the first and last square."""
+        (left, top), (right, bottom) = self._cells(low).T, self._cells(high).T
+        box = np.repeat(np.arange(len(low)), bottom - top + 1)
+        row = ranges(top, bottom - top + 1) * self.size[0]
+        return box, row + left[box], row + right[box]
+
+    def fill(self, pieces: _Pieces) -> None:
+        """Put pieces into the squares that the boxes around them touch, but for squares that are full."""
+        piece, first, last = self._rows(pieces.middle - pieces.extent, pieces.middle + pieces.extent)
+        piece, square = np.repeat(piece, last - first + 1), ranges(first, last - first + 1)
+        self.full = np.bincount(square, minlength=len(self.full)) > _CROWD
+        piece, square = piece[~self.full[square]], square[~self.full[square]]
+        self.pieces = piece[np.argsort(square, kind="stable")]
+        self.first[1:] = np.cumsum(np.bincount(square, minlength=len(self.full)))
+
+    def meeting(self, low: Points, high: Points) -> tuple[Indices, Indices, Truths]:
+        """Pairs of upright boxes and pieces that may meet, some more than once; and which boxes touch full squares."""
+        box, first, last = self._rows(low, high)
+        begin = self.first[first]
+        count = self.first[last + 1] - begin
+        crowded = np.concatenate([[0], np.cumsum(self.full)])
+        full = np.zeros(len(low), dtype=bool)
+        full[box[crowded[last + 1] > crowded[first]]] = True
+        return np.repeat(box, count), self.pieces[ranges(begin, count)], full
+
+
+def _are_within(boxes: Boxes, box: Indices, pieces: _Pieces, piece: Indices, limit: Numbers) -> Truths:
+    """For pairs of boxes and pieces, whether they may be no further apart than `limit`.
+
+    Their distance is at least that of the rectangles around them, upright or along the piece, of which one is the box
+    or the piece itself: exact but for pairs of corners, where it is a little less.
+    """
+    away = boxes.middle[box] - pieces.middle[piece]
+    half = pieces.half[piece]
+    gap = np.maximum(np.abs(away) - boxes.half[box] - pieces.extent[piece] + half[:, None], 0.0)
+    limit = limit + half
+    within: Truths = gap[:, 0] ** 2 + gap[:, 1] ** 2 <= limit * np.abs(limit)
+    pairs = np.flatnonzero(within)
+    box, piece, away, limit = box[pairs], piece[pairs], away[pairs], limit[pairs]
+    (tx, ty), (wide, tall) = pieces.along[piece].T, boxes.half[box].T
+    along = np.abs(away[:, 0] * tx + away[:, 1] * ty) - np.abs(tx) * wide - np.abs(ty) * tall
+    across = np.abs(away[:, 0] * ty - away[:, 1] * tx) - np.abs(ty) * wide - np.abs(tx) * tall
+    along, across = (np.maximum(d - pieces.reach[piece, axis], 0.0) for axis, d in enumerate((along, across)))
+    within[pairs] = along**2 + across**2 <= limit * np.abs(limit)
+    return within
+
+
+def _to_segments(middle: Points, half: Points, start: Points, end: Points) -> Numbers:
+    """Distances of upright boxes that meet no segment from segments, pair by pair, (n,)."""
+    start, end = start - middle, end - middle
+    step = end - start
+    ends = (np.hypot(*np.maximum(np.abs(point) - half, 0.0).T) for point in (start, end))
+    away = np.minimum(*ends)
+    square = np.maximum((step**2).sum(axis=1), 1e-300)
+    for sign in ((1.0, 1.0), (1.0, -1.0), (-1.0, 1.0), (-1.0, -1.0)):
+        corner = half * sign - start
+        share = np.clip((corner * step).sum(axis=1) / square, 0.0, 1.0)
+        away = np.minimum(away, np.hypot(*(corner - share[:, None] * step).T))
+    found: Numbers = away
+    return found

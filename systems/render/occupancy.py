@@ -1,0 +1,134 @@
+"""Occupancy: which parts of a picture are taken, crossed by lines, and whose they are."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from components.camera import Viewport
+from systems.render.marks import Owners, Points
+from systems.render.nearness import NOBODY, Codes, Parts, ranges
+
+FAINT, STRONG = 1, 2  # lines that names never cover; lines that values cover only in need
+_FAR = 1e6  # pixels
+_MANY_LINES = 4000
+_CELL = 3.0  # points: how finely the picture is divided into free and taken
+
+
+class Occupancy:
+    """Which parts of a viewport are taken (by labels, panels), which are crossed by lines, and what is whose there."""
+
+    def __init__(self, viewport: Viewport, unit: float) -> None:
+        self.viewport = viewport
+        self.cell = _CELL * unit
+        shape = (int(viewport.height / self.cell) + 1, int(viewport.width / self.cell) + 1)
+        self.taken: NDArray[np.bool_] = np.zeros(shape, dtype=bool)
+        self.lined: NDArray[np.uint8] = np.zeros(shape, dtype=np.uint8)
+        self.owner: NDArray[np.int64] = np.full(shape, NOBODY)  # of the last line through each cell
+        self.parts = Parts(viewport, unit)
+
+    def block(self, left: float, top: float, width: float, height: float) -> None:
+        """Take a rectangle."""
+        self.taken[self._cells(left, top, width, height)] = True
+
+    def block_squares(self, centres: Points, half: NDArray[np.float64]) -> None:
+        """Take many squares of half width `half` (n,) about `centres` (n, 2)."""
+        cells = self.cells_of(centres - half[:, None], 2.0 * half[:, None])
+        for left, top, right, bottom in cells.tolist():
+            self.taken[top:bottom, left:right] = True
+
+    def line(self, start: Points, end: Points, strength: int, of: Owners | None = None) -> None:
+        """Note lines, FAINT or STRONG, from `start` to `end`, each (n, 2), inside or near the viewport; of: their keys.
+
+        Of very many lines only a sample is noted: they leave no room between them in any case. Those that begin or end
+        very far away are left out.
+        """
+        near = ((np.abs(start) < _FAR) & (np.abs(end) < _FAR)).all(axis=1)
+        some = np.flatnonzero(near)[:: int(near.sum()) // _MANY_LINES + 1]
+        start, end = start[some], end[some]
+        left, top = self.viewport.left, self.viewport.top
+        x, y = (start[:, 0] - left) / self.cell, (start[:, 1] - top) / self.cell
+        dx, dy = (end[:, 0] - start[:, 0]) / self.cell, (end[:, 1] - start[:, 1]) / self.cell
+        count = np.maximum(np.abs(dx), np.abs(dy)).astype(np.intp) + 2
+        which = np.repeat(np.arange(len(start)), count)
+        step = np.arange(len(which)) - (np.cumsum(count) - count)[which]
+        scale = 1.0 / (count - 1)
+        columns = (x[which] + step * (dx * scale)[which]).astype(np.intp)
+        rows = (y[which] + step * (dy * scale)[which]).astype(np.intp)
+        height, width = self.lined.shape
+        ok = (rows >= 0) & (columns >= 0) & (rows < height) & (columns < width)
+        cells = (rows * width + columns)[ok]
+        self.lined.ravel()[cells] = strength
+        if of is not None:
+            self.owner.ravel()[cells] = (self.parts.code((of[0], 0)) + of[1][some])[which[ok]]
+
+    def crossed(self, left: float, top: float, width: float, height: float) -> int:
+        """How much of a rectangle is taken or crossed by lines, in cells."""
+        cells = self._cells(left, top, width, height)
+        return int((self.taken[cells] | (self.lined[cells] > 0)).sum())
+
+    def is_taken(self, left: float, top: float, width: float, height: float) -> bool:
+        """Whether a label, a panel or a symbol takes any of a rectangle."""
+        return bool(self.taken[self._cells(left, top, width, height)].any())
+
+    def are_free(self, cells: NDArray[np.intp], covering: int) -> NDArray[np.bool_]:
+        """For each box of `cells` (n, 4), whether nothing takes any and no line in it is stronger than `covering`.
+
+        The sum over a box is the difference of four sums over boxes that begin at the first cell.
+        """
+        height, width = self.taken.shape
+        sums = np.zeros((height + 1, width + 1), dtype=np.int32)
+        sums[1:, 1:] = self.taken | (self.lined > covering)
+        np.cumsum(sums, axis=1, out=sums)
+        sums = np.ascontiguousarray(sums.T)  # sums along contiguous memory are several times faster
+        np.cumsum(sums, axis=1, out=sums)
+        left, top, right, bottom = cells.T
+        nothing: NDArray[np.bool_] = (
+            sums[right, bottom] - sums[right, top] == sums[left, bottom] - sums[left, top]
+        )
+        return nothing
+
+    def are_of(self, cells: NDArray[np.intp], *owners: Codes) -> NDArray[np.bool_]:
+        """For each box of `cells` (n, 4), whether lines well inside it are of its `owners`, each (n,), only."""
+        left, top, right, bottom = cells.T
+        left, top, right, bottom = (
+            left + 1,
+            top + 1,
+            np.maximum(right - 1, left + 2),
+            np.maximum(bottom - 1, top + 2),
+        )
+        height, width = self.taken.shape
+        box = np.repeat(np.arange(len(cells)), bottom - top)
+        row = ranges(top, bottom - top)
+        count = (right - left)[box]
+        column = ranges(left[box], count)
+        box, row = np.repeat(box, count), np.repeat(row, count)
+        found = self.owner[np.minimum(row, height - 1), np.minimum(column, width - 1)]
+        strange = found != NOBODY
+        for owner in owners:
+            strange &= found != owner[box]
+        alone = np.ones(len(cells), dtype=bool)
+        alone[box[strange]] = False
+        return alone
+
+    def cell_of(self, points: Points) -> NDArray[np.intp]:
+        """Rows and columns of the cells that hold points (n, 2)."""
+        height, width = self.taken.shape
+        cells = (points - [self.viewport.left, self.viewport.top]) / self.cell
+        found: NDArray[np.intp] = np.clip(cells, 0, [width - 1, height - 1]).astype(np.intp)[:, ::-1]
+        return found
+
+    def cells_of(self, corners: Points, sizes: Points) -> NDArray[np.intp]:
+        """First column and row, and those after the last, that boxes touch, shape (n, 4), within the picture."""
+        height, width = self.taken.shape
+        corners = corners - [self.viewport.left, self.viewport.top]
+        most = [width, height]
+        low = np.clip(corners / self.cell, 0, most).astype(np.intp)
+        high = np.clip(np.clip((corners + sizes) / self.cell, -1, most).astype(np.intp) + 1, low, most)
+        return np.concatenate([low, high], axis=1)
+
+    def _cells(self, left: float, top: float, width: float, height: float) -> tuple[slice, slice]:
+        """Rows and columns of the cells that a rectangle touches; they may end beyond the last ones."""
+        x, y = left - self.viewport.left, top - self.viewport.top
+        columns = slice(max(int(x / self.cell), 0), max(int((x + width) / self.cell) + 1, 0))
+        return slice(max(int(y / self.cell), 0), max(int((y + height) / self.cell) + 1, 0)), columns

@@ -1,0 +1,167 @@
+"""What is said of a run when it happens, and the list of it."""
+
+from __future__ import annotations
+
+import pytest
+
+from game.documents.chronicle import TOLD
+from game.session import Session
+from systems.statics.stability import is_held
+
+
+def watched(name: str, seconds: float, start: str = "space") -> Session:
+    """A session in which time passed in frames, for so long or until rest."""
+    session = Session.open(name)
+    session.press(start)
+    for _ in range(round(60 * seconds)):
+        session.frame(1 / 60)
+        if session.simulation.halted:
+            break
+    return session
+
+
+def kinds(session: Session) -> list[str]:
+    return [event.kind for event in session.events]
+
+
+# --- instants --------------------------------------------------------------------------------------------
+
+
+def test_a_rod_yields_at_the_instant_and_load_at_which_it_reaches_its_strength() -> None:
+    """Hyperstatic square: in statics CD reaches 215 kN at 92.4 % of the load, and the load grows slowly."""
+    session = Session.open("hyperstatic_yield")
+    assert session.rods["CD"].yielded_at is None
+    session.run(until="rest")
+    [yields, rests] = session.events
+    assert (yields.kind, yields.elements, rests.kind) == ("yield", ("CD",), "rest")
+    assert yields.time == session.rods["CD"].yielded_at
+    assert yields.load_factor == pytest.approx(yields.time / 0.5, rel=1e-12)
+    assert yields.message == "Rod CD yields."
+    assert yields.when == "0.4620 s, 92.4 % of the load"
+    again = Session.open("hyperstatic_yield")
+    again.run(time=yields.time * (1.0 - 1e-9))
+    assert again.events == ()
+    assert abs(again.rods["CD"].axial_force) == pytest.approx(215.0, rel=1e-6)
+    again.run(time=yields.time * 3e-9)
+    assert kinds(again) == ["yield"]
+
+
+def test_the_instant_does_not_depend_on_frames_or_the_integrator() -> None:
+    script = Session.open("hyperstatic_yield")
+    script.run(until="rest")
+    seen = watched("hyperstatic_yield", 20.0)
+    assert [event.time for event in seen.events] == [event.time for event in script.events]
+    fixed = Session.open("hyperstatic_yield")
+    fixed.settings.integrator = "velocity_verlet"
+    fixed.run(until="rest")
+    assert fixed.events[0].time == pytest.approx(script.events[0].time, abs=3 * fixed.model.clock.step_size)
+
+
+def test_what_is_taken_back_did_not_happen() -> None:
+    session = Session.open("hyperstatic_yield")
+    session.run(time=0.5)
+    assert kinds(session) == ["yield"]
+    session.press("ctrl+z")
+    assert session.events == ()
+    session.press("ctrl+y")
+    assert kinds(session) == ["yield"]
+    session.restart()
+    assert session.events == ()
+
+
+# --- by looking ------------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize(
+    ("name", "seconds", "found"),
+    [
+        ("isostatic_collapse", 6.0, ["yield", "collapse"]),
+        ("von_mises", 8.0, ["snap-through", "rest"]),
+        ("braced_portal", 10.0, ["slack", "rest"]),
+        ("pendulum", 2.0, []),
+        ("overshoot_yield", 2.0, ["yield"]),
+    ],
+)
+def test_what_happens_is_noted(name: str, seconds: float, found: list[str]) -> None:
+    session = watched(name, seconds)
+    assert kinds(session) == found
+    assert all(event.message.endswith(".") for event in session.events)
+    session.restart()
+    assert session.events == ()
+
+
+def test_a_collapse_begins_when_the_rod_that_lets_go_yields() -> None:
+    yields, collapse = watched("isostatic_collapse", 5.0).events
+    assert collapse.time == yields.time
+    assert collapse.load_factor == pytest.approx(0.8686, abs=2e-3), (
+        "that of plastic theory, and a little inertia"
+    )
+    assert collapse.message == "The structure collapses: Rod BC yields and nothing else resists."
+
+
+def test_a_structure_is_held_by_what_its_rods_resist() -> None:
+    model = Session.open("von_mises").model
+    assert is_held(model)
+    assert is_held(model, at_first=True)
+    model.writable("particles.displacement")[1] = -model.particles.position[1] * [0.0, 1.0]  # flat
+    assert not is_held(model)
+    assert is_held(Session.open("isostatic").model)
+    assert not is_held(Session.open("pendulum").model, at_first=True)
+
+
+# --- how it is said --------------------------------------------------------------------------------------
+
+
+def test_it_is_said_for_a_few_seconds() -> None:
+    session = watched("hyperstatic_yield", 5.2)
+    assert kinds(session) == ["yield"]
+    assert session.view.status.notice == "Rod CD yields (0.4620 s, 92.4 % of the load)."
+    session.press("space")
+    for _ in range(round(60 * TOLD)):
+        session.frame(1 / 60)
+    assert "yields" not in session.view.status.notice
+
+
+def test_a_panel_lists_it() -> None:
+    session = watched("isostatic_collapse", 6.0)
+    session.press("ctrl+h")
+    session.update_view()
+    [panel] = [readout for readout in session.view.readouts if readout.title == "What happened"]
+    assert panel.rows[0][1] == "Rod BC yields"
+    assert panel.rows[0][0] == "0.4345 s, 86.9 % of the load"
+    session.press("ctrl+h")
+    session.update_view()
+    assert not session.view.readouts
+
+
+def test_what_leaves_the_picture_is_told() -> None:
+    session = watched("collision_vi", 0.5)
+    assert session.view.status.notice == ""
+    for _ in range(600):
+        session.frame(1 / 60)
+    assert session.view.status.notice == "All that moves has left the picture: Home shows it."
+    session.press("home")
+    session.frame(1 / 60)
+    assert session.view.status.notice == ""
+
+
+def test_many_rods_that_yield_at_once_are_one_event() -> None:
+    session = Session.open("tower")
+    session.model.writable("rods.yielded_at")[:5] = 0.0
+    [event] = session.events
+    assert event.message.startswith("Rods ")
+    assert "2 more yield." in event.message
+
+
+def test_a_run_that_diverges_says_so() -> None:
+    session = Session.open("isostatic")
+    session.settings.integrator = "velocity_verlet"
+    session.settings.time_step = 1e-2
+    assert session.run(time=5.0) == "diverged"
+    assert kinds(session) == ["diverged"]
+
+
+def test_particles_alone_have_no_events() -> None:
+    session = Session.open("collision_vi")
+    session.run(time=0.1)
+    assert session.events == ()

@@ -1,0 +1,182 @@
+"""The automatic displacement scale: what it is, that it is steady, and that nothing but pictures depends on it."""
+
+from __future__ import annotations
+
+import itertools
+from typing import Any
+
+import numpy as np
+import pytest
+
+from components.view import drawn_positions
+from game.documents import models
+from game.documents.exaggeration import DRAWN, Exaggeration
+from game.session import Session
+
+STIFF = [
+    "isostatic",
+    "hyperstatic",
+    "isostatic_10x",
+    "hyperstatic_10x",
+    "braced_portal",
+    "tower",
+    "warren_bridge",
+]
+
+
+def truss(**changes: Any) -> dict[str, Any]:
+    """A triangle under a load, without a scale of its own."""
+    content = models.document(models.load("isostatic"))
+    return content | {"settings": {"diagram_scale": 0.2}} | changes
+
+
+def reviewed(source: Any) -> Session:
+    session = Session.open(source)
+    session.exaggerate()
+    return session
+
+
+def drawn_share(session: Session) -> float:
+    """The largest displacement drawn, of the structure's size."""
+    original = session.model.particles.position
+    size = float(np.ptp(original, axis=0).max())
+    return float(np.abs(drawn_positions(session.model) - original).max()) / size
+
+
+@pytest.mark.parametrize("name", STIFF)
+def test_stiff_structures_at_rest_are_drawn_with_a_visible_displacement(name: str) -> None:
+    session = reviewed(name)
+    session.settle()
+    session.exaggerate()
+    assert 0.03 <= drawn_share(session) <= DRAWN
+
+
+@pytest.mark.parametrize("name", [name for name in models.bundled() if name not in STIFF])
+def test_large_motions_loose_particles_and_collapses_are_true_to_scale(name: str) -> None:
+    session = Session.open(name)
+    session.settings.displacement_scale = None
+    session.exaggerate()
+    yielding = {"three_bar_plastic": 100.0, "hyperstatic_yield": 20.0, "overshoot_yield": 5.0}
+    assert session.settings.displacement_scale == yielding.get(name, 1.0)
+
+
+def test_an_old_file_keeps_its_factor_and_a_new_model_has_none() -> None:
+    old = reviewed(truss(settings={"displacement_scale": 1.0}))
+    assert (old.settings.displacement_scale, old.settings.prescribed_displacement_scale) == (1.0, 1.0)
+    new = reviewed(truss())
+    assert (new.settings.displacement_scale, new.settings.prescribed_displacement_scale) == (100.0, None)
+    saved = models.document(new.model)
+    assert saved["settings"]["displacement_scale"] is None
+    assert Session.open(saved).settings.prescribed_displacement_scale is None
+
+
+def test_factors_are_round_steps_and_steady_under_loads_that_change_little() -> None:
+    session, seen = reviewed(truss()), []
+    for force in range(4, 280, 4):  # beyond it yields and collapses
+        session.particles["B"].force = (0.0, -float(force))
+        session.exaggerate()
+        seen.append(session.settings.displacement_scale)
+    assert set(seen) <= {50.0, 100.0, 200.0, 500.0, 1000.0, 2000.0}
+    changes = sum(a != b for a, b in itertools.pairwise(seen))
+    assert changes <= 3  # over a range of 1 to 70
+
+
+def test_it_never_changes_while_time_passes() -> None:
+    session = reviewed(truss())
+    session.press("space")
+    for _ in range(200):
+        session.frame(0.016)
+        assert session.settings.displacement_scale == 100.0
+
+
+def test_it_does_not_change_in_the_middle_of_a_drag() -> None:
+    session = reviewed(truss())
+    session.press("space")
+    session.gesture = object()  # type: ignore[assignment]
+    session.particles["B"].force = (0.0, -1e5)
+    session.exaggerate()
+    assert session.settings.displacement_scale == 100.0
+    session.gesture = None
+    session.exaggerate()
+    assert session.settings.displacement_scale < 100.0
+
+
+def test_runs_do_not_depend_on_it() -> None:
+    def end(scales: list[float | None]) -> Any:
+        session = Session.open(truss())
+        for scale in scales:
+            session.run(steps=37)
+            session.settings.displacement_scale = scale
+        return session.particles.displacement.tobytes(), session.time, session.energy.imbalance
+
+    assert end([1.0] * 5) == end([None, 50.0, 3.0, 0.0, 1000.0])
+
+
+def test_changing_it_in_a_run_leaves_what_was_measured_and_the_way_back() -> None:
+    session = Session.open(truss())
+    session.run(steps=300)
+    session.settings.displacement_scale = 20.0
+    assert session.document.assessment.undisturbed
+    assert session.timeline.first == 0
+    assert session.document.unsaved
+    time = session.time
+    assert "scale" in session.undo()
+    assert session.time == time
+    assert session.settings.prescribed_displacement_scale is None
+
+
+def test_a_vibration_without_load_is_seen_by_its_amplitude() -> None:
+    session = Session.open(truss())
+    session.particles["B"].force = (0.0, 0.0)
+    session.particles.velocity  # noqa: B018
+    session.model.writable("particles.velocity")[1] = (0.3, 0.0)
+    session.exaggerate()
+    assert session.settings.displacement_scale > 10.0
+
+
+def test_warmth_and_moved_supports_are_expected() -> None:
+    warm = truss()
+    warm["particles"][1].pop("force")
+    warm["rods"][0]["temperature_change"] = 40.0
+    assert reviewed(warm).settings.displacement_scale > 10.0
+
+
+def test_neighbours_that_would_seem_to_touch_are_drawn_apart() -> None:
+    def pair(gap: float) -> float:
+        content = truss()
+        content["particles"] = [
+            *content["particles"],
+            *(
+                {**p, "name": p["name"] + "'", "position": [p["position"][0] + 2.0 + gap, p["position"][1]]}
+                for p in content["particles"]
+            ),
+        ]
+        content["rods"] = [
+            *content["rods"],
+            *(
+                {**r, "name": r["name"] + "'", "between": [e + "'" for e in r["between"]]}
+                for r in content["rods"]
+            ),
+        ]
+        return reviewed(content).settings.displacement_scale
+
+    assert pair(1.5) >= 100.0
+    assert pair(0.11) < pair(1.5)
+    assert pair(0.1) == 1.0
+
+
+def test_a_large_structure_is_looked_at_and_not_computed(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("game.documents.exaggeration.LARGEST", 2)
+    session = reviewed(truss())
+    assert session.settings.displacement_scale == 1.0
+    session.settle()
+    session.exaggerate()
+    assert session.settings.displacement_scale == 100.0
+
+
+def test_nothing_breaks_without_elements_or_with_impossible_numbers() -> None:
+    assert reviewed({"format": "pinjoint model", "version": 1}).settings.displacement_scale == 1.0
+    hostile = truss()
+    hostile["rods"][0]["stiffness"] = 1e-29
+    review = Exaggeration(models.load(hostile))
+    review.review(still=True)

@@ -1,0 +1,143 @@
+"""Every value stands nearer to its own rod or arrow than to any other, in every bundled model and window."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+
+import numpy as np
+import pytest
+
+from components.model import Model
+from components.written import number
+from game import Session
+from game.documents import models
+from systems.render.labels import LEADER_OPACITY
+from systems.render.marks import Picture, Points, Strokes, Text
+from systems.render.picture import compose
+from systems.render.theme import faded, load_theme
+from tests.reference.boxes import Box, text_box
+from tests.reference.nearness import Part, distance, near, parts_of
+
+LIGHT = load_theme("light")
+SIZES = [
+    (640, 480, 1.0),
+    (1024, 640, 1.0),
+    (1280, 800, 1.0),
+    (1920, 1080, 1.0),
+    (420, 620, 1.0),
+    (1600, 1200, 2.0),
+]
+
+
+def at_the_start(session: Session) -> None:
+    session.press("i")
+
+
+def in_motion(session: Session) -> None:
+    session.press("i")
+    session.press("space")
+    for _ in range(20):
+        session.frame(0.05)
+
+
+def settled(session: Session) -> None:
+    session.press("i")
+    session.press("e")
+    session.settings.displacement_scale *= 3.0
+
+
+def values(picture: Picture, model: Model) -> Iterator[Text]:
+    """The texts of elements that are not their names."""
+    for mark in picture.marks:
+        if isinstance(mark, Text) and mark.of is not None:
+            table, row = mark.of
+            if mark.text != model.tables[table].names[row]:
+                yield mark
+
+
+def misplaced(picture: Picture, model: Model) -> Iterator[str]:
+    """Values to which something else than their own rod or arrow is as near, or that stand on another's diagram.
+
+    In its own diagram a value may be nearer to an arrow than to its rod, but not nearer to another rod. What stands away
+    from all that is led to its own by a line.
+    """
+    parts = parts_of(picture, LIGHT)
+    for text in values(picture, model):
+        table, row = text.of  # type: ignore[misc]
+        box, own = text_box(text, text.size), [part for part in parts if part.owner == text.of]
+        line = leader(text, picture)
+        if table == "particles":
+            own = _arrow(text_box(text, text.size) if line is None else (*line[1], *line[1]), text, own)
+            if not _says(text, own[0], model, row):
+                yield f"{text.text} of {model.particles.names[row]} stands at another arrow"
+        if line is not None:
+            yield from _astray(text, line, own, parts)
+            continue
+        to_any = min(distance(box, part) for part in own)
+        to_line = min((distance(box, part) for part in own if part.kind == "line"), default=to_any)
+        for part, away in near(box, parts, to_line):
+            kin = part.owner == text.of and (table == "rods" or part.kind in ("disc", "support") or part in own)
+            if not kin and away <= (to_line if part.kind == "line" else to_any):
+                its, other = (model.tables[name].names[index] for name, index in (text.of, part.owner))
+                yield f"{text.text} of {its}: {to_any:.1f} pixels from it, {away:.1f} from the {part.kind} of {other}"
+
+
+def leader(text: Text, picture: Picture) -> Points | None:
+    """The ends of the line from a value to what it belongs to, shape (2, 2); None where it stands beside that."""
+    left, top, right, bottom = text_box(text, text.size)
+    for mark in picture.marks:
+        if isinstance(mark, Strokes) and mark.colour == faded(text.colour, LEADER_OPACITY):
+            (x, y), end = mark.start[0], mark.end[0]
+            off = max(left - x, x - right, top - y, y - bottom)
+            if off < 8.0 and mark.of is not None and (mark.of[0], int(mark.of[1][0])) == text.of:
+                return np.array([[x, y], end])
+    return None
+
+
+def _astray(text: Text, line: Points, own: list[Part], parts: list[Part]) -> Iterator[str]:
+    """What is wrong with a value that stands away: on something, or its line leads elsewhere, or across others."""
+    end = (*line[1], *line[1])
+    if min(distance(end, part) for part in own) > 0.1:
+        yield f"the line from {text.text} ends elsewhere"
+    for part, _ in near(text_box(text, text.size), parts, 0.0):
+        yield f"{text.text} stands on the {part.kind} of {part.owner}"
+    for share in np.linspace(0.0, 1.0, 60)[:-1]:
+        x, y = line[0] + share * (line[1] - line[0])
+        for part, _ in near((x, y, x, y), parts, 0.5):
+            if part.kind != "diagram" and part.owner != text.of:
+                yield f"the line from {text.text} crosses the {part.kind} of {part.owner}"
+
+
+def _arrow(box: Box, text: Text, parts: list[Part]) -> list[Part]:
+    """Shaft and head of the arrow of the text's colour that is nearest to it."""
+    arrows = [
+        [shaft, head]
+        for shaft in parts
+        for head in parts
+        if shaft.kind == "shaft" and head.kind == "head" and shaft.colour == head.colour == text.colour
+        if np.abs(head.points[1:].mean(axis=0) - shaft.points[1]).max() < 1e-6
+    ]
+    return min(arrows, key=lambda arrow: min(distance(box, part) for part in arrow))
+
+
+def _says(text: Text, shaft: Part, model: Model, row: int) -> bool:
+    """Whether a text is the size of the force that an arrow shows."""
+    particles = model.particles
+    force = (particles.applied_force if text.colour == LIGHT.load else particles.reaction)[row]
+    step = np.abs(shaft.points[1] - shaft.points[0])
+    size = abs(float(force[int(step[1] > step[0])]))
+    return text.text.removesuffix(" kN") == number(size)
+
+
+@pytest.mark.parametrize("moment", [at_the_start, in_motion, settled])
+@pytest.mark.parametrize("name", models.bundled())
+def test_values_stand_nearest_to_what_they_are_of(name: str, moment: Callable[[Session], None]) -> None:
+    session = Session.open(name)
+    moment(session)
+    for width, height, ratio in SIZES:
+        session.resize(width, height, ratio)
+        session.view.fit(session.model)
+        session.update_view()
+        for model, view in session.stages:
+            if isinstance(model, Model):
+                assert list(misplaced(compose(model, view, LIGHT), model)) == [], (width, height)

@@ -1,0 +1,90 @@
+"""How much of its strength each rod bears, in colours."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from components.model import Model
+from components.rod import utilisation
+from components.tags import Selected
+from game.session import Session
+from systems.render.marks import Rectangles, Strokes
+from systems.render.theme import load_theme, theme_names
+from systems.render.utilisation import LEVELS, first_at_limit, shade
+from tests.systems.render.pictures import LIGHT, fill, marks_of, picture_of, triangle
+from tests.systems.render.test_themes import VISIONS, lab
+
+
+def limited() -> Model:
+    """The triangle with strengths of 200 kN in both directions for AB and BC; CA has none."""
+    model = triangle()
+    for name in ("AB", "BC"):
+        model.rods[name].tensile_strength = model.rods[name].compressive_strength = 200.0
+    fill(model, "rods.yielding", [False, False, False])
+    return model
+
+
+def test_it_is_the_force_over_the_strength_in_its_direction() -> None:
+    model = limited()
+    model.rods["AB"].compressive_strength = 50.0
+    model.rods["BC"].compressive_strength = None
+    found = utilisation(model)
+    np.testing.assert_allclose(found[:2], [28.34277 / 50.0, 0.0])
+    assert np.isnan(found[2])
+
+
+def test_rods_take_its_colours_only_where_they_are_asked_for() -> None:
+    model = limited()
+    assert not marks_of(picture_of(model), Strokes, shade(LIGHT, 1.0))
+    picture = picture_of(model, utilisation=True)
+    for name, level in (("AB", 1), ("BC", 9)):
+        [line] = marks_of(picture, Strokes, shade(LIGHT, level / (LEVELS - 1)))
+        assert line.of is not None
+        assert line.of[1].tolist() == [model.rods[name].row]
+    [free] = [m for m in marks_of(picture, Strokes, LIGHT.ghost) if m.of is not None]
+    assert free.of[1].tolist() == [2]
+    assert {"14.2 %", "BC 99.0 %: nearest", "0 to 100 % of the strength"} <= set(picture.texts)
+    bar = [m for m in picture.marks if isinstance(m, Rectangles) and m.colour == shade(LIGHT, 1.0)]
+    assert len(bar) == 1
+    model.tag(model.rods["BC"], Selected)
+    assert marks_of(picture_of(model, utilisation=True), Strokes, shade(LIGHT, 1.0)), (
+        "a selection hides nothing"
+    )
+
+
+def test_the_first_at_its_strength_is_marked() -> None:
+    model = limited()
+    model.writable("rods.yielded_at")[:2] = (0.25, 0.5)
+    fill(model, "rods.yielding", [False, True, False])
+    assert first_at_limit(model, utilisation(model)) == 0
+    picture = picture_of(model, utilisation=True)
+    [halo] = [m for m in marks_of(picture, Strokes, LIGHT.yielding) if m.colour[3] < 255 and m.of is not None]
+    assert halo.of[1].tolist() == [0]
+    assert "AB 14.2 %: first, at 0.2500 s" in picture.texts
+    assert {"first at its strength", "yielding"} <= set(picture.texts)
+
+
+@pytest.mark.parametrize("vision", VISIONS)
+@pytest.mark.parametrize("name", theme_names())
+def test_the_scale_can_be_read_by_its_lightness_alone(name: str, vision: str) -> None:
+    theme = load_theme(name)
+    lightness = [lab(shade(theme, step / (LEVELS - 1)), VISIONS[vision])[0] for step in range(LEVELS)]
+    steps = np.diff(lightness)
+    assert (np.abs(steps) > 3.0).all()
+    assert (steps > 0.0).all() or (steps < 0.0).all()
+    away = [abs(value - lab(theme.background, VISIONS[vision])[0]) for value in lightness]
+    assert away[0] == min(away), "what bears most stands out most"
+    assert away[0] > 15.0
+
+
+def test_a_key_shows_it_where_rods_have_strengths() -> None:
+    session = Session.open("hyperstatic_yield")
+    session.press("a")
+    assert session.view.utilisation
+    session.press("a")
+    assert not session.view.utilisation
+    without = Session.open("von_mises")
+    without.press("a")
+    assert not without.view.utilisation
+    assert without.notice.startswith("No rod has a strength")
