@@ -5,7 +5,7 @@ from __future__ import annotations
 import re
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
-from functools import reduce
+from functools import partial, reduce
 from operator import getitem
 from typing import Any
 
@@ -67,7 +67,7 @@ def _read(model: Model, path: str) -> list[Measure]:
     try:
         if section == "energy":
             return [Measure(path, ("energy", energy_named(rest)), f"{rest.replace('_', ' ')} energy", "J")]
-        target, rest = locate(model, path, _reported)
+        target, rest = locate(model, path, partial(_reported, model))
         if rest:
             raise PathError(f"'{rest}' follows the quantity; {_FORM}.")
     except PathError as error:
@@ -85,5 +85,5 @@ def _read(model: Model, path: str) -> list[Measure]:
     ]
 
 
-def _reported(table: Table[Any]) -> Mapping[str, Field[Any]]:
-    return {field.name: field for field in reported(table.world, table.name)} if table.name in _TABLES else {}
+def _reported(model: Model, table: Table[Any]) -> Mapping[str, Field[Any]]:
+    return {field.name: field for field in reported(model, table.name)} if table.name in _TABLES else {}
