@@ -207,7 +207,8 @@ class Writer:
         self.shift = SHIFT | TURNED if self.bends else SHIFT
         self.drift = DRIFT | SPUN if self.bends else DRIFT
         self.collides = any(system.impulsive for system in systems)
-        self.bound = [bind(system, model) for system in systems if system.kernel]
+        bound = (bind(system, model) for system in systems if system.kernel)
+        self.bound = [b for b in bound if self.bends or b.each not in ("ends", "rotations")]
         check_names(self.bound)
         self.of = by_role(self.bound)
         self.commits = [b for role in HISTORIES for b in self.of[role]]
@@ -256,7 +257,8 @@ class Writer:
                 parts = ("on", "force", "values", "first", *(["moment"] if self.bends else []))
                 names.update(dict.fromkeys(f"{b.prefix}_{part}" for part in parts))
             else:
-                taken = (p for p in b.parameters if p not in PROVIDED and p not in TRIAL)
+                known = PROVIDED | {p for p, name in TRIAL.items() if self.bends or name not in TURNING}
+                taken = (p for p in b.parameters if p not in known)
                 names.update(dict.fromkeys(b.stored(p) if p in b.arrays else p for p in taken))
             if b.role is StepRole.EVENT:
                 names[sides_of(b)] = None
@@ -269,8 +271,9 @@ class Writer:
         if parameter in PROVIDED:
             return _OF_PAIR.get(parameter, parameter)
         name, single = TRIAL.get(parameter, parameter), False
-        if name in TURNING:
+        if name in TURNING and self.bends:
             return f"{name}[{index}, 0]"
+        name = parameter if name in TURNING else name
         if parameter in b.arrays:
             name, shape = b.stored(parameter), b.arrays[parameter].shape[1:]
         else:

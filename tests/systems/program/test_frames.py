@@ -9,6 +9,8 @@ import pytest
 from components.model import Model
 from game import Session
 from game.documents.document import parse
+from systems.base import Law
+from systems.kernels import compiled
 from systems.physics.integrators import INTEGRATORS
 from systems.program.compiler import Choice, Compile
 from systems.program.parallel import make_program
@@ -172,3 +174,50 @@ def test_what_no_longer_bends_has_no_moments() -> None:
     session.run(steps=1)
     assert not session.model.rods.end_moment.any()
     assert not session.model.particles.reaction_moment.any()
+
+
+@compiled
+def spring(slope_start, slope_end):  # type: ignore[no-untyped-def]
+    return 30.0 * slope_start, 30.0 * slope_end
+
+
+class Spring(Law):
+    """Rotational springs between rods and their chords, by a mod."""
+
+    name = "mod.spring"
+    each = "ends"
+    kernel = spring
+
+
+@compiled
+def brake(particles_angular_velocity, particles_rotation):  # type: ignore[no-untyped-def]
+    return -0.01 * particles_angular_velocity + 0.0 * particles_rotation
+
+
+class Brake(Law):
+    """Holds all turning up, by a mod."""
+
+    name = "mod.brake"
+    each = "rotations"
+    kernel = brake
+    reads = ("particles.angular_velocity", "particles.rotation")
+    account = "dissipated_damping"
+
+
+@pytest.mark.parametrize("name", ["velocity_verlet", "dop853", "esdirk4"])
+def test_laws_of_mods_act_on_ends_and_rotations(name: str) -> None:
+    still = Session(parse(beam(integrator=name)))
+    session = Session(parse(beam(integrator=name)), [Spring(), Brake()])
+    for one in (still, session):
+        one.run(time=0.05)
+    energy = session.energy
+    assert abs(session.model.particles.rotation[-1]) < 0.9 * abs(still.model.particles.rotation[-1])
+    assert abs(energy.imbalance) < 1e-3 * abs(energy.work)
+
+
+def test_where_nothing_bends_they_have_nothing_to_do() -> None:
+    session = Session.open("isostatic", [Spring(), Brake()])
+    alone = Session.open("isostatic")
+    for one in (session, alone):
+        one.run(steps=20)
+    assert state_of(session) == state_of(alone)
