@@ -194,6 +194,7 @@ class Program:
             self._support = np.ascontiguousarray(self.between.support(model)[self._held_rows])
             extra |= {"support": self._support, "unpushed": np.zeros_like(self._support)}
         if self._writer.bends:
+            self._stop_turning()
             turning = self._column("particles.turning")
             extra |= {
                 "lever": np.ascontiguousarray(levers(self.model)[self._held_rows]),
@@ -349,6 +350,13 @@ class Program:
         self._unbalanced, self._unbalanced_moment = apart["force"], apart["moment"]
         yields = self.model.settings.plasticity
         self._observed = self._after("dt", "observe", yields=yields, **storage, **apart)
+
+    def _stop_turning(self) -> None:
+        """A particle that has no rigid ends any more has no rotation that could go on."""
+        particles = self.model.particles
+        stray = (particles.turning == 0.0) & (particles.angular_velocity != 0.0)
+        if stray.any():
+            self.model.writable("particles.angular_velocity")[stray] = 0.0
 
     def _forget_moments(self) -> None:
         """Nothing bends: no moments are left of when something did."""

@@ -167,3 +167,18 @@ def test_a_rolling_beam_keeps_momentum_and_energy() -> None:
     assert session.model.particles.rotation.min() > 50.0
     assert momentum() == pytest.approx(begun, rel=1e-9)
     assert abs(session.energy.imbalance) < 1e-8 * session.energy.initial
+
+
+def test_what_can_turn_no_more_stops_turning() -> None:
+    """A particle whose rigid ends become hinges keeps its place: its moment does no more work."""
+    document = cantilever(2, 20.0)
+    document["particles"][2] |= {"moment": 1.0}
+    session = Session(parse(document))
+    session.run(time=0.002)
+    session.rods["R1"].hinged = (True, True)
+    session.run(steps=1)
+    turned = session.particles["P2"].rotation
+    session.run(time=0.01)
+    assert session.particles["P2"].rotation == turned
+    assert session.particles["P2"].angular_velocity == 0.0
+    assert abs(session.energy.imbalance) < 1e-7 * session.energy.work
