@@ -61,7 +61,7 @@ def derive_bending(world: World) -> None:
     rods = world.tables["rods"]
     length, stiffness = rods.rest_length, rods.bending_stiffness
     rigid: Column = ~rods.hinged & np.stack([stiffness, stiffness], axis=1).astype(bool)
-    both: Column = rigid.all(axis=1)
+    both = np.asarray(rigid.all(axis=1))
     start, end = (rigid & ~both[:, None]).T  # the only rigid end
 
     def by_ends(of_start: ArrayLike, mixed: ArrayLike, of_end: ArrayLike, alone: ArrayLike) -> Column:

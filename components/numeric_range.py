@@ -65,7 +65,9 @@ def is_extreme(field: Field[Any], column: Column) -> Column:
 
 def is_computed_with(field: Field[Any]) -> bool:
     """True if the numbers of a Field are checked: those that a person made or can type, and some that follow."""
-    return field.dtype is float and (field.role is Role.DOCUMENT or field.name in (*_FOLLOWING, *_MOVING, _OF_ROTATIONS))
+    return field.dtype is float and (
+        field.role is Role.DOCUMENT or field.name in (*_FOLLOWING, *_MOVING, _OF_ROTATIONS)
+    )
 
 
 def _sentence(element: str, field: Field[float], value: float) -> str:

@@ -28,7 +28,10 @@ from systems.run.policy import at_rest_since, energy_is_off
 
 MOST_NUMBERS = 2_000_000  # in the largest array of a batch: of stiffness, rods × directions of particles
 # What makes another model of it, or lets its parts rest by themselves.
-_ALONE = ("particles.name", "particles.fixed", "rods.name", "loads.name", "settings.sleeping")
+_ALONE = (
+    *("particles.name", "particles.fixed", "rods.name", "loads.name", "settings.sleeping"),
+    *("rods.bending_stiffness", "rods.hinged"),  # models that bend are computed one by one
+)
 _REPORTED = ("particles", "rods")
 
 
@@ -57,6 +60,7 @@ class Batches:
         return (
             plan.analysis.load_factors is None
             and 0 < model.rods.count <= SMALL
+            and not bends(model)
             and model.clock.step_size == 0.0  # it has not begun
             and len(placed) <= 1  # two could meet on the way, which is refused
             and all(type(system).__module__.startswith("systems.") for system in self._runner.step_systems)
@@ -141,8 +145,7 @@ class Batches:
             with suppress(*refused), self._runner.taken_back():
                 self._runner.override(self._plan.overrides_of(number))
                 simulation = self._runner.simulation
-                alone = bends(simulation.model) or any(system.impulsive for system in simulation.plan)
-                if not alone:
+                if not any(system.impulsive for system in simulation.plan):
                     self._programs[key] = BatchProgram(
                         simulation.programs.compiled, self._threads, varied_arrays=self._loads_vary
                     )

@@ -27,7 +27,9 @@ def model(particles: list[dict[str, Any]], rods: list[dict[str, Any]], **setting
 
 def cantilever(count: int, slenderness: float) -> dict[str, Any]:
     """A cantilever of length 1 m and EA = 10⁵ kN, of so many rods; slenderness: length/radius of gyration."""
-    particles: list[dict[str, Any]] = [{"name": f"P{i}", "position": [i / count, 0.0]} for i in range(count + 1)]
+    particles: list[dict[str, Any]] = [
+        {"name": f"P{i}", "position": [i / count, 0.0]} for i in range(count + 1)
+    ]
     particles[0] |= {"fixed": [True, True], "fixed_rotation": True}
     rod = {"stiffness": 1e5, "bending_stiffness": 1e5 / slenderness**2, "damping": 0.0}
     rods = [{"name": f"R{i}", "between": [f"P{i}", f"P{i + 1}"], **rod} for i in range(count)]
@@ -82,7 +84,10 @@ def test_the_highest_frequency_is_bounded(number: int) -> None:
 def beam(**rod: Any) -> dict[str, Any]:
     """One rod, clamped at both ends but for hinges, under a small distributed force."""
     held = {"fixed": [True, True], "fixed_rotation": True}
-    particles = [{"name": "A", "position": [0.0, 0.0], **held}, {"name": "B", "position": [LENGTH, 0.0], **held}]
+    particles = [
+        {"name": "A", "position": [0.0, 0.0], **held},
+        {"name": "B", "position": [LENGTH, 0.0], **held},
+    ]
     facts = {"stiffness": 1e5, "bending_stiffness": EI, "distributed_force": [0.0, LOAD], **rod}
     return model(particles, [{"name": "AB", "between": ["A", "B"], **facts}])
 

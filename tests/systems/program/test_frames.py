@@ -1,6 +1,8 @@
 """Members that bend, in step programs: against the energy that their forces derive from, in every form and integrator."""
 
+import json
 import re
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -8,6 +10,7 @@ import pytest
 
 from components.model import Model
 from game import Session
+from game.commands.command_line import main
 from game.documents.document import parse
 from systems.base import Law
 from systems.kernels import compiled
@@ -221,3 +224,12 @@ def test_where_nothing_bends_they_have_nothing_to_do() -> None:
     for one in (session, alone):
         one.run(steps=20)
     assert state_of(session) == state_of(alone)
+
+
+def test_sweeps_of_frames_are_single_runs(tmp_path: Path) -> None:
+    model, output = tmp_path / "beam.json", tmp_path / "found.csv"
+    model.write_text(json.dumps(beam(2)))
+    varied = ["--vary", "rods.*.bending_stiffness=0,50", "--measure", "rods.R0.bending_moment.start"]
+    assert main(["sweep", str(model), *varied, "--at", "0.01", "--output", str(output)]) == 0
+    lines = output.read_text().splitlines()
+    assert [line.partition(",")[0] for line in lines] == ["variant", "0", "1"]
