@@ -171,7 +171,7 @@ def _beside_panels(sheet: Sheet, said: str, size: int, around: float) -> tuple[V
 
 
 def draw_notice(sheet: Sheet, ends: tuple[float, float]) -> list[Mark]:
-    """The problem or the notice, wrapped, above the status bar or at the top if that is freer."""
+    """The problem or the notice, wrapped, at the bottom or the top, in the middle or aside, where it hides least."""
     status, (top, bottom) = sheet.view.status, ends
     said = status.problem or status.notice
     if not said:
@@ -185,9 +185,10 @@ def draw_notice(sheet: Sheet, ends: tuple[float, float]) -> list[Mark]:
     most = max(int((bottom - top - 60.0 * u) / line_height(size)), 1)
     lines = at_most(lines, most, room, size)
     height = len(lines) * line_height(size) + 2 * pad - 4.0 * u
-    left = v.left + (v.width - width) / 2
-    places = [bottom - height - 10.0 * u, top + 10.0 * u]
-    upper = min(places, key=lambda place: sheet.occupancy.crossed(left, place, width, height))
+    middle, last = v.left + (v.width - width) / 2, v.right - width - 10.0 * u
+    lefts = (middle, max(last, middle), min(v.left + 10.0 * u, middle))
+    places = [(left, upper) for left in lefts for upper in (bottom - height - 10.0 * u, top + 10.0 * u)]
+    left, upper = min(places, key=lambda at: sheet.occupancy.crossed(*at, width, height))
     sheet.occupancy.block(left, upper, width, height)
     first = upper + height / 2 - (len(lines) - 1) * line_height(size) / 2
     at = np.array([[left + pad + icon / 2, first]])

@@ -2,11 +2,14 @@
 
 from __future__ import annotations
 
+import itertools
+
 import pytest
 
 from components.model import Model
-from components.view import Status
-from systems.render.marks import Rectangles, Text
+from components.view import Status, drawn_positions
+from game import Session
+from systems.render.marks import Panel, Rectangles, Stamps, Text
 from systems.render.picture import compose
 from tests.systems.render.pictures import LIGHT, fill, marks_of, picture_of, triangle, view_of
 
@@ -85,3 +88,22 @@ def test_scale_bar_is_as_long_as_it_says() -> None:
 def test_an_empty_model_says_how_to_begin() -> None:
     picture = picture_of(Model(), status=Status(state="paused", hint="P new particle     L rod"))
     assert {"An empty model", "P", "new particle", "L", "rod"} <= set(picture.texts)
+
+
+@pytest.mark.parametrize("size", [(1024, 640), (1280, 800), (1920, 1080)])
+def test_a_long_notice_stands_beside_a_structure_that_fills_the_height(size: tuple[int, int]) -> None:
+    session = Session.open("hyperstatic")
+    session.resize(*size)
+    session.settle()
+    session.press("i")
+    session.update_view()
+    said = "Speeds beside Rayleigh's curve. They appear as soon as a particle that no rod holds is moving."
+    session.view.status = Status(notice=said)
+    marks = compose(session.model, session.view, LIGHT).marks
+    pairs = itertools.pairwise(marks)
+    [box] = [a for a, b in pairs if isinstance(a, Panel) and isinstance(b, Stamps) and b.symbol == "disc"]
+    x, y = session.view.camera.to_pixels(drawn_positions(session.model)).T
+    reach = 8.0
+    covered = (x > box.left - reach) & (x < box.left + box.width + reach)
+    covered &= (y > box.top - reach) & (y < box.top + box.height + reach)
+    assert not covered.any()
