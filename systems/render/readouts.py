@@ -51,7 +51,7 @@ def _heights(sheet: Sheet, readouts: Sequence[Readout], width: float, room: floa
     gap, shown = _BETWEEN * sheet.unit, dict[int, float]()
     left = room
     for index in newest:
-        height = _height(sheet, readouts[index], _LEAST_PLOT)
+        height = _height(sheet, readouts[index], width, _LEAST_PLOT)
         others = [r for other, r in enumerate(readouts) if other != index and other not in shown]
         folded = _height_of(sheet, _folded(sheet, others, width)) + gap if others else 0.0
         if height + folded <= left:
@@ -59,7 +59,7 @@ def _heights(sheet: Sheet, readouts: Sequence[Readout], width: float, room: floa
             left -= height + gap
             spare = left - folded
     for index in shown:
-        grown = min(_height(sheet, readouts[index], _PLOT), shown[index] + spare)
+        grown = min(_height(sheet, readouts[index], width, _PLOT), shown[index] + spare)
         spare -= grown - shown[index]
         shown[index] = grown
     return shown
@@ -93,10 +93,23 @@ def _line(sheet: Sheet) -> float:
     return line_height(sheet.font(12.0))
 
 
-def _height(sheet: Sheet, readout: Readout, plot: float) -> float:
+def _height(sheet: Sheet, readout: Readout, width: float, plot: float) -> float:
     """Height in pixels of a panel with all rows; plot: points of the plot, if the readout has one."""
-    height = (len(readout.rows) + 1) * _line(sheet) + 2 * _PAD * sheet.unit
+    height = (len(_lines(sheet, readout, width)) + 1) * _line(sheet) + 2 * _PAD * sheet.unit
     return height + (plot * sheet.unit if readout.plot is not None else 0.0)
+
+
+def _lines(sheet: Sheet, readout: Readout, width: float) -> list[tuple[str, str]]:
+    """The rows of a panel that is so wide; a sentence that is too long for one line goes on below its name."""
+    size, room, lines = sheet.font(12.0), width - 2 * _PAD * sheet.unit, list[tuple[str, str]]()
+    for name, value in readout.rows:
+        taken = text_width(name, size) + _GAP * sheet.unit * bool(name and value)
+        if taken + text_width(value, size, "semibold") <= room or " " not in value:
+            lines.append((name, value))
+            continue
+        lines += [(name, "")] * bool(name)
+        lines += [("", part) for part in wrapped(value, room, size, "semibold")]
+    return lines
 
 
 def _width(sheet: Sheet, readout: Readout) -> float:
@@ -118,14 +131,16 @@ def _panel(sheet: Sheet, readout: Readout, box: Box) -> list[Mark]:
         Panel(*box, 6.0 * u, faded(theme.panel, 0.94), theme.line),
         Text(heading, inner, y, size, theme.text, "semibold"),
     ]
-    for name, value in readout.rows:
+    for name, value in _lines(sheet, readout, width):
         y += _line(sheet)
         value = shortened(value, room, size, "semibold")
-        taken = text_width(value, size, "semibold") + _GAP * u
-        marks.append(Text(shortened(name, room - taken, size), inner, y, size, theme.muted))
-        marks.append(Text(value, inner + room, y, size, theme.text, "semibold", "right"))
+        taken = text_width(value, size, "semibold") + _GAP * u * bool(value)
+        if name:
+            marks.append(Text(shortened(name, room - taken, size), inner, y, size, theme.muted))
+        if value:
+            marks.append(Text(value, inner + room, y, size, theme.text, "semibold", "right"))
     if readout.plot is not None:
-        above = _height(sheet, replace(readout, plot=None), 0.0) - _PAD * u
+        above = _height(sheet, replace(readout, plot=None), width, 0.0) - _PAD * u
         marks += draw_plot(
             readout.plot, (inner, top + above, room, height - above - _PAD * u), theme, u, sheet.view.pointer
         )

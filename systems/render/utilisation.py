@@ -93,7 +93,7 @@ def _said(model: Model, row: int, share: float) -> str:
     """What is said of the first rod at its strength, or of that which is nearest to it."""
     rod = model.rods[row]
     if rod.yielded_at is None:
-        return f"{rod.name} {written.share(share)}: nearest"
+        return f"{rod.name} {written.share(share)}: nearest to its limit"
     return f"{rod.name} {written.share(share)}: first, at {written.time(rod.yielded_at)}"
 
 

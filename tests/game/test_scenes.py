@@ -419,3 +419,16 @@ def test_the_page_of_keys_does_not_depend_on_pictures_between_inputs() -> None:
         session.update_view()
         pages.append((session.view.help, session.view.keys))
     assert pages[0] == pages[1]
+
+
+def test_a_key_that_acts_in_pause_only_says_so_while_time_passes() -> None:
+    session = Session.open("hyperstatic")
+    session.press("space")
+    session.press("k")
+    assert session.scene == "simulation"
+    assert session.notice == "Force method: pause first, with Space."
+    session.press("i")
+    assert session.notice == ""
+    session.press("space")
+    session.press("k")
+    assert session.scene == "force method"

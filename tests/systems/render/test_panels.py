@@ -9,7 +9,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from components.view import drawn_positions
+from components.view import Readout, drawn_positions
 from game import Session
 from game.scripts.playing import Recorder, play, session_of
 from game.scripts.script import Script
@@ -152,3 +152,19 @@ def test_a_notice_stands_beside_the_panels() -> None:
     marks = compose(session.model, session.view, load_theme("light")).marks
     (said,) = [mark for mark in marks if isinstance(mark, Text) and mark.text.startswith("Plot: ")]
     assert said.x < min(left for left, *_ in panels_of(session).values())
+
+
+@pytest.mark.parametrize("size", [(640, 480), (1024, 640), (1280, 800)])
+def test_a_long_sentence_goes_on_in_the_next_line(size: tuple[int, int]) -> None:
+    session = opened("isostatic", size)
+    sentence = "The structure collapses: Rod BC yields and nothing else resists"
+    rows = (("0.4345 s, 86.9 % of the load", "Rod BC yields"), ("0.4345 s, 86.9 % of the load", sentence))
+    session.view.readouts = (Readout("What happened", rows),)
+    marks = compose(session.model, session.view, load_theme("light")).marks
+    [panel] = [a for a, b in itertools.pairwise(marks) if isinstance(b, Text) and b.text == "What happened"]
+    assert isinstance(panel, Panel)
+    within = [m for m in marks if isinstance(m, Text) and panel.left < m.x < panel.left + panel.width]
+    within = [text for text in within if panel.top < text.y < panel.top + panel.height]
+    assert sentence in " ".join(text.text for text in within)
+    assert sum(text.text == rows[0][0] for text in within) == 2  # each with its instant
+    assert len({(text.y, text.anchor) for text in within}) == len(within)
