@@ -8,7 +8,7 @@ from textwrap import wrap
 from typing import TYPE_CHECKING
 
 from components import written
-from components.field import FieldError
+from components.field import CM, FieldError
 from components.free_body import Force, on_joint, on_rod
 from components.handle import Handle
 from components.model import Model
@@ -30,7 +30,7 @@ MOST_EVENTS = 10  # of a run, that are listed
 NOTHING = 1e-12  # of the largest exact value of its kind: round-off, shown as 0
 
 _BEFORE_SIGNS = re.compile("([+−=]) ")  # where a sum may be broken
-_SHOWN = {"axial_force": ("N", "kN", 1.0), "reaction": ("R", "kN", 1.0), "displacement": ("u", "mm", 1000.0)}
+_SHOWN = {"axial_force": ("N", "kN", 1.0), "reaction": ("R", "kN", 1.0), "displacement": ("u", *CM)}
 _WAYS = {"simulation": "run", "linear": "linear theory", "exact": "exact theory"}
 
 

@@ -359,7 +359,7 @@ def draw_scale(sheet: Sheet, scale: Scale | None) -> list[Mark]:
 def _said(metres: float, hidden: int, notes: list[str]) -> list[str]:
     """What is said beside the ruler, if so many values are hidden."""
     values = "1 value" if hidden == 1 else f"{hidden} values"
-    length = [written.scale_length(metres)] if metres else []
+    length = [written.length(metres)] if metres else []
     return [*length, *([f"{values} hidden: zoom in"] if hidden else []), *notes]
 
 
@@ -390,9 +390,7 @@ def _displacements(sheet: Sheet) -> list[str]:
     largest = float(np.abs(model.particles.displacement).max(initial=0.0)) if model.rods.count else 0.0
     if not _NOISE < largest * sheet.view.camera.scale < sheet.unit:
         return []
-    return [
-        f"displacements up to {written.given(1000.0 * largest, 2)} mm, too small to see; their slider enlarges them"
-    ]
+    return [f"displacements up to {written.length(largest, 2)}, too small to see; their slider enlarges them"]
 
 
 # --- nothing to see --------------------------------------------------------------------------------

@@ -177,7 +177,7 @@ def test_a_click_selects_particle_or_rod_and_never_the_grid(session: Session) ->
 def test_properties_without_a_selection_hold_the_shown_grid(session: Session) -> None:
     session.press("return")
     session.click_box("spacing x")
-    session.type("0.25")
+    session.type("25")
     session.press("return")
     while session.scene != "pause":
         session.press("escape")

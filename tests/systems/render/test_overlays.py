@@ -31,7 +31,7 @@ def test_a_problem_is_told_in_full() -> None:
 def test_displacements_too_small_to_be_seen_are_told(displacement: float, told: bool) -> None:
     model = triangle()
     model.particles["B"].displacement = (displacement, 0.0)
-    said = "displacements up to 0.43 mm, too small to see; their slider enlarges them"
+    said = "displacements up to 0.043 cm, too small to see; their slider enlarges them"
     assert (said in " ".join(picture_of(model, width=900).texts)) == told
     model.settings.displacement_scale = 100.0
     assert said not in " ".join(picture_of(model, width=900).texts)
@@ -82,7 +82,7 @@ def test_scale_bar_is_as_long_as_it_says() -> None:
     view = view_of(model)
     ruler = marks_of(compose(model, view, LIGHT), Rectangles, LIGHT.muted)[-1]
     assert ruler.boxes[0, 2] == round(0.5 * view.camera.scale)
-    assert "0.5 m" in compose(model, view, LIGHT).texts
+    assert "50 cm" in compose(model, view, LIGHT).texts
 
 
 def test_an_empty_model_says_how_to_begin() -> None:
