@@ -171,6 +171,7 @@ def _label(
     own: list[Points],
 ) -> None:
     """A value at one of the places in sight that are nearer to its own arrows, a line from and to, than to other rods."""
+    sheet.values += 1
     at = np.array(places)
     at = at[sheet.sees(at)]
     others = sheet.rods != (of[1] if of[0] == "rods" else -1)

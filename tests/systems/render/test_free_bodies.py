@@ -117,3 +117,11 @@ def distances(point: np.ndarray, start: np.ndarray, end: np.ndarray) -> np.ndarr
     way = end - start
     share = np.clip(((point - start) * way).sum(axis=1) / (way**2).sum(axis=1), 0.0, 1.0)
     return np.hypot(*(point - start - share[:, None] * way).T)
+
+
+@pytest.mark.parametrize("model", ["isostatic", "hyperstatic", "ball_on_truss"])
+def test_the_ruler_says_its_whole_length(model: str) -> None:
+    texts = [mark.text for mark in picture_of(apart(model, (1024, 640))).marks if isinstance(mark, Text)]
+    assert not [text for text in texts if "…" in text and text[0].isdigit()]
+    assert not [text for text in texts if "hidden" in text and text.startswith("−")]
+    assert any(text.endswith(" m") or " m   " in text for text in texts)
