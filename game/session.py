@@ -201,8 +201,8 @@ class Session(Context):
         try:
             with heeding_mods(simulation), self.without_frames(), watched(simulation):
                 yield simulation
+                document.chronicle.look()
         finally:
-            document.chronicle.look()
             if not self.time_passes:
                 document.history.end_run()
 

@@ -55,7 +55,7 @@ class Chronicle:
         self._model, self._simulation = model, simulation
         self._seen: list[Happening] = []
         self._stands = (-1, False)  # revision of the document, and whether it is no mechanism
-        self._slack: frozenset[str] = frozenset()
+        self._slack: frozenset[str] | None = None  # names of cables at the last look
         self._looked = -1.0
         self._yielded: tuple[Column, list[Happening]] = np.empty(0), []
         self._factors: tuple[int, dict[float, float | None]] = -1, {}
@@ -75,7 +75,7 @@ class Chronicle:
         model, now = self._model, self._model.clock.time
         if now < self._looked:  # time was taken back
             self._seen = [seen for seen in self._seen if seen.time <= now]
-            self._slack = frozenset()
+            self._slack = None
         if now == self._looked or model.rods.count == 0:
             return
         self._looked = now
@@ -153,9 +153,8 @@ class Chronicle:
         rods = self._model.rods
         slack = rods.tension_only & (rods.axial_force <= 0.0)
         names = frozenset(rods.column("name")[slack].tolist())
-        if self._model.clock.steps:
-            for name in sorted(names - self._slack):
-                self._see("slack", f"Cable {name} goes slack.", (name,))
+        for name in sorted(names - (names if self._slack is None else self._slack)):
+            self._see("slack", f"Cable {name} goes slack.", (name,))
         self._slack = names
 
     def _look_at_stability(self) -> None:

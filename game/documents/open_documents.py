@@ -130,7 +130,6 @@ class OpenDocument:
         self._note_undeformed()
         if self.at_beginning:
             self.beginning = self.simulation.present()
-            self.chronicle.look()
             self.assessment.begin(self.beginning)
 
     def restart(self) -> None:

@@ -31,7 +31,11 @@ def show(context: Context, elapsed: float) -> None:
     awaited = _awaited(context)
     said = _told(awaited) or (scene.message if scene.mod is not None else "")
     lately = context.document.chronicle.told(elapsed) if context.scene in LIVE else ""
-    said = said or " ".join(filter(None, [lately, context.notice]))
+    lasting = (
+        [context.notice]
+        if context.notice
+        else [*(remark.message for remark in context.remarks), _gone(context)]
+    )
     view.preview = _preview(context)
     view.flashes = _flashes(context)
     view.heading = scene.heading
@@ -47,8 +51,7 @@ def show(context: Context, elapsed: float) -> None:
         state=_state_word(context),
         hint=_drawing_hint(context) or scene.hint(context),
         problem=_problem(context),
-        notice=said
-        or " ".join(filter(None, [*(remark.message for remark in context.remarks), _gone(context)])),
+        notice=said or " ".join(filter(None, [lately, *lasting])),
         share=awaited.share if awaited is not None else None,
     )
 

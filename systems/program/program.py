@@ -500,6 +500,8 @@ class Program:
             self.failure = self._explained(error)
 
     def _observe(self) -> None:
+        if self.between is not None and not self._is_fresh:  # the state was put back, or changed
+            self._support[:] = self.between.support(self.model)[self._held_rows]
         time, size = self._control[:2].tolist()
         self.module.form.observe(time, size, *self._observed, *self._columns)
         for table, names in OBSERVED.items():

@@ -21,11 +21,11 @@ def is_held(model: Model, *, at_first: bool = False) -> bool:
     ends = rods.between.astype(np.intp)
     along = rods.difference + particles.displacement[ends[:, 1]] - particles.displacement[ends[:, 0]]
     length = np.maximum(np.hypot(*along.T), 1e-300)
-    resists = at_first | ~(rods.yielding | (rods.tension_only & (rods.axial_force <= 0.0)))
-    axial, across = (
-        rods.stiffness / rods.rest_length * resists,
-        (0.0 if at_first else 1.0) * rods.axial_force / length,
-    )
+    axial, across = rods.stiffness / rods.rest_length, np.zeros(rods.count)
+    if not at_first:
+        force = rods.axial_force
+        axial = axial * ~(rods.yielding | (rods.tension_only & (force <= 0.0)))
+        across = force / length
     dyads = along[:, :, None] * along[:, None, :] / (length**2)[:, None, None]
     block = axial[:, None, None] * dyads + across[:, None, None] * (np.eye(2) - dyads)
     size = 2 * particles.count

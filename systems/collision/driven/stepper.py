@@ -69,6 +69,7 @@ class DrivenCollisions:
         program, near, clock = self._steps.program, self._neighbours, self.model.clock
         near.look_up()
         near.load_contacts()
+        near.driven.acceleration[near.driven.asleep] = 0.0  # programs of the rest do not look at what sleeps
         near.driven.real[Real.HELD_LIMIT] = self._steps.longest_in_contact
         last = clock.steps + steps
         while True:

@@ -136,7 +136,8 @@ def evaluate_fixed():
 def take_fixed():
     """Take whole steps, or one that ends at Real.END, from which on steps are counted then.
 
-    How old the run is, by which it is checked, stays the same: impacts do not make it a new one.
+    How old the run is, by which it is checked, stays the same: impacts do not make it a new one. Contact forces end with
+    the step: those of a short one would count many times over in the energy that whole ones conserve.
     """
     size = control[Control.STEP_SIZE]
     total = whole[Whole.TOTAL]
@@ -166,7 +167,7 @@ def take_fixed():
         control[Control.TIME] = real[Real.END]
         real[Real.ORIGIN] = real[Real.END] - age * size
         whole[Whole.SINCE] = total + taken - age
-        measure(displacement, velocity, force, resisting, measures, *columns)
+        measure(displacement, velocity, unpushed, resisting, measures, *columns)
         account[Account.GUARD_ENERGY] = conserved(measures, account, size, SHADOW)
     else:
         steps = whole[Whole.WANTED] if alone else whole[Whole.STEPS]

@@ -22,7 +22,7 @@ from systems.collision.system import persistent_contacts
 from systems.program.compiler import Compile
 from tests.reference import bits
 from tests.reference.forms import load_all, programs
-from tests.systems.collision.test_driven_collisions import GRAVITY, box, energy_of_discs
+from tests.systems.collision.test_driven_collisions import GRAVITY, assert_lies, box, energy_of_discs
 
 GRAVITY_PULL = 9.81
 
@@ -141,7 +141,7 @@ def test_a_crowd_has_the_same_bits_in_both_forms() -> None:
     for choice in (Compile.NEVER, Compile.ALWAYS):
         with programs(choice):
             session = heap(40, 0.9)
-            session.run(time=0.2)
+            session.run(time=0.22)
             found.append(bits.columns(session.model))
             assert taken(session) >= 10
     assert bits.different(*found) == []
@@ -157,6 +157,15 @@ def test_a_heap_comes_to_rest_and_weighs_on_the_floor() -> None:
     assert contacts.forces[floor].sum() == pytest.approx(weight, rel=1e-7)
     assert np.abs(session.particles.applied_force).max() <= 1e-8 * weight
     assert deepest(session) <= 1e-6
+
+
+@pytest.mark.parametrize(("restitution", "drag"), [(0.0, 5.0), (0.0, 0.5), (0.5, 4.0)])
+def test_a_narrow_heap_comes_to_rest(restitution: float, drag: float) -> None:
+    """The forces of the step before were good enough for every next one, and a trace of motion never ended."""
+    sections = {"environment": GRAVITY | {"drag": drag}, "settings": {"restitution": restitution}}
+    session = heap(14, 0.4, seed=2, **sections)
+    assert session.run(until="rest", limit=6.0) == "at rest"
+    assert_lies(session)
 
 
 @pytest.mark.parametrize("integrator", ["velocity_verlet", "rk4"])

@@ -281,6 +281,23 @@ def test_what_is_struck_wakes_at_the_impact() -> None:
     assert np.abs(on.particles.velocity - off.particles.velocity).max() <= 1e-6
 
 
+def test_what_sleeps_is_not_foreseen_to_move_as_it_did_when_it_was_last_looked_at() -> None:
+    """While two discs fly side by side, nobody looks at the node that swings to rest, nor how it accelerates."""
+    discs = [particle("disc", 1.0, 1.35, mass=20.0, radius=0.1, velocity=[0.0, -0.5])]
+    discs += [particle(f"d{k}", 0.105 * k, 20.0, radius=0.05, velocity=[0.1, 0.0]) for k in range(2)]
+    runs = []
+    for sleeping in (True, False):
+        chosen = STEPS | {"sleeping": sleeping, "restitution": 0.9}
+        runs.append(Session.open(together(vee("struck", 0.0, 20.0), model(discs, []), settings=chosen)))
+        runs[-1].run(time=0.3)
+    on, off = runs
+    assert asleep(on) == {"struck"}
+    for session in runs:
+        session.run(time=0.3)
+        assert len(session.impacts) > 0
+    assert on.impacts.time[0] == pytest.approx(off.impacts.time[0], abs=1e-9)
+
+
 damping = st.sampled_from([0.5, 2.0, 8.0, 20.0])
 forces = st.tuples(st.sampled_from([0.0, 5.0, -30.0]), st.sampled_from([0.0, -60.0, 40.0]))
 starts = st.sampled_from([0.0, 0.03, 0.11])

@@ -116,29 +116,41 @@ def clear_support(driven):
 
 @compiled
 def try_forces(driven, control, account, place, speed):
-    """Take, or foresee, the step with the forces that are to be tried.
-
-    The scale of energies is raised to at least the work of these forces along radii: a model that begins in contact is
-    supplied no energy otherwise, would never be found at rest, and any round-off would count as divergence.
-    """
-    whole, energy = driven.whole, 0.0
+    """Take, or foresee, the step with the forces that are to be tried."""
+    whole = driven.whole
     clear_support(driven)
     for c in range(whole[Whole.CHOSEN]):
-        force, k = driven.search[Tried.FORCES, c], driven.chosen[c]
+        push, k = 0.001 * driven.search[Tried.FORCES, c], driven.chosen[c]
         i, j = driven.pairs[k, 0], driven.pairs[k, 1]
-        energy += force * min(driven.size[i], driven.size[j])
         for d in range(2):
-            driven.support[i, d] -= driven.start[c, d] * (0.001 * force)
+            driven.support[i, d] -= driven.start[c, d] * push
             if j < driven.support.shape[0]:
-                driven.support[j, d] += driven.start[c, d] * (0.001 * force)
-    account[Account.ENERGY_SCALE] = max(account[Account.ENERGY_SCALE], energy)
+                driven.support[j, d] += driven.start[c, d] * push
     if whole[Whole.CHOSEN] > 0:
+        raise_scale(driven, driven.real[Real.END] - driven.real[Real.START], control, account)
         whole[Whole.PUSHED] = 1
     whole[Whole.PHASE] = Phase.TRIED
     if whole[Whole.FORESEEN]:
         foresee(driven, control)
         return Order.GO_ON
     return Order.TAKE
+
+
+@compiled
+def raise_scale(driven, length, control, account):
+    """Raise the scale of energies to at least what contact forces carry in the step to be tried, along radii.
+
+    A model that begins in contact is supplied no energy otherwise, would never be found at rest, and any round-off would
+    count as divergence. Forces of a jam that cancel carry nothing. length: of the step (s): of a part of a whole one the
+    mean over all of it counts, since in microseconds a jam pushes a thousand times harder.
+    """
+    energy = 0.0
+    for p in range(driven.near.shape[0]):
+        i = driven.near[p]
+        carried = 1000.0 * (abs(driven.support[i, 0]) + abs(driven.support[i, 1]))
+        energy += carried * driven.size[i]
+    energy *= min(length / control[Control.STEP_SIZE], 1.0)
+    account[Account.ENERGY_SCALE] = max(driven.kept[control.shape[0] + Account.ENERGY_SCALE], energy)
 
 
 @compiled
@@ -150,8 +162,14 @@ def judge_forces(driven, control, account, place, speed):
     h = real[Real.NOW] - real[Real.START]
     whole[Whole.PHASE] = Phase.HELD
     lost = h == 0.0 or whole[Whole.REASON] == StopReason.DIVERGED
-    if whole[Whole.CHOSEN] == 0 or (lost and whole[Whole.TURN] == 0):
-        return Order.GO_ON  # contact forces that were tried are not to blame
+    if whole[Whole.CHOSEN] == 0:
+        return Order.GO_ON
+    if lost and whole[Whole.TURN] == 0:
+        if not _drop_forces(driven):
+            return Order.GO_ON  # no contact force is to blame
+        take_back(driven, control, account, place, speed)
+        whole[Whole.PHASE] = Phase.TRYING
+        return Order.GO_ON
     after = driven.ahead if whole[Whole.FORESEEN] else place
     if not lost and (_measure(driven, after) or whole[Whole.CUTS] == MOST_STEP_CUTS):
         if h > 0.5 * real[Real.CUT]:  # the next step may be longer than one that was cut
@@ -169,6 +187,16 @@ def judge_forces(driven, control, account, place, speed):
         begin_search(driven)
     whole[Whole.PHASE] = Phase.TRYING
     return Order.GO_ON
+
+
+@compiled
+def _drop_forces(driven):
+    """Try none; False if none were tried. Those of the step before can be too large: of a jam in a very short one."""
+    dropped = False
+    for c in range(driven.whole[Whole.CHOSEN]):
+        dropped = dropped or driven.search[Tried.FORCES, c] > 0.0
+        driven.search[Tried.FORCES, c] = 0.0
+    return dropped
 
 
 @compiled
@@ -273,7 +301,10 @@ def keep_contacts(driven, h, control, account, place, speed):
     that are foreseen they act on the motion at its mean velocity.
     """
     whole, real = driven.whole, driven.real
-    number = whole[Whole.CHOSEN]
+    number, lasts = whole[Whole.CHOSEN], driven.search[Tried.FORCES]
+    if whole[Whole.TURN] == 0:
+        _refine(driven, h)
+        lasts = driven.search[Tried.FOUND]
     for c in range(number):
         k = driven.chosen[c]
         i, j = driven.pairs[k, 0], driven.pairs[k, 1]
@@ -289,10 +320,26 @@ def keep_contacts(driven, h, control, account, place, speed):
             later = gap + h * opening(i, j, nx, ny, speed)
             persists = persists or max(gap, later) <= SETTLING_HEIGHT * size
         driven.lasting[k] = 1 if persists else 0
-        driven.forces[k] = force if persists else 0.0
+        driven.forces[k] = lasts[c] if persists else 0.0
     real[Real.LONGEST] = (
         real[Real.CUT] if number > 0 and real[Real.CUT] < control[Control.STEP_SIZE] else math.inf
     )
+
+
+@compiled
+def _refine(driven, h):
+    """Find forces that close the contacts better than those that were tried once and good enough: one Gauss–Seidel sweep.
+
+    They are for the next step. With the same ones in every step, what their errors move would never come to rest.
+    """
+    search, slope = driven.search, driven.slope
+    _set_slope(driven, 0.5 * h * h, driven.end)
+    for c in range(driven.whole[Whole.CHOSEN]):
+        left = search[Tried.GAP, c]
+        for d in range(driven.block[0, c], c):
+            left += slope[c, d] * (search[Tried.FOUND, d] - search[Tried.FORCES, d])
+        moved = left / slope[c, c] if slope[c, c] > 0.0 else 0.0
+        search[Tried.FOUND, c] = max(search[Tried.FORCES, c] - moved, 0.0)
 
 
 @compiled

@@ -11,7 +11,7 @@ import math
 from systems.base import StopReason
 from systems.collision.columns import NONE, SHORTEST_SHARE, TRAVEL, Contact
 from systems.collision.driven.columns import Need, Order, Phase, Real, Whole
-from systems.collision.driven.kernels.contacts import SETTLING_HEIGHT, clear_support
+from systems.collision.driven.kernels.contacts import SETTLING_HEIGHT, clear_support, raise_scale
 from systems.collision.driven.kernels.impacts import report_impact
 from systems.collision.driven.kernels.joint_impacts import separate_motion
 from systems.collision.driven.kernels.paths import opening, take_back
@@ -200,20 +200,19 @@ def _store(driven, motion):
 
 
 @compiled
-def try_crowd(driven, account):
+def try_crowd(driven, control, account):
     """Take the step with the forces that are to be tried."""
     clear_support(driven)
-    energy, n = 0.0, driven.support.shape[0]
+    n = driven.support.shape[0]
     for c in range(driven.whole[Whole.CHOSEN]):
         k = driven.touching[c]
         i, j = driven.pairs[k, 0], driven.pairs[k, 1]
-        energy += driven.pushes[k] * _size(driven, k)
         for d in range(2):
             push = 0.001 * driven.pushes[k] * driven.normal[k, d]
             driven.support[i, d] -= push
             if j < n:
                 driven.support[j, d] += push
-    account[Account.ENERGY_SCALE] = max(account[Account.ENERGY_SCALE], energy)
+    raise_scale(driven, driven.real[Real.CROWD_LENGTH], control, account)
     driven.whole[Whole.PUSHED] = 1
     driven.whole[Whole.PHASE] = Phase.CROWD_TRIED
     return Order.TAKE
@@ -225,6 +224,10 @@ def judge_crowd(driven, control, account, place, speed):
     whole, real = driven.whole, driven.real
     h = control[Control.TIME] - real[Real.START]
     if h == 0.0 or whole[Whole.REASON] == StopReason.DIVERGED:
+        if _drop_forces(driven):
+            take_back(driven, control, account, place, speed)
+            whole[Whole.PHASE] = Phase.CROWD_TRYING
+            return Order.GO_ON
         reason = whole[Whole.REASON]
         _give_up(driven, control, account, place, speed)
         whole[Whole.REASON] = reason
@@ -243,6 +246,17 @@ def judge_crowd(driven, control, account, place, speed):
     whole[Whole.CROWDS] += 1
     whole[Whole.PHASE] = Phase.BETWEEN
     return Order.GO_ON
+
+
+@compiled
+def _drop_forces(driven):
+    """Try none; False if none were tried."""
+    dropped = False
+    for c in range(driven.whole[Whole.CHOSEN]):
+        k = driven.touching[c]
+        dropped = dropped or driven.pushes[k] > 0.0
+        driven.pushes[k] = 0.0
+    return dropped
 
 
 @compiled

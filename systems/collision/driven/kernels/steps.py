@@ -56,7 +56,7 @@ def collide(driven, control, account, place, speed):
         elif phase == Phase.CLEAR:
             order = _check_clear(driven, control, account, place, speed)
         elif phase == Phase.CROWD_TRYING:
-            order = try_crowd(driven, account)
+            order = try_crowd(driven, control, account)
         elif phase == Phase.CROWD_TRIED:
             order = judge_crowd(driven, control, account, place, speed)
         elif phase == Phase.TRYING:
