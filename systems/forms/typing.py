@@ -72,15 +72,25 @@ def move_on(form: Form, by: int) -> None:
 # --- typing ------------------------------------------------------------------------------------------
 
 
-def write(form: Form, text: str) -> None:
-    """Type characters into the selected box; those that it does not accept are passed over."""
-    box = form.selected
+def write(form: Form, text: str) -> str:
+    """Type characters into the selected box; those that it does not accept are passed over.
+
+    Returns the sentence that says which a box for a number passed over, such as a unit of another size; else "".
+    """
+    box, refused = form.selected, ""
     if box is None:
-        return
+        return ""
     for character in text:
         entered = _entered(box, character)
         if entered is not None and len(entered[0]) <= MOST_CHARACTERS:
             _set(form, box, *entered)
+        elif not character.isspace():
+            refused += character
+    if not refused or box.accepts != NUMBER:
+        return ""
+    words = "".join(f", or “{word}”" for word in box.words or ())
+    unit = f" in {box.unit}" if box.unit else ""
+    return f"“{refused}” is not taken; the {box.title} is a number{unit}, such as 2.5 or 1e3{words}."
 
 
 def erase(form: Form, *, after: bool = False) -> None:

@@ -122,5 +122,5 @@ def distances(point: np.ndarray, start: np.ndarray, end: np.ndarray) -> np.ndarr
 @pytest.mark.parametrize("size", [(640, 480), (1024, 640), (1280, 800)])
 def test_the_scale_is_told_whole_beside_them(size: tuple[int, int]) -> None:
     texts = picture_of(apart("isostatic", size)).texts
-    assert any(text.split("   ")[0].endswith(" m") for text in texts)
+    assert any(text.split("   ")[0].endswith(" cm") for text in texts)
     assert not any("…" in text or "-" in text for text in texts), texts

@@ -14,7 +14,8 @@ from game import Session
 from game.scripts.playing import Recorder, play, session_of
 from game.scripts.script import Script
 from systems.render.marks import Panel, Text
-from systems.render.picture import compose
+from systems.render.picture import compose, shown_panels
+from systems.render.readouts import ShownPanel
 from systems.render.theme import load_theme
 from tests.reference.boxes import Box, overlap
 
@@ -67,6 +68,31 @@ def test_every_panel_is_told_and_the_newest_is_whole(size: tuple[int, int]) -> N
     boxes = list(panels.values())
     assert not any(overlap(one, other) for i, one in enumerate(boxes) for other in boxes[:i])
     assert all(bottom <= size[1] for _, _, _, bottom in boxes)
+
+
+@pytest.mark.parametrize("size", SIZES)
+def test_each_panel_is_closed_by_the_button_in_its_corner(size: tuple[int, int]) -> None:
+    session = opened("hyperstatic_yield", size, *KEYS, "x", "ctrl+h")
+    selected = session.selected
+    assert len(session.view.readouts) > 5
+    while session.view.readouts:
+        panel = next(panel for panel in panels_in(session) if panel.close is not None)
+        assert panel.readout is not None
+        assert panel.close is not None
+        middle = panel.close.left + panel.close.width / 2, panel.close.top + panel.close.height / 2
+        titles = {readout.title for readout in session.view.readouts}
+        for button in ("right click", "double click", "click"):
+            assert {readout.title for readout in session.view.readouts} == titles
+            session.press(button, middle)
+            session.update_view()
+        left = {readout.title for readout in session.view.readouts}
+        assert panel.readout.title not in left
+        assert left < titles
+    assert (session.selected, session.view.menu, session.scene) == (selected, None, "pause")
+
+
+def panels_in(session: Session) -> list[ShownPanel]:
+    return shown_panels(session.model, session.view, load_theme("light"))
 
 
 def test_what_is_switched_on_last_is_unfolded() -> None:
