@@ -152,3 +152,17 @@ def test_a_notice_stands_beside_the_panels() -> None:
     marks = compose(session.model, session.view, load_theme("light")).marks
     (said,) = [mark for mark in marks if isinstance(mark, Text) and mark.text.startswith("Plot: ")]
     assert said.x < min(left for left, *_ in panels_of(session).values())
+
+
+@pytest.mark.parametrize("name", ["hanging_net", "overshoot_yield", "isostatic"])
+def test_a_notice_lies_on_no_slider(name: str) -> None:
+    session = opened(name, (640, 480), "i")
+    session.notice = "All comes to rest"
+    session.update_view()
+    marks = compose(session.model, session.view, load_theme("dark")).marks
+    (at,) = [n for n, mark in enumerate(marks) if isinstance(mark, Text) and mark.text == session.notice]
+    panel = [mark for mark in marks[:at] if isinstance(mark, Panel)][-1]
+    box = panel.left, panel.top, panel.left + panel.width, panel.top + panel.height
+    for slider in session.view.slider_places:
+        right, lower = slider.left + slider.width, slider.top + slider.height
+        assert not overlap(box, (slider.left, slider.top, right, lower))
