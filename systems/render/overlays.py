@@ -185,10 +185,7 @@ def draw_notice(sheet: Sheet, ends: tuple[float, float]) -> list[Mark]:
     most = max(int((bottom - top - 60.0 * u) / line_height(size)), 1)
     lines = at_most(lines, most, room, size)
     height = len(lines) * line_height(size) + 2 * pad - 4.0 * u
-    middle, last = v.left + (v.width - width) / 2, v.right - width - 10.0 * u
-    lefts = (middle, max(last, middle), min(v.left + 10.0 * u, middle))
-    places = [(left, upper) for left in lefts for upper in (bottom - height - 10.0 * u, top + 10.0 * u)]
-    left, upper = min(places, key=lambda at: sheet.occupancy.crossed(*at, width, height))
+    left, upper = _freest_of(sheet, _for_notice(sheet, v, width, height, (top, bottom)), width, height)
     sheet.occupancy.block(left, upper, width, height)
     first = upper + height / 2 - (len(lines) - 1) * line_height(size) / 2
     at = np.array([[left + pad + icon / 2, first]])
@@ -203,6 +200,21 @@ def draw_notice(sheet: Sheet, ends: tuple[float, float]) -> list[Mark]:
         ),
         *_progress(sheet, left + pad, upper + height - 5.0 * u, width - 2 * pad),
     ]
+
+
+def _for_notice(
+    sheet: Sheet, v: Viewport, width: float, height: float, ends: tuple[float, float]
+) -> list[tuple[float, float]]:
+    """Left and top of places for a notice: in the middle, or to the right of it, below, at the top or above sliders."""
+    gap, (top, bottom) = 10.0 * sheet.unit, ends
+    sliders = min((place.top for place in sheet.view.slider_places), default=bottom)
+    across = v.left + (v.width - width) / 2, v.right - width - gap
+    return [
+        (left, upper)
+        for upper in (bottom - height - gap, top + gap, sliders - height - gap)
+        for left in across
+        if upper >= top
+    ] or [(across[0], bottom - height - gap)]
 
 
 def _progress(sheet: Sheet, left: float, top: float, width: float) -> list[Mark]:
@@ -322,10 +334,14 @@ def place_scale(sheet: Sheet, room: tuple[float, float]) -> Scale | None:
     v, u, size = sheet.viewport, sheet.unit, sheet.font(11.0)
     metres = round_down(min(120.0 * u, 0.25 * v.width) / sheet.view.camera.scale)
     notes, length = _displacements(sheet) + sheet.notes, metres * sheet.view.camera.scale
-    choices = [(metres, length, notes), (0.0, 0.0, notes), *([(0.0, 0.0, list[str]())] if sheet.values else [])]
+    choices = [
+        (metres, length, notes),
+        (0.0, 0.0, notes),
+        *([(0.0, 0.0, list[str]())] if sheet.values.total() else []),
+    ]
     for metres, length, said in choices:
         ruler = length + 8.0 * u if length else 0.0
-        text = "   ".join(_said(metres, sheet.values, said))
+        text = "   ".join(_said(metres, sheet.values.total(), said))
         width = text_width(text, size)
         if not text or width > v.width - ruler - 2 * _EDGE * u:
             continue
@@ -340,7 +356,7 @@ def place_scale(sheet: Sheet, room: tuple[float, float]) -> Scale | None:
 
 def draw_scale(sheet: Sheet, scale: Scale | None) -> list[Mark]:
     """A round length to scale, how many values are hidden, and by how much displacements and diagrams are scaled."""
-    hidden = sheet.values - sum(1 for field, _ in sheet.placed if not field.endswith(".name"))
+    hidden = sheet.values.total() - sum(1 for field, _ in sheet.placed if field in sheet.values)
     said = _said(scale.metres, hidden, scale.notes) if scale else []
     if scale is None or not said:
         return []
@@ -371,6 +387,13 @@ def _freest(sheet: Sheet, width: float, room: tuple[float, float]) -> tuple[floa
     first, last = v.left + 8.0 * u, v.right - width - 8.0 * u
     places = [(first, low), ((first + last) / 2, low), (last, low), (first, high), (last, high)]
     places.append((first, max(high - _ROW * u, v.top)))  # beside the last row of the legend
+    return _freest_of(sheet, places, width, height)
+
+
+def _freest_of(
+    sheet: Sheet, places: list[tuple[float, float]], width: float, height: float
+) -> tuple[float, float]:
+    """Left and top of the first of the places where a box lies on nothing else, if possible, and hides least."""
     occupancy = sheet.occupancy
     hides = [(occupancy.is_taken(*at, width, height), occupancy.crossed(*at, width, height)) for at in places]
     return places[hides.index(min(hides))]

@@ -194,3 +194,17 @@ def test_a_long_sentence_goes_on_in_the_next_line(size: tuple[int, int]) -> None
     assert sentence in " ".join(text.text for text in within)
     assert sum(text.text == rows[0][0] for text in within) == 2  # each with its instant
     assert len({(text.y, text.anchor) for text in within}) == len(within)
+
+
+@pytest.mark.parametrize("name", ["hanging_net", "overshoot_yield", "isostatic"])
+def test_a_notice_lies_on_no_slider(name: str) -> None:
+    session = opened(name, (640, 480), "i")
+    session.notice = "All comes to rest"
+    session.update_view()
+    marks = compose(session.model, session.view, load_theme("dark")).marks
+    (at,) = [n for n, mark in enumerate(marks) if isinstance(mark, Text) and mark.text == session.notice]
+    panel = [mark for mark in marks[:at] if isinstance(mark, Panel)][-1]
+    box = panel.left, panel.top, panel.left + panel.width, panel.top + panel.height
+    for slider in session.view.slider_places:
+        right, lower = slider.left + slider.width, slider.top + slider.height
+        assert not overlap(box, (slider.left, slider.top, right, lower))
