@@ -15,7 +15,7 @@ For scripts and mods:
 from components.commands import Assign, Command, Create, Custom, Delete, Group
 from components.component import Component
 from components.environment import Environment
-from components.field import Field, FieldError, Role, Vector
+from components.field import CM, Field, FieldError, Role, Vector
 from components.grid import Grid
 from components.handle import Handle
 from components.load import HistoryKind, Load
@@ -31,6 +31,7 @@ from components.view import Plot, Readout
 from components.world import Derivation, World
 
 __all__ = [
+    "CM",
     "Assign",
     "Command",
     "Component",

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 import unicodedata
 from typing import Any
 
@@ -9,11 +10,18 @@ from components.field import Field
 from components.handle import Handle
 
 NUMBER, WORD, TEXT, FILE_NAME = "number", "word", "text", "file name"
+_WITH_UNIT = re.compile(r"(.*[\d.]) ?([^\d\s.eE].*)")
 
 
 def fits_file_names(character: str) -> bool:
     """True for letters, digits, marks that combine with them (accents, vowels of Indian scripts), and a few more."""
     return character.isalnum() or character in " -._" or unicodedata.category(character).startswith("M")
+
+
+def number_and_unit(text: str) -> tuple[str, str]:
+    """What was typed into a box for a length, such as "1.5 m", as its number and its unit, which may be ""."""
+    found = _WITH_UNIT.fullmatch(text)
+    return (found[1], found[2].rstrip()) if found else (text, "")
 
 
 class Box(Handle):

@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from components.field import Field, Vector
+from components.field import CM, Field, Vector
 from components.handle import Handle
 from components.table import Table
 
@@ -21,7 +21,7 @@ class Grid(Handle):
 
     name: Field[str] = Field(doc="Unique among the grids.", dtype=str)
     spacing: Field[Vector] = Field(
-        "m", shape=(2,), default=0.5, above=0.0, doc="Distance between lines along x, along y."
+        "m", shape=(2,), default=0.5, above=0.0, doc="Distance between lines along x, along y.", shown=CM
     )
     shown: Field[bool] = Field(dtype=bool, default=True, doc="Drawn now; at most one is.")
 

@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from components.field import MM, Field, FieldError, Vector, derived, state
+from components.field import CM, Field, FieldError, Vector, derived, state
 from components.handle import Handle
 from components.table import Store, Table, flags
 
@@ -22,8 +22,10 @@ class Particle(Handle):
     table, noun = "particles", "particle"
 
     name: Field[str] = Field(doc="Unique among the particles.", dtype=str)
-    position: Field[Vector] = Field("m", shape=(2,), title="original position", doc="Where it is undisplaced.")
-    displacement: Field[Vector] = state("m", shape=(2,), doc="Present minus original position.", shown=MM)
+    position: Field[Vector] = Field(
+        "m", shape=(2,), title="original position", doc="Where it is undisplaced.", shown=CM
+    )
+    displacement: Field[Vector] = state("m", shape=(2,), doc="Present minus original position.", shown=CM)
     velocity: Field[Vector] = state("m/s", shape=(2,), doc="Zero in a constrained direction.")
     rotation: Field[float] = state(
         "rad", doc="Of its rigid rod ends, counter-clockwise; it is not wrapped. 0 where there are none."
@@ -45,7 +47,7 @@ class Particle(Handle):
     acceleration: Field[Vector] = Field(
         "m/s²", shape=(2,), title="applied acceleration", doc="Adds mass × acceleration to its force."
     )
-    radius: Field[float] = Field("m", default=0.05, above=0.0, doc="Of the disc that collides.")
+    radius: Field[float] = Field("m", default=0.05, above=0.0, doc="Of the disc that collides.", shown=CM)
     prescribed_mass: Field[float | None] = Field(
         "kg",
         default=None,

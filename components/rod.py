@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from components.field import ENDS, Field, FieldError, Vector, derived, state
+from components.field import CM, ENDS, Field, FieldError, Vector, derived, state
 from components.handle import Handle
 from components.particle import Particle, rods_without_length
 from components.table import Table, flags
@@ -68,6 +68,7 @@ class Rod(Handle):
         title="rest length",
         key="rest_length",
         doc="Length without force; automatic: the distance between the original positions.",
+        shown=CM,
         overrides="rest_length",
     )
     tensile_strength: Field[float | None] = Field(
@@ -88,7 +89,9 @@ class Rod(Handle):
         title="damping coefficient",
         doc="Axial force per elongation rate.",
     )
-    density: Field[float] = Field("kg/m", default=6.15, minimum=0.0, doc="Mass per length.")
+    density: Field[float] = Field(
+        "kg/m", default=6.15, minimum=0.0, doc="Mass per length.", shown=("kg/cm", 0.01)
+    )
     temperature_change: Field[float] = Field(
         "K", doc="Warming since it had its rest length; it expands as it warms."
     )
@@ -141,6 +144,7 @@ class Rod(Handle):
     rest_length: Field[float] = derived(
         "m",
         doc="Prescribed, or the distance between the original positions.",
+        shown=CM,
         overridden_by="prescribed_rest_length",
     )
     difference: Field[tuple[float, float]] = derived(
@@ -148,10 +152,13 @@ class Rod(Handle):
         shape=(2,),
         title="original difference",
         doc="Original position of the second end minus that of the first.",
+        shown=CM,
     )
-    original_length: Field[float] = derived("m", doc="Length of the original difference.")
+    original_length: Field[float] = derived("m", doc="Length of the original difference.", shown=CM)
     misfit: Field[float] = derived(
-        "m", doc="Original length − rest length × (1 + thermal strain): its elongation where it was drawn."
+        "m",
+        doc="Original length − rest length × (1 + thermal strain): its elongation where it was drawn.",
+        shown=CM,
     )
     end_stiffness: Field[tuple[float, float, float]] = derived(
         "kN·m",
@@ -185,7 +192,7 @@ class Rod(Handle):
     tension_limit: Field[float] = derived("kN", doc="Tensile strength; infinite if unlimited.")
     compression_limit: Field[float] = derived("kN", doc="Compressive strength; infinite if unlimited.")
     axial_force: Field[float] = derived("kN", doc="Without the damper's; tension positive.")
-    length: Field[float] = derived("m", doc="Present distance between the ends.")
+    length: Field[float] = derived("m", doc="Present distance between the ends.", shown=CM)
     strain: Field[float] = derived(doc="Elongation / rest length, without thermal expansion.")
     end_moment: Field[Vector] = derived(
         "kN·m", shape=(2,), axes=ENDS, doc="Moments on its ends, counter-clockwise, without those of dampers."

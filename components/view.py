@@ -99,11 +99,15 @@ class Plot:
 
 @dataclass(frozen=True)
 class Readout:
-    """A small panel beside the model: a title, rows of (what, value), and perhaps a plot."""
+    """A small panel beside the model: a title, rows of (what, value), and perhaps a plot.
+
+    closes: the action of the button in its corner, which takes it away; "": it has none.
+    """
 
     title: str
     rows: tuple[tuple[str, str], ...] = ()
     plot: Plot | None = None
+    closes: str = ""
 
     @property
     def is_large(self) -> bool:

@@ -1,6 +1,6 @@
 """Written: numbers as people read them on screen, with few digits and one unit for each kind of thing.
 
-Lengths that people set are in m, displacements in mm, forces in kN, strains in ‰, shares in %. Minus signs are real ones,
+Lengths, displacements among them, are in cm, forces in kN, strains in ‰, shares in %. Minus signs are real ones,
 and what is nothing but rounding is 0.
 """
 
@@ -9,10 +9,13 @@ from __future__ import annotations
 import math
 from collections.abc import Iterable
 
+from components.field import CM
+
 DIGITS = 4  # significant ones of a result
 GIVEN_DIGITS = 6  # of a number that a person set, without zeros at its end
 ROUNDING = 1e-9  # of the largest of its kind: a result below is written as 0
 
+_LENGTH, _PER_METRE = CM
 _PLAIN = range(-4, 7)  # powers of ten within which numbers are written out
 _RAISED = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
 _PREFIXES = ((1.0, ""), (1e-3, "m"), (1e-6, "µ"), (1e-9, "n"))
@@ -44,22 +47,17 @@ def force(kilonewtons: float, *, nothing: float = 0.0) -> str:
 
 def displacement(metres: float, *, nothing: float = 0.0) -> str:
     """A displacement or an elongation."""
-    return f"{number(1000.0 * metres, nothing=1000.0 * nothing)} mm"
+    return f"{number(_PER_METRE * metres, nothing=_PER_METRE * nothing)} {_LENGTH}"
 
 
 def length(metres: float, digits: int = GIVEN_DIGITS) -> str:
     """A length that a person set."""
-    return f"{given(metres, digits)} m"
-
-
-def scale_length(metres: float) -> str:
-    """A round length beside a ruler: in mm where m would begin with zeros."""
-    return length(metres) if metres >= 0.0099 else f"{given(1000.0 * metres)} mm"
+    return f"{given(_PER_METRE * metres, digits)} {_LENGTH}"
 
 
 def place(metres: Iterable[float], digits: int = GIVEN_DIGITS) -> str:
     """A point of the plane."""
-    return f"{vector(metres, digits)} m"
+    return f"{vector((_PER_METRE * part for part in metres), digits)} {_LENGTH}"
 
 
 def vector(values: Iterable[float], digits: int = GIVEN_DIGITS) -> str:

@@ -43,7 +43,7 @@ from systems.base import EVENT_INTERVAL, Phase, StopReason, System
 from systems.catalogue import SYSTEMS, step_systems
 from systems.edit import Refusal
 from systems.edit.pull import Pull
-from systems.input.bindings import FILES, FORMS, TEXT, key_named
+from systems.input.bindings import FILES, FORMS, TEXT, key_named, only_in_pause
 from systems.run.simulation import Simulation
 from systems.run.system import Time
 from systems.run.watch import watched
@@ -321,6 +321,8 @@ class Session(Context):
             left = self._left_for_tools() if for_tools(self, key, pixel) else ""
             if name != left:  # the tool that opens a scene closes it, too
                 self.act(name, at)
+        elif title := only_in_pause(self.scene, key):
+            self.notice = f"{title[:1].upper()}{title[1:]}: pause first, with Space."
 
     def _left_for_tools(self) -> str:
         """Leave a scene in which tools do not act, for the one in which they do; returns its name, or ""."""

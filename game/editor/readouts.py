@@ -4,11 +4,12 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterator, Sequence
+from dataclasses import replace
 from textwrap import wrap
 from typing import TYPE_CHECKING
 
 from components import written
-from components.field import FieldError
+from components.field import CM, FieldError
 from components.free_body import Force, on_joint, on_rod
 from components.handle import Handle
 from components.model import Model
@@ -30,31 +31,32 @@ MOST_EVENTS = 10  # of a run, that are listed
 NOTHING = 1e-12  # of the largest exact value of its kind: round-off, shown as 0
 
 _BEFORE_SIGNS = re.compile("([+−=]) ")  # where a sum may be broken
-_SHOWN = {"axial_force": ("N", "kN", 1.0), "reaction": ("R", "kN", 1.0), "displacement": ("u", "mm", 1000.0)}
+_SHOWN = {"axial_force": ("N", "kN", 1.0), "reaction": ("R", "kN", 1.0), "displacement": ("u", *CM)}
 _WAYS = {"simulation": "run", "linear": "linear theory", "exact": "exact theory"}
 
 
 def own_readouts(context: Context) -> Iterator[Readout]:
-    """The readouts that a person switched on."""
-    if context.view.free_bodies:
-        yield from _equilibrium(context)
-    if context.view.theory:
-        yield from _theory(context)
-    if context.view.energy:
-        yield _energy(context)
-    if context.view.events:
-        yield _events(context)
+    """The readouts that a person switched on, each with the action that switches it off."""
+    view = context.view
+    for shown, action, read in (
+        (view.free_bodies, "toggle free bodies", _equilibrium),
+        (view.theory, "toggle theory", _theory),
+        (view.energy, "toggle energy", _energy),
+        (view.events, "toggle events", _events),
+    ):
+        if shown:
+            yield from (replace(readout, closes=action) for readout in read(context))
 
 
-def _events(context: Context) -> Readout:
+def _events(context: Context) -> Iterator[Readout]:
     """What happened in the run, the latest last."""
     found = [(event.when, event.message.rstrip(".")) for event in context.events]
     left_out = len(found) - MOST_EVENTS
     earlier = [(f"{left_out} earlier", "")] if left_out > 0 else []
-    return Readout("What happened", (*earlier, *found[-MOST_EVENTS:]) or (("nothing yet", ""),))
+    yield Readout("What happened", (*earlier, *found[-MOST_EVENTS:]) or (("nothing yet", ""),))
 
 
-def _energy(context: Context) -> Readout:
+def _energy(context: Context) -> Iterator[Readout]:
     energies = context.energy.as_dict()
     nothing = written.ROUNDING * max(map(abs, energies.values()))
     rows = [
@@ -66,7 +68,7 @@ def _energy(context: Context) -> Readout:
         shares = error.relative, error.relative_velocity, error.relative_axial_force
         titles = "displacement error", "velocity error", "axial force error"
         rows += [(title, _error(share, " of the largest")) for title, share in zip(titles, shares, strict=True)]
-    return Readout("Energy account", tuple(rows))
+    yield Readout("Energy account", tuple(rows))
 
 
 def _error(share: float, of: str = "") -> str:

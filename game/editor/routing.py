@@ -9,7 +9,7 @@ from game.editor.view_model import pages_of_help
 from systems.input.bindings import FORCE_METHOD, FORMS, LIVE, MENU, action_for
 from systems.render.help import help_closed_by
 from systems.render.menu import menu_of
-from systems.render.picture import lies_under
+from systems.render.picture import on_status_bar, panel_at
 from systems.render.theme import load_theme
 
 CLICKS = (
@@ -19,6 +19,7 @@ CLICKS = (
     "drag",
     "ctrl+drag",
 )  # the pointer may slip a little in a click
+ONCE = tuple(click for click in CLICKS if click != "double click")  # a panel that moves up is not closed, too
 BUTTONS = (*CLICKS, "right click")
 AT_POINTER = (*BUTTONS, "wheel up", "wheel down")
 ON_SLIDER = {
@@ -47,8 +48,10 @@ def meaning(context: Context, key: str, pixel: Vector) -> Meaning:
     if key in AT_POINTER and _slider_at(context, pixel):
         return ON_SLIDER.get(key), pixel
     to_model = key in BUTTONS and context.scene in LIVE and not context.performing
-    if to_model and lies_under(context.model, view, load_theme(view.theme), pixel):
+    if to_model and on_status_bar(view, pixel):
         return None, pixel
+    if to_model and (panel := panel_at(context.model, view, load_theme(view.theme), pixel)) is not None:
+        return (panel.action_at(pixel) if key in ONCE else None), pixel
     return scene_meaning(context.scene, key), pixel
 
 

@@ -157,6 +157,7 @@ def add_slider(context: Context, elements: Sequence[Handle], field: str, axis: s
         raise Refusal(f"{found.title.capitalize()} is {found.absent}; give it a number first.")
     slider = _limited(_around(model, found, value, aims), found)
     _set(context, (*model.sliders, slider), "new slider")
+    context.view.legend = True  # it is hidden with the toolbar and the legend
     context.notice = f"Slider at the lower left: {_title(model, aims[0], first, found)}"
     return slider
 

@@ -86,7 +86,8 @@ def _gone(context: Context) -> str:
     if not len(gone) or (moving & inside).sum() > len(gone):
         return ""
     if (moving & inside).any():
-        return f"{', '.join(model.particles.names[row] for row in gone[:3])} left the picture: Home shows all."
+        names = ", ".join(model.particles.names[row] for row in gone[:3])
+        return f"{names[:1].upper()}{names[1:]} left the picture: Home shows all."
     return "All that moves has left the picture: Home shows it."
 
 

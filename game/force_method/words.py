@@ -6,6 +6,7 @@ from collections.abc import Sequence
 from typing import TYPE_CHECKING, overload
 
 from components import written
+from components.field import CM
 from components.view import BETWEEN
 from game.force_method import PARTS
 from systems.statics.counting import FORMULA
@@ -92,7 +93,7 @@ def _each(guide: Guide, index: str, metres: object, unit: str = "") -> Caption:
     """The displacement of every unknown: Δ, the change of distance of a rod, or u, that of a support."""
     several = len(guide.released) > 1
     return tuple(
-        f"{'Δ' if unknown.axis is None else 'u'}{index}{f' {unknown.name}' * several} = {_mm(value)} mm{unit}"
+        f"{'Δ' if unknown.axis is None else 'u'}{index}{f' {unknown.name}' * several} = {_cm(value)} cm{unit}"
         for unknown, value in zip(guide.released, metres, strict=True)  # type: ignore[call-overload]
     )
 
@@ -128,7 +129,7 @@ def _degree(degree: int) -> str:
 def _one_equation(solution: Solution) -> tuple[str, ...]:
     real, base, unit = solution.delta_real[0], solution.delta_base[0], solution.delta_unit[0, 0]
     return (
-        f"p = (Δ_real − Δ₀) / Δ₁ = ({_mm(real)} − {_mm(base, bracket=True)}) mm / ({_mm(unit)} mm/kN)"
+        f"p = (Δ_real − Δ₀) / Δ₁ = ({_cm(real)} − {_cm(base, bracket=True)}) cm / ({_cm(unit)} cm/kN)"
         f" = {signed(solution.force[0])} kN",
     )
 
@@ -139,12 +140,12 @@ def _equations(solution: Solution) -> tuple[str, ...]:
     lines = []
     for row, name in enumerate(names):
         terms = (
-            f" + {_mm(unit, bracket=True)} p_{other}"
+            f" + {_cm(unit, bracket=True)} p_{other}"
             for unit, other in zip(solution.delta_unit[row], names, strict=True)
         )
         lines.append(
-            f"{name}: Δ_real = Δ₀ + Σ Δ₁ p:  {_mm(solution.delta_real[row])} ="
-            f" {_mm(solution.delta_base[row])}{''.join(terms)}  (mm, kN)"
+            f"{name}: Δ_real = Δ₀ + Σ Δ₁ p:  {_cm(solution.delta_real[row])} ="
+            f" {_cm(solution.delta_base[row])}{''.join(terms)}  (cm, kN)"
         )
     forces = (f"p_{name} = {signed(p)} kN" for name, p in zip(names, solution.force.tolist(), strict=True))
     return (*lines, ",  ".join(forces))
@@ -188,9 +189,9 @@ class Superposition(Sequence[tuple[str, ...]]):
         )
 
 
-def _mm(metres: float, *, bracket: bool = False) -> str:
-    """Metres as millimetres to four digits; a negative number in brackets, if it stands behind a sign."""
-    text = written.given(1000.0 * metres, 4)
+def _cm(metres: float, *, bracket: bool = False) -> str:
+    """Metres as centimetres to four digits; a negative number in brackets, if it stands behind a sign."""
+    text = written.given(CM[1] * metres, 4)
     return f"({text})" if bracket and text.startswith("−") else text
 
 

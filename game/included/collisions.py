@@ -91,7 +91,10 @@ def _speeds(speed: Array, mean_square: float, revision: int) -> Readout:
     expected = np.sqrt(np.pi * mean_square) / 2
     rows = (("mean", f"{speed.mean():.4g} m/s"), ("mean by Rayleigh", f"{expected:.4g} m/s"))
     return Readout(
-        "Speeds", rows, Plot("speed (m/s)", "share (s/m)", curves, hash((revision, speed.tobytes())))
+        "Speeds",
+        rows,
+        Plot("speed (m/s)", "share (s/m)", curves, hash((revision, speed.tobytes()))),
+        closes="collisions.speeds",
     )
 
 

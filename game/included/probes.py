@@ -20,6 +20,8 @@ from game.mods import App
 from game.paths import TIME, Quantity, quantity
 from systems.base import Phase, System
 from systems.edit import Refusal
+from systems.render.picture import panel_at
+from systems.render.theme import load_theme
 
 MOST = 20_000  # samples; beyond, every second one is dropped
 FEW = 3  # plots at a time
@@ -210,7 +212,21 @@ def write_png(probe: Probe, path: Path, theme: str = "light") -> None:
 def panels(session: Context) -> Sequence[Readout]:
     """Each probe as a panel with its plot."""
     probes = probes_of(session)
-    return [Readout(_heading(probe), (), probe.plot(probes.span)) for probe in probes.all]
+    return [Readout(_heading(probe), (), probe.plot(probes.span), "probes.close") for probe in probes.all]
+
+
+def close(session: Context, pixel: Vector) -> None:
+    """Take away the plot whose panel is at a pixel."""
+    probes, view = probes_of(session), session.view
+    panel = panel_at(session.model, view, load_theme(view.theme), pixel)
+    closed = _names(panel.readout) if panel is not None and panel.readout is not None else ()
+    shown = zip(probes.all, panels(session), strict=True)
+    probes.all = [probe for probe, readout in shown if _names(readout) != closed]
+
+
+def _names(readout: Readout) -> tuple[str, ...]:
+    """What tells the plots of a session apart."""
+    return (readout.title, readout.plot.x_title, readout.plot.y_title) if readout.plot is not None else ()
 
 
 def _heading(probe: Probe) -> str:
@@ -267,6 +283,7 @@ def plugin(app: App) -> None:
     live = ("simulation", "pause")
     app.action("probes.plot", key="o", scenes=live, title="plot of the selection", icon=ICON)(plot_next)
     app.action("probes.save", key="ctrl+e", scenes=live, title="plots as CSV and PNG")(save)
+    app.action("probes.close", while_drawing=True)(close)
     for name, key, factor in (("longer", "[", 2.0), ("shorter", "]", 0.5)):
         title = f"{name} plots"
         app.action(f"probes.{name}", key=key, scenes=live, title=title, while_drawing=True)(

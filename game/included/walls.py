@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from components import Field, FieldError, Handle, Pieces, Selected, Table, Vector
+from components import CM, Field, FieldError, Handle, Pieces, Selected, Table, Vector
 from components.tags import Hovered
 from game.mods import App
 from systems.render.clip import bounds, clip_segments
@@ -32,8 +32,8 @@ class Wall(Handle):
     points = ("start", "end")
 
     name: Field[str] = Field(doc="Unique among the walls.", dtype=str)
-    start: Field[Vector] = Field("m", shape=(2,), doc="Where it begins.")
-    end: Field[Vector] = Field("m", shape=(2,), doc="Where it ends.")
+    start: Field[Vector] = Field("m", shape=(2,), doc="Where it begins.", shown=CM)
+    end: Field[Vector] = Field("m", shape=(2,), doc="Where it ends.", shown=CM)
     restitution: Field[float | None] = Field(
         default=None,
         nullable=True,

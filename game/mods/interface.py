@@ -14,7 +14,7 @@ from components.wording import printable
 from game.commands.arguments import BAD_INPUT, UsageError
 from game.documents import models
 from game.editor.actions import Action
-from game.editor.context import Context, Scene
+from game.editor.context import ACTIONS, Context, Scene
 from game.mods.declared import as_declared, result_of
 from game.mods.guard import check_view, interruptible, view_kept
 from game.mods.mod import INCLUDED, PATIENCE, Mod
@@ -97,9 +97,14 @@ def guarded_panel(mod: Mod, read: Panel) -> Callable[[Context], Sequence[Readout
 
 
 def _checked_readout(readout: Readout) -> Readout:
-    """A readout whose texts can be printed. Raises ValueError for curves that cannot be drawn."""
+    """A readout whose texts can be printed. Raises ValueError for curves that cannot be drawn, and for what closes it
+    and is no action.
+    """
     rows = tuple((readable(name), readable(value)) for name, value in readout.rows)
-    return Readout(readable(readout.title), rows, readout.plot and _checked_plot(readout.plot))
+    if readout.closes and readout.closes not in ACTIONS:
+        raise ValueError(f"the panel '{readout.title}' closes by '{readout.closes}'; there is no such action")
+    plot = readout.plot and _checked_plot(readout.plot)
+    return Readout(readable(readout.title), rows, plot, readout.closes)
 
 
 def _checked_plot(plot: Plot) -> Plot:

@@ -64,7 +64,7 @@ def _holds(got: Any, relation: str, value: str, slack: str | None) -> bool:
             raise ValueError(
                 f"it is {quoted(got)}, which is neither more nor less; write = or, for a part of a text, ≈."
             )
-        said, wanted_text = str(got).lower(), value.strip("\"'").lower()
+        said, wanted_text = (_typed(text) for text in (str(got), value.strip("\"'")))
         if got is None:
             return wanted_text in _NOTHING
         return said == wanted_text if relation == "=" else isinstance(got, str) and wanted_text in said
@@ -83,6 +83,11 @@ def _holds(got: Any, relation: str, value: str, slack: str | None) -> bool:
         return bool(_ORDERS[relation](got, wanted))
     tolerance = within if slack is not None or relation == "=" else 1e-9 * abs(wanted)
     return math.isfinite(got) and abs(got - wanted) <= tolerance
+
+
+def _typed(text: str) -> str:
+    """A text as it is typed, so that neither capitals nor real minus signs matter."""
+    return text.lower().replace("−", "-")
 
 
 def read(session: Shown, path: str) -> Any:

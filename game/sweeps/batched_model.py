@@ -90,9 +90,10 @@ class BatchedModel:
         return column.reshape(-1, *column.shape[2:])
 
     def derive(self) -> None:
-        """Bring what follows directly from the document up to date."""
+        """Bring what follows directly from the document up to date, but for what only pictures need."""
         for derivation in DERIVATIONS:
-            derivation.compute(cast(World, self))
+            if not derivation.targets[0].startswith("settings."):
+                derivation.compute(cast(World, self))
 
     def extreme(self) -> NDArray[np.bool_]:
         """Which variants have a number that is too large or too small to compute with."""

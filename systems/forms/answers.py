@@ -7,8 +7,8 @@ from collections.abc import Sequence
 from decimal import Decimal, DecimalException
 from typing import Any
 
-from components.box import Box
-from components.field import Field, FieldError
+from components.box import Box, number_and_unit
+from components.field import LENGTHS, Field, FieldError
 from components.form import Form
 from components.handle import Handle
 from components.load import HISTORIES
@@ -26,6 +26,8 @@ def problem(model: Model, box: Box) -> str:
         value = _value(field, part, box.text)
     except DecimalException:
         return "must be a number"
+    except FieldError as error:
+        return str(error)
     if isinstance(value, float):
         if not math.isfinite(value):
             return "must be a finite number"
@@ -104,12 +106,24 @@ def _target(model: Model, box: Box) -> tuple[Field[Any], str]:
 
 
 def _value(field: Field[Any], part: str, text: str) -> Any:
-    """The value of a text, in inside units. Raises DecimalException if it is no number but should be."""
+    """The value of a text, in inside units.
+
+    Raises DecimalException if it is no number but should be, and FieldError if it has a wrong unit.
+    """
     if field.dtype is bool:
         return text == YES_NO[1]
     if field.dtype is str or part == KIND:
         return text
     if field.nullable and text == field.absent:
         return None
-    number = Decimal(text) / Decimal(repr(field.shown[1]))
+    digits, unit = number_and_unit(text)
+    number = Decimal(digits) / Decimal(repr(_per_inside_unit(field, unit or field.shown[0])))
     return int(number) if field.dtype is int and number == number.to_integral_value() else float(number)
+
+
+def _per_inside_unit(field: Field[Any], unit: str) -> float:
+    """How many of a unit make one of those inside the program. Raises FieldError if it is of another kind."""
+    units = LENGTHS if field.unit == "m" else dict([field.shown])
+    if unit not in units:
+        raise FieldError(f"must be in {' or '.join(units)}, not in {unit}")
+    return units[unit]

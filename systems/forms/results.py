@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from components import written
-from components.field import Field, Role
+from components.field import CM, Field, Role
 from components.form import Form, Reading
 from components.handle import Handle
 from components.load import CONSTANT, Load, factor_at
@@ -100,13 +100,13 @@ def _of_rods(columns: _Columns, rows: NDArray[np.intp]) -> Iterator[Result]:
     yield from _utilisation(columns, rows)
     if len(rows) == 1:
         (row,) = rows
-        strain, length = 1000.0 * columns("rods.strain"), columns("rods.length")
+        strain, length = 1000.0 * columns("rods.strain"), columns("rods.length") * CM[1]
         yield _result("strain", _number(strain[row], strain, "‰"), Rod.strain)
         if not math.isnan(rods.area[row]):
             stress = 1e-3 * force / np.where(np.isnan(rods.area), np.inf, rods.area)
             told = "Axial force per area of the cross-section; tension positive."
             yield Result(SECTION, "stress", _number(stress[row], stress, "MPa"), told)
-        yield _result("length", _number(length[row], length, "m"), Rod.length)
+        yield _result("length", _number(length[row], length, CM[0]), Rod.length)
         if rods.plastic_strain[row]:
             plastic = 1000.0 * rods.plastic_strain
             yield _result("plastic strain", _number(plastic[row], plastic, "‰"), Rod.plastic_strain)
@@ -131,10 +131,10 @@ def _utilisation(columns: _Columns, rows: NDArray[np.intp]) -> Iterator[Result]:
 
 def _of_particles(columns: _Columns, rows: NDArray[np.intp]) -> Iterator[Result]:
     particles = columns.model.particles
-    moved, reactions = 1000.0 * particles.displacement, columns("particles.reaction")
+    moved, reactions = CM[1] * particles.displacement, columns("particles.reaction")
     if len(rows) == 1:
         (row,) = rows
-        yield _vector("displacement", moved[row], moved, "mm", Particle.displacement)
+        yield _vector("displacement", moved[row], moved, CM[0], Particle.displacement)
         held = particles.fixed[row]
         if held.any():
             yield _vector("reaction", reactions[row], reactions, "kN", Particle.reaction, held)
@@ -145,7 +145,7 @@ def _of_particles(columns: _Columns, rows: NDArray[np.intp]) -> Iterator[Result]
         return
     distance = np.hypot(*moved.T)
     most = rows[np.argmax(distance[rows])]
-    text = f"{_number(distance[most], distance, 'mm')} ({particles.column('name')[most]})"
+    text = f"{_number(distance[most], distance, CM[0])} ({particles.column('name')[most]})"
     yield _result("largest displacement", text, Particle.displacement)
     if particles.fixed[rows].any():
         total = reactions[rows].sum(axis=0)

@@ -6,6 +6,7 @@ import re
 from collections.abc import Sequence
 
 from components.box import FILE_NAME, NUMBER, TEXT, Box, fits_file_names
+from components.field import LENGTHS
 from components.form import Form
 from components.tags import Selected
 
@@ -15,6 +16,8 @@ MOST_CHARACTERS = 200  # in one box
 _MEANS = {"0": "no", "1": "yes"}
 _DIGITS = r"-?(\d+\.?\d*|\.\d*)?"  # a number, or the beginning of one
 _NUMBER_SO_FAR = re.compile(rf"{_DIGITS}|-?(\d+\.?\d*|\.\d+)[eE][+-]?\d*")
+# A length with another unit than that of its box.
+_WITH_UNIT_SO_FAR = re.compile(r"-?(\d+\.?\d*|\.\d+)([eE][+-]?\d+)?( ([^\d\s.,eE][^\s,]*)?|c|cm|mm?)")
 # Other keyboards, numbers copied from the screen, the notation of the thesis.
 _IN_NUMBERS = {",": ".", "−": "-", "/": "-"}
 
@@ -69,15 +72,25 @@ def move_on(form: Form, by: int) -> None:
 # --- typing ------------------------------------------------------------------------------------------
 
 
-def write(form: Form, text: str) -> None:
-    """Type characters into the selected box; those that it does not accept are passed over."""
-    box = form.selected
+def write(form: Form, text: str) -> str:
+    """Type characters into the selected box; those that it does not accept are passed over.
+
+    Returns the sentence that says which a box for a number passed over, such as a unit of another size; else "".
+    """
+    box, refused = form.selected, ""
     if box is None:
-        return
+        return ""
     for character in text:
         entered = _entered(box, character)
         if entered is not None and len(entered[0]) <= MOST_CHARACTERS:
             _set(form, box, *entered)
+        elif not character.isspace():
+            refused += character
+    if not refused or box.accepts != NUMBER:
+        return ""
+    words = "".join(f", or “{word}”" for word in box.words or ())
+    unit = f" in {box.unit}" if box.unit else ""
+    return f"“{refused}” is not taken; the {box.title} is a number{unit}, such as 2.5 or 1e3{words}."
 
 
 def erase(form: Form, *, after: bool = False) -> None:
@@ -149,7 +162,9 @@ def _entered(box: Box, character: str) -> tuple[str, int] | None:
     whole = box.marked or box.text in words
     before, after = ("", "") if whole else (box.text[: box.caret], box.text[box.caret :])
     if box.accepts == NUMBER:
-        character = _IN_NUMBERS.get(character, character)
+        if box.unit in LENGTHS and _WITH_UNIT_SO_FAR.fullmatch(before + character + after):
+            return before + character + after, len(before) + 1
+        before, character = before.removesuffix(" "), _IN_NUMBERS.get(character, character)
         if _NUMBER_SO_FAR.fullmatch(before + character + after):
             return before + character + after, len(before) + 1
     elif box.accepts == TEXT and character.isprintable():

@@ -304,6 +304,12 @@ def action_for(scene: str, key: str) -> str | None:
     return binding.action if binding else None
 
 
+def only_in_pause(scene: str, key: str) -> str:
+    """What a key does in pause, if it does nothing in the scene in which time passes; "" else."""
+    found = _binding(PAUSE, key) if scene == LIVE[0] and _binding(scene, key) is None else None
+    return found.title if found else ""
+
+
 def key_named(text: str) -> str:
     """The name that bindings use for a key such as "K", "Esc" or "Ctrl+Z". Raises ValueError if there is no such key.
 

@@ -17,6 +17,7 @@ from components.view import View
 from systems.render.arrows import FORCES, arrows, full_load, head_length, lengths, whose
 from systems.render.clip import bounds, clip_segments
 from systems.render.labels import Key, Label, half_size
+from systems.render.leaders import ANCHORS
 from systems.render.marks import Bars, Owner, Points, Strokes
 from systems.render.occupancy import FAINT
 from systems.render.sheet import DIRECTIONS, Rows, Sheet, typical_length
@@ -35,6 +36,7 @@ _SQUARE = 20.0  # points, the side of squares of which each shows one of more ar
 _TOLD = 1.5  # factor by which a new value must be larger to replace one of the last picture
 _ROD_VALUE = "rods.axial_force"  # keys by which labels keep places
 _ARROW_VALUES = {"load": "particles.applied_force", "reaction": "particles.reaction"}
+_MOST_COVERED = 0.15  # of a picture, by values
 _SLIDES = np.array([0.0, 0.3, -0.3, 0.6, -0.6, 0.9, -0.9])  # of how far a label can go along a rod
 _GAP = 1.0  # points between a rod or an arrow and a value beside it
 _BACKING = 0.86  # opacity behind a value
@@ -168,7 +170,7 @@ def _label_rods(
     """The values of the rods, along those parts of them that are seen."""
     start, end, seen = clip_segments(start, end, *bounds(sheet.viewport))
     rows, values, normal, height = rows[seen], values[seen], normal[seen], height[seen]
-    sheet.values += len(rows)
+    sheet.values[_ROD_VALUE] = len(rows)
     selected = sheet.chosen(sheet.tagged(Selected, "rods"), rows)
     is_short = typical_length(sheet.start, sheet.end) < _SHORTEST_WITH_VALUE * sheet.unit
     candidates = np.flatnonzero(selected) if is_short else np.arange(len(rows))
@@ -182,9 +184,10 @@ def _label_rods(
     colours = [getattr(sheet.theme, sign) for sign in signs]
     keys = [(_ROD_VALUE, row) for row in rows[shown].tolist()]
     of = [("rods", row) for row in rows[shown].tolist()]
-    middle = (start + end)[shown] / 2 + (normal * height[:, None])[shown]
-    anchors = np.stack([middle, normal[shown]], axis=1)
-    values_of = zip(texts, places, colours, (-worth[shown]).tolist(), keys, of, of, anchors, strict=True)
+    edge = start[shown] + (normal * height[:, None])[shown]
+    anchors = edge[:, None] + ANCHORS[:, None] * (end - start)[shown, None]
+    ranks = (-worth[shown]).tolist()
+    values_of = zip(texts, places, colours, ranks, keys, of, of, anchors, normal[shown], strict=True)
     _add_values(sheet, values_of, size, "spare" if few else "cover")
 
 
@@ -201,9 +204,9 @@ def _worth(sheet: Sheet, field: str, rows: Rows, values: NDArray[np.float64]) ->
 
 
 def _most_important(sheet: Sheet, worth: NDArray[np.float64], candidates: Rows) -> Rows:
-    """Of the candidates those worth most, as many as leave most of the picture free."""
+    """Of the candidates those worth most, as many as there may be room for beside them."""
     area = sheet.viewport.width * sheet.viewport.height / sheet.unit**2
-    most = int(0.25 * area / (46.0 * 18.0))
+    most = int(_MOST_COVERED * area / (46.0 * 18.0))
     return np.sort(candidates[np.lexsort((candidates, -worth[candidates]))][:most])
 
 
@@ -218,15 +221,15 @@ def _value_texts(sheet: Sheet, forces: Iterable[float], few: bool) -> tuple[list
 
 def _add_values(
     sheet: Sheet,
-    values: Iterable[tuple[str, Points, Colour, float, Key, Owner, Owner, Points]],
+    values: Iterable[tuple[str, Points, Colour, float, Key, Owner, Owner, Points, Points]],
     size: int,
     lines: Literal["spare", "cover"],
 ) -> None:
-    """Labels of values: text, places, colour, rank, key, owner, own part and anchor of each."""
+    """Labels of values: text, places, colour, rank, key, owner, own part, anchors and direction of each."""
     backing = faded(sheet.theme.background, _BACKING)
     sheet.labels += [
-        Label(text, places, size, colour, rank, "semibold", backing, lines, key, of, own, anchor)
-        for text, places, colour, rank, key, of, own, anchor in values
+        Label(text, places, size, colour, rank, "semibold", backing, lines, key, of, own, anchors, out)
+        for text, places, colour, rank, key, of, own, anchors, out in values
     ]
 
 
@@ -366,7 +369,7 @@ def _label_arrows(
     few, field = len(value) <= _FEW_VALUES, _ARROW_VALUES[name]
     worth = _worth(sheet, field, which, value)
     seen = np.flatnonzero(sheet.sees(middle))
-    sheet.values += len(seen)
+    sheet.values[field] = len(seen)
     shown = _most_important(sheet, worth, seen)
     sizes = np.abs(value[shown]).tolist()
     texts, font, half = _value_texts(sheet, sizes, few)
@@ -376,8 +379,9 @@ def _label_arrows(
     ranks, keys = (-worth[shown] - 1e9).tolist(), [(field, number) for number in which[shown].tolist()]
     colours = [getattr(sheet.theme, name)] * len(texts)
     of = _of(sheet, name, which[shown] // 2)
-    anchors = np.stack([middle[shown] + outward * length[shown, None] / 2, outward], axis=1)
-    _add_values(sheet, zip(texts, places, colours, ranks, keys, of, keys, anchors, strict=True), font, "spare")
+    anchors = (middle[shown] + outward * length[shown, None] / 2)[:, None]
+    values_of = zip(texts, places, colours, ranks, keys, of, keys, anchors, outward, strict=True)
+    _add_values(sheet, values_of, font, "spare")
 
 
 def _places_by_arrows(

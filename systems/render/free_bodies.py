@@ -173,6 +173,9 @@ def _label(
     """A value at one of the places in sight that are nearer to its own arrows, a line from and to, than to other rods."""
     at = np.array(places)
     at = at[sheet.sees(at)]
+    if not len(at):
+        return
+    sheet.values[key[0]] += 1
     others = sheet.rods != (of[1] if of[0] == "rods" else -1)
     distance = _distances(at, sheet.start[others], sheet.end[others]).min(axis=1, initial=np.inf)
     nearest = at[_distances(at, own[0][None], own[1][None])[:, 0] < distance]

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
 from functools import lru_cache
+from itertools import pairwise
 from typing import Literal, NamedTuple
 
 import numpy as np
@@ -19,6 +20,7 @@ from systems.render.typography import line_height, text_width
 
 _LED = 1000  # from which on numbers of places mean those with a line
 LEADER_OPACITY, _DOT = 0.75, 1.75  # of these lines, and points, radius of the dot at their end
+_STAGES = 0, 2, 8, 1000  # of each label that many places are tried before any more of others
 _COVERED = {"cover": (STRONG,), "spare": (FAINT, STRONG), "avoid": (0,)}  # by each attempt, at most
 
 
@@ -32,8 +34,8 @@ class Label(NamedTuple):
     rank: labels of lower rank come first. backing: colour behind the text, or None. lines: whether it may
     cover rods ("cover"), only if there is no other place ("spare"), or no line ever ("avoid"). key: the
     quantity and row, if the label is to stay where it was in the last picture. of: whose it is. own: what it must be
-    nearest to among the parts of the picture, if anything. anchor: of a value, where a line from it may lead, and the
-    unit vector in which it had best stand from there, (2, 2); None: it is a name, which gives way to values.
+    nearest to among the parts of the picture, if anything. anchors: of a value, where a line from it may lead, (k, 2), the
+    best first; none: it is a name, which gives way to values. outward: the direction in which it had best stand from there.
     """
 
     text: str
@@ -47,7 +49,8 @@ class Label(NamedTuple):
     key: Key | None = None
     of: Owner | None = None
     own: Owner | None = None
-    anchor: Points | None = None
+    anchors: Points = np.empty((0, 2))
+    outward: Points = np.array([0.0, -1.0])
 
 
 @lru_cache(maxsize=8192)
@@ -67,13 +70,13 @@ def place_labels(labels: Iterable[Label], occupancy: Occupancy, unit: float, pla
     marks: list[Mark] = []
     if ranked:
         occupancy.parts.gather(np.concatenate([label.places for label in ranked]))
-    for group in ([label for label in ranked if (label.anchor is None) == name] for name in (False, True)):
+    for group in ([label for label in ranked if (len(label.anchors) == 0) == name] for name in (False, True)):
         found = _beside(
             group, [former.get(label.key, -1) if label.key else -1 for label in group], occupancy, unit
         )
         for index, (place, x, y) in found.items():
             marks += _marks(group[index], place, x, y, unit, placed)
-        left = [label for index, label in enumerate(group) if index not in found and label.anchor is not None]
+        left = [label for index, label in enumerate(group) if index not in found and len(label.anchors)]
         if left:
             marks += _led(left[:TRIED], former, occupancy, unit, placed)
     return marks
@@ -95,12 +98,12 @@ def _led(
     labels: Sequence[Label], former: dict[Key, int], occupancy: Occupancy, unit: float, placed: Placed
 ) -> list[Mark]:
     """Labels that stand away from what they belong to, with a line that leads there."""
-    anchor, outward = np.array([label.anchor for label in labels]).transpose(1, 0, 2)
+    anchors, outward = [label.anchors for label in labels], np.array([label.outward for label in labels])
     half = np.array([half_size(label.text, label.size, label.weight, unit) for label in labels])
     own, kin = _codes(labels, occupancy)
     before = [former.get(label.key, -1) - _LED if label.key else -1 for label in labels]
     marks: list[Mark] = []
-    for label, leader in zip(labels, lead(anchor, outward, half, own, kin, before, occupancy), strict=True):
+    for label, leader in zip(labels, lead(anchors, outward, half, own, kin, before, occupancy), strict=True):
         if leader is not None:
             of = (label.of[0], np.array([label.of[1]])) if label.of else None
             colour, ends = faded(label.colour, LEADER_OPACITY), np.array([[leader.start], [leader.end]])
@@ -122,7 +125,10 @@ def _codes(labels: Sequence[Label], occupancy: Occupancy) -> tuple[Codes, Codes]
 def _beside(
     ranked: Sequence[Label], former: Sequence[int], occupancy: Occupancy, unit: float
 ) -> dict[int, tuple[int, float, float]]:
-    """Of the labels that may be at one of their places its number, and where that is; former: in the last picture."""
+    """Of the labels that may be at one of their places its number, and where that is; former: in the last picture.
+
+    The places of each are tried in order, first a few of all labels, since most of them stand at one of these.
+    """
     if not ranked:
         return {}
     count = np.array([len(label.places) for label in ranked])
@@ -134,50 +140,72 @@ def _beside(
     cells = occupancy.cells_of(middle - half, 2.0 * half)
     held = np.arange(len(of)) - first[of] == np.array(former)[of]
     clearly = ~held & np.array([label.backing is not None for label in ranked])[of]
-    boxes = Boxes(middle, half, of)
     own, kin = _codes(ranked, occupancy)
-    alone = (own[of] == NOBODY) | occupancy.are_of(cells, own[of], kin[of])
-    allowed = occupancy.parts.own_is_nearest(boxes, own, kin, clearly, alone)
-    free = _free_places(ranked, of, held, allowed, cells, occupancy)
-    places = zip((free - first[of[free]]).tolist(), *middle[free].T.tolist(), strict=True)
-    return dict(zip(of[free].tolist(), places, strict=True))
+    boxes, found = Boxes(middle, half, of), np.full(len(ranked), -1)
+    tried = _attempts(ranked, of, held, cells, occupancy)
+    number = np.arange(len(tried)) - np.searchsorted(of[tried], of[tried])
+    taken = [0] * len(occupancy.taken)
+    for begin, end in pairwise(_STAGES):
+        now = tried[(number >= begin) & (number < end) & (found[of[tried]] < 0)]
+        now = now[(own[of[now]] == NOBODY) | occupancy.may_be_of(cells[now], own[of[now]], kin[of[now]])]
+        now = now[occupancy.parts.own_is_nearest(boxes.some(now), own, kin, clearly[now])]
+        _take(now, of[now], cells[now], taken, found, occupancy)
+    settled = np.flatnonzero(found >= 0)
+    at = found[settled]
+    return dict(
+        zip(
+            settled.tolist(),
+            zip((at - first[settled]).tolist(), *middle[at].T.tolist(), strict=True),
+            strict=True,
+        )
+    )
 
 
-def _free_places(
+def _attempts(
     labels: Sequence[Label],
     of: NDArray[np.intp],
     held: NDArray[np.bool_],
-    allowed: NDArray[np.bool_],
     cells: NDArray[np.intp],
     occupancy: Occupancy,
 ) -> NDArray[np.intp]:
-    """Of each label for which any of its places is free, the first such place, which is taken.
+    """The places free of panels and lines, all of one label in the order in which to try them, then those of the next.
 
-    of: the label of each place. held: whether the label was there in the last picture. allowed: whether it may be
-    there. cells: (k, 4) of each place.
-    Thousands of places are tested against panels and lines at once; only what labels take is tested one by one.
+    of: the label of each place. held: whether the label was there in the last picture. cells: (k, 4) of each place.
     """
-    kinds = [label.lines for label in labels]
-    strengths = sorted({strength for lines in set(kinds) for strength in _COVERED[lines]})
+    kinds = np.array([label.lines for label in labels])
+    strengths = sorted({strength for lines in set(kinds.tolist()) for strength in _COVERED[lines]})
     free = {strength: occupancy.are_free(cells, strength) for strength in strengths}
     attempts = [np.empty(0, dtype=np.intp)]
     for lines, coverings in _COVERED.items():
-        theirs = np.flatnonzero(allowed & np.array([kind == lines for kind in kinds])[of])
+        theirs = np.flatnonzero((kinds == lines)[of])
         for covering in coverings if len(theirs) else ():
             possible = theirs[free[covering][theirs]]
             attempts += [possible[held[possible]], possible]
     tried = np.concatenate(attempts)
-    tried = tried[np.argsort(of[tried], kind="stable")]  # all attempts of one label, then those of the next
-    taken = [0] * len(occupancy.taken)  # by labels so far: the columns of each row as bits of one number
-    found, placed = [], -1
+    return tried[np.argsort(of[tried], kind="stable")]
+
+
+def _take(
+    places: NDArray[np.intp],
+    of: NDArray[np.intp],
+    cells: NDArray[np.intp],
+    taken: list[int],
+    found: NDArray[np.intp],
+    occupancy: Occupancy,
+) -> None:
+    """Let each label have the first of its places, one label's after the other's, that no label has taken.
+
+    of, cells: of these places. taken: by labels so far, the columns of each row as bits of one number; updated.
+    found: the place of each label, or -1; updated.
+    """
+    settled = -1
     for index, place, (left, top, right, bottom) in zip(
-        of[tried].tolist(), tried.tolist(), cells[tried].tolist(), strict=True
+        of.tolist(), places.tolist(), cells.tolist(), strict=True
     ):
         bits = (1 << right) - (1 << left)
-        if index == placed or any(row & bits for row in taken[top:bottom]):
+        if index == settled or any(row & bits for row in taken[top:bottom]):
             continue
         taken[top:bottom] = [row | bits for row in taken[top:bottom]]
         occupancy.taken[top:bottom, left:right] = True
-        found.append(place)
-        placed = index
-    return np.array(found, dtype=np.intp)
+        found[index] = place
+        settled = index

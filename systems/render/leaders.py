@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import NamedTuple
 
 import numpy as np
@@ -9,10 +10,11 @@ from numpy.typing import NDArray
 
 from systems.render.clip import bounds
 from systems.render.marks import Points
-from systems.render.nearness import NOBODY, Boxes, Codes
+from systems.render.nearness import NOBODY, Boxes, Codes, ranges
 from systems.render.occupancy import FAINT, Occupancy
 
-TRIED = 48  # values of a picture
+ANCHORS = np.array([0.5, 0.35, 0.65, 0.2, 0.8])  # shares of a line where one that leads to it may end
+TRIED = 32  # values of a picture
 _MOST = 16  # lines, since more would confuse
 _TURNS = np.array([0, 1, -1, 2, -2, 3, -3, 4, -4, 5, -5, 6, -6, 7, -7, 8]) * (
     np.pi / 8.0
@@ -22,6 +24,7 @@ _STEP, _HALF = (
     4.0,
     1.5,
 )  # points between the places where a line is tested, and half the room that it needs there
+_FEW = 4  # places of a line that are tested first
 _CLEAR, _OFF_DIAGRAMS = 3.0, 1.0  # points between a value and all else
 
 
@@ -35,7 +38,7 @@ class Leader(NamedTuple):
 
 
 def lead(
-    anchors: Points,
+    anchors: Sequence[Points],
     outward: Points,
     half: Points,
     own: Codes,
@@ -43,83 +46,98 @@ def lead(
     former: list[int],
     occupancy: Occupancy,
 ) -> list[Leader | None]:
-    """For values of `half` the size (n, 2), the first of which come first, places from which a line leads to `anchors`.
+    """For values of `half` the size (n, 2), the first of which come first, places from which a line leads to an anchor.
 
-    outward: unit vectors (n, 2) in which lines go preferably. own, kin: as for Parts.own_is_nearest; lines may cross
-    these, and diagrams. former: the place of each in the last picture, or -1. What is found is taken.
+    anchors: of each value points (k, 2), of which the first is taken that nothing else is near. outward: unit vectors
+    (n, 2) in which lines go preferably. own, kin: as for Parts.own_is_nearest; lines may cross these, and diagrams.
+    former: the place of each in the last picture, or -1. What is found is taken.
     """
     found: list[Leader | None] = [None] * len(anchors)
     if not len(anchors):
         return found
+    which, ends = _clear_ends(anchors, own, kin, occupancy)
     unit, count = occupancy.parts.unit, len(_TURNS) * len(_LENGTHS)
-    angle = np.arctan2(outward[:, 1], outward[:, 0])[:, None] + np.tile(_TURNS, len(_LENGTHS))
+    angle = np.arctan2(outward[which, 1], outward[which, 0])[:, None] + np.tile(_TURNS, len(_LENGTHS))
     direction = np.stack([np.cos(angle), np.sin(angle)], axis=2)
-    reach = np.repeat(_LENGTHS, len(_TURNS)) * unit + (np.abs(direction) * half[:, None]).sum(axis=2)
-    middle = (anchors[:, None] + direction * reach[:, :, None]).reshape(-1, 2)
-    of = np.repeat(np.arange(len(anchors)), count)
-    boxes, cells = _clear_boxes(middle, of, half, occupancy)
-    at, samples, line_cells = _clear_lines(middle, boxes, anchors[of], half[of], own[of], kin[of], occupancy)
+    reach = np.repeat(_LENGTHS, len(_TURNS)) * unit + (np.abs(direction) * half[which, None]).sum(axis=2)
+    middle = (ends[:, None] + direction * reach[:, :, None]).reshape(-1, 2)
+    of, end = np.repeat(which, count), np.repeat(ends, count, axis=0)
+    place = np.tile(np.arange(count), len(which))
+    at = _clear_boxes(Boxes(middle, half[of], of), len(anchors), occupancy)
+    middle, of, end, place = middle[at], of[at], end[at], place[at]
+    start = np.clip(end, middle - half[of], middle + half[of])
+    order = np.lexsort((place != np.array(former)[of], of))  # stable
     lines = 0
-    for label in range(len(anchors)):
-        if lines == _MOST:
-            break
-        mine = at[of[at] == label]
-        places = mine - label * count
-        for box in [*mine[places == former[label]].tolist(), *mine.tolist()]:
-            left, top, right, bottom = cells[box]
-            row, column = line_cells[slice(*np.searchsorted(samples, [box, box + 1]))].T
-            if occupancy.taken[top:bottom, left:right].any() or occupancy.taken[row, column].any():
-                continue
-            occupancy.taken[top:bottom, left:right] = True
-            occupancy.taken[row, column] = True
-            x, y = middle[box].tolist()
-            start = np.clip(anchors[label], middle[box] - half[label], middle[box] + half[label]).tolist()
-            end_x, end_y = anchors[label].tolist()
+    for index in order[
+        _are_clear(start[order], end[order], own[of[order]], kin[of[order]], occupancy)
+    ].tolist():
+        if found[of[index]] is None and _take(
+            middle[index], half[of[index]], start[index], end[index], occupancy
+        ):
+            (x, y), (from_x, from_y), (to_x, to_y) = (p[index].tolist() for p in (middle, start, end))
+            found[of[index]] = Leader(int(place[index]), (x, y), (from_x, from_y), (to_x, to_y))
             lines += 1
-            found[label] = Leader(box - label * count, (x, y), (start[0], start[1]), (end_x, end_y))
-            break
+            if lines == _MOST:
+                break
     return found
 
 
-def _clear_boxes(
-    middle: Points, of: NDArray[np.intp], half: Points, occupancy: Occupancy
-) -> tuple[NDArray[np.bool_], NDArray[np.intp]]:
-    """Which boxes lie in the picture, on nothing and near nothing; and the cells of all, (n, 4)."""
-    boxes = Boxes(middle, half[of], of)
-    nobody, unit = np.full(len(half), NOBODY), occupancy.parts.unit
-    limits = np.array([_CLEAR, _OFF_DIAGRAMS, _CLEAR])[:, None] * unit * np.ones(len(of))
+def _clear_ends(
+    anchors: Sequence[Points], own: Codes, kin: Codes, occupancy: Occupancy
+) -> tuple[NDArray[np.intp], Points]:
+    """Which values have an anchor that nothing else is near, but for diagrams in need, and the first of each, (n, 2)."""
+    of, points = np.repeat(np.arange(len(anchors)), [len(each) for each in anchors]), np.concatenate(anchors)
+    boxes, unit, possible = Boxes(points, np.zeros_like(points), of), occupancy.parts.unit, []
+    for near in ((_CLEAR, 0.0, _CLEAR), (_HALF, -1.0, _HALF)):
+        limits = np.array(near)[:, None] * unit * np.ones(len(of))
+        possible.append(np.flatnonzero(occupancy.parts.are_clear(boxes, own, kin, limits)))
+    clear = np.concatenate(possible)
+    which, first = np.unique(of[clear], return_index=True)
+    return which, points[clear[first]]
+
+
+def _clear_boxes(boxes: Boxes, labels: int, occupancy: Occupancy) -> NDArray[np.intp]:
+    """Those boxes of so many labels that lie in the picture, on nothing and near nothing."""
+    nobody, unit = np.full(labels, NOBODY), occupancy.parts.unit
     low, high = bounds(occupancy.viewport)
-    inside = ((middle - half[of] >= low) & (middle + half[of] <= high)).all(axis=1)
-    cells = occupancy.cells_of(middle - half[of], 2.0 * half[of])
-    possible = inside & occupancy.are_free(cells, FAINT)
-    return possible & occupancy.parts.are_clear(boxes, nobody, nobody, limits, possible), cells
+    inside = (boxes.middle - boxes.half >= low) & (boxes.middle + boxes.half <= high)
+    at = np.flatnonzero(inside[:, 0] & inside[:, 1])
+    corner = boxes.middle[at] - boxes.half[at]
+    at = at[occupancy.are_free(occupancy.cells_of(corner, 2.0 * boxes.half[at]), FAINT)]
+    limits = np.array([_CLEAR, _OFF_DIAGRAMS, _CLEAR])[:, None] * unit * np.ones(len(at))
+    return at[occupancy.parts.are_clear(boxes.some(at), nobody, nobody, limits)]
 
 
-def _clear_lines(
-    middle: Points,
-    possible: NDArray[np.bool_],
-    anchors: Points,
-    half: Points,
-    own: Codes,
-    kin: Codes,
-    occupancy: Occupancy,
-) -> tuple[NDArray[np.intp], NDArray[np.intp], NDArray[np.intp]]:
-    """Those of the possible boxes whose lines meet nothing; of places along lines their boxes, and rows and columns."""
-    at, unit = np.flatnonzero(possible), occupancy.parts.unit
-    middle, anchors, half, own, kin = middle[at], anchors[at], half[at], own[at], kin[at]
-    start = np.clip(anchors, middle - half, middle + half)
-    step = start - anchors
-    length = np.hypot(step[:, 0], step[:, 1])
-    count = np.ceil(length / (_STEP * unit)).astype(np.intp) + 1
-    of, first = np.repeat(np.arange(len(at)), count), np.cumsum(count) - count
-    share = (np.arange(len(of)) - first[of]) / count[of]
-    points = anchors[of] + share[:, None] * step[of]
-    room = np.full(points.shape, _HALF * unit)
-    limits = np.array([_HALF, -1.0, _HALF])[:, None] * unit * np.ones(len(of))
-    rows, columns = occupancy.cell_of(points).T
-    owner = occupancy.owner[rows, columns]
-    strange = (owner != NOBODY) & (owner != own[of]) & (owner != kin[of])
-    stopped = np.bincount(of[strange | occupancy.taken[rows, columns]], minlength=len(at)) > 0
-    clear = occupancy.parts.are_clear(Boxes(points, room, of), own, kin, limits, ~stopped[of])
-    stopped |= np.bincount(of[~clear], minlength=len(at)) > 0
-    return at[~stopped], at[of], np.stack([rows, columns], axis=1)
+def _are_clear(start: Points, end: Points, own: Codes, kin: Codes, occupancy: Occupancy) -> NDArray[np.intp]:
+    """Those of the lines from `start` to `end` that meet nothing. A few points of each rule most of them out."""
+    unit, left = occupancy.parts.unit, np.arange(len(start))
+    length = np.hypot(*(end - start).T)
+    for step in (np.inf, _STEP * unit):
+        count = np.maximum(np.ceil(length[left] / step).astype(np.intp) + 1, _FEW)
+        line = np.repeat(left, count)
+        share = (ranges(np.zeros_like(count), count) / np.repeat(count, count))[:, None]
+        points = end[line] + share * (start[line] - end[line])
+        rows, columns = occupancy.cell_of(points).T
+        owner = occupancy.owner[rows, columns]
+        strange = (owner != NOBODY) & (owner != own[line]) & (owner != kin[line])
+        stopped = np.zeros(len(start), dtype=bool)
+        stopped[line[strange | occupancy.taken[rows, columns]]] = True
+        left = left[~stopped[left]]
+    some = np.flatnonzero(~stopped[line])
+    points, line = points[some], line[some]
+    limits = np.array([_HALF, -1.0, _HALF])[:, None] * unit * np.ones(len(line))
+    boxes = Boxes(points, np.full(points.shape, _HALF * unit), line)
+    stopped[line[~occupancy.parts.are_clear(boxes, own, kin, limits)]] = True
+    return left[~stopped[left]]
+
+
+def _take(middle: Points, half: Points, start: Points, end: Points, occupancy: Occupancy) -> bool:
+    """Take a box and a line to it, if both are free."""
+    ((left, top, right, bottom),) = occupancy.cells_of((middle - half)[None], 2.0 * half[None]).tolist()
+    count = int(np.hypot(*(end - start)) / (_STEP * occupancy.parts.unit)) + 2
+    row, column = occupancy.cell_of(end + np.arange(count)[:, None] / count * (start - end)).T
+    if occupancy.taken[top:bottom, left:right].any() or occupancy.taken[row, column].any():
+        return False
+    occupancy.taken[top:bottom, left:right] = True
+    occupancy.taken[row, column] = True
+    return True

@@ -21,6 +21,7 @@ _FARTHEST = 80.0  # points from its own, beyond which no label stands by itself
 _MOST_PIECES = 1000  # of one part
 _ROWS = 40  # bits of a code that are left for rows
 _FACTOR, _MARGIN = 1.25, 2.0  # by how much, in points, all else is further away than the own element
+_NEAR, _MANY = 6.0, 200  # points within which parts of places are tested first, and of how many places
 _LEAST_MARGIN = 0.1  # points
 
 Numbers = NDArray[np.float64]
@@ -39,6 +40,9 @@ class Boxes:
     middle: Points
     half: Points
     of: Indices
+
+    def some(self, which: Truths | Indices) -> Boxes:
+        return Boxes(self.middle[which], self.half[which], self.of[which])
 
 
 class Parts:
@@ -78,37 +82,48 @@ class Parts:
             return NOBODY
         return (self._tables.setdefault(key[0], len(self._tables)) << _ROWS) + key[1]
 
-    def own_is_nearest(self, boxes: Boxes, own: Codes, kin: Codes, clearly: Truths, which: Truths) -> Truths:
+    def own_is_nearest(self, boxes: Boxes, own: Codes, kin: Codes, clearly: Truths) -> Truths:
         """For each box whether it is nearer to what its label belongs to than to all else; True where that is nothing.
 
         own, kin: by label, codes of what it belongs to, and of what it is in no danger to be taken for. clearly: by
-        box, whether by a margin that is seen. which: the boxes that matter. Lines are compared with the own line, all
-        else with the nearest of the own parts, so that a value stands well in its own diagram.
+        box, whether by a margin that is seen. Lines are compared with the own line, all else with the nearest of the
+        own parts, so that a value stands well in its own diagram.
         """
+        nearest: Truths = own[boxes.of] == NOBODY
+        if nearest.all():
+            return nearest
+        some = np.flatnonzero(~nearest)
+        boxes, clearly = boxes.some(some), clearly[some]
         to_line, to_any = self._own_distances(boxes, own)
-        some = which & (own[boxes.of] != NOBODY) & (to_line < _FARTHEST * self.unit)
         factor, margin = np.where(clearly, _FACTOR, 1.0), np.where(clearly, _MARGIN, _LEAST_MARGIN) * self.unit
-        limits = [np.where(some, away * factor + margin, 0.0) for away in (to_line, to_any, to_any)]
-        return np.where(some, self.are_clear(boxes, own, kin, np.stack(limits), some), own[boxes.of] == NOBODY)
+        limits = np.stack([away * factor + margin for away in (to_line, to_any, to_any)])
+        left = np.flatnonzero(to_line < _FARTHEST * self.unit)
+        for most in (
+            (_NEAR * self.unit, np.inf) if len(left) > _MANY else (np.inf,)
+        ):  # what is near rules most out
+            clear = self.are_clear(boxes.some(left), own, kin, np.minimum(limits[:, left], most))
+            left = left[clear]
+        nearest[some[left]] = True
+        return nearest
 
-    def are_clear(
-        self, boxes: Boxes, own: Codes, kin: Codes, limits: Numbers, which: Truths | None = None
-    ) -> Truths:
+    def are_clear(self, boxes: Boxes, own: Codes, kin: Codes, limits: Numbers) -> Truths:
         """For each box whether nothing is as near as `limits` (3, n) in pixels, for lines, diagrams and symbols.
 
-        What may be even on it has a negative limit. own, kin: by label, codes of what does not count. which: the boxes
-        that matter.
+        What may be even on it has a negative limit. own, kin: by label, codes of what does not count.
         """
         clear: Truths = np.ones(len(boxes.of), dtype=bool)
         if not self._kept or not len(boxes.of):
             return clear
-        some = np.arange(len(boxes.of)) if which is None else np.flatnonzero(which)
-        reach = boxes.half[some] + limits.max(axis=0)[some, None]
-        meets, piece, is_full = self._squares.meeting(boxes.middle[some] - reach, boxes.middle[some] + reach)
-        clear[some[is_full]] = False
-        box, pieces = some[meets], self._pieces
+        reach = boxes.half + limits.max(axis=0)[:, None]
+        box, piece, is_full = self._squares.meeting(boxes.middle - reach, boxes.middle + reach)
+        clear[is_full] = False
+        pieces = self._pieces
+        for axis in (0, 1):  # most of what shares a square is too far away along one of them
+            away = np.abs(boxes.middle[:, axis][box] - pieces.middle[:, axis][piece])
+            close = away <= reach[:, axis][box] + pieces.extent[:, axis][piece]
+            box, piece = box[close], piece[close]
         label = boxes.of[box]
-        strange = clear[box] & (pieces.of[piece] != own[label]) & (pieces.of[piece] != kin[label])
+        strange = (pieces.of[piece] != own[label]) & (pieces.of[piece] != kin[label])
         box, piece = box[strange], piece[strange]
         limit = limits[pieces.kind[piece], box]
         clear[box[_are_within(boxes, box, pieces, piece, limit)]] = False
@@ -128,7 +143,8 @@ class Parts:
             found.append(bands.some(wanted[squares.of(middle)] | long))
         if found:
             columns = ([getattr(bands, column.name) for bands in found] for column in fields(_Bands))
-            self._seen = _Bands(*map(np.concatenate, columns))
+            seen = _Bands(*map(np.concatenate, columns))
+            self._seen = seen.some(np.argsort(seen.of, kind="stable"))
             self._pieces = _cut(self._seen, _SIDE * self.unit)
             squares.fill(self._pieces)
         self._squares = squares
@@ -138,13 +154,9 @@ class Parts:
         to_any = np.full(len(boxes.of), np.inf)
         if not self._kept or not len(boxes.of):
             return to_any, to_any
-        order = np.argsort(self._seen.of, kind="stable")
-        left, right = (np.searchsorted(self._seen.of[order], own, side) for side in ("left", "right"))
+        left, right = (np.searchsorted(self._seen.of, own, side) for side in ("left", "right"))
         many = (right - left)[boxes.of]
-        box, bands = (
-            np.repeat(np.arange(len(boxes.of)), many),
-            self._seen.some(order[ranges(left[boxes.of], many)]),
-        )
+        box, bands = np.repeat(np.arange(len(many)), many), self._seen.some(ranges(left[boxes.of], many))
         start, end = bands.start + bands.rise, bands.end + bands.rise
         away = _to_segments(boxes.middle[box], boxes.half[box], start, end)
         away = np.where((start == end).all(axis=1), np.maximum(away - bands.half, 0.0), away)
@@ -234,12 +246,16 @@ class _Squares:
 
     def around(self, points: Points, reach: int) -> Truths:
         """Which squares are no more than `reach` squares away from points (n, 2)."""
-        found = np.zeros((self.size[1] + 2 * reach, self.size[0] + 2 * reach), dtype=bool)
-        column, row = (np.unique(self._cells(points), axis=0)).T
-        for right in range(2 * reach + 1):
-            for down in range(2 * reach + 1):
-                found[row + down, column + right] = True
-        return found[reach:-reach, reach:-reach].ravel()
+        column, row = self._cells(points).T
+        found = np.zeros((self.size[1], self.size[0]), dtype=bool)
+        found[row, column] = True
+        for _ in range(2):  # along one axis, then along the other
+            there = found.copy()
+            for away in range(1, reach + 1):
+                found[away:] |= there[:-away]
+                found[:-away] |= there[away:]
+            found = found.T
+        return found.ravel()
 
     def _rows(self, low: Points, high: Points) -> tuple[Indices, Indices, Indices]:
         """Of upright boxes, for each row of squares that they touch: which box, and the first and last square."""

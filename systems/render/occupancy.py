@@ -7,11 +7,12 @@ from numpy.typing import NDArray
 
 from components.camera import Viewport
 from systems.render.marks import Owners, Points
-from systems.render.nearness import NOBODY, Codes, Parts, ranges
+from systems.render.nearness import NOBODY, Codes, Parts
 
 FAINT, STRONG = 1, 2  # lines that names never cover; lines that values cover only in need
 _FAR = 1e6  # pixels
 _MANY_LINES = 4000
+_ALONG = 12  # cells of a diagonal that are looked at
 _CELL = 3.0  # points: how finely the picture is divided into free and taken
 
 
@@ -88,28 +89,24 @@ class Occupancy:
         )
         return nothing
 
-    def are_of(self, cells: NDArray[np.intp], *owners: Codes) -> NDArray[np.bool_]:
-        """For each box of `cells` (n, 4), whether lines well inside it are of its `owners`, each (n,), only."""
+    def may_be_of(self, cells: NDArray[np.intp], *owners: Codes) -> NDArray[np.bool_]:
+        """For each box of `cells` (n, 4), False where lines through it are seen to be of others than `owners`, each (n,).
+
+        It is tested along the diagonals, which every line that parts the corners crosses.
+        """
         left, top, right, bottom = cells.T
-        left, top, right, bottom = (
-            left + 1,
-            top + 1,
-            np.maximum(right - 1, left + 2),
-            np.maximum(bottom - 1, top + 2),
-        )
-        height, width = self.taken.shape
-        box = np.repeat(np.arange(len(cells)), bottom - top)
-        row = ranges(top, bottom - top)
-        count = (right - left)[box]
-        column = ranges(left[box], count)
-        box, row = np.repeat(box, count), np.repeat(row, count)
-        found = self.owner[np.minimum(row, height - 1), np.minimum(column, width - 1)]
-        strange = found != NOBODY
-        for owner in owners:
-            strange &= found != owner[box]
-        alone = np.ones(len(cells), dtype=bool)
-        alone[box[strange]] = False
-        return alone
+        width, height = right - left - 3, bottom - top - 3
+        share = np.linspace(0.0, 1.0, _ALONG)[:, None]
+        down, across = (top + 1 + share * height).astype(np.intp), (left + 1 + share * width).astype(np.intp)
+        possible = np.ones(len(cells), dtype=bool)
+        rows, columns = self.taken.shape
+        for row in (down, down[::-1]):
+            found = self.owner[np.clip(row, 0, rows - 1), np.clip(across, 0, columns - 1)]
+            strange = found != NOBODY
+            for owner in owners:
+                strange &= found != owner
+            possible &= ~strange.any(axis=0)
+        return possible
 
     def cell_of(self, points: Points) -> NDArray[np.intp]:
         """Rows and columns of the cells that hold points (n, 2)."""

@@ -171,7 +171,7 @@ def _beside_panels(sheet: Sheet, said: str, size: int, around: float) -> tuple[V
 
 
 def draw_notice(sheet: Sheet, ends: tuple[float, float]) -> list[Mark]:
-    """The problem or the notice, wrapped, above the status bar or at the top if that is freer."""
+    """The problem or the notice, wrapped, at the bottom or the top, in the middle or aside, where it hides least."""
     status, (top, bottom) = sheet.view.status, ends
     said = status.problem or status.notice
     if not said:
@@ -185,9 +185,7 @@ def draw_notice(sheet: Sheet, ends: tuple[float, float]) -> list[Mark]:
     most = max(int((bottom - top - 60.0 * u) / line_height(size)), 1)
     lines = at_most(lines, most, room, size)
     height = len(lines) * line_height(size) + 2 * pad - 4.0 * u
-    left = v.left + (v.width - width) / 2
-    places = [bottom - height - 10.0 * u, top + 10.0 * u]
-    upper = min(places, key=lambda place: sheet.occupancy.crossed(left, place, width, height))
+    left, upper = _freest_of(sheet, _for_notice(sheet, v, width, height, (top, bottom)), width, height)
     sheet.occupancy.block(left, upper, width, height)
     first = upper + height / 2 - (len(lines) - 1) * line_height(size) / 2
     at = np.array([[left + pad + icon / 2, first]])
@@ -202,6 +200,21 @@ def draw_notice(sheet: Sheet, ends: tuple[float, float]) -> list[Mark]:
         ),
         *_progress(sheet, left + pad, upper + height - 5.0 * u, width - 2 * pad),
     ]
+
+
+def _for_notice(
+    sheet: Sheet, v: Viewport, width: float, height: float, ends: tuple[float, float]
+) -> list[tuple[float, float]]:
+    """Left and top of places for a notice: in the middle, or to the right of it, below, at the top or above sliders."""
+    gap, (top, bottom) = 10.0 * sheet.unit, ends
+    sliders = min((place.top for place in sheet.view.slider_places), default=bottom)
+    across = v.left + (v.width - width) / 2, v.right - width - gap
+    return [
+        (left, upper)
+        for upper in (bottom - height - gap, top + gap, sliders - height - gap)
+        for left in across
+        if upper >= top
+    ] or [(across[0], bottom - height - gap)]
 
 
 def _progress(sheet: Sheet, left: float, top: float, width: float) -> list[Mark]:
@@ -321,10 +334,14 @@ def place_scale(sheet: Sheet, room: tuple[float, float]) -> Scale | None:
     v, u, size = sheet.viewport, sheet.unit, sheet.font(11.0)
     metres = round_down(min(120.0 * u, 0.25 * v.width) / sheet.view.camera.scale)
     notes, length = _displacements(sheet) + sheet.notes, metres * sheet.view.camera.scale
-    choices = [(metres, length, notes), (0.0, 0.0, notes), *([(0.0, 0.0, list[str]())] if sheet.values else [])]
+    choices = [
+        (metres, length, notes),
+        (0.0, 0.0, notes),
+        *([(0.0, 0.0, list[str]())] if sheet.values.total() else []),
+    ]
     for metres, length, said in choices:
         ruler = length + 8.0 * u if length else 0.0
-        text = "   ".join(_said(metres, sheet.values, said))
+        text = "   ".join(_said(metres, sheet.values.total(), said))
         width = text_width(text, size)
         if not text or width > v.width - ruler - 2 * _EDGE * u:
             continue
@@ -339,7 +356,7 @@ def place_scale(sheet: Sheet, room: tuple[float, float]) -> Scale | None:
 
 def draw_scale(sheet: Sheet, scale: Scale | None) -> list[Mark]:
     """A round length to scale, how many values are hidden, and by how much displacements and diagrams are scaled."""
-    hidden = sheet.values - sum(1 for field, _ in sheet.placed if not field.endswith(".name"))
+    hidden = sheet.values.total() - sum(1 for field, _ in sheet.placed if field in sheet.values)
     said = _said(scale.metres, hidden, scale.notes) if scale else []
     if scale is None or not said:
         return []
@@ -358,7 +375,7 @@ def draw_scale(sheet: Sheet, scale: Scale | None) -> list[Mark]:
 def _said(metres: float, hidden: int, notes: list[str]) -> list[str]:
     """What is said beside the ruler, if so many values are hidden."""
     values = "1 value" if hidden == 1 else f"{hidden} values"
-    length = [written.scale_length(metres)] if metres else []
+    length = [written.length(metres)] if metres else []
     return [*length, *([f"{values} hidden: zoom in"] if hidden else []), *notes]
 
 
@@ -370,6 +387,13 @@ def _freest(sheet: Sheet, width: float, room: tuple[float, float]) -> tuple[floa
     first, last = v.left + 8.0 * u, v.right - width - 8.0 * u
     places = [(first, low), ((first + last) / 2, low), (last, low), (first, high), (last, high)]
     places.append((first, max(high - _ROW * u, v.top)))  # beside the last row of the legend
+    return _freest_of(sheet, places, width, height)
+
+
+def _freest_of(
+    sheet: Sheet, places: list[tuple[float, float]], width: float, height: float
+) -> tuple[float, float]:
+    """Left and top of the first of the places where a box lies on nothing else, if possible, and hides least."""
     occupancy = sheet.occupancy
     hides = [(occupancy.is_taken(*at, width, height), occupancy.crossed(*at, width, height)) for at in places]
     return places[hides.index(min(hides))]
@@ -389,9 +413,7 @@ def _displacements(sheet: Sheet) -> list[str]:
     largest = float(np.abs(model.particles.displacement).max(initial=0.0)) if model.rods.count else 0.0
     if not _NOISE < largest * sheet.view.camera.scale < sheet.unit:
         return []
-    return [
-        f"displacements up to {written.given(1000.0 * largest, 2)} mm, too small to see; their slider enlarges them"
-    ]
+    return [f"displacements up to {written.length(largest, 2)}, too small to see; their slider enlarges them"]
 
 
 # --- nothing to see --------------------------------------------------------------------------------

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from components.box import NUMBER, WORD, Box
+from components.box import NUMBER, WORD, Box, number_and_unit
 from components.camera import Rectangle, Viewport
 from components.form import Form, Reading, Tile
 from components.view import BETWEEN, View
@@ -215,7 +215,7 @@ class _Writer:
 
     def _has_room_for_unit(self, place: Place, box: Box) -> bool:
         """True if the unit stands behind the number, not above the box."""
-        if not box.text or not box.unit or box.text in (box.words or ()):
+        if not box.text or not box.unit or box.text in (box.words or ()) or number_and_unit(box.text)[1]:
             return False
         return self._taken(box, box.unit) <= self._room(place, box)
 

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from components.camera import Rectangle
 from components.field import Vector
 from components.form import Form
 from components.model import Model
@@ -17,7 +16,7 @@ from systems.render.overlays import BAR, draw_notice, draw_overlays, draw_scale,
 from systems.render.page import draw_page
 from systems.render.panel import compose_form
 from systems.render.pointed import draw_pointed
-from systems.render.readouts import draw_readouts
+from systems.render.readouts import ShownPanel, draw_readouts
 from systems.render.sheet import ABOVE, BELOW, Sheet, measure
 from systems.render.sliders import draw_sliders
 from systems.render.structure import (
@@ -55,14 +54,22 @@ def compose(model: Model | Form | Toolbar, view: View, theme: Theme, placed: Pla
     )
 
 
-def lies_under(model: Model, view: View, theme: Theme, pixel: Vector) -> bool:
-    """True if a pixel of the picture of a model shows a panel or the status bar, not the model."""
+def on_status_bar(view: View, pixel: Vector) -> bool:
+    """True if a pixel of the picture of a model shows the status bar."""
     v = view.canvas
-    if view.status.state and v.contains(pixel) and pixel[1] >= v.bottom - BAR * view.pixel_ratio:
-        return True
+    return bool(view.status.state) and v.contains(pixel) and pixel[1] >= v.bottom - BAR * view.pixel_ratio
+
+
+def panel_at(model: Model, view: View, theme: Theme, pixel: Vector) -> ShownPanel | None:
+    """The panel that a pixel of the picture of a model shows."""
     if not (view.readouts and view.legend and view.panels.contains(pixel)):
-        return False
-    return any(panel.contains(pixel) for panel in _composed(measure(model, view, theme))[1])
+        return None
+    return next((panel for panel in shown_panels(model, view, theme) if panel.place.contains(pixel)), None)
+
+
+def shown_panels(model: Model, view: View, theme: Theme) -> list[ShownPanel]:
+    """The panels in the picture of a model."""
+    return _composed(measure(model, view, theme))[1]
 
 
 def _draw_structure(sheet: Sheet) -> None:
@@ -80,7 +87,7 @@ def _draw_structure(sheet: Sheet) -> None:
     draw_particle_diagrams(sheet, sides)
 
 
-def _composed(sheet: Sheet) -> tuple[Picture, list[Rectangle]]:
+def _composed(sheet: Sheet) -> tuple[Picture, list[ShownPanel]]:
     """The picture of a model, and where its panels are."""
     model, theme = sheet.model, sheet.theme
     draw_grid(sheet)

@@ -1,24 +1,39 @@
-"""Readouts: panels of names and values, one below the other."""
+"""Readouts: panels of names and values, one below the other, with a button that closes each."""
 
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import replace
+from dataclasses import dataclass, replace
 
 from components.camera import Rectangle
+from components.field import Vector
 from components.view import Readout
-from systems.render.marks import Mark, Panel, Text
+from systems.render.marks import Mark, Panel, Text, cross
 from systems.render.plots import Box, draw_plot
 from systems.render.sheet import Sheet
 from systems.render.theme import faded
 from systems.render.typography import line_height, shortened, text_width, wrapped
 
 _EDGE, _PAD, _GAP = 10.0, 9.0, 16.0  # points: to the edges, inside a panel, between name and value
-_BETWEEN = 6.0  # points between panels
+_BETWEEN, _CLOSE = 6.0, 20.0  # points between panels, and the side of the button that closes one
 _PLOT, _LEAST_PLOT = 150.0, 84.0  # points, height of a plot with its axes, and where there is little room
 
 
-def draw_readouts(sheet: Sheet, room: tuple[float, float]) -> tuple[list[Mark], list[Rectangle]]:
+@dataclass(frozen=True)
+class ShownPanel:
+    """Where a panel is, and its button that closes it, if it has one. readout: None for those that are folded."""
+
+    place: Rectangle
+    readout: Readout | None = None
+    close: Rectangle | None = None
+
+    def action_at(self, pixel: Vector) -> str | None:
+        """The action of a click at a pixel, if it has one."""
+        on_button = self.close is not None and self.close.contains(pixel)
+        return self.readout.closes if on_button and self.readout is not None else None
+
+
+def draw_readouts(sheet: Sheet, room: tuple[float, float]) -> tuple[list[Mark], list[ShownPanel]]:
     """The panels between `room`'s top and bottom, and where they are; none where they are hidden.
 
     Where room is short, plots are lower, and the oldest panels are folded into one with their titles.
@@ -30,18 +45,19 @@ def draw_readouts(sheet: Sheet, room: tuple[float, float]) -> tuple[list[Mark], 
     if not any(readout.is_large for readout in readouts):
         width = min(max((_width(sheet, readout) for readout in readouts), default=0.0), width)
     left = place.left + place.width - _EDGE * u - width
-    marks, places = list[Mark](), list[Rectangle]()
+    marks, shown = list[Mark](), list[ShownPanel]()
     heights = _heights(sheet, readouts, width, bottom - top)
     for index, height in sorted(heights.items()):
-        marks += _panel(sheet, readouts[index], (left, top, width, height))
-        places.append(Rectangle(left, top, width, height))
+        panel = _placed(sheet, readouts[index], Rectangle(left, top, width, height))
+        marks += _panel(sheet, readouts[index], panel)
+        shown.append(panel)
         top += height + _BETWEEN * u
     folded = _folded(sheet, [r for index, r in enumerate(readouts) if index not in heights], width)
     if folded:
         box = left, top, width, _height_of(sheet, folded)
         marks += _titles(sheet, folded, box)
-        places.append(Rectangle(*box))
-    return marks, places
+        shown.append(ShownPanel(Rectangle(*box)))
+    return marks, shown
 
 
 def _heights(sheet: Sheet, readouts: Sequence[Readout], width: float, room: float) -> dict[int, float]:
@@ -51,7 +67,7 @@ def _heights(sheet: Sheet, readouts: Sequence[Readout], width: float, room: floa
     gap, shown = _BETWEEN * sheet.unit, dict[int, float]()
     left = room
     for index in newest:
-        height = _height(sheet, readouts[index], _LEAST_PLOT)
+        height = _height(sheet, readouts[index], width, _LEAST_PLOT)
         others = [r for other, r in enumerate(readouts) if other != index and other not in shown]
         folded = _height_of(sheet, _folded(sheet, others, width)) + gap if others else 0.0
         if height + folded <= left:
@@ -59,7 +75,7 @@ def _heights(sheet: Sheet, readouts: Sequence[Readout], width: float, room: floa
             left -= height + gap
             spare = left - folded
     for index in shown:
-        grown = min(_height(sheet, readouts[index], _PLOT), shown[index] + spare)
+        grown = min(_height(sheet, readouts[index], width, _PLOT), shown[index] + spare)
         spare -= grown - shown[index]
         shown[index] = grown
     return shown
@@ -93,10 +109,23 @@ def _line(sheet: Sheet) -> float:
     return line_height(sheet.font(12.0))
 
 
-def _height(sheet: Sheet, readout: Readout, plot: float) -> float:
+def _height(sheet: Sheet, readout: Readout, width: float, plot: float) -> float:
     """Height in pixels of a panel with all rows; plot: points of the plot, if the readout has one."""
-    height = (len(readout.rows) + 1) * _line(sheet) + 2 * _PAD * sheet.unit
+    height = (len(_lines(sheet, readout, width)) + 1) * _line(sheet) + 2 * _PAD * sheet.unit
     return height + (plot * sheet.unit if readout.plot is not None else 0.0)
+
+
+def _lines(sheet: Sheet, readout: Readout, width: float) -> list[tuple[str, str]]:
+    """The rows of a panel that is so wide; a sentence that is too long for one line goes on below its name."""
+    size, room, lines = sheet.font(12.0), width - 2 * _PAD * sheet.unit, list[tuple[str, str]]()
+    for name, value in readout.rows:
+        taken = text_width(name, size) + _GAP * sheet.unit * bool(name and value)
+        if taken + text_width(value, size, "semibold") <= room or " " not in value:
+            lines.append((name, value))
+            continue
+        lines += [(name, "")] * bool(name)
+        lines += [("", part) for part in wrapped(value, room, size, "semibold")]
+    return lines
 
 
 def _width(sheet: Sheet, readout: Readout) -> float:
@@ -104,28 +133,52 @@ def _width(sheet: Sheet, readout: Readout) -> float:
     u, size = sheet.unit, sheet.font(12.0)
     names = max((text_width(name, size) for name, _ in readout.rows), default=0.0)
     values = max((text_width(value, size, "semibold") for _, value in readout.rows), default=0.0)
-    return max(names + _GAP * u + values, text_width(readout.title, size, "semibold")) + 2 * _PAD * u
+    title = text_width(readout.title, size, "semibold") + (_CLOSE * u if readout.closes else 0.0)
+    return max(names + _GAP * u + values, title) + 2 * _PAD * u
 
 
-def _panel(sheet: Sheet, readout: Readout, box: Box) -> list[Mark]:
+def _placed(sheet: Sheet, readout: Readout, place: Rectangle) -> ShownPanel:
+    """A panel with its button in the corner, as high as the title with what is above it."""
+    if not readout.closes:
+        return ShownPanel(place, readout)
+    side = _CLOSE * sheet.unit
+    middle = place.top + _PAD * sheet.unit + _line(sheet) / 2
+    close = Rectangle(place.right - side - 3.0 * sheet.unit, middle - side / 2, side, side)
+    return ShownPanel(place, readout, close)
+
+
+def _closing(sheet: Sheet, close: Rectangle) -> list[Mark]:
+    """The button that closes a panel, which shows that it is one under the pointer."""
+    u, theme, pointer = sheet.unit, sheet.theme, sheet.view.pointer
+    under = pointer is not None and close.contains(pointer)
+    paper = [Panel(close.left, close.top, close.width, close.height, 4.0 * u, faded(theme.text, 0.12))]
+    return [*(paper if under else []), cross(close, 0.75 * u, theme.muted)]
+
+
+def _panel(sheet: Sheet, readout: Readout, panel: ShownPanel) -> list[Mark]:
     u, theme, size = sheet.unit, sheet.theme, sheet.font(12.0)
-    left, top, width, height = box
+    place, close = panel.place, panel.close
+    left, top, width, height = box = place.left, place.top, place.width, place.height
     sheet.occupancy.block(*box)
     inner, room = left + _PAD * u, width - 2 * _PAD * u
     y = top + _PAD * u + _line(sheet) / 2
-    heading = shortened(readout.title, room, size, "semibold")
+    beside = room if close is None else close.left - 4.0 * u - inner
+    heading = shortened(readout.title, beside, size, "semibold")
     marks: list[Mark] = [
         Panel(*box, 6.0 * u, faded(theme.panel, 0.94), theme.line),
         Text(heading, inner, y, size, theme.text, "semibold"),
+        *([] if close is None else _closing(sheet, close)),
     ]
-    for name, value in readout.rows:
+    for name, value in _lines(sheet, readout, width):
         y += _line(sheet)
         value = shortened(value, room, size, "semibold")
-        taken = text_width(value, size, "semibold") + _GAP * u
-        marks.append(Text(shortened(name, room - taken, size), inner, y, size, theme.muted))
-        marks.append(Text(value, inner + room, y, size, theme.text, "semibold", "right"))
+        taken = text_width(value, size, "semibold") + _GAP * u * bool(value)
+        if name:
+            marks.append(Text(shortened(name, room - taken, size), inner, y, size, theme.muted))
+        if value:
+            marks.append(Text(value, inner + room, y, size, theme.text, "semibold", "right"))
     if readout.plot is not None:
-        above = _height(sheet, replace(readout, plot=None), 0.0) - _PAD * u
+        above = _height(sheet, replace(readout, plot=None), width, 0.0) - _PAD * u
         marks += draw_plot(
             readout.plot, (inner, top + above, room, height - above - _PAD * u), theme, u, sheet.view.pointer
         )

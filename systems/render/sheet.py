@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass, field
 
@@ -38,8 +39,8 @@ class Sheet:
     pulled, pushed: rows of the rods that are coloured by their axial force, since they have no room for more.
     shades: rows of rods and the colours that show a quantity of theirs.
     placed: where labels were in the last picture. legend: names of the colours that occur and mean something.
-    notes: scales to be shown. scales: those of arrows in this picture, to be kept in `placed`. values: how many values
-    there are to show, if there were room for all.
+    notes: scales to be shown. scales: those of arrows in this picture, to be kept in `placed`. values: how many
+    there are to show, by field, if there were room for all.
     """
 
     model: Model
@@ -63,7 +64,7 @@ class Sheet:
     notes: list[str] = field(default_factory=list)
     shades: list[tuple[Rows, Colour]] = field(default_factory=list)
     scales: Placed = field(default_factory=dict)
-    values: int = 0
+    values: Counter[str] = field(default_factory=Counter)
 
     @property
     def viewport(self) -> Viewport:

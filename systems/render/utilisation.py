@@ -11,6 +11,7 @@ from components import written
 from components.model import Model
 from components.rod import has_strength, utilisation
 from systems.render.labels import Label, half_size
+from systems.render.leaders import ANCHORS
 from systems.render.marks import Mark, Strokes, boxes
 from systems.render.sheet import FEW, Sheet
 from systems.render.structure import HALO_OPACITY, beside_rod
@@ -80,20 +81,19 @@ def _label(sheet: Sheet, share: Values) -> None:
         places = [
             place for number, place in enumerate(beside_rod(sheet, index, half)) if number % 4 < 2
         ]  # the nearest
-        middle, along = (sheet.start[index] + sheet.end[index]) / 2, sheet.end[index] - sheet.start[index]
-        anchor = np.stack([middle, along[::-1] * [1.0, -1.0] / max(float(np.hypot(*along)), 1e-9)])
-        of, sheet.values = ("rods", row), sheet.values + 1
-        label = Label(
-            text, places, size, sheet.theme.text, rank, "semibold", backing, "spare", key, of, of, anchor
-        )
-        sheet.labels.append(label)
+        along = sheet.end[index] - sheet.start[index]
+        across = along[::-1] * [1.0, -1.0] / max(float(np.hypot(*along)), 1e-9)
+        of, anchors = ("rods", row), sheet.start[index] + ANCHORS[:, None] * along
+        label = Label(text, places, size, sheet.theme.text, rank, "semibold", backing, "spare", key, of, of)
+        sheet.labels.append(label._replace(anchors=anchors, outward=across))
+        sheet.values["rods.utilisation"] += 1
 
 
 def _said(model: Model, row: int, share: float) -> str:
     """What is said of the first rod at its strength, or of that which is nearest to it."""
     rod = model.rods[row]
     if rod.yielded_at is None:
-        return f"{rod.name} {written.share(share)}: nearest"
+        return f"{rod.name} {written.share(share)}: nearest to its limit"
     return f"{rod.name} {written.share(share)}: first, at {written.time(rod.yielded_at)}"
 
 

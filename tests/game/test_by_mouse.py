@@ -397,6 +397,21 @@ def test_escape_says_what_was_typed_and_not_taken(session: Session) -> None:
     assert session.rods["AB"].stiffness == 8.0
 
 
+def test_what_a_box_does_not_take_is_said(session: Session) -> None:
+    session.select(session.rods["AB"])
+    session.press("return")
+    session.click_box("stiffness")
+    session.type("50 MN")
+    assert session.message == (
+        "“MN” is not taken; the stiffness is a number in kN, such as 2.5 or 1e3, or “automatic”."
+    )
+    session.type("0")
+    assert session.message == ""
+    session.click_box("tension only")
+    session.type("yes")
+    assert session.message == ""
+
+
 # --- files -----------------------------------------------------------------------------------------------
 
 

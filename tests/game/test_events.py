@@ -137,8 +137,11 @@ def test_a_panel_lists_it() -> None:
 def test_what_leaves_the_picture_is_told() -> None:
     session = watched("collision_vi", 0.5)
     assert session.view.status.notice == ""
+    said = set()
     for _ in range(600):
         session.frame(1 / 60)
+        said.add(session.view.status.notice)
+    assert "Particle 2 left the picture: Home shows all." in said
     assert session.view.status.notice == "All that moves has left the picture: Home shows it."
     session.press("home")
     session.frame(1 / 60)

@@ -440,3 +440,12 @@ def test_a_single_support_that_was_moved_is_drawn_to_scale() -> None:
     session = Session(model)
     session.press("k")
     assert session.focus[0].settings.displacement_scale == 1.0
+
+
+def test_it_is_said_while_forces_and_displacements_are_not_final() -> None:
+    session = Session.open("hyperstatic")
+    session.press("k")
+    assert any("still moving" in view.status.hint for _, view in session.stages)
+    while guide_of(session).moving:
+        session.frame(1 / 60)
+    assert not any("still moving" in view.status.hint for _, view in session.stages)

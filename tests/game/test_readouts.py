@@ -34,7 +34,7 @@ def test_displacements_and_reactions_of_a_particle_and_the_worst_of_all() -> Non
     session.select(session.particles["A"])
     session.press("m")
     readouts = shown(session)
-    assert readouts["Displacement x of particle A"]["exact theory"] == "−0.2437792 mm"
+    assert readouts["Displacement x of particle A"]["exact theory"] == "−0.02437792 cm"
     assert readouts["Reaction y of particle A"]["exact theory"] == "20.01479 kN"
     assert readouts["Theory beside the run"]["largest error, linear"] == "0.0013 (u y of B)"
 

@@ -177,7 +177,7 @@ def test_a_click_selects_particle_or_rod_and_never_the_grid(session: Session) ->
 def test_properties_without_a_selection_hold_the_shown_grid(session: Session) -> None:
     session.press("return")
     session.click_box("spacing x")
-    session.type("0.25")
+    session.type("25")
     session.press("return")
     while session.scene != "pause":
         session.press("escape")
@@ -419,3 +419,16 @@ def test_the_page_of_keys_does_not_depend_on_pictures_between_inputs() -> None:
         session.update_view()
         pages.append((session.view.help, session.view.keys))
     assert pages[0] == pages[1]
+
+
+def test_a_key_that_acts_in_pause_only_says_so_while_time_passes() -> None:
+    session = Session.open("hyperstatic")
+    session.press("space")
+    session.press("k")
+    assert session.scene == "simulation"
+    assert session.notice == "Force method: pause first, with Space."
+    session.press("i")
+    assert session.notice == ""
+    session.press("space")
+    session.press("k")
+    assert session.scene == "force method"

@@ -345,3 +345,11 @@ def test_a_recording_replays_what_was_dragged() -> None:
         second.press(key, pixel)
     assert second.particles["B"].force == first.particles["B"].force != (120.0, -160.0)
     assert second.settings.displacement_scale == first.settings.displacement_scale
+
+
+def test_a_new_slider_shows_all_sliders_where_they_were_hidden() -> None:
+    session = opened()
+    session.press("tab")
+    session.select(session.rods["AB"])
+    session.press("ctrl+l")
+    assert "AB: stiffness" in [place.control.title for place in session.view.slider_places]

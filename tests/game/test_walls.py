@@ -54,12 +54,12 @@ def test_a_wall_is_drawn_from_point_to_point_and_undone() -> None:
     session.point(0.9, 0.1)
     session.update_view()
     assert isinstance(session.view.preview, Preview)
-    assert session.view.preview.label == "1.7 m, 0°"
+    assert session.view.preview.label == "170 cm, 0°"
     session.press("w")
     [wall] = walls_of(session)
     assert (wall.name, wall.start, wall.end, wall.restitution) == ("wall 1", (-0.8, 0.1), (0.9, 0.1), None)
     assert session.selected == [wall]
-    assert session.notice == "Wall 1: 1.7 m, 0°"
+    assert session.notice == "Wall 1: 170 cm, 0°"
     session.press("ctrl+z")
     assert walls_of(session) == []
     session.press("ctrl+y")
@@ -105,7 +105,7 @@ def test_what_the_pointer_is_over_is_picked_and_its_end_or_all_of_it_is_dragged(
     assert session.selected == [floor]
     session.drag((1, 0), (1.2, 0.3))
     assert (floor.start, floor.end) == ((-1, 0), (1.2, 0.3))
-    assert session.notice == "Wall floor, end: (1.2, 0.3) m"
+    assert session.notice == "Wall floor, end: (120, 30) cm"
     session.press("ctrl+z")
     session.drag((0.3, 0), (0.4, -0.2))
     assert floor.start == pytest.approx((-0.9, -0.2))
@@ -159,7 +159,7 @@ def test_its_properties_are_boxes() -> None:
     session.click_box("restitution")
     session.type("0.25")
     session.click_box("end x")
-    session.type("1.5")
+    session.type("150")
     session.press("return")
     session.press("escape")
     [floor] = walls_of(session)

@@ -66,10 +66,10 @@ def misplaced(picture: Picture, model: Model) -> Iterator[str]:
         table, row = text.of  # type: ignore[misc]
         box, own = text_box(text, text.size), [part for part in parts if part.owner == text.of]
         line = leader(text, picture)
-        if table == "particles":
+        if table != "rods":
             own = _arrow(text_box(text, text.size) if line is None else (*line[1], *line[1]), text, own)
-            if not _says(text, own[0], model, row):
-                yield f"{text.text} of {model.particles.names[row]} stands at another arrow"
+            if not _says(text, own[0], model, row if table == "particles" else int(model.loads.on[row])):
+                yield f"{text.text} of {model.tables[table].names[row]} stands at another arrow"
         if line is not None:
             yield from _astray(text, line, own, parts)
             continue
@@ -83,9 +83,13 @@ def misplaced(picture: Picture, model: Model) -> Iterator[str]:
 
 
 def leader(text: Text, picture: Picture) -> Points | None:
-    """The ends of the line from a value to what it belongs to, shape (2, 2); None where it stands beside that."""
+    """The ends of the line from a value to what it belongs to, shape (2, 2); None where it stands beside that.
+
+    It comes before the value among the marks, with only the dot at its end and the backing between them.
+    """
     left, top, right, bottom = text_box(text, text.size)
-    for mark in picture.marks:
+    place = next(number for number, mark in enumerate(picture.marks) if mark is text)
+    for mark in picture.marks[max(place - 3, 0) : place]:
         if isinstance(mark, Strokes) and mark.colour == faded(text.colour, LEADER_OPACITY):
             (x, y), end = mark.start[0], mark.end[0]
             off = max(left - x, x - right, top - y, y - bottom)

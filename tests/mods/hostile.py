@@ -215,6 +215,9 @@ HOSTILE: dict[str, Hostile] = {
     ),
     "rows of one": Hostile(panel("Readout('bad', (('speed',),))"), "it must be 2 entries"),
     "a text that ends the program when it is written": Hostile(panel("Readout(5)"), "Readout.title is 5"),
+    "a button for nothing": Hostile(
+        panel("Readout('bad', closes='nothing')"), "closes by 'nothing'; there is no such action"
+    ),
     "a text as several panels": Hostile(panel("'bad'"), "it must be one of Readout"),
     "curves of unequal lengths": Hostile(
         panel("Readout('bad', (), Plot('x', 'y', (('c', np.zeros(2), np.zeros(3)),)))"),

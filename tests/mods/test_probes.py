@@ -43,8 +43,8 @@ def test_quantities_are_read_in_the_units_on_screen() -> None:
     session = Session.open("isostatic")
     session.run(until="rest")
     read = quantity(session.model, "particles.B.displacement.y")
-    assert read.title == "displacement y of particle B (mm)"
-    assert read.read(session) == 1000.0 * session.particles["B"].displacement[1]
+    assert read.title == "displacement y of particle B (cm)"
+    assert read.read(session) == 100.0 * session.particles["B"].displacement[1]
     session.model.delete([session.particles["B"]])
     assert math.isnan(read.read(session))
     session.undo()
@@ -137,7 +137,7 @@ def test_plot_is_a_command_too(tmp_path: Path, capsys: pytest.CaptureFixture[str
     out = tmp_path / "loop.csv"
     words = ["plot", "pendulum", "--of", "particles.bob.velocity.x", "--until", "0.01", "--output", str(out)]
     assert main([*words, "--against", "particles.bob.displacement.x"]) == 0
-    assert out.read_text(encoding="utf-8").startswith("time (s),displacement x of particle bob (mm),")
+    assert out.read_text(encoding="utf-8").startswith("time (s),displacement x of particle bob (cm),")
     still = out.read_bytes()
     assert main([*words, "--set", "environment.acceleration=0,-1.6"]) == 0
     assert out.read_bytes() != still

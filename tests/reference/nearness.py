@@ -35,7 +35,7 @@ def _parts(mark: object, theme: Theme) -> Iterator[Part]:
     owners = [(table, row) for row in rows.tolist()]
     match mark:
         case Strokes() if mark.colour[3] == 255 and mark.colour != theme.ghost:
-            kind = "shaft" if table == "particles" else "line"
+            kind = "line" if table == "rods" else "shaft"
             for owner, *ends in zip(owners, mark.start, mark.end, strict=True):
                 yield Part(owner, kind, np.array(ends), mark.colour)
         case Bars() | Fills():

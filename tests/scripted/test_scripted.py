@@ -86,6 +86,13 @@ def test_a_part_of_a_text_is_expected_too(tmp_path: Path, monkeypatch: pytest.Mo
         session.expect("message < a")
 
 
+def test_an_expected_text_may_have_typed_minus_signs() -> None:
+    session = Session.open("isostatic")
+    session.press("p", tuple(session.view.camera.to_pixels([0.25, -0.5]).tolist()))
+    session.expect("message = Particle 1: (25, -50) cm")
+    session.expect("message ≈ (25, −50) cm")
+
+
 def test_a_message_of_the_force_method_is_expected() -> None:
     session = Session.open("pendulum")
     session.press("k")

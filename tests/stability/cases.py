@@ -83,7 +83,7 @@ def all_finite(session: Session) -> bool:
         np.isfinite(table.column(field.name)).all()
         for table in session.model.tables.values()
         for field in table.fields_in(Role.STATE, Role.DERIVED)
-        if field.dtype is not object and field.name not in BOUNDLESS
+        if field.dtype is not object and not field.nullable and field.name not in BOUNDLESS
     )
 
 

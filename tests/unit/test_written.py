@@ -35,15 +35,20 @@ def test_results(value: float, text: str) -> None:
 
 def test_what_is_rounding_only_is_nothing() -> None:
     assert written.force(3.1e-14, nothing=1e-9) == "0 kN"
-    assert written.displacement(-2e-16, nothing=1e-12) == "0 mm"
+    assert written.displacement(-2e-16, nothing=1e-12) == "0 cm"
     assert written.strain(1.2e-4) == "0.1200 ‰"
-    assert written.displacement(-0.0012346) == "−1.235 mm"
+    assert written.displacement(-0.0012346) == "−0.1235 cm"
 
 
 def test_what_a_person_set_is_as_short_as_it_is() -> None:
-    assert [written.length(x) for x in (0.5, 2.0, 0.1 + 0.2, 1e-9)] == ["0.5 m", "2 m", "0.3 m", "1·10⁻⁹ m"]
+    assert [written.length(x) for x in (0.5, 2.0, 0.1 + 0.2, 1e-9)] == [
+        "50 cm",
+        "200 cm",
+        "30 cm",
+        "1·10⁻⁷ cm",
+    ]
     assert written.vector((120.0, -160.5)) == "(120, −160.5)"
-    assert written.place((0.0, 1e3)) == "(0, 1000) m"
+    assert written.place((0.0, 1e3)) == "(0, 100000) cm"
     assert written.given(100.0) == "100"
     assert written.share(0.875) == "87.5 %"
 
@@ -77,4 +82,4 @@ def test_the_pace_and_rulers() -> None:
     assert written.pace(0.0) == ""
     assert written.pace(1.0) == "real time"
     assert written.pace(20.0) == "1 s shown = 20 s simulated"
-    assert [written.scale_length(x) for x in (0.5, 2.0, 0.005, 1000.0)] == ["0.5 m", "2 m", "5 mm", "1000 m"]
+    assert [written.length(x) for x in (0.005, 1000.0, 1e5)] == ["0.5 cm", "100000 cm", "1·10⁷ cm"]

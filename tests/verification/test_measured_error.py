@@ -212,7 +212,7 @@ def test_the_error_is_in_the_energy_panel_while_nothing_moves() -> None:
     (readout,) = own_readouts(session)
     assert readout.rows[-3] == (
         "displacement error",
-        "1.1e-03 of the largest",
+        "0.0011 of the largest",
     )  # e^−ζωt (ωh)²/24 ωt
     assert [title for title, _ in readout.rows[-2:]] == ["velocity error", "axial force error"]
     session.press("space")

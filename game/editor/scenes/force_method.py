@@ -164,13 +164,14 @@ class ForceMethod(Scene):
         part = f"Part {guide.part} of {PARTS}" if guide else "Not possible"
         if self._work is not None:
             self._head.heading, part = self._work.text, "Working"
-        self._foot.status = Status(time=None, state=part, hint=self.hint(context))
+        hint = f"still moving     {self.hint(context)}" if self._moving() else self.hint(context)
+        self._foot.status = Status(time=None, state=part, hint=hint)
         self._foot.page = self._working()
         head = round(heading_height(self._head.heading, whole.width, ratio))
         wanted = page_height(self._foot.page, whole.width, ratio)
         foot = min(wanted, round(MOST_OF_HEIGHT * whole.height))
         if foot < wanted:
-            self._foot.status = replace(self._foot.status, hint=f"Wheel more rows     {self.hint(context)}")
+            self._foot.status = replace(self._foot.status, hint=f"Wheel more rows     {hint}")
         middle = Viewport(whole.left, whole.top + head, whole.width, max(whole.height - head - foot, 1))
         _place(self._head, Viewport(whole.left, whole.top, whole.width, head), ratio)
         _place(self._foot, Viewport(whole.left, middle.top + middle.height, whole.width, foot), ratio)

@@ -96,10 +96,11 @@ class FormScene(Scene):
     # --- input -------------------------------------------------------------------------------------
 
     def type(self, context: Context, text: str) -> None:
+        refused = typing.write(self.form, text)
         self.form.heading.message = ""
-        typing.write(self.form, text)
         self._reveal_selected(context)
         self.changed(context)
+        self.form.heading.message = refused or self.form.heading.message
 
     def erase(self, context: Context, *, after: bool = False) -> None:
         """Backspace, or Delete."""

@@ -17,7 +17,7 @@ def test_p_makes_a_free_particle_of_1_kg_under_the_pointer(empty: Session) -> No
     assert particle.name == "particle 1"
     assert particle.position == (0.25, -0.5)
     assert (particle.mass, particle.fixed, particle.velocity) == (1.0, (False, False), (0.0, 0.0))
-    assert empty.notice == "Particle 1: (0.25, −0.5) m"
+    assert empty.notice == "Particle 1: (25, −50) cm"
 
 
 @pytest.mark.parametrize(
@@ -66,7 +66,7 @@ def test_l_over_a_particle_then_l_over_another(two: Session) -> None:
     press_at(two, "l", 1.5, 0.0)
     [rod] = two.rods
     assert [end.name for end in rod.ends] == ["particle 1", "particle 2"]
-    assert two.notice == "Rod 1: 1.5 m"
+    assert two.notice == "Rod 1: 150 cm"
     assert two.particles["particle 1"].mass == pytest.approx(6.15 * 1.5 / 2, rel=1e-15)
     assert two.gesture is None
 
@@ -80,9 +80,9 @@ def test_l_then_a_click(two: Session) -> None:
 def test_the_length_is_shown_before_the_rod_is_made(two: Session) -> None:
     press_at(two, "l", 0.0, 0.0)
     two.point(1.0, 1.0)
-    assert preview(two) == Preview("rod", (0.0, 0.0), (1.0, 1.0), "1.41 m")
+    assert preview(two) == Preview("rod", (0.0, 0.0), (1.0, 1.0), "141 cm")
     two.point(1.47, 0.03)  # snaps to the particle
-    assert preview(two) == Preview("rod", (0.0, 0.0), (1.5, 0.0), "1.5 m")
+    assert preview(two) == Preview("rod", (0.0, 0.0), (1.5, 0.0), "150 cm")
 
 
 def test_esc_cancels_the_rod_and_stays_in_pause(two: Session) -> None:

@@ -71,18 +71,18 @@ def test_a_rod_has_the_boxes_that_the_thesis_names(session: Session) -> None:
     assert session.scene == "properties"
     assert scene.form.heading.text == "rod AB"
     shown = {
-        "rest length": "1.41421356",
+        "rest length": "141.421356",
         "tensile strength": "215",
         "compressive strength": "unlimited",
         "stiffness": "164640",
         "damping coefficient": "100",
-        "density": "6.15",
+        "density": "0.0615",
         "force diagram scale": "1",
     }
     assert shown.items() <= session.boxes.items()
     units = {box.title: box.unit for box in scene.form.boxes}
-    assert units["rest length"] == "m"
-    assert units["density"] == "kg/m"
+    assert units["rest length"] == "cm"
+    assert units["density"] == "kg/cm"
     assert units["damping coefficient"] == "kN·s/m"
 
 
@@ -90,10 +90,10 @@ def test_a_particle_has_the_boxes_that_the_thesis_names(session: Session) -> Non
     open_of(session, "B")
     for title in ("displacement", "original position", "applied force", "applied acceleration", "velocity"):
         assert {f"{title} x", f"{title} y"} <= session.boxes.keys()
-    assert session.boxes["original position x"] == "1"
+    assert session.boxes["original position x"] == "100"
     assert session.boxes["applied force y"] == "-160"
     assert session.boxes["constrained x"] == "no"
-    assert session.boxes["radius"] == "0.05"
+    assert session.boxes["radius"] == "5"
     together = {"displacement scale": "100", "coefficient of restitution": "1", "time step": "automatic"}
     assert together.items() <= session.boxes.items()
 
@@ -110,7 +110,7 @@ def test_a_grid_has_its_spacing(session: Session) -> None:
     grid = session.model.grids[0]
     session.select(grid)
     session.press("return")
-    entered(session, "spacing x", "0.25")
+    entered(session, "spacing x", "25")
     session.press("escape")
     assert grid.spacing == (0.25, 0.5)
 
@@ -166,6 +166,41 @@ def test_a_number_takes_what_can_become_a_number(session: Session, typed: str, t
     assert session.boxes["density"] == text
 
 
+@pytest.mark.parametrize(
+    ("element", "title", "typed", "field", "value"),
+    [
+        ("B", "radius", "0.07 m", "radius", 0.07),
+        ("B", "radius", "70mm", "radius", 0.07),
+        ("B", "radius", "7 cm", "radius", 0.07),
+        ("B", "displacement y", "−1e0 mm", "displacement", (0.0, -0.001)),
+        ("B", "original position x", "1,5 m", "position", (1.5, 1.0)),
+        ("AB", "rest length", "1.5 m", "rest_length", 1.5),
+        ("AB", "stiffness", "3 kN", "stiffness", 3.0),
+    ],
+)
+def test_a_length_may_be_typed_with_its_unit(
+    session: Session, element: str, title: str, typed: str, field: str, value: object
+) -> None:
+    scene = open_of(session, element)
+    box = entered(session, title, typed)
+    assert getattr(scene.form.boxes[0].elements[0], field) == value
+    assert box.text[-1].isdigit(), "shown again in the unit of the box"
+
+
+@pytest.mark.parametrize(
+    ("element", "title", "typed", "problem"),
+    [
+        ("B", "radius", "3 kN", "must be in m or cm or mm, not in kN"),
+        ("B", "radius", "-70 mm", "must be greater than 0 cm"),
+    ],
+)
+def test_a_wrong_unit_is_refused_with_the_right_ones(
+    session: Session, element: str, title: str, typed: str, problem: str
+) -> None:
+    open_of(session, element)
+    assert entered(session, title, typed).problem == problem
+
+
 def test_return_accepts_and_deselects_and_the_value_acts_at_once(session: Session) -> None:
     scene = open_of(session, "AB")
     session.click_box("stiffness")
@@ -198,7 +233,7 @@ def test_a_click_into_another_box_or_beside_applies_the_first(session: Session) 
     assert place is not None
     session.press("click", (place.left + 3, place.top + 3))
     assert session.particles["B"].force == (7.0, -160.0)
-    session.type("0.09")
+    session.type("9")
     session.press("click", (place.left + 3, place.top - 60))
     assert session.particles["B"].radius == 0.09
 
@@ -221,7 +256,7 @@ def test_boxes_follow_what_others_change(session: Session) -> None:
     session.press("escape")
     open_of(session, "B")
     mass = session.boxes["mass"]
-    entered(session, "original position x", "1.5")
+    entered(session, "original position x", "150")
     assert session.boxes["mass"] != mass, "half of the mass of longer rods"
     session.press("escape")
     assert open_of(session, "AB") is scene
@@ -273,9 +308,9 @@ def test_what_was_not_typed_keeps_its_bits() -> None:
 @pytest.mark.parametrize(
     ("title", "text", "field", "value"),
     [
-        ("radius", "0.07", "radius", 0.07),
-        ("original position x", "0.33", "position", (0.33, 1.0)),
-        ("displacement y", "-1", "displacement", (0.0, -0.001)),
+        ("radius", "7", "radius", 0.07),
+        ("original position x", "33", "position", (0.33, 1.0)),
+        ("displacement y", "-0.1", "displacement", (0.0, -0.001)),
         ("constrained x", "1", "fixed", (True, False)),
         ("constrained y", "yes", "fixed", (False, True)),
         ("mass", "2.5", "mass", 2.5),
@@ -291,9 +326,9 @@ def test_a_number_is_taken_in_the_unit_shown(
     assert getattr(session.particles["B"], field) == value
 
 
-def test_density_is_per_metre(session: Session) -> None:
+def test_density_is_per_centimetre(session: Session) -> None:
     open_of(session, "AB")
-    entered(session, "density", "7")
+    entered(session, "density", "0.07")
     session.press("escape")
     assert session.rods["AB"].density == 7.0
 
@@ -433,7 +468,7 @@ def test_a_bad_history_is_refused() -> None:
     [
         ("AB", "stiffness", "0", "must be greater than 0 kN"),
         ("AB", "stiffness", "-", "must be a number"),
-        ("AB", "rest length", "-3", "must be greater than 0 m"),
+        ("AB", "rest length", "-3", "must be greater than 0 cm"),
         ("AB", "damping coefficient", "-1", "must be at least 0 kN·s/m"),
         ("AB", "density", "1e999", "must be a finite number"),
         ("AB", "name", "BC", "there is a rod 'BC' already"),
@@ -495,7 +530,7 @@ def test_several_elements_are_edited_together(session: Session) -> None:
 def test_all_boxes_are_one_step_to_undo(session: Session) -> None:
     open_of(session, "AB")
     entered(session, "stiffness", "5")
-    entered(session, "density", "500")
+    entered(session, "density", "5")
     entered(session, "name", "first rod")
     session.press("escape")
     assert session.rods["first rod"].density == 500.0

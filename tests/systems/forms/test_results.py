@@ -34,7 +34,7 @@ def test_a_rod_says_its_force_utilisation_strain_and_length() -> None:
     assert shown["axial force"] == "−198.0 kN"
     assert shown["utilisation"] == "92.1 %"
     assert shown["strain"] == "−1.203 ‰"
-    assert shown["length"] == "1.413 m"
+    assert shown["length"] == "141.3 cm"
 
 
 def test_a_rod_without_strength_has_no_utilisation() -> None:
@@ -50,7 +50,7 @@ def test_a_particle_says_its_displacement_and_its_reactions_only_where_it_is_hel
     session.press("return")
     shown = readings(session)
     assert shown["reaction"] == "y 20.01 kN"
-    assert shown["displacement"].endswith("y 0 mm")
+    assert shown["displacement"].endswith("y 0 cm")
     session.press("escape")
     session.select(session.particles["B"])
     session.press("return")

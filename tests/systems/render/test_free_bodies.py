@@ -117,3 +117,10 @@ def distances(point: np.ndarray, start: np.ndarray, end: np.ndarray) -> np.ndarr
     way = end - start
     share = np.clip(((point - start) * way).sum(axis=1) / (way**2).sum(axis=1), 0.0, 1.0)
     return np.hypot(*(point - start - share[:, None] * way).T)
+
+
+@pytest.mark.parametrize("size", [(640, 480), (1024, 640), (1280, 800)])
+def test_the_scale_is_told_whole_beside_them(size: tuple[int, int]) -> None:
+    texts = picture_of(apart("isostatic", size)).texts
+    assert any(text.split("   ")[0].endswith(" cm") for text in texts)
+    assert not any("…" in text or "-" in text for text in texts), texts

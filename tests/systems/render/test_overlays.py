@@ -2,11 +2,14 @@
 
 from __future__ import annotations
 
+import itertools
+
 import pytest
 
 from components.model import Model
-from components.view import Status
-from systems.render.marks import Rectangles, Text
+from components.view import Status, drawn_positions
+from game import Session
+from systems.render.marks import Panel, Rectangles, Stamps, Text
 from systems.render.picture import compose
 from tests.systems.render.pictures import LIGHT, fill, marks_of, picture_of, triangle, view_of
 
@@ -28,7 +31,7 @@ def test_a_problem_is_told_in_full() -> None:
 def test_displacements_too_small_to_be_seen_are_told(displacement: float, told: bool) -> None:
     model = triangle()
     model.particles["B"].displacement = (displacement, 0.0)
-    said = "displacements up to 0.43 mm, too small to see; their slider enlarges them"
+    said = "displacements up to 0.043 cm, too small to see; their slider enlarges them"
     assert (said in " ".join(picture_of(model, width=900).texts)) == told
     model.settings.displacement_scale = 100.0
     assert said not in " ".join(picture_of(model, width=900).texts)
@@ -79,9 +82,28 @@ def test_scale_bar_is_as_long_as_it_says() -> None:
     view = view_of(model)
     ruler = marks_of(compose(model, view, LIGHT), Rectangles, LIGHT.muted)[-1]
     assert ruler.boxes[0, 2] == round(0.5 * view.camera.scale)
-    assert "0.5 m" in compose(model, view, LIGHT).texts
+    assert "50 cm" in compose(model, view, LIGHT).texts
 
 
 def test_an_empty_model_says_how_to_begin() -> None:
     picture = picture_of(Model(), status=Status(state="paused", hint="P new particle     L rod"))
     assert {"An empty model", "P", "new particle", "L", "rod"} <= set(picture.texts)
+
+
+@pytest.mark.parametrize("size", [(1024, 640), (1280, 800), (1920, 1080)])
+def test_a_long_notice_stands_beside_a_structure_that_fills_the_height(size: tuple[int, int]) -> None:
+    session = Session.open("hyperstatic")
+    session.resize(*size)
+    session.settle()
+    session.press("i")
+    session.update_view()
+    said = "Speeds beside Rayleigh's curve. They appear as soon as a particle that no rod holds is moving."
+    session.view.status = Status(notice=said)
+    marks = compose(session.model, session.view, LIGHT).marks
+    pairs = itertools.pairwise(marks)
+    [box] = [a for a, b in pairs if isinstance(a, Panel) and isinstance(b, Stamps) and b.symbol == "disc"]
+    x, y = session.view.camera.to_pixels(drawn_positions(session.model)).T
+    reach = 8.0
+    covered = (x > box.left - reach) & (x < box.left + box.width + reach)
+    covered &= (y > box.top - reach) & (y < box.top + box.height + reach)
+    assert not covered.any()

@@ -9,12 +9,13 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from components.view import drawn_positions
+from components.view import Readout, drawn_positions
 from game import Session
 from game.scripts.playing import Recorder, play, session_of
 from game.scripts.script import Script
 from systems.render.marks import Panel, Text
-from systems.render.picture import compose
+from systems.render.picture import compose, shown_panels
+from systems.render.readouts import ShownPanel
 from systems.render.theme import load_theme
 from tests.reference.boxes import Box, overlap
 
@@ -67,6 +68,31 @@ def test_every_panel_is_told_and_the_newest_is_whole(size: tuple[int, int]) -> N
     boxes = list(panels.values())
     assert not any(overlap(one, other) for i, one in enumerate(boxes) for other in boxes[:i])
     assert all(bottom <= size[1] for _, _, _, bottom in boxes)
+
+
+@pytest.mark.parametrize("size", SIZES)
+def test_each_panel_is_closed_by_the_button_in_its_corner(size: tuple[int, int]) -> None:
+    session = opened("hyperstatic_yield", size, *KEYS, "x", "ctrl+h")
+    selected = session.selected
+    assert len(session.view.readouts) > 5
+    while session.view.readouts:
+        panel = next(panel for panel in panels_in(session) if panel.close is not None)
+        assert panel.readout is not None
+        assert panel.close is not None
+        middle = panel.close.left + panel.close.width / 2, panel.close.top + panel.close.height / 2
+        titles = {readout.title for readout in session.view.readouts}
+        for button in ("right click", "double click", "click"):
+            assert {readout.title for readout in session.view.readouts} == titles
+            session.press(button, middle)
+            session.update_view()
+        left = {readout.title for readout in session.view.readouts}
+        assert panel.readout.title not in left
+        assert left < titles
+    assert (session.selected, session.view.menu, session.scene) == (selected, None, "pause")
+
+
+def panels_in(session: Session) -> list[ShownPanel]:
+    return shown_panels(session.model, session.view, load_theme("light"))
 
 
 def test_what_is_switched_on_last_is_unfolded() -> None:
@@ -152,3 +178,33 @@ def test_a_notice_stands_beside_the_panels() -> None:
     marks = compose(session.model, session.view, load_theme("light")).marks
     (said,) = [mark for mark in marks if isinstance(mark, Text) and mark.text.startswith("Plot: ")]
     assert said.x < min(left for left, *_ in panels_of(session).values())
+
+
+@pytest.mark.parametrize("size", [(640, 480), (1024, 640), (1280, 800)])
+def test_a_long_sentence_goes_on_in_the_next_line(size: tuple[int, int]) -> None:
+    session = opened("isostatic", size)
+    sentence = "The structure collapses: Rod BC yields and nothing else resists"
+    rows = (("0.4345 s, 86.9 % of the load", "Rod BC yields"), ("0.4345 s, 86.9 % of the load", sentence))
+    session.view.readouts = (Readout("What happened", rows),)
+    marks = compose(session.model, session.view, load_theme("light")).marks
+    [panel] = [a for a, b in itertools.pairwise(marks) if isinstance(b, Text) and b.text == "What happened"]
+    assert isinstance(panel, Panel)
+    within = [m for m in marks if isinstance(m, Text) and panel.left < m.x < panel.left + panel.width]
+    within = [text for text in within if panel.top < text.y < panel.top + panel.height]
+    assert sentence in " ".join(text.text for text in within)
+    assert sum(text.text == rows[0][0] for text in within) == 2  # each with its instant
+    assert len({(text.y, text.anchor) for text in within}) == len(within)
+
+
+@pytest.mark.parametrize("name", ["hanging_net", "overshoot_yield", "isostatic"])
+def test_a_notice_lies_on_no_slider(name: str) -> None:
+    session = opened(name, (640, 480), "i")
+    session.notice = "All comes to rest"
+    session.update_view()
+    marks = compose(session.model, session.view, load_theme("dark")).marks
+    (at,) = [n for n, mark in enumerate(marks) if isinstance(mark, Text) and mark.text == session.notice]
+    panel = [mark for mark in marks[:at] if isinstance(mark, Panel)][-1]
+    box = panel.left, panel.top, panel.left + panel.width, panel.top + panel.height
+    for slider in session.view.slider_places:
+        right, lower = slider.left + slider.width, slider.top + slider.height
+        assert not overlap(box, (slider.left, slider.top, right, lower))

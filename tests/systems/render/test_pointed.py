@@ -49,7 +49,7 @@ def test_a_rod_tells_its_force_strain_utilisation_and_length() -> None:
         "axial force": "−198.0 kN",
         "utilisation": "92.1 %",
         "strain": "−1.203 ‰",
-        "length": "1.413 m",
+        "length": "141.3 cm",
     }
 
 
@@ -57,7 +57,7 @@ def test_a_particle_tells_its_displacement_reactions_speed_and_loads() -> None:
     session = settled("braced_portal")
     rows = told(session, session.particles["A"])
     assert {"displacement", "reaction", "speed"} <= set(rows)
-    assert rows["displacement"] == "x 0   y 0 mm"
+    assert rows["displacement"] == "x 0   y 0 cm"
     rows = told(session, session.particles["D"])
     assert rows["load 1"] == "(50, 0) of (50, 0) kN"  # it has grown to all of it
 
@@ -71,11 +71,11 @@ def test_a_load_that_grows_tells_what_it_is_now() -> None:
     assert told(session, session.particles["D"])["load 1"] == "(25, 0) of (50, 0) kN"
 
 
-def test_walls_tell_their_places_in_metres() -> None:
+def test_walls_tell_their_places_in_centimetres() -> None:
     session = Session.open("pile")
     rows = told(session, session.model.tables["walls"]["floor"])
-    assert rows["start"] == "(0, 0) m"
-    assert rows["end"] == "(1.6, 0) m"
+    assert rows["start"] == "(0, 0) cm"
+    assert rows["end"] == "(160, 0) cm"
 
 
 def test_nothing_is_told_without_a_pointer_or_while_something_is_drawn() -> None:
