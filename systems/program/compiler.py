@@ -382,7 +382,7 @@ def _keep_note(key: str, cost: tuple[float, int] | None) -> None:
             if cost is None:
                 _note_of(key).touch()
             else:
-                _note_of(key).write_text(f"{cost[0]:.3f} s, {cost[1]} bytes", encoding="ascii")
+                _note_of(key).write_text(f"{cost[0]} s, {cost[1]} bytes", encoding="ascii")
 
 
 _NOTES = 50  # of those of former compilations that are read

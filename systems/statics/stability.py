@@ -26,7 +26,8 @@ def is_held(model: Model, *, at_first: bool = False) -> bool:
         force = rods.axial_force
         axial = axial * ~(rods.yielding | (rods.tension_only & (force <= 0.0)))
         across = force / length
-    dyads = along[:, :, None] * along[:, None, :] / (length**2)[:, None, None]
+    directions = along / length[:, None]
+    dyads = directions[:, :, None] * directions[:, None, :]
     block = axial[:, None, None] * dyads + across[:, None, None] * (np.eye(2) - dyads)
     size = 2 * particles.count
     full, of = np.zeros(size * size), 2 * ends[:, :, None] + np.arange(2)  # (m, 2 ends, 2 axes)
