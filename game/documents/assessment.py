@@ -60,7 +60,7 @@ class Assessment:
         begun = self._begun
         revision = self._model.newest(Role.DOCUMENT, *(() if begun else (Role.STATE,)))
         if self._theories is None or self._theories[0] != revision:
-            names = ("particles.displacement", "rods.plastic_strain")
+            names = ("particles.displacement", "rods.plastic_strain", "particles.rotation")
             start = Start(*(begun.column(self._model, name).copy() for name in names)) if begun else None
             self._theories = revision, theories(self._model, start)
         return self._theories[1]

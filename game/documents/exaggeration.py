@@ -103,7 +103,8 @@ def _with_yielding(model: Model, elastic: Displacement) -> Displacement | None:
     from systems.statics.settle import Start, settle  # scipy
 
     supports = np.where(model.particles.fixed, elastic, 0.0)
-    final = settle(model, start=Start(supports, np.zeros(model.rods.count))).final
+    clamps = np.where(model.particles.fixed_rotation, model.particles.rotation, 0.0)
+    final = settle(model, start=Start(supports, np.zeros(model.rods.count), clamps)).final
     return final.displacement if final.balanced else None
 
 

@@ -19,7 +19,7 @@ from components.view import Readout
 from game.documents.assessment import LARGEST
 from game.editor.context import Context
 from systems.base import StopReason
-from systems.statics.counting import FORMULA, counted
+from systems.statics.counting import counted
 
 if TYPE_CHECKING:  # it imports scipy
     from systems.statics.verify import Comparison, Row, Theories
@@ -160,7 +160,7 @@ def _overview(context: Context, theory: Theories, comparison: Comparison) -> Ite
 def _indeterminacy(context: Context) -> Iterator[tuple[str, str]]:
     """The degree with its formula, and what the rank says beside it."""
     count, degrees = counted(context.model), context.document.assessment.indeterminacy
-    yield FORMULA, count.numbers
+    yield count.formula, count.numbers
     if said := count.by_rank(degrees.static, degrees.mechanisms):
         yield "by rank", said
 

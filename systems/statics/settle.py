@@ -7,17 +7,19 @@ moves on to the next stable equilibrium, if there is one.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
 
+from components.diagrams import diagrams
 from components.field import LARGEST, FieldError
 from components.model import Model
 from components.numeric_range import incomputable
+from components.rod import bends
 from components.wording import quoted
 from systems.statics.contacts import Discs, Sinking
-from systems.statics.equations import ROUND_OFF, Array, Flags, Rows, Structure, largest, normalised
+from systems.statics.equations import ROUND_OFF, Array, Flags, Response, Rows, Structure, largest, normalised
 from systems.statics.events import Event, NoEquilibrium
 from systems.statics.explain import describe_motion, describe_way, slack_named
 from systems.statics.external import external_forces, loose_bodies, loose_event
@@ -40,9 +42,10 @@ UNSTRESSED = 1e-9  # of the largest force: smaller forces that hold the present 
 
 @dataclass(frozen=True)
 class StaticState:
-    """The state at one load factor, in m, kN and J: the particles' fields are (n, 2), the rods' (rods,).
+    """The state at one load factor, in m, kN and J: the particles' fields are (n, 2) or (n,), the rods' (rods,).
 
-    reaction: the supports' force in constrained directions, 0 elsewhere. residual: the largest unbalanced
+    reaction: the supports' force in constrained directions, 0 elsewhere; reaction_moment: likewise of clamps. diagrams: by
+    the names of columns, (rods, 2). residual: the largest unbalanced
     force over the largest force so far. dissipated_plastic: since settling began. status: "equilibrium";
     "neutral equilibrium" where nothing resists some motion, so that the place is one of many; "unstable equilibrium";
     "mechanism", "collapse" or "limit reached", with which all values are those of the last equilibrium on the way.
@@ -52,12 +55,15 @@ class StaticState:
 
     load_factor: float
     displacement: Array
+    rotation: Array
     plastic_strain: Array
     axial_force: Array
     strain: Array
     length: Array
     yielding: Flags
     reaction: Array
+    reaction_moment: Array
+    diagrams: Mapping[str, Array]
     residual: float
     elastic_energy: float
     dissipated_plastic: float
@@ -110,15 +116,17 @@ class Settlement:
 
 @dataclass(frozen=True)
 class Start:
-    """The state that settling starts from: displacement (n, 2) in m and plastic strain (rods,)."""
+    """The state that settling starts from: displacement (n, 2) in m, plastic strain (rods,), and rotation (n,)."""
 
     displacement: Array
     plastic_strain: Array
+    rotation: Array
 
     @classmethod
     def present(cls, model: Model) -> Start:
         """A model's present state."""
-        return cls(model.particles.displacement.copy(), model.rods.plastic_strain.copy())
+        particles = model.particles
+        return cls(particles.displacement.copy(), model.rods.plastic_strain.copy(), particles.rotation.copy())
 
 
 def settle(
@@ -183,10 +191,30 @@ def _factors(given: Sequence[float] | float) -> list[float]:
     return found
 
 
+def diagrams_of(
+    model: Model, structure: Structure, response: Response, displacement: Array
+) -> Mapping[str, Array]:
+    """The diagrams of a model's rods in this state, (rods, 2) by the names of columns."""
+    rods = slice(model.rods.count)  # what follows them are contacts
+    return diagrams(
+        model.rods,
+        response.axis[rods],
+        response.length[rods],
+        structure.chords(displacement)[rods],
+        structure.rotation(displacement)[structure.ends[rods]],
+        (response.axial_force[rods], structure.end_moments(response)[rods]),
+        share=response.share,
+        first_order=structure.linear,
+    )
+
+
 def apply(model: Model, state: StaticState) -> None:
     """Put a model into a static state: its displacements and plastic strains, without velocity."""
     model.writable("particles.displacement")[...] = state.displacement
     model.writable("particles.velocity")[...] = 0.0
+    if bends(model):
+        model.writable("particles.rotation")[...] = state.rotation
+        model.writable("particles.angular_velocity")[...] = 0.0
     model.writable("rods.plastic_strain")[...] = state.plastic_strain
 
 
@@ -200,10 +228,16 @@ class _Settling:
         self.events = [Event("note", 0.0, note) for note in self.external.notes]
         self.looked_for_bodies = self.soft = False
         at_rest = Path(self.structure, self._nothing, self._nothing)
-        self.point = at_rest.start(start.displacement, start.plastic_strain)
-        self.largest = largest(self.point.response.axial_force)
+        self.point = at_rest.start(
+            self.structure.field(start.displacement, start.rotation), start.plastic_strain
+        )
+        self.largest = self.structure.largest_force(self.point.response)
         self.load = self._holding()
-        self.factor = self._held_factor()
+        self.factor = self.share = self._held_factor()
+        if self.share:
+            self.load = self.load - self.share * self._carried()
+            at_present = Path(self.structure, self._nothing, self._nothing, (self.share, self.share))
+            self.point = at_present.start(self.point.displacement, start.plastic_strain)
         self.slack = at_rest.branches(self.point.response).slack
 
     @property
@@ -213,12 +247,17 @@ class _Settling:
     def _holding(self) -> Array:
         """The forces in free directions that hold the present state."""
         held = np.where(self.structure.unknown, self.structure.internal(self.point.response), 0.0)
-        greatest = max(largest(self.external.at(1.0)), self.largest)
-        return held if largest(held) > UNSTRESSED * greatest else self._nothing
+        of = self.structure.largest
+        greatest = max(of(self.external.at(1.0)), self.largest)
+        return held if of(held) > UNSTRESSED * greatest else self._nothing
+
+    def _carried(self) -> Array:
+        """What whole distributed forces would add, in free directions, to the particles' forces in the present state."""
+        return np.where(self.structure.unknown, self.structure.carried(self.point.response), 0.0)
 
     def _held_factor(self) -> float:
         """The load factor of the forces that hold the present state; 0 if they are no scaled load."""
-        scaled = np.where(self.structure.unknown, self.external.scaled, 0.0)
+        scaled = np.where(self.structure.unknown, self.external.scaled, 0.0) + self._carried()
         size = float((scaled * scaled).sum())
         factor = float((self.load * scaled).sum()) / size if size > 0.0 else 0.0
         return factor if largest(self.load - factor * scaled) <= HELD * largest(self.load) else 0.0
@@ -239,29 +278,31 @@ class _Settling:
         try:
             self._check_bodies(target, factor)
             if self.load.any() and not self.structure.gather(self.point.displacement).any():
-                self._change(self._nothing, self.factor)
-            self._change(target, factor)
+                self._change(self._nothing, self.factor, 0.0)
+            self._change(target, factor, factor)
             status = self._stability(factor)
             self._check_balance(factor)
         except NoEquilibrium as end:
             status, message = end.status, str(end)
         return self._state(status, message)
 
-    def _change(self, target: Array, factor: float) -> None:
+    def _change(self, target: Array, factor: float, share: float) -> None:
+        """Exchange the load for a target, and for so much of the distributed forces, which has this load factor."""
         change = target - self.load
-        if largest(change) <= UNCHANGED * largest(target):
-            path = Path(self.structure, target, self._nothing)
+        exchanged = change + (share - self.share) * self._carried()
+        if largest(exchanged) <= UNCHANGED * largest(target):
+            path = Path(self.structure, target, self._nothing, (share, share))
         else:
-            path = Path(self.structure, self.load, change)
-        total = float(np.hypot(*self.external.scaled.T).sum())
+            path = Path(self.structure, self.load, change, (self.share, share))
+        total = float(np.hypot(*self.external.scaled[:, :2].T).sum())
         start, way = replace(self.point, t=0.0), (self.factor, factor)
         loading = Loading(self.model, path, way, total, not self.load.any(), self.events, start, self.slack)
         try:
             self.point = loading.run()
-            self.load, self.factor = target, factor
+            self.load, self.factor, self.share = target, factor, share
         except NoEquilibrium:
-            self.point = loading.point
-            self.load, self.factor = path.load(loading.point.t), loading.factor(loading.point.t)
+            self.point, t = loading.point, loading.point.t
+            self.load, self.factor, self.share = path.load(t), loading.factor(t), path.share(t)
             raise
         finally:
             self.slack = loading.slack
@@ -309,9 +350,10 @@ class _Settling:
     def _residual(self) -> float:
         """The largest unbalanced force over the largest force so far."""
         response = self.point.response
-        self.largest = max(self.largest, largest(self.load), largest(response.axial_force))
-        unbalanced = np.where(self.structure.fixed, 0.0, self.structure.internal(response) - self.load)
-        return largest(unbalanced) / self.largest if self.largest > 0.0 else 0.0
+        structure = self.structure
+        self.largest = max(self.largest, structure.largest(self.load), structure.largest_force(response))
+        unbalanced = np.where(structure.fixed, 0.0, structure.internal(response) - self.load)
+        return structure.largest(unbalanced) / self.largest if self.largest > 0.0 else 0.0
 
     def _check_bodies(self, target: Array, factor: float) -> None:
         """Report bodies that nothing holds along an axis. Raises NoEquilibrium if one is pulled along it."""
@@ -330,18 +372,26 @@ class _Settling:
         count = self.model.particles.count  # what follows them are obstacles
         unbalanced = structure.internal(response) - self.load
         told = [message] if message else [e.message for e in self.events if e.kind in TOLD]
-        elastic = (response.axial_force**2 * structure.rest_length / structure.stiffness)[rods]
+        elastic = 500.0 * float(
+            (response.axial_force**2 * structure.rest_length / structure.stiffness)[rods].sum()
+        )
+        reaction = np.where(structure.fixed, unbalanced, 0.0)[:count]
+        if structure.bending is not None and response.bent is not None:
+            elastic += 1000.0 * float(structure.bending.energy(response.bent.slopes).sum())
         state = StaticState(
             load_factor=self.factor,
-            displacement=self.point.displacement[:count],
+            displacement=self.point.displacement[:count, :2],
+            rotation=structure.rotation(self.point.displacement)[:count],
             plastic_strain=self.point.plastic_strain[rods],
             axial_force=response.axial_force[rods],
             strain=response.strain[rods],
             length=response.length[rods],
             yielding=structure.at_limit(response)[rods],
-            reaction=np.where(structure.fixed, unbalanced, 0.0)[:count],
+            reaction=reaction[:, :2],
+            reaction_moment=structure.rotation(reaction),
+            diagrams=diagrams_of(self.model, structure, response, self.point.displacement),
             residual=self._residual(),
-            elastic_energy=500.0 * float(elastic.sum()),
+            elastic_energy=elastic,
             dissipated_plastic=self.point.dissipated,
             status=status,
             message=" ".join(told),
@@ -360,18 +410,18 @@ class _SettlingWithDiscs(_Settling):
         super().__init__(model, "exact", start)
         self.discs = discs
         self.structure = self.bare = discs.beside(self.structure)
-        self.point = replace(self.point, displacement=self._all(start.displacement))
-        self.load, self.factor, self.outcome = self._nothing, 0.0, ""
+        self.point = replace(self.point, displacement=self._all(self.point.displacement))
+        self.load, self.factor, self.share, self.outcome = self._nothing, 0.0, 0.0, ""
 
     def _all(self, field: Array) -> Array:
-        """A field over the particles (n, 2) as one over particles and obstacles."""
-        return np.concatenate([field, np.zeros((len(self.discs.radius) - len(field), 2))])
+        """A field over the particles (n, …) as one over particles and obstacles."""
+        return np.concatenate([field, np.zeros((len(self.discs.radius) - len(field), field.shape[1]))])
 
     def _particles(self, field: Array) -> Array:
         """The particles' part of a field over particles and obstacles."""
         return field[: self.model.particles.count]
 
-    def _change(self, target: Array, factor: float) -> None:
+    def _change(self, target: Array, factor: float, share: float) -> None:
         alone = int(self.discs.is_alone.sum())
         if alone > MOST_DISCS:
             raise NoEquilibrium(
@@ -380,7 +430,7 @@ class _SettlingWithDiscs(_Settling):
             )
         self._check_apart()
         target = self._all(target)
-        sinking = Sinking(self.bare, self.discs, target, self.point)
+        sinking = Sinking(self.bare, self.discs, target, self.point, share)
         outcome = sinking.run()
         if outcome == "gave up":
             message = "The discs found no rest within the steps that settling takes. Run the model until rest."
@@ -393,7 +443,7 @@ class _SettlingWithDiscs(_Settling):
         if self.structure is self.bare:
             self._note_mechanism(sinking.point)
         self.structure, self.point = sinking.path.structure, sinking.point
-        self.load, self.factor = target, factor
+        self.load, self.factor, self.share = target, factor, share
         self.outcome = outcome
 
     def _check_apart(self) -> None:

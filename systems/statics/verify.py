@@ -8,6 +8,7 @@ from functools import cached_property
 
 import numpy as np
 
+from components.diagrams import NAMES
 from components.model import Model
 from components.suggestions import missing
 from systems.statics.equations import ROUND_OFF, Array, Flags, largest
@@ -67,7 +68,14 @@ def theories(model: Model, start: Start | None = None) -> Theories:
 def observed(model: Model) -> Answer:
     """The present state of a model, as a simulation left it."""
     particles, rods = model.particles, model.rods
-    return Answer(particles.displacement.copy(), rods.axial_force.copy(), particles.reaction.copy())
+    return Answer(
+        displacement=particles.displacement.copy(),
+        axial_force=rods.axial_force.copy(),
+        reaction=particles.reaction.copy(),
+        rotation=particles.rotation.copy(),
+        reaction_moment=particles.reaction_moment.copy(),
+        diagrams={name: rods.column(name).copy() for name in NAMES},
+    )
 
 
 @dataclass(frozen=True)

@@ -175,7 +175,11 @@ def _static_state(simulation: Simulation, found: StaticState) -> State:
         "particles.displacement": found.displacement,
         "particles.velocity": np.zeros_like(found.displacement),
         "particles.reaction": found.reaction,
+        "particles.rotation": found.rotation,
+        "particles.angular_velocity": np.zeros_like(found.rotation),
+        "particles.reaction_moment": found.reaction_moment,
         **{f"rods.{name}": getattr(found, name) for name in of_rods},
+        **{f"rods.{name}": values for name, values in found.diagrams.items()},
     }
     return state(simulation.model, energy, found.load_factor, found.residual, columns)
 

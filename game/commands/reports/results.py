@@ -33,7 +33,7 @@ _OWN: Mapping[str, tuple[Field[Any], ...]] = {
 # Further ones of models that bend, or bear distributed forces.
 _OF_BENDING: Mapping[str, tuple[Field[Any], ...]] = {
     "particles": _facts(Particle, "rotation", "angular_velocity", "reaction_moment", "inertia"),
-    "rods": _facts(Rod, "end_axial_force", "shear", "bending_moment", "end_rotation"),
+    "rods": _facts(Rod, "end_axial_force", "shear", "bending_moment", "end_rotation", "largest_moment"),
 }
 _KINDS: Mapping[str, type[Handle]] = {"particles": Particle, "rods": Rod}
 _IN_TABLES = {Particle.displacement.name: ("mm", 1000.0)}  # else units as in files
