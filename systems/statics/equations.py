@@ -18,6 +18,7 @@ from numpy.typing import NDArray
 
 from components.model import Model
 from components.rod import bends
+from components.table import flags
 from systems.islands import lowest_joined
 from systems.statics.bending import Bending, Bent
 
@@ -204,8 +205,11 @@ class Structure:
         return int(self.unknown.shape[1])
 
     def field(self, displacement: Array, rotation: Array) -> Array:
-        """Displacements (n, 2) and rotations (n,) as one field."""
-        return displacement if self.bending is None else np.column_stack([displacement, rotation])
+        """Displacements (n, 2) and rotations (n,) as one field; particles without rigid rod ends have no rotation."""
+        if self.bending is None:
+            return displacement
+        rigid = flags(self.ends[self.bending.rigid], len(rotation))
+        return np.column_stack([displacement, np.where(rigid, rotation, 0.0)])
 
     def rotation(self, field: Array) -> Array:
         """The rotations (or moments) in a field (n,); zeros where nothing bends."""
