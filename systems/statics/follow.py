@@ -21,6 +21,7 @@ LARGEST_MOVE = 0.1  # of a rod's length, in one increment; larger: fewer increme
 MISS = 0.2  # share of an increment by which it may miss where the tangent pointed
 TURN = 0.5  # share by which the tangent may change over an increment
 NEWTON_ITERATIONS = 25
+POLISHING = 4
 PATIENCE = 6  # iterations after which a step that does not lessen the residual is shortened
 SMALLEST_SHARE = 1 / 8
 CONVERGED = 1e-11  # of the largest force: a smaller residual that falls no more is round-off
@@ -452,6 +453,23 @@ class Path:
             if not structure.move(change, start.response) <= 2.0 * LARGEST_MOVE:
                 return None
         return None
+
+    def polished(self, point: Point) -> Point:
+        """A point after a few more steps of Newton's method at its t, where members bend.
+
+        Round-off of axial forces, at which `correct` ends, is coarse beside what shears and moments can be.
+        """
+        structure, before = self.structure, math.inf
+        for _ in range(POLISHING if structure.bending is not None else 0):
+            residual = structure.gather(self.load(point.t) - structure.internal(point.response))
+            moved = self._newton_step(point.response, residual, None)
+            if moved is None or not self.size(moved[0]) <= HALF * before:
+                break
+            found = self.after(point, point.displacement + structure.spread(moved[0]), point.t)
+            if not np.array_equal(found.response.soft, point.response.soft):
+                break
+            point, before = found, self.size(moved[0])
+        return point
 
     def _newton_step(
         self, response: Response, residual: Array, normal: Array | None

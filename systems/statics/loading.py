@@ -50,7 +50,7 @@ class Loading:
         increment = np.inf
         for _ in range(MOST_INCREMENTS):
             if self.point.t >= 1.0:
-                return self.point
+                return self.path.polished(self.point)
             self._note_cables(tangent)
             tangent, increment = self._increment(tangent, increment)
             if largest(self.point.displacement[:, :2]) > RUNAWAY * self.path.structure.extent:

@@ -142,8 +142,8 @@ def test_a_simply_supported_beam_with_a_moment_in_the_span() -> None:
 
 
 def test_a_portal_clamped_at_its_feet() -> None:
-    """Kleinlogel's formulas with k = I_b h/(I_c l) = 1: a horizontal force P at the top gives ±Ph (3k + 1)/(2 (6k + 1)) at the
-    feet and ±Ph 3k/(2 (6k + 1)) at the corners; axes are stiff."""
+    """Kleinlogel's formulas with k = I_b h/(I_c l) = 1, for stiff axes: a horizontal force P at the top gives
+    ±Ph (3k + 1)/(2 (6k + 1)) at the feet and ±Ph 3k/(2 (6k + 1)) at the corners."""
     side, force = 4.0, 30.0
     feet = [held("A", 0.0, fixed_rotation=True), held("D", side, fixed_rotation=True)]
     top = [free("B", 0.0, side, force=[force, 0.0]), free("C", side, side)]
