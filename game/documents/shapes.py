@@ -86,7 +86,7 @@ def mode_shapes(model: Model, most: int | None = None) -> list[Shape]:
     About the present state, if that is an equilibrium under load, whose forces stiffen or soften the structure;
     else of the unloaded structure, less its mechanisms.
     """
-    from systems.statics.settle import Start
+    from systems.statics.state import Start
     from systems.statics.theory import indeterminacy
     from systems.statics.vibration import FULL, rests_under_load, vibrations
 

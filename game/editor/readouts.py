@@ -5,6 +5,7 @@ from __future__ import annotations
 import re
 from collections.abc import Iterator, Sequence
 from dataclasses import replace
+from operator import itemgetter
 from textwrap import wrap
 from typing import TYPE_CHECKING
 
@@ -31,7 +32,15 @@ MOST_EVENTS = 10  # of a run, that are listed
 NOTHING = 1e-12  # of the largest exact value of its kind: round-off, shown as 0
 
 _BEFORE_SIGNS = re.compile("([+−=]) ")  # where a sum may be broken
-_SHOWN = {"axial_force": ("N", "kN", 1.0), "reaction": ("R", "kN", 1.0), "displacement": ("u", *CM)}
+_SHOWN = {
+    "axial_force": ("N", "kN", 1.0),
+    "reaction": ("R", "kN", 1.0),
+    "displacement": ("u", *CM),
+    "rotation": ("θ", "rad", 1.0),
+    "reaction_moment": ("M", "kN·m", 1.0),
+    "shear": ("V", "kN", 1.0),
+    "bending_moment": ("M", "kN·m", 1.0),
+}
 _WAYS = {"simulation": "run", "linear": "linear theory", "exact": "exact theory"}
 
 
@@ -185,11 +194,9 @@ def _symbol(row: Row) -> str:
 
 def _of_element(handle: Handle, comparison: Comparison) -> Iterator[Readout]:
     """Readouts of all quantities of an element that theory computes."""
-    if isinstance(handle, Rod):
-        yield _beside(comparison, "axial_force", (handle.row,))
-    elif isinstance(handle, Particle):
-        for axis, fixed in enumerate(handle.fixed):
-            yield _beside(comparison, "reaction" if fixed else "displacement", (handle.row, axis))
+    if isinstance(handle, Rod | Particle):
+        for quantity, place in sorted(comparison.of(handle.table, handle.row), key=itemgetter(1)):
+            yield _beside(comparison, quantity, place)
 
 
 def _beside(comparison: Comparison, quantity: str, place: tuple[int, ...]) -> Readout:

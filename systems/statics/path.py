@@ -13,7 +13,8 @@ from components.suggestions import missing
 from systems.statics.equations import Array, Structure
 from systems.statics.external import External, external_forces
 from systems.statics.follow import Path, Point, Step, Tangent
-from systems.statics.settle import StaticState, settle
+from systems.statics.settle import settle
+from systems.statics.state import StaticState
 
 DETAIL = 0.02  # of a rod's length between points; smaller: a smoother curve
 FIRST = 1e-3  # of the same, for the first increment

@@ -7,27 +7,25 @@ moves on to the next stable equilibrium, if there is one.
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
 
-from components.diagrams import diagrams
 from components.field import LARGEST, FieldError
 from components.model import Model
 from components.numeric_range import incomputable
-from components.rod import bends
 from components.wording import quoted
 from systems.statics.contacts import Discs, Sinking
-from systems.statics.equations import ROUND_OFF, Array, Flags, Response, Rows, Structure, largest, normalised
+from systems.statics.equations import ROUND_OFF, Array, Structure, largest, normalised
 from systems.statics.events import Event, NoEquilibrium
 from systems.statics.explain import describe_motion, describe_way, slack_named
 from systems.statics.external import external_forces, loose_bodies, loose_event
 from systems.statics.factor import SOFT, soft_modes, softest
 from systems.statics.follow import Path, Point
 from systems.statics.loading import Loading, first_order_mechanism
+from systems.statics.state import NEUTRAL, STABLE, UNSTABLE, Start, StaticState, state_of
 
-STABLE, NEUTRAL, UNSTABLE = EQUILIBRIA = ("equilibrium", "neutral equilibrium", "unstable equilibrium")
 MOST_TOLD = 3  # events in an account besides the message
 TOLD = ("free body", "mechanism", "snap-through", "bifurcation", "note")  # kinds of events that messages repeat
 NEARLY_SOFT = 1e-9  # of the rods' stiffness: a note about a motion that is resisted less
@@ -38,45 +36,6 @@ MOST_DISCS = 250  # without rods; more would take minutes
 IN_ONE_PLACE = 0.75  # of the sum of their radii: forces hardly part discs that overlap by more
 HELD = 1e-3  # of the forces that hold a state: a smaller difference from a scaled load counts as none
 UNSTRESSED = 1e-9  # of the largest force: smaller forces that hold the present state count as none
-
-
-@dataclass(frozen=True)
-class StaticState:
-    """The state at one load factor, in m, kN and J: the particles' fields are (n, 2) or (n,), the rods' (rods,).
-
-    reaction: the supports' force in constrained directions, 0 elsewhere; reaction_moment: likewise of clamps. diagrams: by
-    the names of columns, (rods, 2). residual: the largest unbalanced
-    force over the largest force so far. dissipated_plastic: since settling began. status: "equilibrium";
-    "neutral equilibrium" where nothing resists some motion, so that the place is one of many; "unstable equilibrium";
-    "mechanism", "collapse" or "limit reached", with which all values are those of the last equilibrium on the way.
-    events: those on the way from the state before. contacts: rows of the discs that press each other, (k, 2), with
-    contact_force (k,).
-    """
-
-    load_factor: float
-    displacement: Array
-    rotation: Array
-    plastic_strain: Array
-    axial_force: Array
-    strain: Array
-    length: Array
-    yielding: Flags
-    reaction: Array
-    reaction_moment: Array
-    diagrams: Mapping[str, Array]
-    residual: float
-    elastic_energy: float
-    dissipated_plastic: float
-    status: str
-    message: str
-    events: tuple[Event, ...]
-    contacts: Rows
-    contact_force: Array
-
-    @property
-    def balanced(self) -> bool:
-        """True if all forces are in balance, whether or not the state is stable."""
-        return self.status in EQUILIBRIA
 
 
 @dataclass(frozen=True)
@@ -112,21 +71,6 @@ class Settlement:
     def events(self) -> tuple[Event, ...]:
         """The events of all states, in order."""
         return tuple(event for state in self.states for event in state.events)
-
-
-@dataclass(frozen=True)
-class Start:
-    """The state that settling starts from: displacement (n, 2) in m, plastic strain (rods,), and rotation (n,)."""
-
-    displacement: Array
-    plastic_strain: Array
-    rotation: Array
-
-    @classmethod
-    def present(cls, model: Model) -> Start:
-        """A model's present state."""
-        particles = model.particles
-        return cls(particles.displacement.copy(), model.rods.plastic_strain.copy(), particles.rotation.copy())
 
 
 def settle(
@@ -189,33 +133,6 @@ def _factors(given: Sequence[float] | float) -> list[float]:
         )
     found: list[float] = factors.tolist()
     return found
-
-
-def diagrams_of(
-    model: Model, structure: Structure, response: Response, displacement: Array
-) -> Mapping[str, Array]:
-    """The diagrams of a model's rods in this state, (rods, 2) by the names of columns."""
-    rods = slice(model.rods.count)  # what follows them are contacts
-    return diagrams(
-        model.rods,
-        response.axis[rods],
-        response.length[rods],
-        structure.chords(displacement)[rods],
-        structure.rotation(displacement)[structure.ends[rods]],
-        (response.axial_force[rods], structure.end_moments(response)[rods]),
-        share=response.share,
-        first_order=structure.linear,
-    )
-
-
-def apply(model: Model, state: StaticState) -> None:
-    """Put a model into a static state: its displacements and plastic strains, without velocity."""
-    model.writable("particles.displacement")[...] = state.displacement
-    model.writable("particles.velocity")[...] = 0.0
-    if bends(model):
-        model.writable("particles.rotation")[...] = state.rotation
-        model.writable("particles.angular_velocity")[...] = 0.0
-    model.writable("rods.plastic_strain")[...] = state.plastic_strain
 
 
 class _Settling:
@@ -366,38 +283,19 @@ class _Settling:
         self.looked_for_bodies = True
 
     def _state(self, status: str, message: str) -> StaticState:
-        structure, response = self.structure, self.point.response
-        rods = slice(self.model.rods.count)  # what follows them are contacts
-        pressing = rods.stop + np.flatnonzero(response.axial_force[rods.stop :] < 0.0)
-        count = self.model.particles.count  # what follows them are obstacles
-        unbalanced = structure.internal(response) - self.load
         told = [message] if message else [e.message for e in self.events if e.kind in TOLD]
-        elastic = 500.0 * float(
-            (response.axial_force**2 * structure.rest_length / structure.stiffness)[rods].sum()
-        )
-        reaction = np.where(structure.fixed, unbalanced, 0.0)[:count]
-        if structure.bending is not None and response.bent is not None:
-            elastic += 1000.0 * float(structure.bending.energy(response.bent.slopes).sum())
-        state = StaticState(
+        state = state_of(
+            self.model,
+            self.structure,
+            self.point.response,
+            self.point.displacement,
+            self.load,
             load_factor=self.factor,
-            displacement=self.point.displacement[:count, :2],
-            rotation=structure.rotation(self.point.displacement)[:count],
-            plastic_strain=self.point.plastic_strain[rods],
-            axial_force=response.axial_force[rods],
-            strain=response.strain[rods],
-            length=response.length[rods],
-            yielding=structure.at_limit(response)[rods],
-            reaction=reaction[:, :2],
-            reaction_moment=structure.rotation(reaction),
-            diagrams=diagrams_of(self.model, structure, response, self.point.displacement),
-            residual=self._residual(),
-            elastic_energy=elastic,
             dissipated_plastic=self.point.dissipated,
+            residual=self._residual(),
             status=status,
             message=" ".join(told),
             events=tuple(self.events),
-            contacts=structure.ends[pressing],
-            contact_force=-response.axial_force[pressing],
         )
         self.events.clear()
         return state

@@ -3,7 +3,6 @@ influence lines. Lengths in m, forces in kN."""
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -14,7 +13,7 @@ from systems.statics.events import NoEquilibrium
 from systems.statics.explain import cables_named, describe_motion
 from systems.statics.external import external_forces, loose_bodies, loose_event
 from systems.statics.factor import SOFT, pseudo_random, regular, soft_count, soft_modes
-from systems.statics.settle import Start, diagrams_of
+from systems.statics.state import STABLE, Start, StaticState, state_of
 
 REFINEMENTS = 4  # of a linear solution
 FULL = 600  # unknowns up to which singular values are computed
@@ -24,22 +23,7 @@ MOST_MODES = 20  # mechanisms or states of self-stress of larger structures
 # --- linear theory -----------------------------------------------------------------------------------
 
 
-@dataclass(frozen=True)
-class Answer:
-    """displacement (n, 2) in m, axial_force (rods,) in kN and reaction (n, 2) in kN, 0 in free directions.
-
-    rotation (n,) in rad and reaction_moment (n,) in kN·m are 0 where nothing bends. diagrams: (rods, 2), by names.
-    """
-
-    displacement: Array
-    axial_force: Array
-    reaction: Array
-    rotation: Array
-    reaction_moment: Array
-    diagrams: Mapping[str, Array]
-
-
-def linear(model: Model, start: Start | None = None) -> Answer:
+def linear(model: Model, start: Start | None = None) -> StaticState:
     """The direct stiffness method: K u = f about the original positions, all rods elastic.
 
     start: a state (None: the present one) of which plastic strain acts as initial forces, like lack of fit, and
@@ -55,14 +39,21 @@ def linear(model: Model, start: Start | None = None) -> Answer:
     initial = structure.respond(supports, start.plastic_strain, 1.0)
     moved = supports + _deflection(model, structure, load - _internal(structure, initial))
     final = structure.respond(moved, start.plastic_strain, 1.0)
-    reaction = np.where(structure.fixed, _internal(structure, final) - load, 0.0)
-    return Answer(
-        displacement=moved[:, :2],
-        axial_force=final.elastic_force,
-        reaction=reaction[:, :2],
-        rotation=structure.rotation(moved),
-        reaction_moment=structure.rotation(reaction),
-        diagrams=diagrams_of(model, structure, final, moved),
+    elastic = replace(final, axial_force=final.elastic_force, plastic_strain=start.plastic_strain)
+    unbalanced = np.where(structure.fixed, 0.0, structure.internal(elastic) - load)
+    forces = max(structure.largest(load), structure.largest_force(elastic))
+    return state_of(
+        model,
+        structure,
+        elastic,
+        moved,
+        load,
+        load_factor=1.0,
+        dissipated_plastic=0.0,
+        residual=structure.largest(unbalanced) / forces if forces > 0.0 else 0.0,
+        status=STABLE,
+        message="",
+        events=(),
     )
 
 

@@ -13,7 +13,7 @@ from components.model import Model
 from systems.statics.equations import ROUND_OFF, Array, Response, Structure, largest, normalised
 from systems.statics.external import external_forces
 from systems.statics.factor import Factor, pseudo_random
-from systems.statics.settle import Start, StaticState
+from systems.statics.state import Start, StaticState
 
 FULL = 600  # unknowns up to which all modes are computed
 LOWEST = 10  # modes of larger structures, unless more are asked for

@@ -12,8 +12,8 @@ from scipy.optimize import brentq
 
 from components.model import Model
 from game.documents.models import parse
-from game.session import Session
-from systems.statics.settle import StaticState, apply, settle
+from systems.statics.settle import settle
+from systems.statics.state import StaticState, apply
 from tests.reference import frames
 from tests.reference.models import model
 from tests.verification.test_frame_theory import random_frame
@@ -70,7 +70,7 @@ def test_settled_is_where_the_energy_is_least(number: int) -> None:
         {"name": "C", "position": [4.0, 3.5], "moment": float(lot.normal(0.0, 50.0))},
         {"name": "D", "position": [4.0, 0.0], **clamp, "displacement": lot.normal(0.0, 0.02, 2).tolist()},
     ]
-    rods = [
+    rods: list[dict[str, Any]] = [
         {"name": "AB", "between": ["A", "B"], "temperature_gradient": 60.0, "temperature_change": 40.0},
         {"name": "BC", "between": ["B", "C"], "hinged": [number % 2 == 1, False]},
         {"name": "CD", "between": ["C", "D"]},

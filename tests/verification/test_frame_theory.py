@@ -11,7 +11,8 @@ from hypothesis import strategies as st
 from components.model import Model
 from game.documents.models import parse
 from systems.statics.counting import counted
-from systems.statics.theory import Answer, indeterminacy, linear
+from systems.statics.state import StaticState
+from systems.statics.theory import indeterminacy, linear
 from tests.reference import frame_theory
 from tests.reference.models import model
 
@@ -58,7 +59,7 @@ def random_frame(seed: int, *, moves: bool = True) -> dict[str, Any]:
     return model(particles, rods)
 
 
-def agrees(document: dict[str, Any], found: Answer, made: Model, *, within: float = 1e-9) -> None:
+def agrees(document: dict[str, Any], found: StaticState, made: Model, *, within: float = 1e-9) -> None:
     """Every quantity, relative to the largest of its kind, at least 1e-3."""
     wanted = frame_theory.solve(document)
     names, rods = made.particles.names, made.rods.names
@@ -97,7 +98,7 @@ def beam(name: str, **facts: Any) -> dict[str, Any]:
     return {"name": name, "between": list(name), **rod, **facts}
 
 
-def answered(particles: list[dict[str, Any]], rods: list[dict[str, Any]]) -> tuple[Model, Answer]:
+def answered(particles: list[dict[str, Any]], rods: list[dict[str, Any]]) -> tuple[Model, StaticState]:
     """A model and its linear answer, which agrees with the independent solver."""
     document = model(particles, rods)
     made = parse(document)

@@ -28,7 +28,7 @@ from systems.run.watch import watched
 from systems.statics.events import Event, event_record
 
 if TYPE_CHECKING:  # it imports scipy
-    from systems.statics.settle import StaticState
+    from systems.statics.state import StaticState
 
 INTERRUPTED = "interrupted"  # the status of a run that Ctrl+C ended
 MOD_FAILED = "mod failed"
@@ -153,7 +153,7 @@ def run_static(simulation: Simulation, name: str, factors: Sequence[float]) -> R
     started = time.perf_counter()
     settlement = settle(simulation.model, factors)
     seconds = time.perf_counter() - started
-    states = [_static_state(simulation, found) for found in settlement.states]
+    states = [static_state(simulation.model, found) for found in settlement.states]
     status, note = without_mods(settlement.status, left_out)
     return _run(simulation, name, status, states, moves=False) | {
         "message": " ".join(filter(None, [settlement.message, note])),
@@ -163,7 +163,7 @@ def run_static(simulation: Simulation, name: str, factors: Sequence[float]) -> R
     }
 
 
-def _static_state(simulation: Simulation, found: StaticState) -> State:
+def static_state(model: Model, found: StaticState) -> State:
     """An equilibrium as a state; its work is the energy stored and dissipated on the path of equilibria."""
     energy = dict.fromkeys(ENERGIES, 0.0) | {
         "elastic": found.elastic_energy,
@@ -181,7 +181,7 @@ def _static_state(simulation: Simulation, found: StaticState) -> State:
         **{f"rods.{name}": getattr(found, name) for name in of_rods},
         **{f"rods.{name}": values for name, values in found.diagrams.items()},
     }
-    return state(simulation.model, energy, found.load_factor, found.residual, columns)
+    return state(model, energy, found.load_factor, found.residual, columns)
 
 
 def _state(simulation: Simulation) -> State:

@@ -11,6 +11,7 @@ import numpy as np
 from components.model import Model
 from game.commands import output
 from game.commands.output import aligned, as_written
+from game.commands.reports.report import static_state
 from game.session import Session
 from systems.statics.counting import Count, counted
 from systems.statics.equations import Array
@@ -123,6 +124,10 @@ def _found_by_theory(model: Model, name: str, theory: Theories) -> Found:
             for motion in mechanisms(model)
         ],
         **_self_stress(model),
+        "states": {
+            way: static_state(model, state) if state is not None else None
+            for way, state in (("linear", theory.linear), ("exact", theory.exact))
+        },
         "frequencies": {"unloaded": vibrations(model).hertz.tolist(), "loaded": loaded},
         "simulation": None,
         "linear": {
