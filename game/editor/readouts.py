@@ -15,7 +15,7 @@ from components.free_body import Force, on_joint, on_rod
 from components.handle import Handle
 from components.model import Model
 from components.particle import Particle
-from components.rod import Rod
+from components.rod import Rod, bends
 from components.view import Readout
 from game.documents.assessment import LARGEST
 from game.editor.context import Context
@@ -74,9 +74,10 @@ def _energy(context: Context) -> Iterator[Readout]:
     ]
     error = None if context.busy else context.document.assessment.error()  # which takes a run of its own
     if error is not None:
-        shares = error.relative, error.relative_velocity, error.relative_axial_force
-        titles = "displacement error", "velocity error", "axial force error"
-        rows += [(title, _error(share, " of the largest")) for title, share in zip(titles, shares, strict=True)]
+        for key, share in error.record(bent=bends(context.model)).items():
+            if key.startswith("relative"):
+                of = key.removeprefix("relative").strip("_").replace("_", " ") or "displacement"
+                rows.append((f"{of} error", _error(share, " of the largest")))
     yield Readout("Energy account", tuple(rows))
 
 

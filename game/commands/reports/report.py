@@ -12,6 +12,7 @@ import numpy as np
 
 from components.mistake import Mistake
 from components.model import Model
+from components.rod import bends
 from components.settings import AUTOMATIC
 from game.commands.output import ResultError
 from game.commands.reports.results import Run, State, state
@@ -90,7 +91,7 @@ class Analysis:
             **found,
             "message": " ".join(filter(None, [session.message, unknown])),
             "events": [*happened, *_records(session.model, session.remarks)],
-            "error_estimate": asdict(error) if error is not None else None,
+            "error_estimate": error.record(bent=bends(session.model)) if error is not None else None,
         }
 
 
