@@ -120,7 +120,7 @@ class Structure:
     own_weight: stiffness added to that of its rods in the `weight` of a particle (kN/m), (n,).
     flat: rods whose axis keeps its direction, such as contacts with a straight side.
     linear: first-order theory: elongations and equilibrium about the original positions.
-    bending: of the rods; None where none bends.
+    bending: of the rods; None where none bends. sparse: matrices are, above DENSE unknowns.
     """
 
     position: Array
@@ -140,6 +140,7 @@ class Structure:
     flat: Flags
     linear: bool
     bending: Bending | None = None
+    sparse: bool = True
 
     @classmethod
     def of(cls, model: Model, geometry: str = "exact") -> Structure:
@@ -184,7 +185,7 @@ class Structure:
     def index(self) -> Rows:
         """Indices of the unknowns in a flattened field, (N,), in an order that keeps factors sparse."""
         index = np.flatnonzero(self.unknown.ravel())
-        if len(index) <= DENSE:
+        if not self.sparse or len(index) <= DENSE:
             return index
         from scipy.sparse import csc_matrix, identity
         from scipy.sparse.linalg import splu
@@ -527,7 +528,7 @@ class Structure:
 
     def _assembled(self, parts: Array) -> Matrix:
         """Sum of the rods' matrices (rods, 2 ends × width, 2 ends × width), flattened."""
-        if self.size <= DENSE:
+        if not self.sparse or self.size <= DENSE:
             kept, place = self._dense_pattern
             full = np.bincount(place, parts[kept], self.size**2).astype(np.float64)
             return full.reshape(self.size, self.size)
