@@ -329,6 +329,23 @@ class Structure:
             weight = np.column_stack([weight, np.bincount(self.ends.ravel(), of_ends, len(weight))])
         return self.gather(weight)
 
+    def effort(self, vector: Array, response: Response) -> float:
+        """The energy (kN·m) beside which that of a motion is round-off: of rods that resist it with all they have.
+
+        Where members bend, moving across their axes takes far less than along them, and the more so the more rods divide
+        them: then of its parts along both axes, without regard to their signs.
+        """
+        if self.bending is None:
+            return float(vector @ (self.weight * vector))
+        field, axis = self.spread(vector), np.abs(response.axis)
+        change, turns = np.abs(self.relative(field)), np.abs(self.turns(field))
+        along = (axis * change).sum(axis=1)
+        leaning = (axis * change[:, ::-1]).sum(axis=1) / np.where(
+            response.length > 0.0, response.length, np.inf
+        )
+        bent = self.bending.end_stiffness[:, ::2] * (turns + leaning[:, None]) ** 2
+        return float((self.stiffness / self.rest_length) @ along**2 + bent.sum())
+
     # --- forces --------------------------------------------------------------------------------------
 
     @cached_property

@@ -232,7 +232,8 @@ class _Settling:
         structure = self.structure
         if structure.size == 0:
             return STABLE
-        share, mode = softest(structure, self.point.response)
+        energy, mode = softest(structure, self.point.response)
+        share = energy if structure.bending is None else energy / structure.effort(mode, self.point.response)
         kind = NEUTRAL if share < SOFT else STABLE
         known = any(event.kind in ("mechanism", "plastic mechanism") for event in self.events)
         if share < NEARLY_SOFT and not (known or self.soft):
@@ -258,9 +259,14 @@ class _Settling:
         residual = self._residual()
         if residual <= ROUGH:
             return
-        springs = self.structure.stiffness / self.structure.rest_length
+        springs, called = self.structure.stiffness / self.structure.rest_length, "EA/L₀"
+        if self.structure.bending is not None:
+            rods, called = self.model.rods, "EA/L₀ or 12 EI/L₀³"
+            bent = rods.turning_shares.any(axis=1)
+            across = 12.0 * rods.bending_stiffness / rods.rest_length**3
+            springs = np.concatenate([springs, across[bent]])
         message = (
-            f"Rounding leaves {residual:.1g} of the largest force unbalanced, because stiffnesses EA/L₀ from"
+            f"Rounding leaves {residual:.1g} of the largest force unbalanced, because stiffnesses {called} from"
             f" {springs.min():.3g} to {springs.max():.3g} kN/m act together. Make them less unequal."
         )
         if residual > UNBALANCED:
