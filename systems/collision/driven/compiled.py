@@ -18,12 +18,13 @@ from systems.program.compiler import GeneratedModule, entries_to
 
 def _contents() -> tuple[str, dict[str, Callable[..., Any]]]:
     """The source, and the kernels by the names that it calls them."""
-    from systems.collision.driven.kernels import joint_impacts
+    from systems.collision.driven.kernels import joint_impacts, neighbours
     from systems.collision.kernels import overlap, pairs
 
     return entries_to(
         {
             "collide": collide,
+            "list_pairs": neighbours.list_pairs,
             "gaps": pairs.measure_gaps,
             "resolve": joint_impacts.resolve,
             "part": overlap.separate,
@@ -46,7 +47,8 @@ def idle() -> Driven:
     of_document |= dict.fromkeys(("radius", "size", "restitution", "pull"), none)
     whole = {
         "node": np.zeros(0, dtype=np.int64),
-        "loose": np.zeros(0, dtype=np.int64),
+        **dict.fromkeys(("loose", "partners"), np.zeros(0, dtype=np.int64)),
+        "first": np.zeros(1, dtype=np.int64),
         "asleep": np.zeros(0, dtype=bool),
     }
     return Driven.empty({**of_document, **whole}, 0, 0, 0)

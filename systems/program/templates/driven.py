@@ -63,8 +63,9 @@ def drive(
             while breaks[coming] <= control[Control.TIME]:
                 coming += 1
             real[Real.BREAK] = breaks[coming]
-            near = driven.near if rows.shape[0] == 0 and driven.near.shape[0] > 0 else every
-            for p in range(near.shape[0]):
+            few = rows.shape[0] == 0 and whole[Whole.NEAR] > 0
+            near = driven.near if few else every
+            for p in range(whole[Whole.NEAR] if few else every.shape[0]):
                 i = near[p]
                 for d in range(2):
                     total = unpushed[i, d] + resisting[i, d] if RATES else unpushed[i, d]
