@@ -17,7 +17,7 @@ class Order(IntEnum):
     """What a step program is to do next for the particles that meet in its steps."""
 
     GO_ON = 0  # nothing: only between kernels of collisions
-    LIST = 1  # so is this: pairs are to be listed anew, within Real.SPAN
+    LIST = 1  # pairs anew, within Real.SPAN
     LEAVE = 2  # return to Python; Whole.NEED says why
     EVALUATE = 3  # the forces of the present state, if they are not known
     TAKE = 4  # a step: to Real.END, or a whole one where that is infinite
@@ -142,13 +142,11 @@ class Driven(NamedTuple):
 
     Of the document: position, span, weight (inverse mass, 1/kg, 0 where held), shape (n + obstacles, 2); radius, size
     (the radius, ∞ for obstacles), restitution, node (1: of a structure), shape (n + obstacles,); loose: the particles
-    that are no nodes; asleep, and pull, acceleration by constant forces (m/s²), shape (n,); first, partners: those that
-    rods join, as in Constraints.
+    that are no nodes; asleep, and pull, acceleration by constant forces (m/s²), shape (n,).
     Of the list, whose arrays have room for p pairs, of which Whole.LISTED are there: near: the particles in pairs, shape
     (n,); pairs, rows i < j in ascending order, shape (p, 2), and of each pair lasting (1: a persistent contact),
     forces (N), normal, slow (speed below which it stays in contact, m/s), rate (at which it opens, m/s); listed:
     displacements when it was made, margin (m): how far each particle may move from there, negative: there is no list.
-    found, shape (p, 2), grid: work space, by which it is made; see kernels/neighbours.py.
     Of the step: before, velocity: the state it begins with; ahead, ahead_speed: where it leads, as foreseen;
     acceleration, at its start; path_error (m); support: contact forces (kN); kept: control and account at the start.
     Of the search for contact forces: chosen, the pairs in persistent contact; search, with the rows of Tried; start, end:
@@ -169,8 +167,6 @@ class Driven(NamedTuple):
     loose: Integers
     asleep: NDArray[np.bool_]
     pull: Floats
-    first: Integers
-    partners: Integers
     near: Integers
     pairs: Integers
     lasting: Integers
@@ -183,8 +179,6 @@ class Driven(NamedTuple):
     impulses: Floats
     listed: Floats
     margin: Floats
-    found: Integers
-    grid: Grid
     before: Floats
     velocity: Floats
     ahead: Floats
@@ -216,7 +210,7 @@ class Driven(NamedTuple):
         every = len(of_document["radius"])
         shapes: dict[str, tuple[tuple[int, ...], Any]] = {
             "near": ((n,), np.int64),
-            **dict.fromkeys(("pairs", "found"), ((pairs, 2), np.int64)),
+            "pairs": ((pairs, 2), np.int64),
             **dict.fromkeys(("lasting", "touching", "chain"), ((pairs,), np.int64)),
             **dict.fromkeys(("forces", "slow", "rate", "room", "pushes", "impulses"), ((pairs,), np.float64)),
             "normal": ((pairs, 2), np.float64),
@@ -242,7 +236,18 @@ class Driven(NamedTuple):
         return cls(
             **of_document,
             **arrays,
-            grid=Grid.empty(every, 1),
             group=Group.empty(max(every, 2 * pairs), pairs),
             report=Report.empty(4 * pairs + 64),
         )
+
+
+class Listing(NamedTuple):
+    """What the pairs of Driven are listed by; see kernels/neighbours.py.
+
+    first, partners: the particles that rods join, as in Constraints. found: work space, pairs, shape (p, 2).
+    """
+
+    first: Integers
+    partners: Integers
+    found: Integers
+    grid: Grid

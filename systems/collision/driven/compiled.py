@@ -9,7 +9,9 @@ import numpy as np
 
 from components.field import Column
 from components.model import Model
-from systems.collision.driven.columns import Driven
+from systems.collision.columns import Grid, partners_of
+from systems.collision.driven.columns import Driven, Listing
+from systems.collision.driven.kernels.neighbours import list_pairs
 from systems.collision.driven.kernels.steps import collide
 from systems.collision.system import normals, persistent_contacts, support_forces
 from systems.program.between import Between
@@ -18,13 +20,13 @@ from systems.program.compiler import GeneratedModule, entries_to
 
 def _contents() -> tuple[str, dict[str, Callable[..., Any]]]:
     """The source, and the kernels by the names that it calls them."""
-    from systems.collision.driven.kernels import joint_impacts, neighbours
+    from systems.collision.driven.kernels import joint_impacts
     from systems.collision.kernels import overlap, pairs
 
     return entries_to(
         {
             "collide": collide,
-            "list_pairs": neighbours.list_pairs,
+            "list_pairs": list_pairs,
             "gaps": pairs.measure_gaps,
             "resolve": joint_impacts.resolve,
             "part": overlap.separate,
@@ -40,18 +42,18 @@ def kernels() -> Any:
     return DRIVEN.form
 
 
-def idle() -> Driven:
+def idle() -> tuple[Driven, Listing]:
     """Arrays of no particles."""
     none, vectors = np.zeros(0), np.zeros((0, 2))
     of_document: dict[str, Any] = dict.fromkeys(("position", "span", "weight"), vectors)
     of_document |= dict.fromkeys(("radius", "size", "restitution", "pull"), none)
     whole = {
         "node": np.zeros(0, dtype=np.int64),
-        **dict.fromkeys(("loose", "partners"), np.zeros(0, dtype=np.int64)),
-        "first": np.zeros(1, dtype=np.int64),
+        "loose": np.zeros(0, dtype=np.int64),
         "asleep": np.zeros(0, dtype=bool),
     }
-    return Driven.empty({**of_document, **whole}, 0, 0, 0)
+    driven = Driven.empty({**of_document, **whole}, 0, 0, 0)
+    return driven, Listing(*partners_of(0, ()), driven.pairs, Grid.empty(0, 1))
 
 
 def _support(model: Model) -> Column:
@@ -61,4 +63,4 @@ def _support(model: Model) -> Column:
     return support_forces(normals(model, contacts.pairs), contacts.pairs, contacts.forces, count)
 
 
-BETWEEN = Between(DRIVEN, collide, idle, _support)
+BETWEEN = Between(DRIVEN, (collide, list_pairs), idle, _support)

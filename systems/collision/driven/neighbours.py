@@ -13,14 +13,15 @@ from components.model import Model
 from components.obstacles import obstacles
 from components.rod import nodes
 from systems.collision.columns import NONE, STEP_SHARE, Floats, Grid, Integers, partners_of
-from systems.collision.driven.columns import Driven, Phase, Real, Whole
+from systems.collision.driven.columns import Driven, Listing, Order, Phase, Real, Whole
 from systems.collision.driven.compiled import kernels
 from systems.collision.system import persistent_contacts
+from systems.entries import Control
 
 CONTACTS = 8  # room at first
 MORE, LEAST_ROOM = 1.5, 16  # times the pairs there are, and beyond that: room for those that come near later
 OF_PAIRS = (
-    *("pairs", "found", "lasting", "forces", "normal", "slow", "rate", "room", "pushes", "impulses"),
+    *("pairs", "lasting", "forces", "normal", "slow", "rate", "room", "pushes", "impulses"),
     *("touching", "chain", "group", "report"),
 )
 OF_CONTACTS = ("chosen", "search", "start", "end", "slope", "learnt", "matrix", "block", "sides")
@@ -29,11 +30,12 @@ OF_CONTACTS = ("chosen", "search", "start", "end", "slope", "learnt", "matrix", 
 class NeighbourList:
     """The pairs of one model's particles that are near each other, in the arrays that the kernels share.
 
-    driven: these arrays. Kernels list the pairs; see driven/kernels/neighbours.py. count: of the particles. The numbers
-    of obstacles follow those of the particles.
+    driven, listing: these arrays; kernels list the pairs (driven/kernels/neighbours.py). count: of the particles. The
+    numbers of obstacles follow those of the particles.
     """
 
     driven: Driven
+    listing: Listing
 
     def __init__(self, model: Model) -> None:
         self.model = model
@@ -54,6 +56,8 @@ class NeighbourList:
         self.count = particles.count
         self._document = self._of_document()
         self.driven = Driven.empty(self._document, self.count, 0, CONTACTS)
+        grid = Grid.empty(self.count + len(self.obstacles), 1)
+        self.listing = Listing(*partners_of(self.count, self.model.rods.between), self.driven.pairs, grid)
         self.driven.margin[:] = -1.0  # no pair is listed yet
         whole, real = self.driven.whole, self.driven.real
         whole[Whole.BOUNCY] = (self.driven.restitution < 1.0).any()
@@ -72,7 +76,6 @@ class NeighbourList:
         span[self.count :] = others.span
         node = np.ones(self.count + len(others), dtype=np.int64)
         node[: self.count] = nodes(self.model)
-        first, partners = partners_of(self.count, self.model.rods.between)
         return {
             "position": np.concatenate([particles.position, others.start]),
             "span": span,
@@ -84,8 +87,6 @@ class NeighbourList:
             "loose": np.flatnonzero(node[: self.count] == 0),
             "asleep": self.model.tables["particles"].storage("asleep"),
             "pull": np.hypot(*(particles.mobility * particles.constant_force).T),
-            "first": first,
-            "partners": partners,
         }
 
     def everywhere(self, values: NDArray[Any]) -> NDArray[Any]:
@@ -103,9 +104,9 @@ class NeighbourList:
 
     def list_within(self, span: float) -> None:
         """List the pairs that can meet before any particle has moved by `span` (m) from where it is."""
-        step, real = self.model.clock.step_size, self.driven.real
-        real[Real.SPAN] = span
-        while not kernels().list_pairs(self.driven, step, self.displacement, self.velocity):
+        control, state = np.zeros(len(Control)), (self.displacement, self.velocity)
+        control[Control.STEP_SIZE], self.driven.real[Real.SPAN] = self.model.clock.step_size, span
+        while kernels().list_pairs(self.driven, self.listing, control, *state) == Order.LEAVE:
             self.make_room()
 
     def make_room(self) -> None:
@@ -113,7 +114,7 @@ class NeighbourList:
         whole = self.driven.whole
         if whole[Whole.FOUND] == NONE:
             grid = Grid.empty(self.count + len(self.obstacles), int(whole[Whole.LAYERS]) + 1)
-            self.driven = self.driven._replace(grid=grid)
+            self.listing = self.listing._replace(grid=grid)
         elif whole[Whole.FOUND] > len(self.driven.pairs):
             self._make_room_for_pairs(int(whole[Whole.FOUND]))
         elif self.driven.lasting[: whole[Whole.LISTED]].sum() > len(self.driven.chosen):
@@ -127,6 +128,7 @@ class NeighbourList:
         for name in ("pairs", "lasting", "forces"):
             getattr(new, name)[:listed] = getattr(old, name)[:listed]
         self.driven = old._replace(**{name: getattr(new, name) for name in OF_PAIRS})
+        self.listing = self.listing._replace(found=np.empty_like(new.pairs))
 
     # --- persistent contacts ----------------------------------------------------------------------------
 

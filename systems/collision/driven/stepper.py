@@ -75,7 +75,7 @@ class DrivenCollisions:
         while True:
             near.driven.whole[Whole.LANDING] = landing
             try:
-                reason, done = program.drive(near.driven, last - clock.steps, until)
+                reason, done = program.drive((near.driven, near.listing), last - clock.steps, until)
             finally:
                 self._fetch_impacts()
             need = near.driven.whole[Whole.NEED]
@@ -105,7 +105,7 @@ class DrivenCollisions:
 
 def _warm_up() -> None:
     """Call every compiled function once."""
-    model, arrays = Model(), idle()
+    model, (arrays, _) = Model(), idle()
     model.create(Particle, 2, position=[(0.0, 0.0), (0.09, 0.0)], velocity=[(1.0, 0.0), (0.0, 0.0)])
     part_overlaps(model)
     near = NeighbourList(model)

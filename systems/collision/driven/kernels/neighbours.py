@@ -7,7 +7,7 @@ what lasts in pairs that stay goes on.
 import math
 
 from systems.collision.columns import NONE
-from systems.collision.driven.columns import Phase, Real, Whole
+from systems.collision.driven.columns import Need, Order, Phase, Real, Whole
 from systems.collision.driven.kernels.groups import moves
 from systems.collision.kernels import compiled
 from systems.collision.kernels.grid import (
@@ -21,6 +21,7 @@ from systems.collision.kernels.grid import (
 )
 from systems.collision.kernels.horizon import is_joined
 from systems.collision.kernels.pairs import gap_of
+from systems.entries import Control
 
 LISTED_AROUND = 0.5  # of the radius of a particle: the least margin within which others are listed
 FEWEST_STEPS = 512  # for which the list is to last, at the present speed of a particle,
@@ -30,12 +31,24 @@ NOWHERE = 1e150  # m; what is farther away is lost
 
 
 @compiled
-def list_pairs(driven, step, place, speed):
-    """List the pairs that can meet before any particle has moved by Real.SPAN from `place`; False if there is no room.
+def list_pairs(driven, listing, control, place, speed):
+    """The Order to go on, once the pairs are listed that can meet before any particle has moved by Real.SPAN.
 
-    step: of the clock (s). place, speed: displacements and velocities of the particles. Where there is no room,
-    Whole.FOUND and LAYERS say how much is wanted, and there is no list; what lasts is not forgotten.
+    From where it is, or was as the step began that was taken. place, speed: displacements and velocities of the
+    particles. If there is no room, the Order to leave: Whole.FOUND and LAYERS say how much is wanted, and there is no
+    list; what lasts is not forgotten.
     """
+    whole = driven.whole
+    taken = whole[Whole.PHASE] != Phase.BETWEEN and whole[Whole.FORESEEN] == 0
+    if _list(driven, listing, control[Control.STEP_SIZE], driven.before if taken else place, speed):
+        return Order.GO_ON.value
+    whole[Whole.NEED] = Need.ROOM
+    return Order.LEAVE.value
+
+
+@compiled
+def _list(driven, listing, step, place, speed):
+    """True if there is room. step: of the clock (s)."""
     whole, margin = driven.whole, driven.margin
     for i in range(place.shape[0]):
         radius = driven.radius[i]
@@ -43,7 +56,7 @@ def list_pairs(driven, step, place, speed):
         margin[i] = max(LISTED_AROUND * radius, far, 2.0 * driven.real[Real.SPAN])
     count, wider, turn = 0, 1.0, 0
     while count == 0 and turn <= MOST_WIDENED:
-        count = _find(driven, place, wider)
+        count = _find(driven, listing, place, wider)
         if count == 0 and turn > 0:  # nothing is near: it will be long until something is
             for i in range(place.shape[0]):
                 margin[i] *= WIDER
@@ -60,20 +73,20 @@ def list_pairs(driven, step, place, speed):
             driven.listed[i, d], driven.support[i, d] = place[i, d], 0.0
     whole[Whole.PUSHED] = 1
     whole[Whole.LISTS] += 1
-    _put(driven, count)
+    _put(driven, listing.found, count)
     _note_near(driven)
     return True
 
 
 @compiled
-def _find(driven, place, wider):
+def _find(driven, listing, place, wider):
     """Find the pairs that can meet before any particle has moved by so many times its margin; returns how many.
 
     They are at the end of `found`, in ascending order, if there is room for them. NONE: the grid has no room.
     """
-    grid, found, count = driven.grid, driven.found, 0
+    grid, found, count = listing.grid, listing.found, 0
     for i in range(grid.boxes.shape[0]):
-        _enclose(driven, i, place, wider)
+        _enclose(driven, listing, i, place, wider)
     layers = choose_layers(grid, cell_size(grid), 0)
     driven.whole[Whole.LAYERS] = layers
     if not has_room(grid, layers):
@@ -88,7 +101,7 @@ def _find(driven, place, wider):
             sort(grid.found, near)
             for k in range(near - 1, -1, -1):
                 j = grid.found[k]
-                if _may_meet(driven, i, j, place, wider):
+                if _may_meet(driven, listing, i, j, place, wider):
                     count += 1
                     if count <= found.shape[0]:
                         found[found.shape[0] - count, 0], found[found.shape[0] - count, 1] = i, j
@@ -97,7 +110,7 @@ def _find(driven, place, wider):
 
 
 @compiled
-def _enclose(driven, i, place, wider):
+def _enclose(driven, listing, i, place, wider):
     """Set the box around where a particle may move, or around an obstacle; that of what is lost is of no use."""
     x, y, tx, ty = driven.position[i, 0], driven.position[i, 1], driven.span[i, 0], driven.span[i, 1]
     around, away = driven.radius[i], abs(x) + abs(y) + abs(tx) + abs(ty)
@@ -108,15 +121,15 @@ def _enclose(driven, i, place, wider):
     if not away + around < NOWHERE:
         x, y, tx, ty, around, away = 0.0, 0.0, 0.0, 0.0, 1.0, 1.0
     around += BOX_MARGIN * (around + away)
-    boxes = driven.grid.boxes
+    boxes = listing.grid.boxes
     boxes[i, 0], boxes[i, 1] = x + min(tx, 0.0) - around, y + min(ty, 0.0) - around
     boxes[i, 2], boxes[i, 3] = x + max(tx, 0.0) + around, y + max(ty, 0.0) + around
 
 
 @compiled
-def _may_meet(driven, i, j, place, wider):
+def _may_meet(driven, listing, i, j, place, wider):
     """True if a particle and another, or an obstacle, are within reach; not if neither moves, or a rod joins them."""
-    if not (moves(driven, i) or moves(driven, j)) or is_joined(i, j, driven):
+    if not (moves(driven, i) or moves(driven, j)) or is_joined(i, j, listing):
         return False
     gap, _, _ = gap_of(i, j, driven.position, place, driven.radius, driven.span)
     reach = driven.margin[i]
@@ -126,9 +139,9 @@ def _may_meet(driven, i, j, place, wider):
 
 
 @compiled
-def _put(driven, count):
+def _put(driven, found, count):
     """Put the pairs that were found in place of those listed; what lasts in those that stay goes on."""
-    whole, pairs, found = driven.whole, driven.pairs, driven.found
+    whole, pairs = driven.whole, driven.pairs
     lasts, forces, row_of = driven.touching, driven.pushes, driven.chain  # work space, in other phases
     ahead, r = found.shape[0] - count, 0
     for k in range(count):

@@ -22,7 +22,6 @@ from systems.collision.driven.kernels.contacts import (
 )
 from systems.collision.driven.kernels.crowd import begin_crowd, crowd_span, is_crowd, judge_crowd, try_crowd
 from systems.collision.driven.kernels.impacts import resolve_touching, set_rest_speeds
-from systems.collision.driven.kernels.neighbours import list_pairs
 from systems.collision.driven.kernels.paths import (
     DOUBTFUL,
     first_impact,
@@ -68,8 +67,6 @@ def collide(driven, control, account, place, speed):
             order = _look(driven, control, account, place, speed)
         else:
             order = _close(driven, control, account, place, speed)
-        if order == Order.LIST:
-            order = _list(driven, control, place, speed)
     return order.value
 
 
@@ -85,17 +82,6 @@ def _list_within(driven, span, phase):
     driven.real[Real.SPAN] = span
     driven.whole[Whole.PHASE] = phase
     return Order.LIST
-
-
-@compiled
-def _list(driven, control, place, speed):
-    """List pairs anew, around where the particles are, or were as a step began that was taken; leave if there is no room."""
-    whole = driven.whole
-    taken = whole[Whole.PHASE] != Phase.BETWEEN and whole[Whole.FORESEEN] == 0
-    if list_pairs(driven, control[Control.STEP_SIZE], driven.before if taken else place, speed):
-        return Order.GO_ON
-    whole[Whole.NEED] = Need.ROOM
-    return Order.LEAVE
 
 
 @compiled
