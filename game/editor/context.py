@@ -16,6 +16,7 @@ from components.form import Form
 from components.handle import Handle
 from components.model import Model
 from components.settings import Settings
+from components.slider import Place, under
 from components.tags import Selected
 from components.toolbar import Toolbar
 from components.view import Preview, Readout, View
@@ -595,6 +596,11 @@ class Context:
     def focus(self) -> tuple[Model, View]:
         """The model that a pointer picks from, and its view."""
         return self.scenes.active.focus(self)
+
+    def slider_at(self, pixel: Vector) -> Place | None:
+        """The slider at a pixel, of whichever model that the scene shows."""
+        models = (view for shown, view in self.scenes.active.stages(self) if isinstance(shown, Model))
+        return next(filter(None, (under(view.slider_places, pixel) for view in models)), None)
 
     @property
     def pointer(self) -> Vector:

@@ -3,10 +3,9 @@
 from __future__ import annotations
 
 from components.field import Vector
-from components.slider import under
 from game.editor.context import Context
 from game.editor.view_model import pages_of_help
-from systems.input.bindings import FORCE_METHOD, FORMS, LIVE, MENU, action_for
+from systems.input.bindings import FORMS, LIVE, MENU, action_for
 from systems.render.help import help_closed_by
 from systems.render.menu import menu_of
 from systems.render.picture import on_status_bar, panel_at
@@ -45,13 +44,14 @@ def meaning(context: Context, key: str, pixel: Vector) -> Meaning:
     if for_tools(context, key, pixel):
         on_toolbar = view.strip.contains(pixel)
         return _on_toolbar(context, key, pixel) if on_toolbar else action_for(LIVE[0], key), pixel
-    if key in AT_POINTER and _slider_at(context, pixel):
+    if key in AT_POINTER and context.slider_at(pixel):
         return ON_SLIDER.get(key), pixel
-    to_model = key in BUTTONS and context.scene in LIVE and not context.performing
-    if to_model and on_status_bar(view, pixel):
-        return None, pixel
-    if to_model and (panel := panel_at(context.model, view, load_theme(view.theme), pixel)) is not None:
-        return (panel.action_at(pixel) if key in ONCE else None), pixel
+    if key in BUTTONS and not context.performing and not context.scenes.active.covers(context):
+        model, shown = context.focus
+        if on_status_bar(shown, pixel):
+            return None, pixel
+        if (panel := panel_at(model, shown, load_theme(view.theme), pixel)) is not None:
+            return (panel.action_at(pixel) if key in ONCE else None), pixel
     return scene_meaning(context.scene, key), pixel
 
 
@@ -70,22 +70,15 @@ def for_tools(context: Context, key: str, pixel: Vector) -> bool:
 def layer(context: Context, pixel: Vector) -> Layer:
     """What takes a click at a pixel."""
     view = context.view
-    slider = _slider_at(context, pixel)
-    return context.scene, view.menu is not None, view.help > 0, view.strip.contains(pixel), slider
+    slider = context.slider_at(pixel)
+    on_slider = slider.control.title if slider is not None else ""
+    return context.scene, view.menu is not None, view.help > 0, view.strip.contains(pixel), on_slider
 
 
 def scene_meaning(scene: str, key: str) -> str | None:
     """The action of a key in a scene; where a second click means nothing special, it is another click."""
     found = action_for(scene, key)
     return action_for(scene, "click") if found is None and key == "double click" else found
-
-
-def _slider_at(context: Context, pixel: Vector) -> str:
-    """The title of the slider at a pixel, "" if there is none."""
-    if context.scene not in (*LIVE, FORCE_METHOD):
-        return ""
-    place = under(context.focus[1].slider_places, pixel)
-    return place.control.title if place is not None else ""
 
 
 def _in_menu(context: Context, key: str, pixel: Vector) -> Meaning | None:

@@ -207,10 +207,11 @@ class ForceMethod(Scene):
                 _fit(model, view)
             view.caption = captions[index]
             shown.append((model, view))
-        if self.shown_guide is not None and self.shown_guide.mechanism is None:
-            first, control = shown[0][1], scale_control(self.shown_guide.sets[0].model.settings)
-            high = first.camera.viewport.height >= HIGH * ratio
-            first.sliders = SliderStack((control,)) if high else SliderStack()
+        if self.shown_guide is not None:
+            control = scale_control(self.shown_guide.sets[0].model.settings)
+            high = shown[0][1].camera.viewport.height >= HIGH * ratio
+            for number, (_, view) in enumerate(shown):
+                view.sliders = SliderStack((control,)) if high and not number else SliderStack()
         return shown
 
     def scaled(self, context: Context) -> list[Settings]:
