@@ -14,7 +14,7 @@ from components.kind import all_points
 from components.menu import Menu
 from components.model import Model
 from components.slider import Place, SliderStack, under
-from components.toolbar import Toolbar
+from components.toolbar import Button, Toolbar
 
 # Sizes of type and symbols that a person can choose, relative to the usual one.
 MAGNIFICATIONS = (0.5, 0.65, 0.8, 0.9, 1.0, 1.1, 1.25, 1.5, 1.75, 2.0, 2.5, 3.0, 4.0)
@@ -133,11 +133,12 @@ class View:
     """How one model is shown in one viewport.
 
     heading: the word top left ("Pause"), or "". all_diagrams: force diagrams of all elements.
-    legend: show the meaning of colours. help: the page of keys that is shown, from 1; 0: none. keys: its lines
-    (key, meaning). more_keys: there is another page.
+    legend: show the meaning of colours. explains_all: of those of the pictures beside this one, too.
+    help: the page of keys that is shown, from 1; 0: none. keys: its lines (key, meaning). more_keys: there is another page.
     pointer: the pixel under the mouse, or None outside. pixel_ratio: device pixels per point (HiDPI).
     forces_known: False while a large model waits for the program that computes forces; then no forces are shown.
     caption: lines at the top: a title, and facts about the model. page: text in place of the model.
+    pressed: the button of the toolbar that was pressed and is still under the pointer: it shows no tip.
     tool: "place", "rod", "support", "force" or "velocity" while clicks and drags make one, or "".
     preview: what is being drawn. toolbar: what can be clicked at the left edge; hidden with the legend.
     flashes: points (m) where particles collided just now, shape (k, 2).
@@ -161,6 +162,7 @@ class View:
     all_diagrams: bool = False
     forces_known: bool = True
     legend: bool = True
+    explains_all: bool = False
     help: int = 0
     pixel_ratio: float = 1.0
     status: Status = field(default_factory=Status)
@@ -173,6 +175,7 @@ class View:
     caption: tuple[str, ...] = ()
     page: Page | None = None
     toolbar: Toolbar = field(default_factory=Toolbar)
+    pressed: Button | None = None
     sliders: SliderStack = field(default_factory=SliderStack)
     menu: Menu | None = None
     theme: str = "light"
@@ -220,6 +223,13 @@ class View:
         if not self.legend:
             return Viewport(window.left, window.top, 0, window.height)
         return self.toolbar.strip(window, self.pixel_ratio)
+
+    def button_at(self, pixel: Vector | None) -> Button | None:
+        """The button of the toolbar at a pixel."""
+        if pixel is None or not self.strip.contains(pixel):
+            return None
+        buttons = self.toolbar.buttons(self.camera.viewport, self.pixel_ratio)
+        return next((button for button in buttons if button.contains(pixel)), None)
 
     @property
     def canvas(self) -> Viewport:

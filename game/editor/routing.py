@@ -113,7 +113,5 @@ def _on_help(context: Context, key: str, pixel: Vector) -> str | None:
 
 
 def _on_toolbar(context: Context, key: str, pixel: Vector) -> str | None:
-    view = context.view
-    buttons = view.toolbar.buttons(view.camera.viewport, view.pixel_ratio)
-    hit = (button.tool for button in buttons if button.contains(pixel))
-    return next((tool.action for tool in hit if tool.enabled and key in CLICKS), None)
+    button = context.view.button_at(pixel)
+    return button.tool.action if button is not None and button.tool.enabled and key in CLICKS else None

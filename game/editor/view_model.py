@@ -37,6 +37,8 @@ def show(context: Context, elapsed: float) -> None:
         else [*(remark.message for remark in context.remarks), _gone(context)]
     )
     view.preview = _preview(context)
+    if view.pressed is not None and not (view.pointer is not None and view.pressed.contains(view.pointer)):
+        view.pressed = None
     view.flashes = _flashes(context)
     view.heading = scene.heading
     view.shape = context.document.shapes.shown

@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 
@@ -110,11 +112,17 @@ def _state_colour(sheet: Sheet) -> Colour:
 # --- heading and problem ---------------------------------------------------------------------------
 
 
-def heading_height(text: str, width: float, unit: float) -> float:
-    """Pixels that a heading takes at the top of a viewport."""
-    size = font_size(_HEADING, unit)
-    lines = wrapped(text, width - 2 * _EDGE * unit, size, "semibold")
-    return len(lines) * line_height(size) + _EDGE * unit + 4.0 * unit
+def heading_height(text: str, width: float, unit: float, explained: Sequence[str] = ()) -> float:
+    """Pixels that a heading takes at the top of a viewport, with a legend that explains these names."""
+    size, widest = font_size(_HEADING, unit), width - 2 * _EDGE * unit
+    lines = wrapped(text, widest, size, "semibold")
+    height = len(lines) * line_height(size) + (_EDGE + 4.0) * unit
+    if not explained:
+        return height
+    right = _EDGE * unit + max(text_width(line, size, "semibold") for line in lines)
+    legend = _arranged(explained, width, right, unit)
+    rows = len(legend.rows) * _ROW * unit
+    return max(height, rows + 2 * _ABOVE * unit - 4.0 * unit) if legend.beside else height + rows
 
 
 def _heading(sheet: Sheet) -> tuple[list[Mark], tuple[float, float]]:
@@ -232,7 +240,8 @@ def _progress(sheet: Sheet, left: float, top: float, width: float) -> list[Mark]
 # --- legend ----------------------------------------------------------------------------------------
 
 _BAR_WIDTH = 70.0  # points, of a scale of colours
-_MEANINGS = {
+_ABOVE, _PAD, _BETWEEN = 10.0, 9.0, 14.0  # points: to the edges, inside a row, between its entries
+MEANINGS = {
     "tension": "tension (kN)",
     "compression": "compression (kN)",
     "yielding": "yielding",
@@ -253,43 +262,71 @@ def _legend(sheet: Sheet, heading_end: tuple[float, float]) -> tuple[list[Mark],
     They stand beside the heading if one or two rows have room there, else below it.
     """
     v, u, theme, size = sheet.viewport, sheet.unit, sheet.theme, sheet.font(11.0)
-    names = [name for name in _MEANINGS if name in sheet.legend] if sheet.view.legend else []
-    right = v.right - 10.0 * u
+    names = [name for name in MEANINGS if name in sheet.legend] if sheet.view.legend else []
     if not names or v.width < 240.0 * u:
         return [], heading_end[1]
-    pad, swatch, gap, height = 9.0 * u, 16.0 * u, 14.0 * u, 24.0 * u
-    swatches = [_BAR_WIDTH * u if name == "utilisation" else swatch for name in names]
-    entries = [
-        wide + 6.0 * u + text_width(_MEANINGS[name], size) for name, wide in zip(names, swatches, strict=True)
-    ]
-    room, whole = right - heading_end[0] - gap - 2 * pad, right - v.left - 10.0 * u - 2 * pad
-    beside = max(entries) <= room and len(_rows(entries, gap, room)) <= _ROWS_BESIDE
-    if not beside and v.height < _SMALL * u:
+    legend = _arranged(names, v.width, heading_end[0] - v.left, u)
+    if not legend.beside and v.height < _SMALL * u and not sheet.view.explains_all:
         return [], heading_end[1]
-    top = v.top + 10.0 * u if beside else heading_end[1] + 8.0 * u
+    top = v.top + _ABOVE * u if legend.beside else heading_end[1] + 8.0 * u
     marks: list[Mark] = []
-    for first, last in _rows(entries, gap, room if beside else whole):
-        width = sum(entries[first:last]) + gap * (last - first - 1) + 2 * pad
-        left, x = right - width, right - width + pad
+    height = 24.0 * u
+    for row in legend.rows:
+        width = sum(entry.width for entry in row) + _BETWEEN * u * (len(row) - 1) + 2 * _PAD * u
+        left = v.right - _ABOVE * u - width
         sheet.occupancy.block(left, top, width, height)
         marks.append(Panel(left, top, width, height, 6.0 * u, faded(theme.panel, 0.94), theme.line))
-        for name, wide, entry in list(zip(names, swatches, entries, strict=True))[first:last]:
-            marks += _swatch(sheet, name, x, top + height / 2, wide)
-            marks.append(Text(_MEANINGS[name], x + wide + 6.0 * u, top + height / 2, size, theme.text))
-            x += entry + gap
+        x = left + _PAD * u
+        for entry in row:
+            marks += _swatch(sheet, entry.name, x, top + height / 2, entry.swatch)
+            says = x + entry.swatch + 6.0 * u
+            marks.append(Text(MEANINGS[entry.name], says, top + height / 2, size, theme.text))
+            x += entry.width + _BETWEEN * u
         top += _ROW * u
     return marks, max(top - 4.0 * u, heading_end[1])
 
 
-def _rows(widths: list[float], gap: float, room: float) -> list[tuple[int, int]]:
-    """Ranges of entries that fit side by side into `room`, at least one each."""
-    rows, first, used = [], 0, 0.0
-    for index, width in enumerate(widths):
-        if index > first and used + width > room:
-            rows.append((first, index))
-            first, used = index, 0.0
-        used += width + gap
-    return [*rows, (first, len(widths))]
+class _Entry(NamedTuple):
+    """What a legend says of one name, and the pixels that it and its sample take."""
+
+    name: str
+    swatch: float
+    width: float
+
+
+class _Legend(NamedTuple):
+    """The rows of a legend, and whether they stand beside the heading, else below it."""
+
+    rows: list[list[_Entry]]
+    beside: bool
+
+
+def _arranged(names: Sequence[str], width: float, heading: float, u: float) -> _Legend:
+    """A legend in a viewport that is so wide, of which the heading takes the left up to `heading`."""
+    entries = []
+    for name in names:
+        swatch = (_BAR_WIDTH if name == "utilisation" else 16.0) * u
+        entries.append(_Entry(name, swatch, swatch + 6.0 * u + text_width(MEANINGS[name], font_size(11.0, u))))
+    whole = width - 2 * (_ABOVE + _PAD) * u
+    room = width - heading - (_ABOVE + _BETWEEN + 2 * _PAD) * u
+    beside = max(entry.width for entry in entries) <= room
+    rows = _rows(entries, _BETWEEN * u, room) if beside else []
+    if beside and len(rows) <= _ROWS_BESIDE:
+        return _Legend(rows, True)
+    return _Legend(_rows(entries, _BETWEEN * u, whole), False)
+
+
+def _rows(entries: Sequence[_Entry], gap: float, room: float) -> list[list[_Entry]]:
+    """The entries in rows that fit into `room`, at least one each."""
+    rows: list[list[_Entry]] = [[]]
+    used = 0.0
+    for entry in entries:
+        if rows[-1] and used + entry.width > room:
+            rows.append([])
+            used = 0.0
+        rows[-1].append(entry)
+        used += entry.width + gap
+    return rows
 
 
 def _swatch(sheet: Sheet, name: str, x: float, y: float, width: float) -> list[Mark]:

@@ -13,11 +13,12 @@ from components.form import Form
 from components.handle import Handle
 from components.model import Model
 from components.view import LEAST_BESIDE, MARGIN, Readout, View, drawn_places, drawn_positions
-from game.editor.context import Context, Stage
+from game.editor.context import Context
 from game.editor.scenes.form import FormScene
 from systems.edit.picking import pick
 from systems.forms import answers, properties, results, typing
 from systems.render.form_layout import FormLayout
+from systems.render.picture import Stage
 
 
 class Properties(FormScene):
