@@ -12,7 +12,7 @@ from components.field import MADE, Vector
 from components.form import Form
 from components.handle import Handle
 from components.model import Model
-from components.view import LEAST_BESIDE, MARGIN, Readout, View, drawn_places, drawn_positions
+from components.view import LEAST_BESIDE, Readout, View, drawn_positions
 from game.editor.context import Context
 from game.editor.scenes.form import FormScene
 from systems.edit.picking import pick
@@ -166,8 +166,9 @@ class Properties(FormScene):
         if now != self._looked:
             self._looked, self._camera = now, now[0]
             if view.fitted and not view.shows(model):
-                self._camera = replace(view.camera)
-                self._camera.fit(drawn_places(model), MARGIN, view.canvas, view.pixel_ratio)
+                beside = replace(view, camera=replace(view.camera), shares=False)
+                beside.fit(model)
+                self._camera = beside.camera
         return replace(self._camera)
 
     def _readouts(self, view: View, aside: Viewport) -> tuple[Readout, ...]:
