@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import pytest
 
-from components.view import ARROW, SUPPORT, drawn_places
+from components.slider import ARROW, SUPPORT
+from components.view import drawn_places
 from game import Session
 from game.documents import models
 from tests.golden.scenes import Window, opened
