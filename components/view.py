@@ -135,7 +135,7 @@ class View:
 
     heading: the word top left ("Pause"), or "". all_diagrams: force diagrams of all elements.
     legend: show the meaning of colours. explains_all: of those of the pictures beside this one, too.
-    help: the page of keys that is shown, from 1; 0: none. keys: its lines (key, meaning). more_keys: there is another page.
+    help: the page of keys that is shown, from 1; 0: none. keys: its lines (key, meaning). pages: how many there are.
     pointer: the pixel under the mouse, or None outside. pixel_ratio: device pixels per point (HiDPI).
     forces_known: False while a large model waits for the program that computes forces; then no forces are shown.
     caption: lines at the top: a title, and facts about the model. page: text in place of the model.
@@ -168,7 +168,7 @@ class View:
     pixel_ratio: float = 1.0
     status: Status = field(default_factory=Status)
     keys: list[tuple[str, str]] = field(default_factory=list)
-    more_keys: bool = False
+    pages: int = 0
     pointer: Vector | None = None
     tool: str = ""
     preview: Preview | None = None
@@ -243,6 +243,11 @@ class View:
         if not self.legend:
             return Viewport(window.left, window.top, 0, window.height)
         return self.toolbar.strip(window, self.pixel_ratio)
+
+    def put_together(self) -> bool:
+        """Show the structure in one piece, for what free bodies do not show; False if it was."""
+        apart, self.free_bodies = self.free_bodies, False
+        return apart
 
     def button_at(self, pixel: Vector | None) -> Button | None:
         """The button of the toolbar at a pixel."""

@@ -6,6 +6,7 @@ from components.field import Vector
 from game.editor.context import Context
 from game.editor.view_model import pages_of_help
 from systems.input.bindings import FORMS, LIVE, MENU, action_for
+from systems.render.empty_card import card_button_at
 from systems.render.help import help_closed_by
 from systems.render.menu import menu_of
 from systems.render.picture import on_status_bar, panel_at
@@ -44,6 +45,12 @@ def meaning(context: Context, key: str, pixel: Vector) -> Meaning:
     if for_tools(context, key, pixel):
         on_toolbar = view.strip.contains(pixel)
         return _on_toolbar(context, key, pixel) if on_toolbar else action_for(LIVE[0], key), pixel
+    if (
+        key in ONCE
+        and context.scene in LIVE
+        and (tool := card_button_at(context.model, view, pixel)) is not None
+    ):
+        return tool.action if tool.enabled else None, (view.strip.left, view.strip.top)  # as by the toolbar
     if key in AT_POINTER and context.slider_at(pixel):
         return ON_SLIDER.get(key), pixel
     if key in BUTTONS and not context.performing and not context.scenes.active.covers(context):
@@ -103,6 +110,8 @@ def _on_help(context: Context, key: str, pixel: Vector) -> str | None:
     """Clicks on the help leaf through it or close it, and go no further."""
     if key == "escape":
         return "close help"
+    if key in ("wheel up", "wheel down"):
+        return "help back" if key == "wheel up" else "help on"
     if key not in ("click", "ctrl+click", "double click", "right click"):
         return None
     pages, shown = pages_of_help(context), context.view.help

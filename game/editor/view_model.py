@@ -44,7 +44,7 @@ def show(context: Context, elapsed: float) -> None:
     view.shape = context.document.shapes.shown
     pages = pages_of_help(context) if view.help else []
     view.keys = pages[min(view.help, len(pages)) - 1] if pages else []
-    view.more_keys = view.help < len(pages)
+    view.pages = len(pages)
     _show_readouts(context)
     _point_out(context)
     view.status = Status(

@@ -1,4 +1,4 @@
-"""Overlays: heading, status bar, problem banner, legend, scale bar, and the card of an empty model."""
+"""Overlays: heading, status bar, problem banner, legend and scale bar."""
 
 from __future__ import annotations
 
@@ -28,6 +28,7 @@ _NOISE = 1e-6  # pixels; smaller displacements count as none
 BAR = 28.0  # points, height of the status bar
 _ROW, _ROWS_BESIDE = 28.0, 2  # of the legend: points, and how many stand beside the heading
 _STRIP = 19.0  # points, height of the scale
+_SCALE = ("scale", 0)  # the key by which its place is kept
 
 
 def draw_overlays(sheet: Sheet) -> tuple[list[Mark], tuple[float, float]]:
@@ -35,10 +36,8 @@ def draw_overlays(sheet: Sheet) -> tuple[list[Mark], tuple[float, float]]:
     marks, bottom = _status_bar(sheet)
     heading, heading_end = _heading(sheet)
     legend, top = _legend(sheet, heading_end)
-    blank = sheet.model.particles.count == 0 and sheet.view.page is None
-    empty = _empty(sheet, bottom) if blank else []
     caption, top = _caption(sheet, top)
-    return marks + heading + legend + caption + empty, (top, bottom)
+    return marks + heading + legend + caption, (top, bottom)
 
 
 # --- the status bar --------------------------------------------------------------------------------
@@ -48,7 +47,7 @@ def _status_bar(sheet: Sheet) -> tuple[list[Mark], float]:
     """The bar at the bottom, if there is anything to say, and the height that is left above it."""
     v, u, theme, status = sheet.viewport, sheet.unit, sheet.theme, sheet.view.status
     bottom = float(v.bottom)
-    if not (status.state or (status.hint and _shows_hint(sheet))):
+    if not (status.state or status.hint):
         return [], bottom
     top, thin = round(bottom - BAR * u), max(round(u), 1)
     sheet.occupancy.block(v.left, top, v.width, BAR * u)
@@ -81,16 +80,9 @@ def _append(
     return x + width + 18.0 * sheet.unit
 
 
-def _shows_hint(sheet: Sheet) -> bool:
-    """False where the hint stands on the card of an empty model instead."""
-    return sheet.model.particles.count > 0 or sheet.view.page is not None
-
-
 def _append_hint(sheet: Sheet, marks: list[Mark], x: float, y: float) -> None:
     """The next possible steps at the right end, as many as there is room for."""
     v, u, size = sheet.viewport, sheet.unit, sheet.font(12.0)
-    if not _shows_hint(sheet):
-        return
     right = v.right - _EDGE * u
     room, steps = right - x - 6.0 * u, sheet.view.status.hint.split(BETWEEN)
     while len(steps) > 1 and text_width(BETWEEN.join(steps), size) > room:
@@ -424,16 +416,25 @@ def _freest(sheet: Sheet, width: float, room: tuple[float, float]) -> tuple[floa
     first, last = v.left + 8.0 * u, v.right - width - 8.0 * u
     places = [(first, low), ((first + last) / 2, low), (last, low), (first, high), (last, high)]
     places.append((first, max(high - _ROW * u, v.top)))  # beside the last row of the legend
-    return _freest_of(sheet, places, width, height)
+    stays = sheet.placed.get(_SCALE, 0)  # where it was, while that is as free as any
+    best = min(
+        (stays, *(place for place in range(len(places)) if place != stays)),
+        key=lambda place: _hidden(sheet, places[place], width, height),
+    )
+    sheet.scales[_SCALE] = best
+    return places[best]
 
 
 def _freest_of(
     sheet: Sheet, places: list[tuple[float, float]], width: float, height: float
 ) -> tuple[float, float]:
     """Left and top of the first of the places where a box lies on nothing else, if possible, and hides least."""
-    occupancy = sheet.occupancy
-    hides = [(occupancy.is_taken(*at, width, height), occupancy.crossed(*at, width, height)) for at in places]
-    return places[hides.index(min(hides))]
+    return min(places, key=lambda at: _hidden(sheet, at, width, height))
+
+
+def _hidden(sheet: Sheet, at: tuple[float, float], width: float, height: float) -> tuple[bool, int]:
+    """Whether a box lies on something else, and how much it hides."""
+    return sheet.occupancy.is_taken(*at, width, height), sheet.occupancy.crossed(*at, width, height)
 
 
 def _ruler(sheet: Sheet, x: int, y: int, length: int) -> Mark:
@@ -451,41 +452,3 @@ def _displacements(sheet: Sheet) -> list[str]:
     if not _NOISE < largest * sheet.view.camera.scale < sheet.unit:
         return []
     return [f"displacements up to {written.length(largest, 2)}, too small to see; their slider enlarges them"]
-
-
-# --- nothing to see --------------------------------------------------------------------------------
-
-
-def _empty(sheet: Sheet, bottom: float) -> list[Mark]:
-    """A card in the middle that says how to begin."""
-    v, u, theme = sheet.viewport, sheet.unit, sheet.theme
-    title, size = sheet.font(20.0), sheet.font(13.0)
-    steps = [step.split(" ", 1) for step in sheet.view.status.hint.split(BETWEEN) if " " in step]
-    keys = max((text_width(key, size, "semibold") for key, _ in steps), default=0) + 12.0 * u
-    widest = keys + max((text_width(rest, size) for _, rest in steps), default=0)
-    width = min(v.width - 2 * _EDGE * u, max(widest + 64.0 * u, 280.0 * u))
-    emblem = 68.0 * u if v.height >= _SMALL * u else 0.0
-    height = emblem + 62.0 * u + len(steps) * 1.1 * line_height(size)
-    middle, top = v.left + v.width / 2, v.top + (bottom - v.top - height) / 2
-    marks: list[Mark] = [
-        Panel(middle - width / 2, top, width, height, 12.0 * u, theme.background, theme.line),
-        *(_emblem(sheet, middle, top + 24.0 * u) if emblem else []),
-        Text("An empty model", middle, top + emblem + 26.0 * u, title, theme.text, "semibold", "centre"),
-    ]
-    left, y = middle - widest / 2, top + emblem + 58.0 * u
-    for number, (key, rest) in enumerate(steps):
-        at = y + number * 1.1 * line_height(size)
-        marks.append(Text(key, left, at, size, theme.text, "semibold"))
-        marks.append(Text(rest, left + keys, at, size, theme.muted))
-    return marks
-
-
-def _emblem(sheet: Sheet, middle: float, top: float) -> list[Mark]:
-    """Two small triangles of rods."""
-    u, theme = sheet.unit, sheet.theme
-    nodes = np.array([[-36.0, 42.0], [0.0, 42.0], [36.0, 42.0], [-18.0, 6.0], [18.0, 6.0]]) * u + [middle, top]
-    rods = np.array([[0, 1], [1, 2], [0, 3], [3, 1], [1, 4], [4, 2], [3, 4]])
-    return [
-        Strokes(nodes[rods[:, 0]], nodes[rods[:, 1]], 2.0 * u, theme.ghost),
-        Stamps("ring", nodes, 5.0 * u, u, theme.ghost, theme.background),
-    ]

@@ -11,6 +11,7 @@ from components.toolbar import Toolbar
 from components.view import View
 from systems.render.arrows import draw_loads, draw_velocities
 from systems.render.diagrams import draw_particle_diagrams, draw_rod_diagrams
+from systems.render.empty_card import draw_card, shows_card
 from systems.render.free_bodies import draw_free_bodies
 from systems.render.labels import Placed, place_labels
 from systems.render.marks import Picture
@@ -136,6 +137,8 @@ def _composed(sheet: Sheet) -> tuple[Picture, list[ShownPanel]]:
     overlays += readouts
     overlays += draw_notice(sheet, room)
     scale = place_scale(sheet, room) if model.particles.count else None
+    if shows_card(model, sheet.view):
+        overlays += draw_card(sheet.view, theme)
     labels = place_labels(sheet.labels, sheet.occupancy, sheet.unit, sheet.placed)
     over = [
         *draw_scale(sheet, scale),

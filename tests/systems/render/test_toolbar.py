@@ -281,3 +281,20 @@ def test_the_tip_goes_after_a_press_and_comes_back_with_the_pointer() -> None:
         session.update_view()
         toolbar, view = session.stages[-1]
         assert len(compose(toolbar, view, load_theme()).texts) == 2 * tips
+
+
+@pytest.mark.parametrize("key", ["i", "a", "b"])
+def test_what_free_bodies_do_not_show_is_not_lit_and_puts_them_together(key: str) -> None:
+    session = opened("hyperstatic_yield")
+    shown = {"i": "all_diagrams", "a": "utilisation", "b": "shape"}[key]
+    for keys in ((key, "x", key), ("x", key)):
+        for press in keys:
+            session.press(press)
+        assert not session.view.free_bodies
+        assert getattr(session.view, shown)
+        session.press("x")
+        lit = {button.tool.action for button in buttons(session).values() if button.tool.pressed}
+        assert lit == {"toggle free bodies"}
+        session.press("x")
+        while getattr(session.view, shown):
+            session.press(key)
