@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 import numpy as np
+from numpy.typing import ArrayLike
 
+from components.field import Column
 from components.load import CONSTANT
 from components.particle import DEFAULT_MASS
 from components.rod import DEFAULT_STIFFNESS
@@ -51,6 +53,125 @@ def derive_masses(world: World) -> None:
     world.writable("particles.mobility")[...] = mobility
 
 
+def derive_bending(world: World) -> None:
+    """What the ends of each rod feel, by its hinges: coefficients of slopes, all zero where nothing bends.
+
+    A hinge is condensed: its end has no moment, and the shape of the rod is that without axial force.
+    """
+    rods = world.tables["rods"]
+    length, stiffness = rods.rest_length, rods.bending_stiffness
+    rigid: Column = ~rods.hinged & np.stack([stiffness, stiffness], axis=1).astype(bool)
+    both = np.asarray(rigid.all(axis=1))
+    start, end = (rigid & ~both[:, None]).T  # the only rigid end
+
+    def by_ends(of_start: ArrayLike, mixed: ArrayLike, of_end: ArrayLike, alone: ArrayLike) -> Column:
+        alone = np.broadcast_to(alone, len(length))
+        rows = (
+            np.where(both, of_start, np.where(start, alone, 0.0)),
+            np.where(both, mixed, 0.0),
+            np.where(both, of_end, np.where(end, alone, 0.0)),
+        )
+        return np.stack(rows, axis=1)
+
+    per_slope = by_ends(4.0, 2.0, 4.0, 3.0)
+    with np.errstate(over="ignore", invalid="ignore"):  # too large numbers are reported before a run
+        world.writable("rods.end_stiffness")[...] = (stiffness / length)[:, None] * per_slope
+        prescribed = rods.bending_damping
+        like_axis = rods.damping * stiffness / rods.stiffness
+        damping = np.where(np.isnan(prescribed), like_axis, prescribed)
+        world.writable("rods.end_damping")[...] = damping[:, None] * per_slope
+        half = -0.5 * rods.thermal_expansion * rods.temperature_gradient * length
+        world.writable("rods.initial_slopes")[...] = half[:, None] * rigid * [-1.0, 1.0] + 0.0
+        area = by_ends(1.0 / 12.0, 0.0, -1.0 / 12.0, 1.0 / 8.0)[:, ::2] * (length**2)[:, None]
+    area[end, 1] *= -1.0
+    world.writable("rods.load_shares")[...] = area
+    world.writable("rods.bowing")[...] = by_ends(4.0 / 30.0, -1.0 / 30.0, 4.0 / 30.0, 0.2)
+    world.writable("rods.turning_shares")[...] = by_ends(0.5, 0.0, 0.5, 1.0)[:, ::2]
+
+
+def derive_inertia(world: World) -> None:
+    """Rotational inertias, and how rotations follow moments; of particles with rigid rod ends alone.
+
+    ρL₀ min(1.5 EI/EA, L₀²/24) of each rigid end, so that where λ = EA L₀²/EI > 48 bending needs no smaller steps than the
+    axes do: each rod has ω² ≤ 4EA/(mL²) max(1 + 12/λ, 48/λ).
+    """
+    particles, rods = world.tables["particles"], world.tables["rods"]
+    ends, length = rods.between.ravel(), rods.rest_length
+    count = np.bincount(ends, minlength=particles.count)
+    rigid = (rods.turning_shares > 0.0).ravel()
+    with np.errstate(
+        over="ignore", divide="ignore", invalid="ignore"
+    ):  # such numbers are reported before a run
+        radius = np.minimum(1.5 * rods.bending_stiffness / rods.stiffness, length**2 / 24.0)
+        mass = np.repeat(rods.density * length, 2)
+        mass = np.where(mass > 0.0, mass, (2.0 * particles.mass / count)[ends])
+        own = np.bincount(ends, np.where(rigid, mass * np.repeat(radius, 2), 0.0), particles.count)
+        turns = np.bincount(ends, rigid, particles.count) > 0
+        prescribed = particles.prescribed_inertia
+        inertia = world.writable("particles.inertia")
+        inertia[...] = np.where(turns, np.where(np.isnan(prescribed), own, prescribed), 0.0)
+        free = turns & ~particles.fixed_rotation
+        world.writable("particles.turning")[...] = np.where(free, 1000.0 / inertia, 0.0)
+
+
+def derive_diagrams(world: World) -> None:
+    """Axial force, shear and bending moment at both ends of every rod, and the rotations of these, in the present state.
+
+    By statics, with the distributed force per original length. A hinged end turns as far as its moment is zero.
+    """
+    particles, rods = world.tables["particles"], world.tables["rods"]
+    first, second = rods.between.astype(np.intp).T
+    rest = rods.rest_length
+    present = rods.difference + particles.displacement[second] - particles.displacement[first]
+    length = np.hypot(present[:, 0], present[:, 1])
+    along = present / np.where(length > 0.0, length, 1.0)[:, None]
+    left = np.stack([-along[:, 1], along[:, 0]], axis=1)
+    force = rods.distributed_force
+    transverse, tangential = (force * left).sum(axis=1), (force * along).sum(axis=1)
+    chord, rotation = chord_rotation(world), particles.rotation[rods.between]
+    rigid = rods.turning_shares > 0.0
+    slopes = np.where(rigid, rotation - chord[:, None], 0.0)
+    couple = -tangential * (rods.load_shares * slopes).sum(axis=1)
+    moment = rods.end_moment
+    with np.errstate(divide="ignore", invalid="ignore"):
+        shear = np.where(length > 0.0, (moment.sum(axis=1) + couple) / length, 0.0)
+    ahead = np.array([-0.5, 0.5])
+    world.writable("rods.shear")[...] = shear[:, None] + ahead * (transverse * rest)[:, None]
+    world.writable("rods.end_axial_force")[...] = (
+        rods.axial_force[:, None] - ahead * (tangential * rest)[:, None]
+    )
+    world.writable("rods.bending_moment")[...] = moment * [-1.0, 1.0]
+    world.writable("rods.end_rotation")[...] = chord[:, None] + _all_slopes(world, slopes, transverse)
+
+
+def chord_rotation(world: World) -> Column:
+    """How far the chord of every rod has turned (rad), with the full turns that its rigid ends tell; shape (rods,)."""
+    particles, rods = world.tables["particles"], world.tables["rods"]
+    first, second = rods.between.astype(np.intp).T
+    relative = particles.displacement[second] - particles.displacement[first]
+    difference = rods.difference
+    sine = difference[:, 0] * relative[:, 1] - difference[:, 1] * relative[:, 0]
+    chord = np.arctan2(sine, (difference * (difference + relative)).sum(axis=1))
+    mean = (rods.turning_shares * particles.rotation[rods.between]).sum(axis=1)
+    turned: Column = chord + 2.0 * np.pi * np.rint((mean - chord) / (2.0 * np.pi))
+    return turned
+
+
+def _all_slopes(world: World, slopes: Column, transverse: Column) -> Column:
+    """Slopes of both ends of every rod, those at hinges by M = 0 of its cubic and a transverse force (kN/m)."""
+    rods = world.tables["rods"]
+    length, stiffness = rods.rest_length, rods.bending_stiffness
+    rigid, bent = rods.turning_shares > 0.0, stiffness > 0.0
+    by_force = np.divide(transverse * length**3, 48.0 * stiffness, out=np.zeros(len(length)), where=bent)
+    warped = np.where(bent, 0.5 * rods.thermal_expansion * rods.temperature_gradient * length, 0.0)
+    signs = np.array([1.0, -1.0])
+    free = signs * warped[:, None]
+    loaded = signs * by_force[:, None]
+    beyond = (slopes - free)[:, ::-1]  # of the other end
+    hinged = free + np.where(rigid[:, ::-1], loaded - 0.5 * beyond, 2.0 * loaded)
+    return np.where(rigid, slopes, hinged)
+
+
 def derive_limits(world: World) -> None:
     """Strengths with "unlimited" (None or 0) as infinity; a cable goes slack before any compression."""
     for direction, name in (("tension", "tensile"), ("compression", "compressive")):
@@ -61,15 +182,27 @@ def derive_limits(world: World) -> None:
 
 
 def derive_constant_force(world: World) -> None:
-    """Own force, environment's force, mass × accelerations (kN) and constant loads."""
-    particles, loads = world.tables["particles"], world.tables["loads"]
+    """Own force, environment's force, mass × accelerations (kN), constant loads, and distributed forces."""
+    particles, loads, rods = world.tables["particles"], world.tables["loads"], world.tables["rods"]
     environment = world.tables["environment"]
     constant = [row for row, history in enumerate(loads.history) if history["kind"] == CONSTANT["kind"]]
     with np.errstate(over="ignore", invalid="ignore"):  # too large numbers are reported before a run
         acceleration = particles.acceleration + environment.acceleration
         force = particles.force + environment.force + particles.mass[:, None] * acceleration / 1000.0
         np.add.at(force, loads.on[constant], loads.force[constant])
+        if rods.distributed_force.any():
+            half = 0.5 * rods.distributed_force * rods.rest_length[:, None]
+            np.add.at(force, rods.between.ravel(), np.repeat(half, 2, axis=0))
     world.writable("particles.constant_force")[...] = force
+
+
+def derive_constant_moment(world: World) -> None:
+    """Own moment and that of constant loads (kN·m)."""
+    particles, loads = world.tables["particles"], world.tables["loads"]
+    constant = [row for row, history in enumerate(loads.history) if history["kind"] == CONSTANT["kind"]]
+    moment = world.writable("particles.constant_moment")
+    moment[...] = particles.moment
+    np.add.at(moment, loads.on[constant], loads.moment[constant])
 
 
 def derive_displacement_scale(world: World) -> None:
@@ -113,9 +246,62 @@ DERIVATIONS = (
         derive_limits,
     ),
     Derivation(
+        (
+            *("rods.end_stiffness", "rods.end_damping", "rods.initial_slopes", "rods.load_shares"),
+            *("rods.bowing", "rods.turning_shares"),
+        ),
+        (
+            *("rods.bending_stiffness", "rods.stiffness", "rods.rest_length", "rods.hinged"),
+            *("rods.damping", "rods.bending_damping", "rods.thermal_expansion", "rods.temperature_gradient"),
+        ),
+        derive_bending,
+    ),
+    Derivation(
+        ("particles.inertia", "particles.turning"),
+        (
+            *("particles.prescribed_inertia", "particles.fixed_rotation", "particles.mass", "rods.between"),
+            *(
+                "rods.density",
+                "rods.rest_length",
+                "rods.bending_stiffness",
+                "rods.stiffness",
+                "rods.turning_shares",
+            ),
+        ),
+        derive_inertia,
+    ),
+    Derivation(
+        ("rods.end_axial_force", "rods.shear", "rods.bending_moment", "rods.end_rotation"),
+        (
+            *(
+                "particles.displacement",
+                "particles.rotation",
+                "rods.between",
+                "rods.difference",
+                "rods.rest_length",
+            ),
+            *("rods.axial_force", "rods.end_moment", "rods.distributed_force", "rods.turning_shares"),
+            *(
+                "rods.load_shares",
+                "rods.bending_stiffness",
+                "rods.thermal_expansion",
+                "rods.temperature_gradient",
+            ),
+        ),
+        derive_diagrams,
+    ),
+    Derivation(
+        ("particles.constant_moment",),
+        ("particles.moment", "loads.on", "loads.moment", "loads.history"),
+        derive_constant_moment,
+    ),
+    Derivation(
         ("particles.constant_force",),
         (
             "particles.force",
+            "rods.distributed_force",
+            "rods.between",
+            "rods.rest_length",
             "particles.acceleration",
             "particles.mass",
             "environment.force",

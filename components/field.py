@@ -85,7 +85,7 @@ class Field(Generic[T]):
     unit: unit inside the program and in files; `shown` is (unit, factor) on screen, by default the same.
     title: what a person calls it; by default its name with spaces.
     dtype: float, bool, int, str, "reference" (row of another table, stored as uint32) or object.
-    shape: () or (2,).
+    shape: () or (2,); wider where it is computed. axes: what its parts are called.
     default: what an element has that is given none; left out, 0, False, "" or None, as suits the dtype.
     minimum, maximum: inclusive limits; `above`: exclusive lower limit. Numbers that a person makes have limits
         anyway, so that all can be computed with: LARGEST, and SMALLEST where they are above 0.
@@ -107,6 +107,7 @@ class Field(Generic[T]):
     default: Any = ...
     dtype: Any = float
     shape: tuple[int, ...] = ()
+    axes: tuple[str, ...] = ("x", "y")
     role: Role = Role.DOCUMENT
     shown: tuple[str, float] = ("", 0.0)
     minimum: float | None = None
@@ -225,7 +226,8 @@ class Field(Generic[T]):
             return self._check_number(value, where, self.title)
         values = self._components(value, where, "numbers")
         return tuple(
-            self._check_number(v, where, f"{self.title} {axis}") for v, axis in zip(values, "xy", strict=True)
+            self._check_number(v, where, f"{self.title} {axis}")
+            for v, axis in zip(values, self.axes, strict=True)
         )
 
     def _check_number(self, value: Any, where: str, title: str) -> Any:
@@ -279,13 +281,14 @@ class Field(Generic[T]):
         return str(value)  # numpy's texts are of another type
 
     def _components(self, value: Any, where: str, of_what: str) -> list[Any]:
+        parts = f"[{', '.join(self.axes)}]"
         if isinstance(value, str | bytes | Mapping | Set) or not np.iterable(value):
             raise FieldError(
-                f"{where}: {self.title} is {quoted(value)}; it must be a pair of {of_what}, [x, y]."
+                f"{where}: {self.title} is {quoted(value)}; it must be a pair of {of_what}, {parts}."
             )
         values = list(value)
         if len(values) != self.shape[0]:
-            raise FieldError(f"{where}: {self.title} has {len(values)} entries; it must have two, [x, y].")
+            raise FieldError(f"{where}: {self.title} has {len(values)} entries; it must have two, {parts}.")
         return values
 
     # --- checking a whole column at once ------------------------------------------------------------
@@ -348,6 +351,8 @@ class Field(Generic[T]):
             ok |= np.isnan(values)
         return np.asarray(ok.all(axis=1)) if self.shape else ok
 
+
+ENDS = ("start", "end")  # of rods: the parts of what each end has of its own
 
 # Fields that say how a model is drawn, that time makes, and that are computed from others.
 look = partial(Field, role=Role.LOOK)

@@ -128,6 +128,7 @@ class Load(Handle):
         doc="The particle that it acts on: in files its name, in Python its row.",
     )
     force: Field[Vector] = Field("kN", shape=(2,), doc="Force at factor 1.")
+    moment: Field[float] = Field("kN·m", doc="Moment at factor 1, counter-clockwise, on rigid rod ends.")
     history: Field[History] = Field(
         dtype=object, default=CONSTANT, doc="How its factor changes in time.", checker=check_history
     )

@@ -15,7 +15,14 @@ UNKNOWN_SHARE = 1e-3  # of a radius: how well places must be known for impacts
 
 _TABLES = ("particles", "rods", "loads", "environment", "settings")
 _FOLLOWING = ("rest_length", "mass")  # derived, from positions that may be too near or too far
-_MOVING = ("displacement", "velocity", "plastic_strain")  # state that a person can type
+_OF_ROTATIONS = "inertia"  # derived, from bending stiffnesses
+_MOVING = (
+    "displacement",
+    "velocity",
+    "rotation",
+    "angular_velocity",
+    "plastic_strain",
+)  # state that a person can type
 
 
 def incomputable(model: Model) -> str:
@@ -51,12 +58,16 @@ def is_extreme(field: Field[Any], column: Column) -> Column:
     extreme: Column = (size > LARGEST) & np.isfinite(size)
     if field.above == 0.0 or field.name in _FOLLOWING:
         extreme |= size < SMALLEST
+    if field.name == _OF_ROTATIONS:
+        extreme |= (size < SMALLEST) & (size > 0.0)  # 0: it does not turn
     return extreme
 
 
 def is_computed_with(field: Field[Any]) -> bool:
     """True if the numbers of a Field are checked: those that a person made or can type, and some that follow."""
-    return field.dtype is float and (field.role is Role.DOCUMENT or field.name in (*_FOLLOWING, *_MOVING))
+    return field.dtype is float and (
+        field.role is Role.DOCUMENT or field.name in (*_FOLLOWING, *_MOVING, _OF_ROTATIONS)
+    )
 
 
 def _sentence(element: str, field: Field[float], value: float) -> str:

@@ -27,13 +27,23 @@ class Particle(Handle):
     )
     displacement: Field[Vector] = state("m", shape=(2,), doc="Present minus original position.", shown=CM)
     velocity: Field[Vector] = state("m/s", shape=(2,), doc="Zero in a constrained direction.")
+    rotation: Field[float] = state(
+        "rad", doc="Of its rigid rod ends, counter-clockwise; it is not wrapped. 0 where there are none."
+    )
+    angular_velocity: Field[float] = state("rad/s", doc="Of the rotation; zero where that is held.")
     asleep: Field[bool] = state(
         dtype=bool, doc="At rest with its island, which time passes by until something reaches it."
     )
     fixed: Field[tuple[bool, bool]] = Field(
         dtype=bool, shape=(2,), title="constrained", doc="Held by a support in x, in y."
     )
+    fixed_rotation: Field[bool] = Field(
+        dtype=bool, title="rotation constrained", doc="Clamped: its rigid rod ends keep their rotation."
+    )
     force: Field[Vector] = Field("kN", shape=(2,), title="applied force", doc="Constant force on it.")
+    moment: Field[float] = Field(
+        "kN·m", title="applied moment", doc="Constant moment on its rigid rod ends, counter-clockwise."
+    )
     acceleration: Field[Vector] = Field(
         "m/s²", shape=(2,), title="applied acceleration", doc="Adds mass × acceleration to its force."
     )
@@ -48,6 +58,16 @@ class Particle(Handle):
         doc="Of its own; automatic: half the mass of each attached rod, 1 kg without rods.",
         overrides="mass",
     )
+    prescribed_inertia: Field[float | None] = Field(
+        "kg·m²",
+        default=None,
+        nullable=True,
+        above=0.0,
+        title="rotational inertia",
+        key="inertia",
+        doc="Of its own; automatic: so much of each rigid rod end's that no smaller steps are needed.",
+        overrides="inertia",
+    )
     mass: Field[float] = derived(
         "kg",
         default=DEFAULT_MASS,
@@ -57,16 +77,36 @@ class Particle(Handle):
     mobility: Field[Vector] = derived(
         "m/s²/kN", shape=(2,), doc="Acceleration per force in each direction: 1000/mass, 0 where constrained."
     )
+    inertia: Field[float] = derived(
+        "kg·m²",
+        title="rotational inertia",
+        doc="Prescribed, or ρL₀ min(1.5 EI/EA, L₀²/24) of every rigid rod end; 0 where there are none.",
+        overridden_by="prescribed_inertia",
+    )
+    turning: Field[float] = derived(
+        "rad/s²/(kN·m)",
+        doc="Angular acceleration per moment: 1000/inertia, 0 where it is clamped or has no rigid ends.",
+    )
     constant_force: Field[Vector] = derived(
         "kN",
         shape=(2,),
         doc="All external force that time does not change: own, environment's, mass × accelerations, loads.",
+    )
+    constant_moment: Field[float] = derived(
+        "kN·m", doc="All external moment that time does not change: own and of loads."
     )
     applied_force: Field[Vector] = derived(
         "kN", shape=(2,), title="external force", doc="All external force now, without reactions."
     )
     reaction: Field[Vector] = derived(
         "kN", shape=(2,), doc="The support's force on it in constrained directions, 0 elsewhere."
+    )
+
+    applied_moment: Field[float] = derived(
+        "kN·m", title="external moment", doc="All external moment now, without reactions."
+    )
+    reaction_moment: Field[float] = derived(
+        "kN·m", doc="The clamp's moment on it, counter-clockwise; 0 where it can turn."
     )
 
     @classmethod
@@ -79,6 +119,13 @@ class Particle(Handle):
         elif "fixed" in changed:
             stopped = np.where(table.fixed[rows], 0.0, table.velocity[rows])
             table.world.assign([table[row] for row in rows.tolist()], "velocity", stopped)
+        if "angular_velocity" in changed:
+            turning = table.fixed_rotation[rows] & (table.angular_velocity[rows] != 0.0)
+            for row in rows[turning][:1].tolist():
+                check_spin(table.world.describe(table[row]), table[row].angular_velocity)
+        elif "fixed_rotation" in changed:
+            stopped = np.where(table.fixed_rotation[rows], 0.0, table.angular_velocity[rows])
+            table.world.assign([table[row] for row in rows.tolist()], "angular_velocity", stopped)
         if "position" in changed:
             _check_rods(table, rows)
 
@@ -91,6 +138,14 @@ def check_velocities(where: str, fixed: tuple[bool, bool], velocity: Vector) -> 
                 f"{where}: velocity {axis} is {speed:g} m/s but it is constrained in {axis};"
                 f" set it to 0 or free the direction."
             )
+
+
+def check_spin(where: str, angular_velocity: float) -> None:
+    """Raise FieldError for the angular velocity of a clamped particle."""
+    raise FieldError(
+        f"{where}: angular velocity is {angular_velocity:g} rad/s but its rotation is constrained;"
+        " set it to 0 or free the rotation."
+    )
 
 
 def _check_rods(table: Table[Any], rows: NDArray[np.intp]) -> None:

@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from components.field import CM, Field, FieldError, derived, state
+from components.field import CM, ENDS, Field, FieldError, Vector, derived, state
 from components.handle import Handle
 from components.particle import Particle, rods_without_length
 from components.table import Table, flags
@@ -106,6 +106,31 @@ class Rod(Handle):
         dtype=bool,
         doc="A cable: slack, without force, where its ends are nearer than its length without force.",
     )
+    bending_stiffness: Field[float] = Field(
+        "kN·m²", minimum=0.0, doc="EI: moment per unit of curvature; 0: a bar, pinned at both ends."
+    )
+    hinged: Field[tuple[bool, bool]] = Field(
+        dtype=bool,
+        shape=(2,),
+        axes=ENDS,
+        doc="Ends that turn freely; the others are rigidly joined. Without bending stiffness both do.",
+    )
+    distributed_force: Field[Vector] = Field(
+        "kN/m",
+        shape=(2,),
+        doc="Force per length that it had originally, all along it; its direction stays.",
+    )
+    temperature_gradient: Field[float] = Field(
+        "K/m",
+        doc="How much warmer it is per metre across, towards its left, seen from start to end; added.",
+    )
+    bending_damping: Field[float | None] = Field(
+        "kN·m·s",
+        default=None,
+        nullable=True,
+        minimum=0.0,
+        doc="c of end moments c [4 2; 2 4] × rates of the slopes; automatic: damping × EI/EA.",
+    )
     plastic_strain: Field[float] = state(doc="Permanent part of the strain.")
     yielded_at: Field[float | None] = state(
         "s", default=None, nullable=True, absent="not yet", doc="When the run first brought it to a strength."
@@ -135,11 +160,58 @@ class Rod(Handle):
         doc="Original length − rest length × (1 + thermal strain): its elongation where it was drawn.",
         shown=CM,
     )
+    end_stiffness: Field[tuple[float, float, float]] = derived(
+        "kN·m",
+        shape=(3,),
+        axes=("ss", "se", "ee"),
+        doc="End moments per slope: EI/L₀ (4, 2, 4), with one hinge 3 EI/L₀ at the other end.",
+    )
+    end_damping: Field[tuple[float, float, float]] = derived(
+        "kN·m·s", shape=(3,), axes=("ss", "se", "ee"), doc="End moments per rate of slope, likewise."
+    )
+    bowing: Field[tuple[float, float, float]] = derived(
+        shape=(3,),
+        axes=("ss", "se", "ee"),
+        doc="Twice the strain of the axis per slopes: its share of bending.",
+    )
+    turning_shares: Field[Vector] = derived(
+        shape=(2,), axes=ENDS, doc="Of the ends in its mean rotation, by which full turns are told."
+    )
+    initial_slopes: Field[Vector] = derived(
+        "rad",
+        shape=(2,),
+        axes=ENDS,
+        doc="Of its ends, to its chord, without moments: by its temperature gradient.",
+    )
+    load_shares: Field[Vector] = derived(
+        "m²",
+        shape=(2,),
+        axes=ENDS,
+        doc="What a slope of its ends adds to the area below its axis: (L₀², −L₀²)/12.",
+    )
     tension_limit: Field[float] = derived("kN", doc="Tensile strength; infinite if unlimited.")
     compression_limit: Field[float] = derived("kN", doc="Compressive strength; infinite if unlimited.")
     axial_force: Field[float] = derived("kN", doc="Without the damper's; tension positive.")
     length: Field[float] = derived("m", doc="Present distance between the ends.", shown=CM)
     strain: Field[float] = derived(doc="Elongation / rest length, without thermal expansion.")
+    end_moment: Field[Vector] = derived(
+        "kN·m", shape=(2,), axes=ENDS, doc="Moments on its ends, counter-clockwise, without those of dampers."
+    )
+    end_axial_force: Field[Vector] = derived(
+        "kN", shape=(2,), axes=ENDS, doc="Axial force at its ends; the axial force is their mean."
+    )
+    shear: Field[Vector] = derived(
+        "kN",
+        shape=(2,),
+        axes=ENDS,
+        doc="At its ends: force of what is before a cut on what is beyond, to the left.",
+    )
+    bending_moment: Field[Vector] = derived(
+        "kN·m", shape=(2,), axes=ENDS, doc="At its ends; positive: the side on its right is in tension."
+    )
+    end_rotation: Field[Vector] = derived(
+        "rad", shape=(2,), axes=ENDS, doc="Of its ends, counter-clockwise, also where they are hinged."
+    )
     yielding: Field[bool] = derived(dtype=bool, doc="Axial force is at a strength.")
 
     @property
@@ -196,6 +268,23 @@ def _check_ends(table: Table[Any], rows: NDArray[np.intp]) -> None:
 def is_warm(world: World) -> bool:
     """True if the temperature of some rod has changed."""
     return bool(world.tables["rods"].temperature_change.any())
+
+
+def bends(world: World) -> bool:
+    """True if some rod has bending stiffness, and an end that is not hinged."""
+    rods = world.tables["rods"]
+    return bool(rods.turning_shares.any())
+
+
+def is_curved(world: World) -> bool:
+    """True if some rod that bends is warmer on one side."""
+    return bool(world.tables["rods"].initial_slopes.any())
+
+
+def bears_between(world: World) -> bool:
+    """True if a distributed force acts on some rod that bends."""
+    rods = world.tables["rods"]
+    return bool((rods.load_shares.any(axis=1) & rods.distributed_force.any(axis=1)).any())
 
 
 def nodes(world: World) -> NDArray[np.bool_]:

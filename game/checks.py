@@ -22,6 +22,7 @@ from systems.base import Commit, Integrator, Law, StepSystem, StopReason, System
 from systems.catalogue import all_systems
 from systems.physics.integrators import INTEGRATORS, register_integrator, remove_integrator
 from systems.program.binding import ProgramError, bind
+from systems.program.program import MOTION, TURNING
 from systems.program.reference_laws import KernelRows
 from systems.run.simulation import Simulation
 from systems.schedule import Schedule, ScheduleError
@@ -179,7 +180,7 @@ def _check_steps(system: Callable[[], System], source: Source) -> float:
     first = _run(made, source, backwards=False)
     before, after = columns_of(_model(source)), columns_of(first)
     beside = (other for other in _all_with(made) if isinstance(other, StepSystem))
-    allowed = {"particles.displacement", "particles.velocity", "particles.asleep", "clock", *made.adds}
+    allowed = {*MOTION, *TURNING, "particles.asleep", "clock", *made.adds}
     allowed |= {column for other in beside for column in other.writes}
     if isinstance(made, Integrator):
         allowed.add("settings.integrator")

@@ -15,7 +15,7 @@ from typing import Any, Protocol
 
 import msgspec
 
-from components.field import SAVED, Field, FieldError, Role
+from components.field import ENDS, SAVED, Field, FieldError, Role
 from components.handle import Handle
 from components.mistake import Mistake
 from components.model import Model
@@ -51,7 +51,7 @@ class Target:
     """The target of a path: one fact of elements of a table, or its component along an axis.
 
     handles: the elements; element: their name in the path, "*" for all, "" in a table with a single element.
-    key: the name of the fact in the path. axis: "x", "y" or "" for the whole.
+    key: the name of the fact in the path. axis: the part of it that is meant, such as "x", or "" for the whole.
     """
 
     table: Table[Any]
@@ -67,7 +67,7 @@ class Target:
 
     def part(self, value: Any) -> Any:
         """The component of a value that the path names; the whole value if the path has no axis."""
-        return value["xy".index(self.axis)] if self.axis else value
+        return value[self.field.axes.index(self.axis)] if self.axis else value
 
 
 Keys = Callable[[Table[Any]], Mapping[str, Field[Any]]]  # the facts of a table that may be named, by key
@@ -100,10 +100,15 @@ def locate(model: Model, text: str, keys: Keys) -> tuple[Target, str]:
     if keys is settable:
         _refuse_unsettable(table, key, known)
     field = known[_known(key, known, "key")]
-    if axis and (not field.shape or axis not in ("x", "y")):
-        parts = f"{key}.x or {key}.y" if field.shape else f"{key} only"
+    if axis and (not field.shape or axis not in field.axes):
+        parts = _parts(key, field) if field.shape else f"{key} only"
         raise PathError(f"{field.title} has no part '{cut(axis)}'; write {parts}.")
     return Target(table, handles, element, field, key, axis), rest[len(path) :]
+
+
+def _parts(key: str, field: Field[Any]) -> str:
+    """The paths of the parts of a fact, as a choice."""
+    return " or ".join(f"{key}.{axis}" for axis in field.axes)
 
 
 def locate_one(model: Model, path: str, keys: Keys = readable) -> Target:
@@ -157,7 +162,7 @@ def _before_value(rest: str) -> str:
 
 def _refuse_name(table: Table[Any], rest: str) -> None:
     parts = _before_value(rest).split(".")
-    name = ".".join(parts[: -2 if parts[-1] in ("x", "y") else -1])
+    name = ".".join(parts[: -2 if parts[-1] in ("x", "y", *ENDS) else -1])
     if not name:
         raise PathError(
             f"it names no {table.kind.noun}; write {table.name}.NAME.{rest or 'KEY'}, or {EVERY} for every name."
@@ -204,7 +209,8 @@ def _values(target: Target, text: str) -> list[Any]:
     if not target.axis:
         return [new] * len(target.handles)
     old = [getattr(handle, target.field.name) for handle in target.handles]
-    return [(new, y) if target.axis == "x" else (x, new) for x, y in old]
+    place = target.field.axes.index(target.axis)
+    return [(*value[:place], new, *value[place + 1 :]) for value in old]
 
 
 def _vector(field: Field[Any], text: str) -> tuple[Any, ...]:
@@ -272,7 +278,7 @@ def quantity(model: Model, path: str) -> Quantity:
         raise PathError(f"There is no quantity '{cut(path)}'; {QUANTITY_FORM}.")
     target = locate_one(model, path, _numbers)
     if target.field.shape and not target.axis:
-        raise PathError(f"{path}: write {target.key}.x or {target.key}.y.")
+        raise PathError(f"{path}: write {_parts(target.key, target.field)}.")
     return _of_element(path, target)
 
 

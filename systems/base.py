@@ -160,13 +160,18 @@ class Law(StepSystem):
     each = "pairs": maps what two particles have that are nearer to each other than `cutoff` to the force (x, y) on the
         first; the second gets the opposite one. Provided are `apart` (m, from the first to the second) and `drift`
         (m/s, its rate); columns of the particles come as pairs, of the first and of the second.
+    each = "ends": maps the slopes of a rod's ends to its chord (`slope_start`, `slope_end`, rad) to the moments on its
+        ends (M_start, M_end), counter-clockwise. Provided is also `axial_force`, which adds moments by the bow of the axis
+        by itself. Laws with `rate_start` or `rate_end` (rad/s, of the slopes) add up beside the others.
+    each = "rotations": maps one particle's values to a moment that resists its turning.
     each = "loads": `factor(time, values, first)`; `arrays` gives `<name>_on`, `_force`, `_values`, `_first`.
     account: where the energy goes that the law's force takes from the motion; of a law that takes `axial_force`, the
         difference that it makes.
     elastic: a law of rods that stores this energy instead: N²L₀/2EA of its result is the elastic energy.
     branch, margin: of a law of rods, like a commit's.
     potential: of a law of pairs: a kernel that maps `apart` and columns to the energy (kN·m) of which the force is the
-        negative gradient. The work of the force is then exact to round-off; else it is summed up step by step.
+        negative gradient. The work of the force is then exact to round-off; else it is summed up step by step. Likewise
+        of a law of ends: a kernel that maps the slopes to the energy stored.
     """
 
     each: ClassVar[str] = "rods"
@@ -246,7 +251,10 @@ class Integrator(StepSystem):
     """
 
     reads: ClassVar[tuple[str, ...]] = ("particles.mobility",)
-    writes: ClassVar[tuple[str, ...]] = ("particles.displacement", "particles.velocity", "clock.time")
+    writes: ClassVar[tuple[str, ...]] = (
+        *("particles.displacement", "particles.velocity", "particles.rotation", "particles.angular_velocity"),
+        "clock.time",
+    )
     order: ClassVar[int] = 0
     entry: ClassVar[str] = "systems.program.templates.fixed_steps:advance"
     begins: ClassVar[str] = ""

@@ -10,10 +10,14 @@ from systems.loads.system import varying_loads
 from systems.physics.system import (
     AxialDamping,
     AxialDampingOfCables,
+    Bending,
+    BendingDamping,
+    BendingOfWarped,
     Drag,
     Elasticity,
     ElasticityAfterYielding,
     Slackness,
+    TurningDrag,
 )
 from systems.plasticity.system import FirstYield, Strength, Yielding
 
@@ -28,7 +32,11 @@ def step_systems() -> list[StepSystem]:
         AxialDamping(),
         AxialDampingOfCables(),
         Slackness(),
+        Bending(),
+        BendingOfWarped(),
+        BendingDamping(),
         Drag(),
+        TurningDrag(),
         Strength(),
         Yielding(),
         FirstYield(),

@@ -18,7 +18,7 @@ def islands(model: Model) -> Rows:
     Particles are on one island if a chain of rods joins them; no chain goes through a particle that is held in
     both directions, since it passes no motion on.
     """
-    moves = np.asarray((model.particles.mobility > 0.0).any(axis=1))
+    moves = np.asarray((model.particles.mobility > 0.0).any(axis=1) | (model.particles.turning > 0.0))
     between = model.rods.between.astype(np.intp)
     root = lowest_joined(len(moves), between[moves[between].all(axis=1)])
     found = np.full(len(moves), IMMOVABLE, dtype=np.intp)

@@ -23,7 +23,7 @@ from components.handle import Handle
 from components.load import Load
 from components.mistake import Mistake
 from components.model import ADDED, Model
-from components.particle import Particle, check_velocities
+from components.particle import Particle, check_spin, check_velocities
 from components.rod import Rod
 from components.settings import Settings
 from components.slider import Slider
@@ -344,6 +344,9 @@ def _check_particles(model: Model, section: _Section, columns: Columns) -> None:
     fixed, velocity = columns["fixed"], columns["velocity"]
     for row in np.flatnonzero((fixed & (velocity != 0.0)).any(axis=1))[:1].tolist():
         check_velocities(section.where(row, "velocity"), fixed[row].tolist(), velocity[row].tolist())
+    spin = columns["angular_velocity"]
+    for row in np.flatnonzero(columns["fixed_rotation"] & (spin != 0.0))[:1].tolist():
+        check_spin(section.where(row, "angular_velocity"), spin[row])
 
 
 def _check_rods(model: Model, section: _Section, columns: Columns) -> None:

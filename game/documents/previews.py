@@ -11,6 +11,7 @@ from typing import Any
 import numpy as np
 
 from components.model import Model
+from components.rod import bends
 from game.documents import models
 
 LARGEST_SOLVED = 60  # rods, up to which a structure that never moved is solved for its picture
@@ -22,7 +23,7 @@ def preview(source: str | Path) -> Model:
     if isinstance(source, str):
         return _example(source)
     model = models.load(source)
-    if has_moved(model) and model.rods.count <= LARGEST_SHOWN:
+    if has_moved(model) and model.rods.count <= LARGEST_SHOWN and not bends(model):  # statics knows bars
         # Here only, since most pictures do without.
         from systems.statics.equations import Structure
 
@@ -37,7 +38,7 @@ def solved(path: Path) -> Model | None:
     from systems.statics.theory import linear  # scipy
 
     model = models.load(path)
-    if has_moved(model) or not 0 < model.rods.count <= LARGEST_SOLVED:
+    if has_moved(model) or not 0 < model.rods.count <= LARGEST_SOLVED or bends(model):
         return None
     try:
         model.writable("rods.axial_force")[...] = linear(model).axial_force

@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from components.field import Column, FieldError
+from components.rod import bends
 from components.settings import AUTOMATIC
 from game.commands.reports.results import reported
 from game.documents.document import ModelError
@@ -27,7 +28,10 @@ from systems.run.policy import at_rest_since, energy_is_off
 
 MOST_NUMBERS = 2_000_000  # in the largest array of a batch: of stiffness, rods × directions of particles
 # What makes another model of it, or lets its parts rest by themselves.
-_ALONE = ("particles.name", "particles.fixed", "rods.name", "loads.name", "settings.sleeping")
+_ALONE = (
+    *("particles.name", "particles.fixed", "rods.name", "loads.name", "settings.sleeping"),
+    *("rods.bending_stiffness", "rods.hinged"),  # models that bend are computed one by one
+)
 _REPORTED = ("particles", "rods")
 
 
@@ -56,6 +60,7 @@ class Batches:
         return (
             plan.analysis.load_factors is None
             and 0 < model.rods.count <= SMALL
+            and not bends(model)
             and model.clock.step_size == 0.0  # it has not begun
             and len(placed) <= 1  # two could meet on the way, which is refused
             and all(type(system).__module__.startswith("systems.") for system in self._runner.step_systems)
@@ -115,7 +120,9 @@ class Batches:
         stored = np.array([target.field.stored(value) for value in values], dtype=column.dtype)
         rows = slice(None) if target.element == EVERY else target.handles[0].row
         if target.axis:
-            column[:, rows, "xy".index(target.axis)] = stored[:, None] if target.element == EVERY else stored
+            column[:, rows, target.field.axes.index(target.axis)] = (
+                stored[:, None] if target.element == EVERY else stored
+            )
         else:
             column[:, rows] = stored.reshape(-1, *(1,) * (column[:, rows].ndim - 1))
 
@@ -207,7 +214,7 @@ def _finite(batch: Batch, energy: dict[str, Any], residual: Column) -> NDArray[n
     """Which blocks have a state that can be reported."""
     columns = [residual, *(energy[name] for name in ENERGIES)]
     for table in _REPORTED:
-        for field in reported(table):
+        for field in reported(batch.model.as_model(), table):
             column = batch.model[f"{table}.{field.name}"]
             columns.append(np.where(np.isnan(column), 0.0, column) if field.nullable else column)
     finite = np.ones(batch.model.variants, dtype=bool)

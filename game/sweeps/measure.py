@@ -5,7 +5,7 @@ from __future__ import annotations
 import re
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
-from functools import reduce
+from functools import partial, reduce
 from operator import getitem
 from typing import Any
 
@@ -67,7 +67,7 @@ def _read(model: Model, path: str) -> list[Measure]:
     try:
         if section == "energy":
             return [Measure(path, ("energy", energy_named(rest)), f"{rest.replace('_', ' ')} energy", "J")]
-        target, rest = locate(model, path, _reported)
+        target, rest = locate(model, path, partial(_reported, model))
         if rest:
             raise PathError(f"'{rest}' follows the quantity; {_FORM}.")
     except PathError as error:
@@ -76,14 +76,14 @@ def _read(model: Model, path: str) -> list[Measure]:
     return [
         Measure(
             column=f"{section}.{element}.{target.key}" + (f".{axis}" if axis else ""),
-            keys=(section, element, target.field.name, *(["xy".index(axis)] if axis else [])),
+            keys=(section, element, target.field.name, *([target.field.axes.index(axis)] if axis else [])),
             title=" ".join([target.field.title, *([axis] if axis else []), "of", element]),
             unit=target.field.unit,
         )
         for element in elements
-        for axis in (target.axis or "xy" if target.field.shape else ("",))
+        for axis in ([target.axis] if target.axis or not target.field.shape else target.field.axes)
     ]
 
 
-def _reported(table: Table[Any]) -> Mapping[str, Field[Any]]:
-    return {field.name: field for field in reported(table.name)} if table.name in _TABLES else {}
+def _reported(model: Model, table: Table[Any]) -> Mapping[str, Field[Any]]:
+    return {field.name: field for field in reported(model, table.name)} if table.name in _TABLES else {}

@@ -29,6 +29,11 @@ _OF_RODS = ("diagram_scale", "plasticity", "sleeping")  # settings that concern 
 _DECIDED = (Particle.asleep, Rod.yielded_at)  # by the run
 CROSS_SECTION = "Cross-section"
 _OF_SECTION = (Rod.youngs_modulus, Rod.area)  # which may give the stiffness instead of a person
+OF_BENDING = (  # set by files, scripts and --set
+    *(Particle.rotation, Particle.angular_velocity, Particle.fixed_rotation, Particle.moment),
+    *(Particle.prescribed_inertia, Rod.bending_stiffness, Rod.hinged, Rod.distributed_force),
+    *(Rod.temperature_gradient, Rod.bending_damping, Load.moment),
+)
 _NUMBERS = (float, int)
 _EDITABLE = (*_NUMBERS, bool, str)
 
@@ -93,7 +98,7 @@ def _subject(model: Model, section: str, elements: Sequence[Handle]) -> Subject:
     kind = type(elements[0])
     fields = model.tables[kind.table].fields_in(*SAVED)
     wanted = [field for field in fields if field.dtype in _EDITABLE or field is Load.history]
-    wanted = [field for field in wanted if field not in (*_DECIDED, *_OF_SECTION)]
+    wanted = [field for field in wanted if field not in (*_DECIDED, *_OF_SECTION, *OF_BENDING)]
     if len(elements) > 1:
         wanted = [field for field in wanted if field.name != "name"]
     rows = model.row_of_entity[[element.entity for element in elements]].astype(np.intp)

@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 
 from components.load import CONSTANT, HISTORIES, HistoryKind, flattened
 from components.model import Model
+from components.rod import bends
 from systems.base import Law
 
 
@@ -47,6 +48,7 @@ class VaryingLoads(Law):
             first.append(begun[id(history)])
         prefix = self.name.replace(".", "_")
         return {
+            **({f"{prefix}_moment": np.ascontiguousarray(model.loads.moment[rows])} if bends(model) else {}),
             f"{prefix}_on": np.ascontiguousarray(model.loads.on[rows]),
             f"{prefix}_force": np.ascontiguousarray(model.loads.force[rows]),
             f"{prefix}_values": np.array(values, dtype=np.float64),

@@ -9,8 +9,10 @@ import numpy as np
 from components.load import loads_end
 from components.model import Model
 from components.numeric_range import incomputable
+from components.rod import bends
+from systems.physics.bending import deformations, free_coordinates
 from systems.physics.pace import loaded_mode
-from systems.physics.spectrum import Array, RodOperator
+from systems.physics.spectrum import Array, FrameOperator, RodOperator
 
 SMALL = 200  # rods up to which the modes of a model are found in no time, and steps cost next to nothing
 AFFORDABLE = 5000  # rods up to which error control keeps up with a person's eye
@@ -42,10 +44,10 @@ def suited_to(stiffness: float) -> str:
 def _stiffness(model: Model) -> float:
     """As `stiffnesses`, of a model that is too large for all its modes; by the one that the loads excite."""
     rods, particles = model.rods, model.particles
-    if not (particles.mobility > 0.0).any():
+    if not free_coordinates(model).any():
         return 0.0
-    fastest = math.sqrt(RodOperator(model, rods.stiffness / rods.rest_length).gershgorin()[0])
-    fastest = max(fastest, RodOperator(model, rods.damping).gershgorin()[0] + model.environment.drag)
+    fastest = math.sqrt(_operator(model).gershgorin()[0])
+    fastest = max(fastest, _damping_operator(model).gershgorin()[0] + model.environment.drag)
     mode = loaded_mode(model)
     if mode is None:  # a mechanism
         pull = float(np.hypot(*(particles.constant_force * particles.mobility).T).max())
@@ -66,15 +68,44 @@ def stiffnesses(model: Model, drag: Array) -> Array:
     (1/s), one for each block.
     """
     rods, blocks = model.rods, len(drag)
-    if rods.count == 0 or not (model.particles.mobility > 0.0).any():
+    if rods.count == 0 or not free_coordinates(model).any():
         return np.zeros(blocks)
-    eigenvalues = np.asarray(np.linalg.eigvalsh(_scaled_stiffness(model, blocks)), dtype=np.float64)
+    matrices = _of_frame(model) if bends(model) else _scaled_stiffness(model, blocks)
+    eigenvalues = np.asarray(np.linalg.eigvalsh(matrices), dtype=np.float64)
     highest = np.maximum(eigenvalues[:, -1], 0.0)
-    dampers = RodOperator(model, rods.damping).gershgorin(blocks) + drag
+    dampers = _damping_operator(model).gershgorin(blocks) + drag
     fastest = np.maximum(np.sqrt(highest), dampers)
     with np.errstate(divide="ignore", invalid="ignore"):
         found: Array = np.where(highest > 0.0, fastest * _slowest(model, eigenvalues, drag), 0.0)
     return found
+
+
+def _operator(model: Model) -> RodOperator:
+    """The operator of the stiffness of rods without forces."""
+    rods = model.rods
+    along = rods.stiffness / rods.rest_length
+    return FrameOperator(model, along, rods.end_stiffness) if bends(model) else RodOperator(model, along)
+
+
+def _damping_operator(model: Model) -> RodOperator:
+    rods = model.rods
+    return (
+        FrameOperator(model, rods.damping, rods.end_damping)
+        if bends(model)
+        else RodOperator(model, rods.damping)
+    )
+
+
+def _of_frame(model: Model) -> Array:
+    """_scaled_stiffness of a model that bends, which is one block; rotations count by their inertias."""
+    entries, rows, columns, stiffness, _ = deformations(model)
+    free = free_coordinates(model)
+    mobility = np.column_stack([model.particles.mobility, model.particles.turning])
+    scaled = np.zeros((len(stiffness), free.size))
+    scaled[rows, columns] = entries
+    scaled = (scaled * np.sqrt(mobility).ravel())[:, free.ravel()]
+    matrices: Array = (scaled.T @ (scaled * stiffness[:, None]))[None]
+    return matrices
 
 
 def _slowest(model: Model, eigenvalues: Array, drag: Array) -> Array:

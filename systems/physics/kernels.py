@@ -68,6 +68,49 @@ def slack_margin(branch, elongation, rods_rest_length, rods_plastic_strain, rods
 
 
 @compiled
+def bending(slope_start, slope_end, rods_end_stiffness):
+    """End moments of a rod K φ, K by its hinges."""
+    start, mixed, end = rods_end_stiffness
+    return start * slope_start + mixed * slope_end, mixed * slope_start + end * slope_end
+
+
+@compiled
+def bending_energy(slope_start, slope_end, rods_end_stiffness):
+    """½ φᵀ K φ (kN·m)."""
+    start, mixed, end = rods_end_stiffness
+    return (
+        0.5 * (start * slope_start * slope_start + end * slope_end * slope_end)
+        + mixed * slope_start * slope_end
+    )
+
+
+@compiled
+def warped(slope_start, slope_end, rods_end_stiffness, rods_initial_slopes):
+    """K (φ − φ⁰) of a rod that is warmer on one side."""
+    return bending(slope_start - rods_initial_slopes[0], slope_end - rods_initial_slopes[1], rods_end_stiffness)
+
+
+@compiled
+def warped_energy(slope_start, slope_end, rods_end_stiffness, rods_initial_slopes):
+    """½ (φ − φ⁰)ᵀ K (φ − φ⁰) (kN·m)."""
+    start, end = slope_start - rods_initial_slopes[0], slope_end - rods_initial_slopes[1]
+    return bending_energy(start, end, rods_end_stiffness)
+
+
+@compiled
+def bending_damper(rate_start, rate_end, rods_end_damping):
+    """End moments of a rod by the rates of its slopes."""
+    start, mixed, end = rods_end_damping
+    return start * rate_start + mixed * rate_end, mixed * rate_start + end * rate_end
+
+
+@compiled
+def turning_drag(particles_inertia, particles_angular_velocity, environment_drag):
+    """−drag × J × ω, in kN·m."""
+    return -0.001 * environment_drag * particles_inertia * particles_angular_velocity
+
+
+@compiled
 def drag(particles_mass, particles_velocity, environment_drag):
     """−drag × m × v, in kN."""
     factor = -0.001 * environment_drag * particles_mass

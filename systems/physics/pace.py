@@ -10,7 +10,9 @@ from numpy.typing import NDArray
 from components.load import loads_end
 from components.model import Model
 from components.numeric_range import incomputable
+from components.rod import bends
 from components.round_numbers import round_near
+from systems.physics.bending import deformations, free_coordinates
 
 Array = NDArray[np.float64]
 
@@ -56,11 +58,13 @@ def loaded_mode(model: Model) -> tuple[float, float] | None:
 
     ω² = uᵀKu / uᵀMu, 2ζω = uᵀCu / uᵀMu. None if the loads move the model as a mechanism, or without rods.
     """
-    if model.rods.count == 0 or not (model.particles.mobility > 0.0).any():
+    if model.rods.count == 0 or not free_coordinates(model).any():
         return None
     displacement = _static_displacement(model, _exciting_forces(model))
     if displacement is None:
         return None
+    if bends(model):
+        return _mode_of_frame(model, displacement)
     rods = model.rods
     ends, axis = _ends_and_axes(model)
     elongation = ((displacement[ends[:, 1]] - displacement[ends[:, 0]]) * axis).sum(axis=1)
@@ -70,6 +74,20 @@ def loaded_mode(model: Model) -> tuple[float, float] | None:
     frequency = math.sqrt(float((rods.stiffness / rods.rest_length * elongation**2).sum()) / inertia)
     damping = float((rods.damping * elongation**2).sum()) / inertia + model.environment.drag
     return (frequency, damping) if frequency > 0.0 else None
+
+
+def _mode_of_frame(model: Model, displacement: Array) -> tuple[float, float] | None:
+    """loaded_mode of a model that bends. displacement: with rotations, (n, 3)."""
+    entries, rows, columns, stiffness, damping = deformations(model)
+    moved = np.bincount(rows, entries * displacement.ravel()[columns], len(stiffness))
+    particles = model.particles
+    inertia = float((particles.mass[:, None] * displacement[:, :2] ** 2).sum())
+    inertia = (inertia + float((particles.inertia * displacement[:, 2] ** 2).sum())) / 1000.0
+    if inertia == 0.0:
+        return None
+    frequency = math.sqrt(float((stiffness * moved**2).sum()) / inertia)
+    damped = float((damping * moved**2).sum()) / inertia + model.environment.drag
+    return (frequency, damped) if frequency > 0.0 else None
 
 
 def expected_displacement(model: Model) -> Array | None:
@@ -82,44 +100,48 @@ def expected_displacement(model: Model) -> Array | None:
     ends, axis = _ends_and_axes(model)
     elongation = rods.misfit + ((moved[ends[:, 1]] - moved[ends[:, 0]]) * axis).sum(axis=1)
     tension = (rods.stiffness / rods.rest_length * elongation)[:, None] * axis
-    force = _forces(model).reshape(-1, 2)
-    np.add.at(force, ends[:, 0], tension)
-    np.add.at(force, ends[:, 1], -tension)
+    force = _forces(model).reshape(free_coordinates(model).shape)
+    np.add.at(force[:, :2], ends[:, 0], tension)
+    np.add.at(force[:, :2], ends[:, 1], -tension)
     displacement = _static_displacement(model, force.ravel())
-    return None if displacement is None else displacement + moved
+    return None if displacement is None else displacement[:, :2] + moved
 
 
 def _exciting_forces(model: Model) -> Array:
-    """The forces of the loads (2n,); without any, some that excite all directions."""
+    """The forces of the loads (2n,), of models that bend (3n,); without any, some that excite all directions."""
     force = _forces(model)
-    if not force[model.particles.mobility.ravel() > 0.0].any():
+    if not force[free_coordinates(model).ravel()].any():
         force = np.ones_like(force) * np.where(np.arange(len(force)) % 2, -1.0, 0.3)
     return force
 
 
 def _static_displacement(model: Model, force: Array) -> Array | None:
-    """Linear displacement (n, 2) under forces (2n,) in kN, m; None where it is not small."""
-    free = np.flatnonzero(model.particles.mobility.ravel() > 0.0)
+    """Linear displacement (n, 2), m, under forces (2n,) in kN; of models that bend with rotations; None where not small."""
+    movable = free_coordinates(model)
+    free = np.flatnonzero(movable.ravel())
     if not len(free):
-        return np.zeros((model.particles.count, 2))
+        return np.zeros(movable.shape)
     solve = _solved_in_full if model.particles.count <= DENSE else _solved_sparsely
-    displacement = np.zeros(2 * model.particles.count)
+    displacement = np.zeros(movable.size)
     try:
         displacement[free] = solve(model, free, force[free])
     except (RuntimeError, np.linalg.LinAlgError):  # exactly singular
         return None
     size = float(np.ptp(model.particles.position, axis=0).max())
-    if not np.isfinite(displacement).all() or np.abs(displacement).max() > 0.5 * size:
+    moved = displacement.reshape(movable.shape)
+    if not np.isfinite(displacement).all() or np.abs(moved[:, :2]).max() > 0.5 * size:
         return None
-    return displacement.reshape(-1, 2)
+    return moved
 
 
 def _forces(model: Model) -> Array:
-    """The forces on the particles with all loads at their full values (kN), flattened, (2n,)."""
-    force: Array = model.particles.constant_force.ravel().copy()
+    """The forces on the particles with all loads at their full values (kN), moments too where rods bend, flattened."""
+    force: Array = model.particles.constant_force.copy()
+    moment = model.particles.constant_moment.copy()
     for load in model.loads:
-        force[2 * load.on : 2 * load.on + 2] += load.force
-    return force
+        force[load.on] += load.force
+        moment[load.on] += load.moment
+    return (np.column_stack([force, moment]) if bends(model) else force).ravel()
 
 
 def _ends_and_axes(model: Model) -> tuple[NDArray[np.intp], Array]:
@@ -129,21 +151,10 @@ def _ends_and_axes(model: Model) -> tuple[NDArray[np.intp], Array]:
     return rods.between.astype(np.intp), rods.difference / length[:, None]
 
 
-def _compatibility(model: Model) -> tuple[Array, NDArray[np.intp], NDArray[np.intp]]:
-    """The compatibility matrix (rods, 2n), elongations by displacements: entries, rows and columns, four a rod."""
-    ends, axis = _ends_and_axes(model)
-    columns = np.concatenate(
-        [2 * ends[:, :1], 2 * ends[:, :1] + 1, 2 * ends[:, 1:], 2 * ends[:, 1:] + 1], axis=1
-    )
-    entries = np.concatenate([-axis, axis], axis=1)
-    return entries.ravel(), np.repeat(np.arange(len(ends)), 4), columns.ravel()
-
-
 def _solved_in_full(model: Model, free: NDArray[np.intp], force: Array) -> Array:
     """The displacements of free directions under forces, both (k,), by a full matrix."""
-    entries, rows, columns = _compatibility(model)
-    stiffness = model.rods.stiffness / model.rods.rest_length
-    elongations = np.zeros((model.rods.count, 2 * model.particles.count))
+    entries, rows, columns, stiffness, _ = deformations(model)
+    elongations = np.zeros((len(stiffness), free_coordinates(model).size))
     elongations[rows, columns] = entries
     elongations = elongations[:, free]
     matrix = elongations.T @ (elongations * stiffness[:, None])
@@ -155,9 +166,8 @@ def _solved_sparsely(model: Model, free: NDArray[np.intp], force: Array) -> Arra
     from scipy.sparse import csc_matrix, identity
     from scipy.sparse.linalg import splu
 
-    entries, rows, columns = _compatibility(model)
-    stiffness = model.rods.stiffness / model.rods.rest_length
-    elongations = csc_matrix((entries, (rows, columns)), (model.rods.count, 2 * model.particles.count))
+    entries, rows, columns, stiffness, _ = deformations(model)
+    elongations = csc_matrix((entries, (rows, columns)), (len(stiffness), free_coordinates(model).size))
     elongations = elongations[:, free]
     matrix = elongations.T @ elongations.multiply(stiffness[:, None]).tocsc()
     held = matrix + SLIGHTLY * stiffness.max() * identity(len(free), format="csc")

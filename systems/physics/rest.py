@@ -8,8 +8,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from components.model import Model
+from components.rod import bends
 from systems.entries import MEASURED, Measure
 from systems.islands import Rows
+from systems.physics.bending import bending_energy, bowing_work, levers
 
 Array = NDArray[np.float64]
 Mask = NDArray[np.bool_]
@@ -36,11 +38,16 @@ class RestMeasure:
 
     @classmethod
     @_BEYOND
-    def of(cls, model: Model, unbalanced: Array) -> RestMeasure:
-        """The measure of the state last observed. unbalanced: force on each particle without dampers and drag (kN)."""
+    def of(cls, model: Model, unbalanced: Array, turning: Array | float = 0.0) -> RestMeasure:
+        """The measure of the state last observed.
+
+        unbalanced, turning: force and moment on each particle without dampers and drag (kN, kN·m).
+        """
         particles, rods = model.particles, model.rods
         pull, flexibility = np.abs(rods.axial_force), rods.rest_length / rods.stiffness
         moved = np.abs(particles.displacement).max(axis=1, initial=0.0)
+        if bends(model):
+            return cls._of_frame(model, unbalanced, turning)
         return cls(
             residual=(np.abs(unbalanced) * (particles.mobility > 0.0)).max(axis=1, initial=0.0),
             kinetic=0.5 * particles.mass * (particles.velocity**2).sum(axis=1),
@@ -48,6 +55,28 @@ class RestMeasure:
             pull=pull,
             elastic=500.0 * pull**2 * flexibility,
             round_off=np.finfo(float).eps * moved[rods.between].max(axis=1, initial=0.0) / flexibility,
+        )
+
+    @classmethod
+    def _of_frame(cls, model: Model, unbalanced: Array, turning: Array | float) -> RestMeasure:
+        """The same of a model that bends; moments count as forces by the shortest rod at their particle."""
+        particles, rods = model.particles, model.rods
+        lever = levers(model)
+        spin = np.where(particles.turning > 0.0, particles.angular_velocity, 0.0)
+        flexibility = rods.rest_length / rods.stiffness
+        moved = np.abs(particles.displacement).max(axis=1, initial=0.0)[rods.between].max(axis=1, initial=0.0)
+        rolled = np.abs(particles.rotation)[rods.between].max(axis=1, initial=0.0)
+        firm = rods.end_stiffness.max(axis=1, initial=0.0) / rods.rest_length
+        residual = (np.abs(unbalanced) * (particles.mobility > 0.0)).max(axis=1, initial=0.0)
+        load = np.abs(particles.constant_force).max(axis=1, initial=0.0)
+        bending = np.abs(rods.end_moment).max(axis=1, initial=0.0) / rods.rest_length
+        return cls(
+            residual=np.maximum(residual, np.abs(turning) * (particles.turning > 0.0) * lever),
+            kinetic=0.5 * (particles.mass * (particles.velocity**2).sum(axis=1) + particles.inertia * spin**2),
+            load=np.maximum(load, np.abs(particles.constant_moment) * lever),
+            pull=np.maximum(np.abs(rods.axial_force), bending),
+            elastic=500.0 * rods.axial_force**2 * flexibility + 1000.0 * bending_energy(model),
+            round_off=np.finfo(float).eps * (moved / flexibility + firm * rolled),
         )
 
     @_BEYOND
@@ -80,6 +109,9 @@ class RestMeasure:
         measures = np.zeros(len(Measure))
         measures[Measure.ELASTIC] = self.elastic[rods].sum()
         measures[Measure.POTENTIAL] = 1000.0 * work.sum()
+        if bends(model):
+            turned = model.particles.constant_moment[particles] * model.particles.rotation[particles]
+            measures[Measure.POTENTIAL] += 1000.0 * (turned.sum() + bowing_work(model)[rods].sum())
         measures[Measure.RESIDUAL] = self.residual[particles].max(initial=0.0)
         measures[Measure.LARGEST_FORCE] = max(
             self.load[particles].max(initial=0.0), self.pull[rods].max(initial=0.0)

@@ -10,6 +10,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from components.model import Model
+from components.rod import bends
+from systems.physics.bending import slopes
 
 Array = NDArray[np.float64]
 
@@ -65,25 +67,95 @@ class RodOperator:
         return bounds
 
 
-def largest_eigenvalues(operator: Callable[[Array], Array], rows: int, bounds: Array) -> Array:
+class FrameOperator(RodOperator):
+    """The same with the rotations of models that bend: vectors of shape (n, 3), the third entry for the rotation.
+
+    The stiffness of a rod's axis follows the bow of its ends (their slopes to the chord): it acts along
+    n·Δu + L₀ (Bφ)·φ, φ being the change of slopes. ends: stiffness of slopes (ss, se, ee); with axial forces (kN) of rods
+    in tension also N L₀ B. bows: whether `along` follows the bow, which dampers do not.
+    """
+
+    def __init__(self, model: Model, along: Array, ends: Array, tension: Array | None = None) -> None:
+        rods, particles = model.rods, model.particles
+        bows = tension is not None
+        super().__init__(model, along, tension / rods.rest_length if tension is not None else None)
+        length = np.hypot(*(rods.difference + self._change(particles.displacement)).T)
+        self._inverse = 1.0 / np.where(length > 0.0, length, 1.0)
+        rest, bowing = rods.rest_length, rods.bowing
+        bent = slopes(model) if bows else np.zeros((rods.count, 2))
+        bow = np.stack([(bowing[:, :2] * bent).sum(axis=1), (bowing[:, 1:] * bent).sum(axis=1)], axis=1)
+        self._bow = rest[:, None] * bow
+        thrust = tension * rest if tension is not None else np.zeros(rods.count)
+        self._ends = ends + thrust[:, None] * bowing
+        self._spin = np.sqrt(particles.turning)
+
+    def _change(self, values: Array) -> Array:
+        return values[self._second] - values[self._first]
+
+    def __call__(self, vector: Array) -> Array:
+        shift, turn = self._root * vector[:, :2], self._spin * vector[:, 2]
+        change = self._change(shift)
+        along = (change * self._axis).sum(axis=1)
+        aside = change[:, 1] * self._axis[:, 0] - change[:, 0] * self._axis[:, 1]
+        leaning = aside * self._inverse
+        start, end = turn[self._first] - leaning, turn[self._second] - leaning
+        pull = self._along * (along + self._bow[:, 0] * start + self._bow[:, 1] * end)
+        of_start = self._ends[:, 0] * start + self._ends[:, 1] * end + pull * self._bow[:, 0]
+        of_end = self._ends[:, 1] * start + self._ends[:, 2] * end + pull * self._bow[:, 1]
+        push = -(of_start + of_end) * self._inverse
+        if self._across is not None:
+            push += self._across * aside
+        product = np.empty_like(vector)
+        left = np.stack([-self._axis[:, 1], self._axis[:, 0]], axis=1)
+        force = pull[:, None] * self._axis + push[:, None] * left
+        for d in range(2):
+            product[:, d] = np.bincount(self._second, force[:, d], self.rows)
+            product[:, d] -= np.bincount(self._first, force[:, d], self.rows)
+        product[:, :2] *= self._root
+        product[:, 2] = np.bincount(self._first, of_start, self.rows)
+        product[:, 2] += np.bincount(self._second, of_end, self.rows)
+        product[:, 2] *= self._spin
+        return product
+
+    def gershgorin(self, blocks: int = 1) -> Array:
+        """Upper bounds of the largest eigenvalues of so many equal blocks of rows: largest sums of norms."""
+        worst, first, second = self._root.max(axis=1), self._first, self._second
+        reach = worst[first] + worst[second]
+        lean = reach * self._inverse
+        at_start, at_end = self._spin[first] + lean, self._spin[second] + lean
+        bow = np.abs(self._bow)
+        ends = np.abs(self._ends)
+        pull = np.abs(self._along) * (reach + bow[:, 0] * at_start + bow[:, 1] * at_end)
+        of_start = ends[:, 0] * at_start + ends[:, 1] * at_end + pull * bow[:, 0]
+        of_end = ends[:, 1] * at_start + ends[:, 2] * at_end + pull * bow[:, 1]
+        force = pull + (of_start + of_end) * self._inverse
+        force += self._across * reach if self._across is not None else 0.0
+        shifts = np.bincount(first, force, self.rows) + np.bincount(second, force, self.rows)
+        turns = np.bincount(first, of_start, self.rows) + np.bincount(second, of_end, self.rows)
+        sums = np.maximum(worst * shifts, self._spin * turns)
+        bounds: Array = sums.reshape(blocks, -1).max(axis=1, initial=0.0)
+        return bounds
+
+
+def largest_eigenvalues(operator: Callable[[Array], Array], rows: int, bounds: Array, width: int = 2) -> Array:
     """Upper bounds of the largest eigenvalues of equal blocks of a symmetric operator by Lanczos' method.
 
-    rows: of each block. bounds: what no result exceeds, one for each block. The result is the Ritz value
-    plus its residual. The start vector is fixed, sums are in a fixed order, so that the result (and with it
+    rows: of each block. width: entries of a row. bounds: what no result exceeds, one for each block. The result is the Ritz
+    value plus its residual. The start vector is fixed, sums are in a fixed order, so that the result (and with it
     the step size) is the same on every run, and for a block alone. Its entries, k²φ mod 1, differ differently
     from row to row: it must not be blind to a direction, as kφ is to that of (1, −1).
     """
     blocks = len(bounds)
-    start = np.modf(np.arange(1, 2 * rows + 1) ** 2 * 0.6180339887498949)[0] - 0.5
+    start = np.modf(np.arange(1, width * rows + 1) ** 2 * 0.6180339887498949)[0] - 0.5
     vector = np.tile(start / math.sqrt(float((start * start).sum())), (blocks, 1))
     basis: list[Array] = []
     diagonal: list[Array] = []
     off_diagonal: list[Array] = []
     sizes = np.zeros(blocks, dtype=np.int64)
     running = np.ones(blocks, dtype=bool)
-    for _ in range(min(LANCZOS_STEPS, 2 * rows)):
+    for _ in range(min(LANCZOS_STEPS, width * rows)):
         basis.append(vector)
-        product = operator(vector.reshape(-1, 2)).reshape(blocks, -1)
+        product = operator(vector.reshape(-1, width)).reshape(blocks, -1)
         diagonal.append((product * vector).sum(axis=1))
         for known in basis * 2:  # once leaves some of them where little else is left; twice is enough
             product -= (product * known).sum(axis=1)[:, None] * known
@@ -131,9 +203,12 @@ def spectra(
     """
     rods, blocks = model.rods, len(drag)
     decay = 0.5 * drag
-    if rods.count == 0 or not (model.particles.mobility > 0.0).any():
+    particles = model.particles
+    if rods.count == 0 or not ((particles.mobility > 0.0).any() or particles.turning.any()):
         return np.zeros(blocks), decay
     share = np.ones(rods.count) if counts is None else counts.astype(np.float64)
+    if bends(model):
+        return _of_frames(model, share, np.maximum(axial_force, 0.0), decay)
     across = share * np.maximum(axial_force, 0.0) / rods.rest_length
     stiffness = RodOperator(model, share * rods.stiffness / rods.rest_length, across)
     rows = stiffness.rows // blocks
@@ -141,4 +216,17 @@ def spectra(
     if (rods.damping > 0.0).any():
         dampers = RodOperator(model, share * rods.damping)
         decay = decay + 0.5 * largest_eigenvalues(dampers, rows, dampers.gershgorin(blocks))
+    return frequency, decay
+
+
+def _of_frames(model: Model, share: Array, tension: Array, decay: Array) -> tuple[Array, Array]:
+    """Frequency and decay of each block of a model that bends. share: of each rod, 1 or 0."""
+    rods, blocks = model.rods, len(decay)
+    rows = model.particles.count // blocks
+    ends = share[:, None] * rods.end_stiffness
+    stiffness = FrameOperator(model, share * rods.stiffness / rods.rest_length, ends, share * tension)
+    frequency = np.sqrt(largest_eigenvalues(stiffness, rows, stiffness.gershgorin(blocks), 3))
+    if (rods.damping > 0.0).any() or rods.end_damping.any():
+        dampers = FrameOperator(model, share * rods.damping, share[:, None] * rods.end_damping)
+        decay = decay + 0.5 * largest_eigenvalues(dampers, rows, dampers.gershgorin(blocks), 3)
     return frequency, decay

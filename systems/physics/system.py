@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from components.model import Model
-from components.rod import has_cables, has_plastic_strain
+from components.rod import bends, has_cables, has_plastic_strain, is_curved
 from systems.base import Law
 
 
@@ -78,6 +78,66 @@ class AxialDampingOfCables(Law):
 
     def needs(self, model: Model) -> bool:
         return bool((model.rods.damping > 0.0).any()) and has_cables(model)
+
+
+class Bending(Law):
+    """Moments on the ends of rods that bend, by the slopes of these to the chord; N in the bowed axis adds to them."""
+
+    name = "physics.bending"
+    unneeded = "no rod bends, or some are warmer on one side (physics.bending_of_warped)"
+    each = "ends"
+    kernel = "systems.physics.kernels:bending"
+    potential = "systems.physics.kernels:bending_energy"
+    reads = ("rods.end_stiffness",)
+    adds = ("rods.end_moment",)
+
+    def needs(self, model: Model) -> bool:
+        return bends(model) and not is_curved(model)
+
+
+class BendingOfWarped(Law):
+    """The same where rods are warmer on one side: slopes count from those without moments."""
+
+    name = "physics.bending_of_warped"
+    unneeded = "no rod that bends is warmer on one side"
+    each = "ends"
+    kernel = "systems.physics.kernels:warped"
+    potential = "systems.physics.kernels:warped_energy"
+    reads = ("rods.end_stiffness", "rods.initial_slopes")
+    adds = ("rods.end_moment",)
+
+    def needs(self, model: Model) -> bool:
+        return bends(model) and is_curved(model)
+
+
+class BendingDamping(Law):
+    """Viscous moments on the ends of rods that bend."""
+
+    name = "physics.bending_damping"
+    unneeded = "no rod that bends has a damper"
+    each = "ends"
+    kernel = "systems.physics.kernels:bending_damper"
+    reads = ("rods.end_damping",)
+    adds = ("rods.end_moment",)
+    account = "dissipated_damping"
+
+    def needs(self, model: Model) -> bool:
+        return bool(model.rods.end_damping.any())
+
+
+class TurningDrag(Law):
+    """The environment's resistance to all turning."""
+
+    name = "physics.turning_drag"
+    unneeded = "the drag of the environment is 0, or no rod bends"
+    each = "rotations"
+    kernel = "systems.physics.kernels:turning_drag"
+    reads = ("particles.inertia", "particles.angular_velocity", "environment.drag")
+    adds = ("particles.applied_moment",)
+    account = "dissipated_damping"
+
+    def needs(self, model: Model) -> bool:
+        return model.environment.drag > 0.0 and bends(model)
 
 
 class Drag(Law):

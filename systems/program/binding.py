@@ -25,7 +25,9 @@ PROVIDED_TO: Mapping[str, tuple[str, ...]] = {  # by what the kernel is called f
     "rods": (*_TO_COMMITS, "rate"),
     "particles": ("time", "dt"),
     "pairs": ("apart", "drift", "time", "dt"),
-    "potential": ("apart",),
+    "potential": ("apart", "slope_start", "slope_end"),
+    "ends": ("slope_start", "slope_end", "axial_force", "rate_start", "rate_end", "time", "dt"),
+    "rotations": ("time", "dt"),
     "commit": _TO_COMMITS,
     "branch": ("elongation", "rate", "dt"),
     "margin": ("elongation", "rate", "dt", "branch"),
@@ -33,13 +35,20 @@ PROVIDED_TO: Mapping[str, tuple[str, ...]] = {  # by what the kernel is called f
     "event of particles": (),
 }
 PROVIDED = {name for names in PROVIDED_TO.values() for name in names}
-TRIAL = {"particles_displacement": "displacement", "particles_velocity": "velocity"}
+TRIAL = {
+    "particles_displacement": "displacement",
+    "particles_velocity": "velocity",
+    "particles_rotation": "rotation",
+    "particles_angular_velocity": "angular_velocity",
+}
+TURNING = ("rotation", "angular_velocity")  # of these, what only models that bend have
 
 KERNELS = ("kernel", "branch", "margin", "potential")  # of a system, as its attributes
 
 WIDEST_ROW = 64  # numbers of an array that a kernel gets, as a tuple; more would take long to compile
 
-_KINDS = ("rods", "particles", "pairs", "loads")
+_KINDS = ("rods", "ends", "particles", "rotations", "pairs", "loads")
+ROWS_OF = {"pairs": "particles", "rotations": "particles", "ends": "rods"}  # tables of kinds that are none
 
 
 class ProgramError(ValueError):
@@ -63,6 +72,9 @@ class StepRole(Enum):
     REPLACING = "replaces the axial force of a rod, which it is given"
     LATE_HISTORY = "is the history of a rod, by its axial force"
     RATE = "adds to the force of a rod's dampers"
+    ENDS = "adds to the moments on the ends of a rod"
+    RATE_OF_ENDS = "adds to the moments of dampers on the ends of a rod"
+    TURNING = "adds to the moment that resists a particle's turning"
     EVENT = "stops the run where it changes sign"
 
 
@@ -115,7 +127,7 @@ class Bound:
     @property
     def rows(self) -> str:
         """The table whose rows its kernel is given."""
-        return "particles" if self.each == "pairs" else self.each or "rods"
+        return ROWS_OF.get(self.each, self.each) or "rods"
 
     @property
     def purpose(self) -> str:
@@ -156,6 +168,10 @@ class Bound:
         if self.each == "pairs":
             resists = given & {"drift", "particles_velocity"}
             return StepRole.PAIR_RESISTANCE if resists else StepRole.PAIR_FORCE
+        if self.each == "ends":
+            return StepRole.RATE_OF_ENDS if given & {"rate_start", "rate_end"} else StepRole.ENDS
+        if self.each == "rotations":
+            return StepRole.TURNING
         if self.each == "":
             return StepRole.LATE_HISTORY if "axial_force" in given else StepRole.HISTORY
         if "rate" in given:

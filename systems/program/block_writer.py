@@ -16,7 +16,7 @@ from systems.program.writer import PREDICTED, RESISTED, TRIAL_STATE, Writer, acc
 _RODS = "block_rods[block], block_rods[block + 1]"
 _PARTICLES = "first, last"
 _LIMITS = ("first = np.uint64(block_particles[block])", "last = np.uint64(block_particles[block + 1])")
-_COMPLETED = f"{TRIAL_STATE}, predicted"
+_COMPLETED = f"{TRIAL_STATE}, *foreseen"
 _MOVED = f"{_COMPLETED}, ending"
 _PARALLEL = """\
 from systems.kernels import prange, shared

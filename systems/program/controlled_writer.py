@@ -12,7 +12,7 @@ from systems.program.binding import Bound, StepRole, bind
 from systems.program.loops import RodLoop
 from systems.program.pasting import fragment, pasted
 from systems.program.templates import driven, events, forces, implicit, rods
-from systems.program.writer import DRIFT, NO_POWER, POWER_RETURNED, SHIFT, TRIAL_STATE, Writer, sides_of
+from systems.program.writer import NO_POWER, POWER_RETURNED, TRIAL_STATE, Writer, sides_of
 
 _AHEAD = 1e-3  # of a step, over which the slope of a margin is taken
 _STEADY = 1e-8  # a margin that changes less in a step is not watched
@@ -39,7 +39,8 @@ class ControlledWriter(Writer):
 
     @property
     def scratch(self) -> tuple[str, ...]:
-        return ("search", "work", "rod_work", "marks", "power", "gained", "stage_power")
+        blocks = ("work", "turns") if self.bends else ("work",)
+        return ("search", *blocks, "rod_work", "marks", "power", "gained", "stage_power")
 
     def _values(self) -> dict[str, Any]:
         located = bool(self.branches or self.events)
@@ -58,7 +59,7 @@ class ControlledWriter(Writer):
 
     def _driven_steps(self) -> dict[str, Sequence[str]]:
         return {
-            "evaluate": fragment(driven.evaluate_controlled),
+            "evaluate": fragment(driven.evaluate_controlled, **self.second_block),
             "take": fragment(driven.take_controlled),
             "pushed": ["accelerate(force, resisting, work[0], particles_mobility)"],
         }
@@ -69,11 +70,11 @@ class ControlledWriter(Writer):
 
     def _remember(self) -> str:
         compute, lost = self._histories(self.commits)
-        loop = RodLoop(SHIFT, [*self.geometry(), *compute], scatter=[*lost.values()]).one_by_one()
+        loop = RodLoop(self.shift, [*self.geometry(), *compute], scatter=[*lost.values()]).one_by_one()
         return pasted(forces.remember, "compiled", history=self._with_losses(self.commits, loop))
 
     def _commit(self) -> str:
-        return pasted(forces.commit, "entered", history="remember(time, dt, displacement, account, *columns)")
+        return pasted(forces.commit, "entered", history="remember(time, dt, *placed, account, *columns)")
 
     def _evaluate(self) -> str:
         lines = [
@@ -125,17 +126,40 @@ class ControlledWriter(Writer):
             for b in self.of[StepRole.RESISTANCE]
             for line in fragment(implicit.particle_tangent, force=self._apply(b, "i"))
         ]
+        particles += [
+            line
+            for b in self.of[StepRole.TURNING]
+            for line in fragment(implicit.turning_tangent, moment=self._apply(b, "i"))
+        ]
         damping_force = [
             "damping_force = 0.0",
             *(f"damping_force += {self._apply(b, 'r')}" for b in self.of[StepRole.RATE]),
         ]
         tangent = fragment(
             implicit.rod_tangent,
-            rate=fragment(rods.rate),
+            rate=self.rate(),
             axial_force=self._axial_force(),
+            drawn=["drawn = stiffness"] if self.bends else [],
             dampers=fragment(implicit.damper_tangent, damping_force=damping_force)
             if self.of[StepRole.RATE]
             else [],
+            bending=self._tangent_of_ends() if self.bends else [],
         )
-        loop = RodLoop(SHIFT | DRIFT, [*self.geometry(), *tangent])
-        return pasted(implicit.tangent, "compiled", particles=particles, rods=loop.one_by_one())
+        loop = RodLoop(self.shift | self.drift, [*self.geometry(), *tangent])
+        inserts: dict[str, str | list[str]] = {"particles": particles, "rods": loop.one_by_one()}
+        return pasted(implicit.tangent, "compiled", "", **(inserts | self.second_block))
+
+    def _tangent_of_ends(self) -> list[str]:
+        return fragment(
+            rods.tangent_of_ends,
+            by_slopes=self._tangent_by(self.of[StepRole.ENDS], "slope", "by_x"),
+            by_rates=self._tangent_by(self.of[StepRole.RATE_OF_ENDS], "rate", "by_v"),
+            moments=self.end_moments(),
+        )
+
+    def _tangent_by(self, laws: Sequence[Bound], kind: str, share: str) -> list[str]:
+        """Lines that add how the moments of these laws follow the slopes, or their rates."""
+        lines: list[str] = []
+        for line in fragment(rods.tangent_by, share=share, laws="laws") if laws else []:
+            lines += self.end_laws(laws, "summed") if line == "laws" else [line.replace("slope", kind)]
+        return lines

@@ -12,9 +12,9 @@ from components.model import Model
 from components.snapshot import Snapshot
 from systems.base import REVIEW_INTERVAL, Mod, StepSystem
 from systems.interpreter import plain_function
-from systems.program.binding import ProgramError, bind
+from systems.program.binding import ROWS_OF, ProgramError, bind
 from systems.program.near_pairs import pairs_within
-from systems.program.program import MOTION, Program
+from systems.program.program import MOTION, TURNING, Program
 from systems.program.reference_laws import in_turn
 
 
@@ -45,7 +45,7 @@ def find_culprit(program: Program, safe: Snapshot) -> Mod | None:
         _move_ahead(model)
     else:
         good = _last_good(program, safe)
-    led_to = {name: model.column(name).copy() for name in (*MOTION, "clock.time")}
+    led_to = {name: model.column(name).copy() for name in (*MOTION, *TURNING, "clock.time")}
     good.restore(model)
     try:
         found = _bad_kernel(program, model, led_to)
@@ -62,7 +62,7 @@ def find_culprit(program: Program, safe: Snapshot) -> Mod | None:
 
 
 def _finite(model: Model) -> bool:
-    return all(bool(np.isfinite(model.column(name)).all()) for name in MOTION)
+    return all(bool(np.isfinite(model.column(name)).all()) for name in (*MOTION, *TURNING))
 
 
 def _move_ahead(model: Model) -> None:
@@ -103,6 +103,7 @@ def _element(system: StepSystem, model: Model, row: int) -> str:
     if each == "pairs":
         pair = pairs_within(model, bind(system, model).cutoff)[row].tolist()
         return " and ".join(model.describe(model.particles[particle]) for particle in pair)
+    each = ROWS_OF.get(each, each)
     return model.describe(model.tables[each][row]) if row < model.tables[each].count else f"row {row}"
 
 

@@ -17,7 +17,9 @@ _RESULTS = {
     "rods": "one number, the axial force (kN)",
     "particles": "a pair, the force (fx, fy) in kN",
     "pairs": "a pair, the force (fx, fy) on the first particle in kN",
-    "potential": "one number, the energy of two particles (kN·m)",
+    "potential": "one number, the energy of two particles, or of the ends of a rod (kN·m)",
+    "ends": "a pair, the moments on the ends (M_start, M_end) in kN·m",
+    "rotations": "one number, the moment on a particle in kN·m",
     "branch": "one number, the branch that the rod is on",
     "margin": "one number, positive while the rod stays on its branch",
     "loads": "one number, the factor of the load",
@@ -76,7 +78,7 @@ def _problem_interpreted(b: Bound, model: Model) -> str:
 
 def _count(b: Bound) -> int:
     """How many numbers a kernel must return."""
-    return 2 if b.purpose in ("particles", "pairs", "commit") else 1
+    return 2 if b.purpose in ("particles", "pairs", "commit", "ends") else 1
 
 
 def explain(

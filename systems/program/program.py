@@ -20,6 +20,7 @@ from components.model import Model
 from systems.base import Event, Integrator, StepSystem, StopReason
 from systems.collision.driven.columns import Phase, Real, Whole
 from systems.entries import ACCOUNT, ACCOUNTS, CONTROL, Mark, Measure, Search, Side
+from systems.physics.bending import levers
 from systems.physics.kernels import conserved
 from systems.program.between import Between
 from systems.program.binding import Bound, ProgramError, bind, find
@@ -29,23 +30,34 @@ from systems.program.controlled_writer import ControlledWriter
 from systems.program.faults import check_results, explain, failure_of, kinds_of
 from systems.program.near_pairs import NearPairs
 from systems.program.reference_laws import in_turn
-from systems.program.writer import STATE, VERY_MANY, Writer, sides_of
+from systems.program.writer import VERY_MANY, Writer, sides_of
 
 _ORIGIN = ("origin", "step_limit")
 _COUNTS = ("steps", "origin_steps")
 MOTION = "particles.displacement", "particles.velocity"
+TURNING = "particles.rotation", "particles.angular_velocity"  # what moves, too, in models that bend
 OBSERVED = {
-    "particles": ("applied_force", "reaction"),
-    "rods": ("axial_force", "length", "strain", "yielding"),
+    "particles": ("applied_force", "reaction", "applied_moment", "reaction_moment"),
+    "rods": ("axial_force", "length", "strain", "yielding", "end_moment"),
 }
-_GIVEN = {"fixed": "particles.fixed", "tension": "rods.tension_limit", "compression": "rods.compression_limit"}
+_OF_BENDING = "particles.applied_moment", "particles.reaction_moment", "rods.end_moment"
+_GIVEN = {
+    "fixed": "particles.fixed",
+    "clamped": "particles.fixed_rotation",
+    "tension": "rods.tension_limit",
+    "compression": "rods.compression_limit",
+}
 COLUMNS_OBSERVED = {  # by the parameter of observe() that they are
     **{f"rods_{name}": f"rods.{name}" for name in ("axial_force", "length", "strain")},
     "applied": "particles.applied_force",
     "reaction": "particles.reaction",
+    "applied_moment": "particles.applied_moment",
+    "reaction_moment": "particles.reaction_moment",
+    "rods_end_moment": "rods.end_moment",
     "yielding": "rods.yielding",
     **_GIVEN,
 }
+_TANGENTS = 8  # rows of rod_work in models that bend: see templates/turning.py
 _REASONS = tuple(StopReason)
 
 
@@ -119,7 +131,7 @@ class Program:
             self._take(0, math.inf, math.inf)
             self._observe()
             if self._writer.commits:  # with no rods: a commit changes history
-                state = [self._arrays[name][:0] for name in STATE]
+                state = [self._arrays[name][:0] for name in self._writer.state]
                 self.module.form.commit(0.0, 0.0, *state, np.zeros(len(ACCOUNT)), *self._of_no_rods())
         except Exception as error:  # numba raises many kinds
             raise self._explained(error) from error
@@ -181,18 +193,28 @@ class Program:
         if self.between is not None:
             self._support = np.ascontiguousarray(self.between.support(model)[self._held_rows])
             extra |= {"support": self._support, "unpushed": np.zeros_like(self._support)}
+        if self._writer.bends:
+            self._stop_turning()
+            turning = self._column("particles.turning")
+            extra |= {
+                "lever": np.ascontiguousarray(levers(self.model)[self._held_rows]),
+                "particles_turning": turning.reshape(-1, 1),
+            }
         self._sides = [(b, self._sides_of(b)) for b in self._writer.events]
         extra |= {sides_of(b): sides for b, sides in self._sides}
         self._columns = [
             extra[name] if name in extra else self._column(name.replace("_", ".", 1))
             for name in self._writer.columns
         ]
-        self._changes = _by_table_and_role(model, written.values())
+        self._changes = _by_table_and_role(model, (*self.motion, *written.values()))
         self._bind_clock()
         self.changes_end = math.inf if self.lasting else loads_end(model)
         self._breaks = np.array([*load_breaks(model), math.inf])
         self._arrays = {name: np.zeros(shape) for name, shape in self.scratch.items()}
         self._arrays |= {path.partition(".")[2]: self._storage(path) for path in MOTION}
+        if self._writer.bends:
+            self._arrays |= {path.partition(".")[2]: self._storage(path).reshape(-1, 1) for path in TURNING}
+            self._arrays["search"][Search.REACH] = self.model.rods.rest_length.max()
         self._arrays |= {"control": self._control, "account": self._account, "measures": self.measures}
         self._bind_arguments()
         self._bind_observed()
@@ -240,9 +262,20 @@ class Program:
         return found
 
     @property
+    def motion(self) -> tuple[str, ...]:
+        """The columns of the state that steps change, history apart."""
+        return (*MOTION, *TURNING) if self._writer.bends else MOTION
+
+    @property
     def unbalanced(self) -> Column:
         """The sum of all forces on each particle but those of dampers and drag (kN), as last observed."""
         return self._unbalanced
+
+    @property
+    def unbalanced_moment(self) -> Column:
+        """The same of moments on each particle (kN·m), shape (n,); none where nothing bends."""
+        moment: Column = self._unbalanced_moment[:, 0]
+        return moment
 
     def _rows(self, table: str) -> int:
         """Number of elements of a table that the program holds."""
@@ -267,12 +300,15 @@ class Program:
     def scratch(self) -> dict[str, tuple[int, ...]]:
         """Shapes of the arrays that its functions write to and nobody reads afterwards, by name."""
         particles, rods = self._rows("particles"), self._rows("rods")
+        turns = self._writer.bends
         return {
             **dict.fromkeys(("force", "resisting", "predicted"), (particles, 2)),
-            "direction": (rods, 2),
+            "direction": (rods, 3 if turns else 2),
+            **dict.fromkeys(("moment", "twisting", "predicted_spin"), (particles if turns else 0, 1)),
+            "turns": (self.integrator.particle_rows if turns else 0, particles, 1),
             **dict.fromkeys(("power", "gained", "stage_power"), (len(ACCOUNTS),)),
             "work": (self.integrator.particle_rows, particles, 2),
-            "rod_work": (self.integrator.rod_rows, rods),
+            "rod_work": (_TANGENTS if turns and self.integrator.rod_rows else self.integrator.rod_rows, rods),
             "marks": (
                 max(rods, particles),
                 len(Mark) * len([*self._writer.branching, *self._writer.events]),
@@ -295,7 +331,8 @@ class Program:
             "resisting": self._arrays["force"],
             "power": self._arrays["power"],
         }
-        kept |= {name: self.columns[name] for name in self._writer.kept}
+        known = self._arrays | self.columns
+        kept |= {name: known[name] for name in self._writer.kept}
         copies: dict[str, Any] = {f"kept_{name}": np.zeros_like(array) for name, array in kept.items()}
         copies |= {f"own_{name}": np.zeros_like(kept["force"]) for name in ("acceleration", "support")}
         copies["every"] = np.arange(self._rows("particles"))
@@ -305,12 +342,28 @@ class Program:
         for path in _GIVEN.values():
             self.model.column(path)  # brings it up to date
         storage = {name: self._storage(path) for name, path in COLUMNS_OBSERVED.items()}
-        apart = {
-            name: np.zeros_like(self._arrays[name]) for name in ("force", "resisting", "direction", "power")
-        }
-        self._unbalanced = apart["force"]
+        storage["applied_moment"] = storage["applied_moment"].reshape(-1, 1)
+        if not self._writer.bends:
+            self._forget_moments()
+        names = ("force", "resisting", "direction", "power", "moment", "twisting")
+        apart = {name: np.zeros_like(self._arrays[name]) for name in names}
+        self._unbalanced, self._unbalanced_moment = apart["force"], apart["moment"]
         yields = self.model.settings.plasticity
         self._observed = self._after("dt", "observe", yields=yields, **storage, **apart)
+
+    def _stop_turning(self) -> None:
+        """A particle that has no rigid ends any more has no rotation that could go on."""
+        particles = self.model.particles
+        stray = (particles.turning == 0.0) & (particles.angular_velocity != 0.0)
+        if stray.any():
+            self.model.writable("particles.angular_velocity")[stray] = 0.0
+
+    def _forget_moments(self) -> None:
+        """Nothing bends: no moments are left of when something did."""
+        for path in _OF_BENDING:
+            table, _, name = path.partition(".")
+            if self.model.tables[table].storage(name).any():
+                self.model.writable(path)[...] = 0.0
 
     def advance(self, steps: int, until: float = math.inf, landing: float = math.inf) -> tuple[int, StopReason]:
         """Take up to `steps` steps; returns how many, and why it stopped.
@@ -516,7 +569,7 @@ class Program:
 def _by_table_and_role(model: Model, written: Iterable[str]) -> list[tuple[str, list[str], Role]]:
     """Table, arrays and role of the columns that steps change, those of commits included."""
     paths = [f"clock.{name}" for name in (*CONTROL, *_ORIGIN, *_COUNTS, *ACCOUNT)]
-    paths += [*MOTION, *written]
+    paths += written
     found: dict[tuple[str, Role], list[str]] = {}
     for path in dict.fromkeys(paths):
         table, _, name = path.partition(".")

@@ -15,6 +15,7 @@ from numpy.typing import NDArray
 
 from components.field import Vector
 from components.model import Model
+from components.rod import bends
 from systems.base import StepSystem
 from systems.program.binding import Bound, ProgramError, StepRole, bind, by_role, written_row
 from systems.program.compiler import Choice, Compile, generated
@@ -23,7 +24,7 @@ from systems.program.loops import RodLoop
 from systems.program.near_pairs import pairs_within
 from systems.program.pasting import fragment
 from systems.program.templates import rods
-from systems.program.writer import DRIFT, SHIFT
+from systems.program.writer import DRIFT, SHIFT, SPUN, TURNED
 
 Numbers = NDArray[np.float64]
 
@@ -31,7 +32,11 @@ _OF_PAIRS = {
     "apart": ("particles.position", "particles.displacement"),
     "drift": ("particles.velocity",),
 }
-_OF_RODS = ("between", "difference", "original_length", "misfit")
+_OF_RODS = (
+    *("between", "difference", "original_length", "misfit"),
+    *("rest_length", "turning_shares", "bowing"),
+)
+_OF_ENDS = ("slope_start", "slope_end", "rate_start", "rate_end")
 
 CALLS, TRIALS = 100_000, 5  # the fastest trial counts
 
@@ -82,7 +87,7 @@ class KernelRows:
             return len(pairs_within(self.model, bound.cutoff))
         if bound.each == "loads":
             return len(bound.arrays[f"{bound.prefix}_first"])
-        return self.model.tables[bound.each or "rods"].count
+        return self.model.tables[bound.rows].count
 
     def _columns(self, bound: Bound) -> list[NDArray[Any]]:
         """One entry a row for each parameter; of a load, the time and where its values begin."""
@@ -130,7 +135,7 @@ def _compiled_loop(bound: Bound, columns: Sequence[NDArray[Any]]) -> Callable[..
     arguments = [written_row(n, "i", c.shape[1:]) for n, c in zip(names, columns, strict=True)]
     if bound.each == "loads":
         arguments = ["c0[i]", "c2", "c1[i]"]
-    pair = bound.each in ("particles", "pairs", "")
+    pair = bound.each in ("particles", "pairs", "ends", "")
     lines = [
         "from systems.kernels import kept",
         "@kept()",
@@ -170,14 +175,19 @@ def in_turn(systems: Sequence[StepSystem], model: Model) -> Iterator[tuple[StepS
 
 def _geometry(model: Model) -> Mapping[str, Numbers]:
     """Elongation (m) and its rate (m/s) of every rod, by the lines that step programs consist of, as plain Python."""
-    kept = [f"{name}s[r] = {name}" for name in ("elongation", "rate")]
+    turns = bends(model)
+    names = ("elongation", "rate", *(_OF_ENDS if turns else ()))
+    kept = [f"{name}s[r] = {name}" for name in names]
     geometry = [*fragment(rods.geometry, misfit="rods_misfit[r]"), *fragment(rods.rate)]
+    geometry += [*fragment(rods.bent), *fragment(rods.slope_rates)] if turns else []
     columns = {f"rods_{name}": model.rods.column(name) for name in _OF_RODS}
     state = {name: model.particles.column(name) for name in ("displacement", "velocity")}
-    found = {name: np.zeros(model.rods.count) for name in ("elongations", "rates")}
+    state |= {name: model.particles.column(name)[:, None] for name in ("rotation", "angular_velocity")}
+    found = {f"{name}s": np.zeros(model.rods.count) for name in names}
+    gather = SHIFT | DRIFT | (TURNED | SPUN if turns else {})
     with np.errstate(all="ignore"):
         exec(
-            "\n".join(RodLoop(SHIFT | DRIFT, [*geometry, *kept]).one_by_one()),
+            "\n".join(RodLoop(gather, [*geometry, *kept]).one_by_one()),
             {"math": math, **columns, **state, **found},
         )
-    return {"elongation": found["elongations"], "rate": found["rates"]}
+    return {name: found[f"{name}s"] for name in names}

@@ -14,7 +14,7 @@ from components.model import Model
 from systems.base import Integrator, StepSystem, StopReason
 from systems.program.binding import bind, read_only
 from systems.program.blocks import Layout, Numbers
-from systems.program.program import MOTION, OBSERVED, Program
+from systems.program.program import OBSERVED, Program
 from systems.program.writer import PUSHED
 
 
@@ -48,7 +48,7 @@ class ReorderedProgram(Program):
         self._held: dict[str, tuple[Column, Numbers, Column]] = {}
         super().bind()
         written = [path for b in self._writer.commits for path in b.system.writes]
-        self._of_state = [self._held[path] for path in (*MOTION, *written)]
+        self._of_state = [self._held[path] for path in (*self.motion, *written)]
         self._derived = [self._held[f"{table}.{name}"] for table, names in OBSERVED.items() for name in names]
         ordered = self.columns | self._of_layout()
         ordered |= self._of_systems(ordered)
@@ -93,7 +93,7 @@ class ReorderedProgram(Program):
             if bound.each == "loads":
                 ordered |= self._loads(bound.prefix, columns)
                 continue
-            rows = self._places[bound.each or "rods"]
+            rows = self._places[bound.rows]
             for name, array in bound.stored_arrays.items():
                 if name in columns:
                     ordered[name] = array[rows]
@@ -108,6 +108,7 @@ class ReorderedProgram(Program):
             f"{prefix}_on": on[order].astype(np.uint32),
             f"{prefix}_force": ordered[f"{prefix}_force"][order],
             f"{prefix}_first": ordered[f"{prefix}_first"][order],
+            **({name: ordered[name][order] for name in (f"{prefix}_moment",) if name in ordered}),
         }
 
     @property
@@ -124,6 +125,13 @@ class ReorderedProgram(Program):
     def unbalanced(self) -> Column:
         everywhere = np.zeros((self.model.particles.count, 2))
         everywhere[self.layout.particles] = super().unbalanced
+        return everywhere
+
+    @property
+    def unbalanced_moment(self) -> Column:
+        everywhere = np.zeros(self.model.particles.count)
+        if self._writer.bends:
+            everywhere[self.layout.particles] = super().unbalanced_moment
         return everywhere
 
     # --- the copies and the model's columns -----------------------------------------

@@ -7,12 +7,14 @@ on the plan: which kernels are called for each particle and rod, with which colu
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Mapping, Sequence
+from functools import cached_property
+from textwrap import dedent
 from typing import Any
 
 import numpy as np
 
 from components.model import Model
-from components.rod import is_warm
+from components.rod import bears_between, bends, is_warm
 from systems.base import REVIEW_INTERVAL, Event, Integrator, StepSystem, StopReason
 from systems.collision.driven.columns import Order, Real, Whole
 from systems.entries import ACCOUNTS, Account, Control, Mark, Measure, Search, Side
@@ -23,6 +25,7 @@ from systems.program.binding import (
     HISTORIES,
     PROVIDED,
     TRIAL,
+    TURNING,
     Bound,
     StepRole,
     bind,
@@ -33,8 +36,8 @@ from systems.program.binding import (
 )
 from systems.program.loops import RodLoop
 from systems.program.near_pairs import ARRAYS
-from systems.program.pasting import expanded, fragment, indented, pasted, source_of
-from systems.program.templates import driven, events, fixed_steps, forces, observing, pairs, rods
+from systems.program.pasting import expanded, fragment, indented, pasted, projected, source_of
+from systems.program.templates import driven, events, fixed_steps, forces, observing, pairs, rods, turning
 
 ROUND_OFF = 2.220446049250313e-16  # of forces, relative to stiffness × displacement
 
@@ -53,6 +56,11 @@ _OBSERVED = (
     *("rods_axial_force", "rods_length", "rods_strain", "yielding"),  # written
     *("fixed", "tension", "compression", "yields"),  # read
 )
+_TURNING = (  # columns of models that bend
+    *("particles_turning", "particles_inertia", "particles_constant_moment", "lever"),
+    *("rods_turning_shares", "rods_bowing", "rods_end_stiffness"),
+)
+_TURNING_OBSERVED = ("reaction_moment", "rods_end_moment", "clamped")
 _ENTRIES = (Account, Control, Mark, Measure, Search, Side, StopReason)
 _KEPT = ("kept_force", "kept_resisting", "kept_power", "own_acceleration", "own_support", "every")
 _DRIVEN_ENTRIES = (Order, Real, Whole)
@@ -61,16 +69,78 @@ PUSHED = ("support", "unpushed")  # arrays of programs whose particles may meet
 _OF_PAIRS = pairs.list_pairs, pairs.sort_along_x, pairs.sweep, pairs.sort_row
 
 STATE = ("displacement", "velocity", "force", "resisting", "direction")
+BENT_STATE = (
+    *("displacement", "rotation", "velocity", "angular_velocity"),
+    *("force", "moment", "resisting", "twisting", "direction"),
+)
+SECOND_BLOCK = {  # what coordinates are called there, by what they are called in the first
+    "displacement": "rotation",
+    "velocity": "angular_velocity",
+    "force": "moment",
+    "resisting": "twisting",
+    "predicted": "predicted_spin",
+    "particles_mobility": "particles_turning",
+}
+TURNED_STATE = (*SECOND_BLOCK.values(),)[:4]
+_SECOND_PARTS = ("push", "extrapolate", "accelerate", "combine")  # functions that are written for both blocks
+# Groups of arguments that have one more entry for every one where there are rotations.
+_FIRST_BLOCK = {
+    "placed": ("displacement",),
+    "moving": ("velocity",),
+    "pulled": ("force",),
+    "resisted": ("resisting",),
+    "unpressed": ("unpushed",),
+    "acting": ("applied",),
+    "foreseen": ("predicted",),
+    "tried": ("trial", "speed"),
+    "reached": ("work[STAGES]", "work[STAGES + 1]"),
+    "accelerating": ("acceleration",),
+    "correcting": ("correction", "work"),
+    "sizing": ("acceleration",),
+    "strung": ("along", "across"),
+    "diagonals": ("diagonal", "beside"),
+    "inverses": ("straight", "skew"),
+    "mobilities": ("particles_mobility",),
+    "residuals": ("residual", "solved"),
+    "vectors": ("vector", "product"),
+    "multiplied": ("search", "product"),
+}
+_BOTH_BLOCKS = {
+    "placed": ("displacement", "rotation"),
+    "moving": ("velocity", "angular_velocity"),
+    "pulled": ("force", "moment"),
+    "resisted": ("resisting", "twisting"),
+    "unpressed": ("unpushed", "moment"),
+    "acting": ("applied", "applied_moment"),
+    "foreseen": ("predicted", "predicted_spin"),
+    "tried": ("trial", "trial_rotation", "speed", "trial_spin"),
+    "reached": ("work[STAGES]", "turns[STAGES]", "work[STAGES + 1]", "turns[STAGES + 1]"),
+    "accelerating": ("acceleration", "turning_acceleration"),
+    "correcting": ("correction", "turning_correction", "work", "turns"),
+    "sizing": ("acceleration", "turning_acceleration", "reach"),
+    "strung": ("along", "across", "tangents"),
+    "diagonals": ("diagonal", "beside", "turning_diagonal"),
+    "inverses": ("straight", "skew", "turning_straight"),
+    "mobilities": ("particles_mobility", "particles_turning"),
+    "residuals": ("residual", "solved", "turning_residual", "turning_solved"),
+    "vectors": ("vector", "product", "turning_vector", "turning_product"),
+    "multiplied": ("search", "product", "turning_search", "turning_product"),
+}
+_LEAST_TURN = (
+    1e-3  # share of what displacements amount to by the longest rod, below which no error of rotations counts
+)
 EVERY = "displacement.shape[0]"  # particles
 _IN_BLOCK = "{0}[block], {0}[block + 1]"
 
 # What functions take before the columns.
 TRIAL_STATE = "time, dt, *state"
-PREDICTED = "time, dt, displacement, predicted, *forces"
-RESISTED = "time, dt, displacement, velocity, resisting, direction"
+PREDICTED = "time, dt, *placed, *foreseen, *forces"
+RESISTED = "time, dt, *placed, *moving, *resisted, direction"
 _NOW = "control[Control.TIME], control[Control.STEP_SIZE]"
 
 SHIFT = {f"s{d}": f"displacement[b, {i}] - displacement[a, {i}]" for i, d in enumerate("xy")}
+TURNED = {f"turn_{end}": f"rotation[{end}, 0]" for end in "ab"}
+SPUN = {f"spin_{end}": f"angular_velocity[{end}, 0]" for end in "ab"}
 DRIFT = {f"drift_{d}": f"velocity[b, {i}] - velocity[a, {i}]" for i, d in enumerate("xy")}
 
 _OF_PAIR = {  # what kernels of pairs are provided with
@@ -133,8 +203,12 @@ class Writer:
         self.form = form
         self.integrator = integrator
         self.warm = is_warm(model)
+        self.bends, self.loaded = bends(model), bears_between(model)
+        self.shift = SHIFT | TURNED if self.bends else SHIFT
+        self.drift = DRIFT | SPUN if self.bends else DRIFT
         self.collides = any(system.impulsive for system in systems)
-        self.bound = [bind(system, model) for system in systems if system.kernel]
+        bound = (bind(system, model) for system in systems if system.kernel)
+        self.bound = [b for b in bound if self.bends or b.each not in ("ends", "rotations")]
         check_names(self.bound)
         self.of = by_role(self.bound)
         self.commits = [b for role in HISTORIES for b in self.of[role]]
@@ -145,18 +219,26 @@ class Writer:
         kinds = (*_ENTRIES, *(_DRIVEN_ENTRIES if self.collides else ()))
         self.names |= {kind.__name__: kind for kind in kinds}
         self.pairs = [*self.of[StepRole.PAIR_FORCE], *self.of[StepRole.PAIR_RESISTANCE]]
-        conservative = [b.system for b in self.pairs if getattr(b.system, "potential", "")]
+        self.ends = [*self.of[StepRole.ENDS], *self.of[StepRole.RATE_OF_ENDS]]
+        could_store = [*self.pairs, *self.of[StepRole.ENDS]]
+        conservative = [b.system for b in could_store if getattr(b.system, "potential", "")]
         self.potentials = {system.name: bind(system, model, "potential") for system in conservative}
         self.names |= {b.call: b.function for b in self.potentials.values()}
         self.rates = bool(
-            self.of[StepRole.RATE] or self.of[StepRole.RESISTANCE] or self.of[StepRole.PAIR_RESISTANCE]
+            self._damps
+            or self.of[StepRole.RESISTANCE]
+            or self.of[StepRole.PAIR_RESISTANCE]
+            or self.of[StepRole.TURNING]
         )
         in_rods = [*self.of[StepRole.SUMMED], *self.of[StepRole.REPLACING]]
         self.working = [b for b in in_rods if not getattr(b.system, "elastic", False)]
-        pushing = bool(self.of[StepRole.PARTICLE_FORCE]) or len(self.potentials) < len(self.pairs)
-        self.powers = self.rates or pushing or bool(self.working)
+        self.working_ends = [b for b in self.of[StepRole.ENDS] if b.system.name not in self.potentials]
+        stored = sum(b.system.name in self.potentials for b in self.pairs)
+        pushing = bool(self.of[StepRole.PARTICLE_FORCE]) or stored < len(self.pairs)
+        self.powers = self.rates or pushing or bool(self.working) or bool(self.working_ends)
         # All arrays that the functions read or write besides the integrator's own.
-        self.columns = [*_ALWAYS, *(["rods_misfit"] if self.warm else [])]
+        self.columns = [*_ALWAYS, *(["rods_misfit"] if self.warm else []), *(_TURNING if self.bends else ())]
+        self.columns += ["rods_distributed_force", "rods_load_shares"] if self.loaded else []
         self._add_columns([*self.bound, *self.potentials.values()])
         if self.pairs:
             self.columns = list(dict.fromkeys([*self.columns, "particles_position", *ARRAYS]))
@@ -172,9 +254,11 @@ class Writer:
         names = dict.fromkeys(self.columns)
         for b in bound:
             if b.role is StepRole.LOAD:
-                names.update(dict.fromkeys(f"{b.prefix}_{part}" for part in ("on", "force", "values", "first")))
+                parts = ("on", "force", "values", "first", *(["moment"] if self.bends else []))
+                names.update(dict.fromkeys(f"{b.prefix}_{part}" for part in parts))
             else:
-                taken = (p for p in b.parameters if p not in PROVIDED and p not in TRIAL)
+                known = PROVIDED | {p for p, name in TRIAL.items() if self.bends or name not in TURNING}
+                taken = (p for p in b.parameters if p not in known)
                 names.update(dict.fromkeys(b.stored(p) if p in b.arrays else p for p in taken))
             if b.role is StepRole.EVENT:
                 names[sides_of(b)] = None
@@ -187,6 +271,9 @@ class Writer:
         if parameter in PROVIDED:
             return _OF_PAIR.get(parameter, parameter)
         name, single = TRIAL.get(parameter, parameter), False
+        if name in TURNING and self.bends:
+            return f"{name}[{index}, 0]"
+        name = parameter if name in TURNING else name
         if parameter in b.arrays:
             name, shape = b.stored(parameter), b.arrays[parameter].shape[1:]
         else:
@@ -211,6 +298,7 @@ class Writer:
             self._pasted(f"{self.integrator.entry}=advance", "compiled" if self.collides else "entered"),
             self._integrate(),
             *(self._pasted(part, "inlined") for part in reversed(self.integrator.parts)),
+            *map(self._second_part, self._parts_of_both),
             *self._of_steps(),
             *(pasted(template, "compiled") for template in (_OF_PAIRS if self.pairs else ())),
             pasted(forces.external, "compiled", particle_forces=self._particle_forces()),
@@ -222,23 +310,41 @@ class Writer:
         return expanded("\n\n\n".join(part.rstrip() for part in parts), self.groups)
 
     @property
+    def _parts_of_both(self) -> list[str]:
+        """Parts of the integrator that are written for both blocks of coordinates, if there are two."""
+        return [
+            part for part in self.integrator.parts if self.bends and part.partition(":")[2] in _SECOND_PARTS
+        ]
+
+    @property
     def groups(self) -> dict[str, Sequence[str]]:
         """The arguments that stand for one word in templates."""
         return {
-            "state": STATE,
-            "forces": STATE[2:],
+            "state": self.state,
+            "forces": self.state[4 if self.bends else 2 :],
+            **self.blocks,
             "scratch": self.scratch,
             "bounds": ("breaks", "until", "landing"),
             "limits": self._limits,
             "kept": (*_KEPT, *(f"kept_{name}" for name in self.kept)),
-            "observed": _OBSERVED,
+            "observed": (*_OBSERVED, *(_TURNING_OBSERVED if self.bends else ())),
             "columns": self.columns,
         }
 
     @property
+    def state(self) -> tuple[str, ...]:
+        """The arrays of a state and its forces."""
+        return BENT_STATE if self.bends else STATE
+
+    @property
+    def blocks(self) -> Mapping[str, tuple[str, ...]]:
+        """Groups of arguments of one block of coordinates, or of both."""
+        return _BOTH_BLOCKS if self.bends else _FIRST_BLOCK
+
+    @property
     def scratch(self) -> tuple[str, ...]:
         """Arrays that steps write to and nobody reads afterwards."""
-        return ("predicted", "power", "gained")
+        return (*self.blocks["foreseen"], "power", "gained")
 
     @property
     def written(self) -> list[str]:
@@ -248,7 +354,7 @@ class Writer:
     @property
     def kept(self) -> list[str]:
         """What steps change by row besides the state: columns that commits write, and the sides of events."""
-        return [*self.written, *map(sides_of, self.events)]
+        return [*self.written, *map(sides_of, self.events), *(TURNED_STATE if self.bends else ())]
 
     @property
     def _limits(self) -> tuple[str, ...]:
@@ -267,7 +373,14 @@ class Writer:
         )
 
     def _copies(self, template: Callable[[], None], to: str, of: str) -> list[str]:
-        loops = [fragment(driven.copy, to=to.format(name), of=of.format(name)) for name in self.kept]
+        loops = [
+            fragment(
+                driven.copy_turned if name in TURNED_STATE else driven.copy,
+                to=to.format(name),
+                of=of.format(name),
+            )
+            for name in self.kept
+        ]
         return fragment(template, others=[line for loop in loops for line in loop])
 
     def _driven_steps(self) -> dict[str, Sequence[str]]:
@@ -299,6 +412,7 @@ class Writer:
             "CHECK_INTERVAL": self.integrator.check_interval,
             "REVIEW_INTERVAL": REVIEW_INTERVAL,
             **self.integrator.constants,
+            **({"LEAST_TURN": _LEAST_TURN} if self.bends else {}),
         }
 
     @property
@@ -310,12 +424,31 @@ class Writer:
     def _pasted(self, where: str, decorator: str) -> str:
         """A template of the integrator, "module:function" or with "=new name"."""
         where, _, name = where.partition("=")
-        return pasted(find(where, self.integrator), decorator, name)
+        return pasted(find(where, self.integrator), decorator, name, **self.second_block)
+
+    @cached_property
+    def second_block(self) -> dict[str, str | list[str]]:
+        """What templates insert where rotations are treated beside displacements; nothing without bending."""
+        names = [name for name in vars(turning) if name.endswith("_turns")]
+        lines = {name: fragment(getattr(turning, name)) if self.bends else [] for name in names}
+        return {**lines, **_NORMS}
+
+    def _second_part(self, where: str) -> str:
+        """A function that treats coordinates one by one, for those of the second block."""
+        function = find(where, self.integrator)
+        text = pasted(function, "inlined", f"{function.__name__}_of_turns", **(self.second_block | _LEAST))
+        head, body = text.split(":\n", 1)
+        lines = projected(dedent(body).splitlines(), {})
+        for first, second in _LARGEST.items():
+            lines = [line.replace(first, second) for line in lines]
+        return "\n".join([f"{head}:", *indented(lines)])
 
     def _of_steps(self) -> list[str]:
         """Functions that the integrator's templates call."""
         loads = [
-            line for b in self.of[StepRole.LOAD] for line in self._each_load(b, f"power += {_load_power(b)}")
+            line
+            for b in self.of[StepRole.LOAD]
+            for line in self._each_load(b, f"power += {self._load_power(b)}")
         ]
         return [
             self._forces("accept", self.commits),
@@ -330,6 +463,7 @@ class Writer:
     def _particle_forces(self, powers: bool = False, span: str = EVERY) -> list[str]:
         """Forces on the particles from outside, and of the laws that resist their motion."""
         body = ["force[i, 0] = particles_constant_force[i, 0]", "force[i, 1] = particles_constant_force[i, 1]"]
+        body += ["moment[i, 0] = particles_constant_moment[i]"] if self.bends else []
         for b in self.of[StepRole.PARTICLE_FORCE]:
             body += [f"fx, fy = {self._apply(b, 'i')}", "force[i, 0] += fx", "force[i, 1] += fy"]
             body += [_particle_power(b)] if powers else []
@@ -339,7 +473,8 @@ class Writer:
             push = [
                 f"force[i, 0] += factor * {b.prefix}_force[k, 0]",
                 f"force[i, 1] += factor * {b.prefix}_force[k, 1]",
-                *([f"power_work += {_load_power(b)}"] if powers else []),
+                *([f"moment[i, 0] += factor * {b.prefix}_moment[k]"] if self.bends else []),
+                *([f"power_work += {self._load_power(b)}"] if powers else []),
             ]
             lines += self._each_load(b, *push, within="" if span == EVERY else f"block_{b.prefix}")
         return lines + self._each_pair((b, self._pair_forces(b, powers)) for b in self.pairs)
@@ -361,6 +496,12 @@ class Writer:
             *(self._pair_power(b) if powers else []),
         ]
 
+    def _load_power(self, b: Bound) -> str:
+        """What a load does per second at its factor."""
+        force = f"{b.prefix}_force[k, 0] * velocity[i, 0] + {b.prefix}_force[k, 1] * velocity[i, 1]"
+        turned = f" + {b.prefix}_moment[k] * angular_velocity[i, 0]" if self.bends else ""
+        return f"factor * ({force}{turned})"
+
     @staticmethod
     def _each_load(b: Bound, *lines: str, within: str = "") -> list[str]:
         """Lines for every load `k` on a particle `i`, in a block of them or in all."""
@@ -379,6 +520,11 @@ class Writer:
         for b in self.of[StepRole.RESISTANCE]:
             body += [f"fx, fy = {self._apply(b, 'i')}", "resisting[i, 0] += fx", "resisting[i, 1] += fy"]
             body += [_particle_power(b)] if powers else []
+        body += ["twisting[i, 0] = 0.0"] if self.bends else []
+        for b in self.of[StepRole.TURNING]:
+            body += [f"turned = {self._apply(b, 'i')}", "twisting[i, 0] += turned"]
+            gain = f"power_{b.account} {_sign(b, '+', '-')}= turned * angular_velocity[i, 0]"
+            body += [gain] if powers else []
         return body
 
     # --- rods -------------------------------------------------------------------------------------
@@ -400,10 +546,32 @@ class Writer:
         return bool(np.dtype(self.model.tables[table].fields[column].storage) == np.float64)
 
     def geometry(self) -> list[str]:
-        """Lines that give elongation, length and direction of a rod."""
-        return fragment(
-            rods.geometry, misfit="rods_misfit[r]" if self.warm else "(original - rods_rest_length[r])"
-        )
+        """Lines that give elongation, length and direction of a rod, and the slopes of its ends."""
+        misfit = "rods_misfit[r]" if self.warm else "(original - rods_rest_length[r])"
+        lines = fragment(rods.geometry, misfit=misfit)
+        return lines + fragment(rods.bent) if self.bends else lines
+
+    def rate(self, *, of_axis: bool = False) -> list[str]:
+        """Lines that give how fast a rod grows longer, and how fast its slopes grow; of_axis: also of the bowed axis."""
+        lines = fragment(rods.rate)
+        if self.bends:
+            lines += fragment(rods.slope_rates)
+            lines += fragment(rods.rate_of_axis) if of_axis else []
+        return lines
+
+    def end_laws(self, laws: Sequence[Bound], made: str, powers: bool = False) -> list[str]:
+        """Lines that sum up the moments that laws give the ends of a rod; powers: and what each does per second."""
+        lines = [f"{made}_start = 0.0", f"{made}_end = 0.0"]
+        for b in laws:
+            lines.append(f"part_start, part_end = {self._apply(b, 'r')}")
+            lines += [f"{made}_start += part_start", f"{made}_end += part_end"]
+            lines += [f"gain_{b.prefix} = part_start * rate_start + part_end * rate_end"] if powers else []
+        return lines
+
+    def end_moments(self) -> list[str]:
+        """Lines that give the moments on the ends of a rod, dampers apart, once its axial force is known."""
+        load = [*fragment(rods.between), *fragment(rods.of_load)] if self.loaded else []
+        return fragment(rods.end_moments, law=self.end_laws(self.of[StepRole.ENDS], "moment"), load=load)
 
     def _axial_force(self, *, without: Sequence[Bound] = ()) -> list[str]:
         lines = ["axial_force = 0.0"]
@@ -436,17 +604,29 @@ class Writer:
         if powers and self.working:
             compute += self._working_forces()
         compute += [*self._axial_force(), *_along_axis("pull", "axial_force")]
+        made, scatter = ["pull_x", "pull_y"], _scatter("force", "pull")
+        if self.bends:
+            couple = " + couple" if self.loaded else ""
+            compute += [*self.end_moments(), *_across_axis("pull", f"moment_start + moment_end{couple}")]
+            made, scatter = [*made, "moment_start", "moment_end"], [*scatter, *_turn("moment", "moment")]
         pull = RodLoop(
-            SHIFT,
+            self.shift,
             [*self.geometry(), *compute],
-            ["pull_x", "pull_y", *lost],
-            [*lost.values(), *_scatter("force", "pull")],
+            [*made, *lost],
+            [*lost.values(), *scatter],
             [_column(b) for b in commits],
         )
-        if not (self.of[StepRole.RATE] or (powers and self.working)):
+        if not (self._damps or (powers and (self.working or self.working_ends))):
             return pull
         direction = RodLoop({}, [], ["nx", "ny"], ["direction[r, 0] = nx", "direction[r, 1] = ny"])
+        if self.bends:
+            direction += RodLoop({}, [], ["inverse"], ["direction[r, 2] = inverse"])
         return pull + direction + self._dampers(powers)
+
+    @property
+    def _damps(self) -> bool:
+        """Whether anything in rods depends on how fast they change."""
+        return bool(self.of[StepRole.RATE] or self.of[StepRole.RATE_OF_ENDS])
 
     def _histories(self, commits: Sequence[Bound]) -> tuple[list[str], dict[str, str]]:
         """Lines that bring history up to date, and names of what is lost with lines that add it up."""
@@ -459,7 +639,8 @@ class Writer:
 
     def _dampers(self, powers: bool = False) -> RodLoop:
         """Forces that depend on how fast rods grow longer, and what the accounts gain by them per second."""
-        compute = [*fragment(rods.rate), "damping_force = 0.0"]
+        compute = [*self.rate(of_axis=powers and bool(self.working)), "damping_force = 0.0"]
+        of_axis = "axis_rate" if self.bends else "rate"
         gains = {}
         for b in self.of[StepRole.RATE]:
             compute += [f"part = {self._apply(b, 'r')}", "damping_force += part"]
@@ -471,11 +652,20 @@ class Writer:
             for name in accounts:
                 force = "axial_force" if name == accounts[-1] else f"force_{name}"
                 gains[f"taken_{name}"] = f"power_{name} {'-' if name == 'work' else '+'}= taken_{name}"
-                compute.append(f"taken_{name} = ({force} - {before}) * rate")
+                compute.append(f"taken_{name} = ({force} - {before}) * {of_axis}")
                 before = force
         compute += _along_axis("drag", "damping_force")
-        scatter = [*gains.values(), *_scatter("resisting", "drag")]
-        return RodLoop(DRIFT, compute, ["drag_x", "drag_y", *gains], scatter)
+        made, scatter = ["drag_x", "drag_y"], _scatter("resisting", "drag")
+        if self.bends:
+            compute += self.end_laws(self.of[StepRole.RATE_OF_ENDS], "twist", powers)
+            compute += _across_axis("drag", "twist_start + twist_end")
+            made, scatter = [*made, "twist_start", "twist_end"], [*scatter, *_turn("twisting", "twist")]
+            if powers:
+                compute += self.end_laws(self.working_ends, "worked", powers) if self.working_ends else []
+                for b in (*self.working_ends, *self.of[StepRole.RATE_OF_ENDS]):
+                    gain = f"gain_{b.prefix}"
+                    gains[gain] = f"power_{b.account} {_sign(b, '-', '+')}= {gain}"
+        return RodLoop(self.drift, compute, [*made, *gains], [*gains.values(), *scatter])
 
     def _resist(self) -> str:
         return pasted(forces.resist, "compiled", resistance=[*self._resistance(), *POWER_RETURNED])
@@ -488,15 +678,17 @@ class Writer:
         if particles:
             body += [f"for i in range({span}):", *indented(particles)]
         body += self._each_pair((b, self._pair_resistance(b)) for b in self.pairs)
-        acting = [*self.of[StepRole.RATE], *self.working]
+        acting = [*self.of[StepRole.RATE], *self.of[StepRole.RATE_OF_ENDS], *self.working, *self.working_ends]
         if acting:
             needed = {parameter for b in acting for parameter in b.parameters}
             drag = self._dampers(powers=True)
-            if self.working or needed & {"elongation", "axial_force"}:
+            working = self.working or self.working_ends
+            if working or needed & {"elongation", "axial_force", "slope_start", "slope_end"}:
                 compute = [*(self._working_forces() if self.working else []), *self._axial_force()]
-                body += self._rod_loop(RodLoop(SHIFT, [*self.geometry(), *compute]) + drag)
+                body += self._rod_loop(RodLoop(self.shift, [*self.geometry(), *compute]) + drag)
             else:  # too little is computed to gain from stages
                 axis = RodLoop({}, ["nx = direction[r, 0]", "ny = direction[r, 1]"])
+                axis += RodLoop({}, ["inverse = direction[r, 2]"] if self.bends else [])
                 body += self._short_rod_loop(axis + drag)
         return body
 
@@ -533,6 +725,7 @@ class Writer:
     def _particles(self, where: str, span: str = EVERY) -> list[str]:
         """A loop in which the integrator moves every particle."""
         lines = fragment(find(where, self.integrator), total_force=fragment(fixed_steps.total_force))
+        lines = lines + projected(lines, SECOND_BLOCK) if self.bends else lines
         return [f"for i in range({span}):", *indented(lines)] if lines else []
 
     def _gains(self, resist: str, given: str) -> list[str]:
@@ -566,7 +759,8 @@ class Writer:
     def _each_row(self, lines: Mapping[str, list[str]]) -> dict[str, Any]:
         """Loops over the rods and over the particles with these lines, where there are any, for row `r`."""
         of_rods, of_particles = lines["rods"], lines["particles"]
-        rod_loop = RodLoop(SHIFT | DRIFT, [*self.geometry(), *fragment(rods.rate), *of_rods]).one_by_one()
+        rate = [*self.rate(of_axis=True), "rate = axis_rate"] if self.bends else self.rate()
+        rod_loop = RodLoop(self.shift | self.drift, [*self.geometry(), *rate, *of_rods]).one_by_one()
         particle_loop = [f"for r in range({EVERY}):", *indented(of_particles)]
         return {"rods": rod_loop if of_rods else [], "particles": particle_loop if of_particles else []}
 
@@ -574,10 +768,17 @@ class Writer:
 
     def _measure(self) -> str:
         stored = [*self.geometry(), *self._axial_force(without=self.working), *fragment(rods.stored)]
+        if self.bends:
+            stored += [*self.end_moments(), *fragment(rods.stored_by_ends)]
+            kept = [self.potentials[b.system.name] for b in self.ends if b.system.name in self.potentials]
+            stored += [f"elastic += 2.0 * {self._apply(b, 'r')}" for b in kept]
+            stored += ["potential += transverse * area"] if self.loaded else []
         return pasted(
             observing.measure,
             "compiled",
-            rods=RodLoop(SHIFT, stored).one_by_one(),
+            turning=fragment(turning.turning) if self.bends else [],
+            turned=fragment(turning.turned, round_off=str(ROUND_OFF)) if self.bends else [],
+            rods=RodLoop(self.shift, stored).one_by_one(),
             pairs=self._each_pair((b, self._pair_energy(b)) for b in self.pairs),
             round_off=str(ROUND_OFF),
         )
@@ -612,10 +813,16 @@ class Writer:
 
     def _observe(self) -> str:
         observed = fragment(rods.observed, at_strength=str(_AT_STRENGTH))
-        loop = RodLoop(SHIFT, [*self.geometry(), *self._axial_force(), *observed])
+        observed += [*self.end_moments(), *fragment(rods.observed_ends)] if self.bends else []
+        loop = RodLoop(self.shift, [*self.geometry(), *self._axial_force(), *observed])
         pushed = fragment(observing.pushed) if self.collides else []
         return pasted(
-            observing.observe, "entered", evaluation=self._evaluation, rods=loop.one_by_one(), pushed=pushed
+            observing.observe,
+            "entered",
+            evaluation=self._evaluation,
+            rods=loop.one_by_one(),
+            pushed=pushed,
+            clamps=fragment(turning.clamps) if self.bends else [],
         )
 
     def _commit(self) -> str:
@@ -649,10 +856,6 @@ def _particle_power(b: Bound) -> str:
     return f"power_{b.account} {_sign(b, '+', '-')}= fx * velocity[i, 0] + fy * velocity[i, 1]"
 
 
-def _load_power(b: Bound) -> str:
-    return f"factor * ({b.prefix}_force[k, 0] * velocity[i, 0] + {b.prefix}_force[k, 1] * velocity[i, 1])"
-
-
 def _column(commit: Bound) -> str:
     """The column that a commit writes, as the program names it."""
     return commit.system.writes[0].replace(".", "_", 1)
@@ -662,6 +865,16 @@ def _along_axis(name: str, amount: str) -> list[str]:
     return [f"{name}_x = {amount} * nx", f"{name}_y = {amount} * ny"]
 
 
+def _across_axis(name: str, moments: str) -> list[str]:
+    """The force across the axis that keeps the balance with moments on the ends: V = (M_a + M_b)/L."""
+    return [f"shear = ({moments}) * inverse", f"{name}_x += shear * ny", f"{name}_y -= shear * nx"]
+
+
+def _turn(target: str, name: str) -> list[str]:
+    """Moments on the ends of a rod act on its particles the other way."""
+    return [f"{target}[a, 0] -= {name}_start", f"{target}[b, 0] -= {name}_end"]
+
+
 def _scatter(target: str, name: str) -> list[str]:
     return [
         f"{target}[a, 0] += {name}_x",
@@ -669,6 +882,20 @@ def _scatter(target: str, name: str) -> list[str]:
         f"{target}[b, 0] -= {name}_x",
         f"{target}[b, 1] -= {name}_y",
     ]
+
+
+# In `combine` for rotations: their own scales, at least a small share of those of displacements.
+_NORMS = {f"norm_{d}": f"math.sqrt(size_{d})" for d in "xv"}
+_LEAST = {
+    f"norm_{d}": f"math.sqrt(size_{d}), LEAST_TURN * FIRST_{scale} / search[Search.REACH]"
+    for d, scale in {"x": "DISPLACEMENT", "v": "SPEED"}.items()
+}
+_LARGEST = {
+    "LARGEST_DISPLACEMENT": "LARGEST_ROTATION",
+    "LARGEST_SPEED": "LARGEST_SPIN",
+    "FIRST_DISPLACEMENT": "search[Search.LARGEST_DISPLACEMENT]",
+    "FIRST_SPEED": "search[Search.LARGEST_SPEED]",
+}
 
 
 def _literal(value: Any) -> str:

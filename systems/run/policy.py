@@ -34,6 +34,8 @@ ERROR_CONTROL = (
     "step_error",
     "largest_displacement",
     "largest_speed",
+    "largest_rotation",
+    "largest_spin",
 )  # columns of the clock; 0 where error control begins anew
 
 # Steps between reviews of islands; fewer: asleep sooner, but a review costs as much as ten steps.

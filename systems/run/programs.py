@@ -6,7 +6,7 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 
 from components.model import Model
-from components.rod import is_warm
+from components.rod import bears_between, is_warm
 from components.settings import AUTOMATIC
 from components.snapshot import Snapshot
 from systems.base import Integrator, Phase, StepSystem
@@ -198,9 +198,13 @@ class Programs:
             raise ProgramError(f"{integrator.name} makes no step program: {said}.", integrator) from error
 
     def _key(self, plan: list[StepSystem]) -> Key:
-        warmth = ("rods.misfit",) if is_warm(self._model) else ()
+        parts = {
+            "rods.misfit": is_warm,
+            "rods.distributed_force": bears_between,
+        }  # that are written only where needed
+        written = (name for name, is_needed in parts.items() if is_needed(self._model))
         names = (system.name for system in plan)
-        return (*names, self.integrator.name, form_of(self._model, self.integrator, plan), *warmth)
+        return (*names, self.integrator.name, form_of(self._model, self.integrator, plan), *written)
 
 
 def _collides(plan: list[StepSystem]) -> bool:

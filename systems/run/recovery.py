@@ -6,14 +6,14 @@ from components.field import same
 from components.model import Model
 from components.snapshot import Snapshot
 from systems.program.culprit import find_culprit
-from systems.program.program import MOTION
+from systems.program.program import MOTION, TURNING
 from systems.run.programs import Programs
 from systems.run.sleep import Sleep
 from systems.run.step_size import StepSize
 
 MOST_HALVINGS = 6  # of an automatic step before a run is given up
 
-MOVING = *MOTION, "rods.plastic_strain"
+MOVING = *MOTION, *TURNING, "rods.plastic_strain"
 
 
 class Recovery:

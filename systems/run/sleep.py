@@ -96,7 +96,7 @@ class Sleep:
 
     def _observed(self, program: Dynamics) -> RestMeasure:
         program.observe()
-        return RestMeasure.of(self.model, program.unbalanced)
+        return RestMeasure.of(self.model, program.unbalanced, program.unbalanced_moment)
 
     @property
     def _under_varying_loads(self) -> Rows:

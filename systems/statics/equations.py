@@ -13,7 +13,9 @@ from typing import TYPE_CHECKING, TypeAlias, Union
 import numpy as np
 from numpy.typing import NDArray
 
+from components.field import FieldError
 from components.model import Model
+from components.rod import bends
 from systems.islands import lowest_joined
 
 if TYPE_CHECKING:  # only large structures need it
@@ -29,6 +31,15 @@ DENSE = 100  # unknowns up to which full matrices are faster
 
 AT_LIMIT = 1e-10  # share of its strength within which a rod counts as yielding
 ROUND_OFF = float(np.finfo(np.float64).eps)
+
+
+def refuse_bending(model: Model) -> None:
+    """Raise FieldError if members bend, which statics does not know yet."""
+    if bends(model):
+        named = model.describe(model.rods[int(np.flatnonzero(model.rods.turning_shares.any(axis=1))[0])])
+        raise FieldError(
+            f"Statics computes bars only, but {named} bends. Run the model until rest, or set the bending stiffness to 0."
+        )
 
 
 def largest(values: Array) -> float:
@@ -127,9 +138,13 @@ class Structure:
 
     @classmethod
     def of(cls, model: Model, geometry: str = "exact") -> Structure:
-        """The structure of a model in "exact" or "linear" geometry; without plasticity no rod yields."""
+        """The structure of a model in "exact" or "linear" geometry; without plasticity no rod yields.
+
+        Raises FieldError if members bend.
+        """
         if geometry not in ("exact", "linear"):
             raise ValueError(f"Geometry is '{geometry}'; it must be 'exact' or 'linear'.")
+        refuse_bending(model)
         particles, rods = model.particles, model.rods
         yields = bool(model.settings.plasticity)
         ends = rods.between.astype(np.intp)

@@ -36,6 +36,8 @@ PURE_RATIOS = {
     "tolerance",
     "step_error",
     "plastic_strain",
+    "bowing",
+    "turning_shares",
     "strain",
     "restitution",
     "displacement_scale",
@@ -275,7 +277,9 @@ def test_a_column_starts_as_the_default(field: Field[Any]) -> None:
     column = field.allocate(3)
     assert column.shape == (3, *field.shape)
     assert column.dtype == field.storage
-    default = (field.default,) * 2 if field.shape and np.ndim(field.default) == 0 else field.default
+    default = (
+        (field.default,) * field.shape[0] if field.shape and np.ndim(field.default) == 0 else field.default
+    )
     assert [field.loaded(column, row) for row in range(len(column))] == [default] * 3
     assert field.allocate(0).shape == (0, *field.shape)
 

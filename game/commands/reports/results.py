@@ -11,7 +11,7 @@ from components.field import Column, Field
 from components.handle import Handle
 from components.model import Model
 from components.particle import Particle
-from components.rod import Rod
+from components.rod import Rod, bends
 from components.table import fields_of
 from game.commands.output import ResultError, Row, aligned, as_written, plain
 from game.paths import ENERGIES
@@ -30,16 +30,22 @@ _OWN: Mapping[str, tuple[Field[Any], ...]] = {
     "particles": _facts(Particle, "position", "displacement", "velocity", "reaction", "mass"),
     "rods": _facts(Rod, "axial_force", "length", "strain", "plastic_strain", "yielding"),
 }
+# Further ones of models that bend, or bear distributed forces.
+_OF_BENDING: Mapping[str, tuple[Field[Any], ...]] = {
+    "particles": _facts(Particle, "rotation", "angular_velocity", "reaction_moment", "inertia"),
+    "rods": _facts(Rod, "end_axial_force", "shear", "bending_moment", "end_rotation"),
+}
 _KINDS: Mapping[str, type[Handle]] = {"particles": Particle, "rods": Rod}
 _IN_TABLES = {Particle.displacement.name: ("mm", 1000.0)}  # else units as in files
 
 
-def reported(group: str) -> tuple[Field[Any], ...]:
+def reported(model: Model, group: str) -> tuple[Field[Any], ...]:
     """The fields of a table that results report: Pinjoint's own, then those of mods' components."""
+    bent = bends(model) or model.rods.distributed_force.any()
     of_mods = (
         field for field in fields_of(_KINDS[group]) if field.component and field.dtype in (float, int, bool)
     )
-    return (*_OWN[group], *of_mods)
+    return (*_OWN[group], *(_OF_BENDING[group] if bent else ()), *of_mods)
 
 
 # --- one state -----------------------------------------------------------------------------------------
@@ -73,7 +79,7 @@ def state(
 def _elements(model: Model, name: str, given: Mapping[str, Column]) -> dict[str, dict[str, Any]]:
     table = model.tables[name]
     columns = []
-    for field in reported(name):
+    for field in reported(model, name):
         key = f"{name}.{field.name}"
         column = given[key] if key in given else table.column(field.name)
         absent = np.isnan(column) if field.nullable else False
@@ -82,7 +88,7 @@ def _elements(model: Model, name: str, given: Mapping[str, Column]) -> dict[str,
             raise ResultError(f"{element}: {field.title} is {value}, not finite; report a state before it.")
         values = column.tolist()
         columns.append([None if v != v else v for v in values] if field.nullable else values)
-    keys = [field.name for field in reported(name)]
+    keys = [field.name for field in reported(model, name)]
     rows = zip(*columns, strict=True)
     return {name: dict(zip(keys, row, strict=True)) for name, row in zip(table.names, rows, strict=True)}
 
@@ -104,12 +110,13 @@ def run_rows(run: Run) -> Iterator[Row]:
 def _quantities(made: State) -> Iterator[tuple[Any, ...]]:
     """(element, name, quantity, value, unit) of every number in a state."""
     for group, kind in _KINDS.items():
+        fields = {field.name: field for field in fields_of(kind)}
         for name, values in made[group].items():
-            for field in reported(group):
-                value = values[field.name]
+            for fact, value in values.items():
+                field = fields[fact]
                 if field.shape:
-                    yield kind.noun, name, f"{field.name}_x", value[0], field.unit
-                    yield kind.noun, name, f"{field.name}_y", value[1], field.unit
+                    for axis, part in zip(field.axes, value, strict=True):
+                        yield kind.noun, name, f"{fact}_{axis}", part, field.unit
                 else:
                     yield kind.noun, name, field.name, value, field.unit
     for name, value in made["energy"].items():
@@ -156,12 +163,13 @@ def _state_lines(made: State) -> Iterator[str]:
 
 def _element_rows(group: str, elements: Mapping[str, Mapping[str, Any]]) -> list[list[str]]:
     """Two rows of headings, then one row per element."""
+    fields = {field.name: field for field in fields_of(_KINDS[group])}
     columns = [
         (field, axis, *_IN_TABLES.get(field.name, (field.unit, 1.0)))
-        for field in reported(group)
+        for field in map(fields.__getitem__, next(iter(elements.values())))
         for axis in (range(2) if field.shape else (None,))
     ]
-    titles = [field.title + ("" if axis is None else " " + "xy"[axis]) for field, axis, _, _ in columns]
+    titles = [field.title + ("" if axis is None else " " + field.axes[axis]) for field, axis, _, _ in columns]
     rows = [[_KINDS[group].noun, *titles], ["", *(unit for _, _, unit, _ in columns)]]
     for name, values in elements.items():
         cells = [name]

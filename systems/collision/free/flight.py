@@ -57,6 +57,7 @@ class Flight:
         self.model = model
         self.measures = np.zeros(len(Measure))
         self.unbalanced = np.zeros((model.particles.count, 2))
+        self.unbalanced_moment = np.zeros(0)  # nothing turns
         self._impacts = impacts
         self._pull = pull
         for module in (EVENTS, HORIZONS):

@@ -12,6 +12,9 @@ program. It runs only there.
     *limits     tolerance, limit; where steps are controlled
     *kept       what driven.py puts back
     *observed   rods_axial_force, rods_length, rods_strain, yielding; fixed, tension, compression, yields
+    *placed, *moving, *pulled, *resisted, …
+                displacement, velocity, force, resisting, …; of models that bend each with the array of rotations after it:
+                rotation, angular_velocity, moment, twisting, … (`_BOTH_BLOCKS` in writer.py)
     insert(x)   the lines, or the expression, that the writer made for `x`
 
 In the head of a function, where Python allows one star only, the same words stand without it. Arrays are handed over
@@ -39,6 +42,7 @@ rods has branches), COMMITS (something has a history) and those of its integrato
     forces.py        forces, history, and what they do per second
     pairs.py         pairs of particles that are near each other
     rods.py          what is computed of one rod
+    turning.py       rotations, the second block of coordinates, of models that bend
     events.py        where rods leave the branches of their laws
     observing.py     energies and derived columns of a state
 """

@@ -124,6 +124,11 @@ def copy():
         insert(to)[r] = insert(of)[r]
 
 
+def copy_turned():
+    for r in range(insert(of).shape[0]):
+        insert(to)[r, 0] = insert(of)[r, 0]
+
+
 # --- integrators with fixed steps --------------------------------------------------------------------
 
 
@@ -146,7 +151,7 @@ def take_fixed():
         dt = real[Real.END] - began
         age = min(total - whole[Whole.SINCE], CHECK_INTERVAL)
         if is_check_due(total + 1, age + 1):
-            measure(displacement, velocity, force, resisting, measures, *columns)
+            measure(*placed, *moving, *pulled, *resisted, measures, *columns)
             account[Account.GUARD_ENERGY] = conserved(measures, account, dt, SHADOW)
         taken, reason = advance(
             1,
@@ -167,7 +172,7 @@ def take_fixed():
         control[Control.TIME] = real[Real.END]
         real[Real.ORIGIN] = real[Real.END] - age * size
         whole[Whole.SINCE] = total + taken - age
-        measure(displacement, velocity, unpushed, resisting, measures, *columns)
+        measure(*placed, *moving, *unpressed, *resisted, measures, *columns)
         account[Account.GUARD_ENERGY] = conserved(measures, account, size, SHADOW)
     else:
         steps = whole[Whole.WANTED] if alone else whole[Whole.STEPS]
@@ -204,6 +209,7 @@ def evaluate_controlled():
     """The forces of the present state."""
     evaluate(control[Control.TIME], control[Control.STEP_SIZE], *state, power, *columns)
     accelerate(force, resisting, work[0], particles_mobility)
+    insert(begin_turns)
 
 
 def take_controlled():

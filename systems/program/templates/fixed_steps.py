@@ -92,8 +92,8 @@ def integrate(steps, first, origin, dt, state, scratch, account, *columns):
 def work():
     """The work of varying loads in a step: their mean force times the displacement."""
     began = origin + (first + step - 1) * dt
-    before = load_power(began, velocity, *columns)
-    after = load_power(time, velocity, *columns)
+    before = load_power(began, *moving, *columns)
+    after = load_power(time, *moving, *columns)
     account[Account.WORK] += 500.0 * dt * (before + after)
 
 
@@ -142,7 +142,7 @@ def advance(
     if not fresh:
         forces(time, dt, *state, *columns)
         if POWERS:
-            resist(time, dt, displacement, velocity, resisting, direction, power, *columns)
+            resist(time, dt, *placed, *moving, *resisted, direction, power, *columns)
     taken = 0
     coming = 0
     while taken < steps:
@@ -169,14 +169,15 @@ def advance(
             continue
         taken += done
         age += done
-        happening = STOPS and happened(displacement, velocity, *scratch, *columns)
+        happening = STOPS and happened(*placed, *moving, *scratch, *columns)
         # The early checks guard whole steps: the energy that Euler conserves is another one in a piece.
         if is_check_due(total + taken, age if after >= 0 else CHECK_INTERVAL):
-            measure(displacement, velocity, force, resisting, measures, *columns)
+            measure(*placed, *moving, *pulled, *resisted, measures, *columns)
             ahead = 0.0
             if LOADS:
                 push(dt, velocity, force, resisting, predicted, particles_mobility)
-                ahead = 1000.0 * dt * abs(load_power(time, predicted, *columns))
+                insert(push_turns)
+                ahead = 1000.0 * dt * abs(load_power(time, *foreseen, *columns))
             reason = judge(measures, account, dt, SHADOW, ahead, time >= loads_end)
             if reason != StopReason.DONE:
                 return taken, reason.value

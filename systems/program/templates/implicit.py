@@ -13,8 +13,10 @@ tolerances: the same input gives the same bits.
 def implicit_stages(time, dt, allowed, state, scratch, *columns):
     """Accelerations of the stages after the first; False if Newton's method does not converge."""
     trial, speed = work[STAGES], work[STAGES + 1]
+    insert(trial_turns)
     known_x, known_v = work[STAGES + 2], work[STAGES + 3]
     correction = work[STAGES + 4]
+    insert(known_turns)
     by_v = GAMMA * dt
     by_x = by_v * by_v
     for s in range(1, STAGES):
@@ -23,24 +25,24 @@ def implicit_stages(time, dt, allowed, state, scratch, *columns):
         for i in range(displacement.shape[0]):
             for d in range(2):
                 acceleration[i, d] = work[s - 1, i, d]
+        insert(extrapolate_known_turns)
         before = math.inf
         for iteration in range(MOST_CORRECTIONS + 1):
             for i in range(displacement.shape[0]):
                 for d in range(2):
                     speed[i, d] = known_v[i, d] + by_v * acceleration[i, d]
                     trial[i, d] = known_x[i, d] + by_x * acceleration[i, d]
-            evaluate(time + NODES[s] * dt, dt, trial, speed, *forces, stage_power, *columns)
+            insert(predict_turns)
+            evaluate(time + NODES[s] * dt, dt, *tried, *forces, stage_power, *columns)
             if not correct(
                 time + NODES[s] * dt,
                 dt,
                 by_x,
                 by_v,
-                trial,
-                speed,
+                *tried,
                 *forces,
-                acceleration,
-                correction,
-                work,
+                *accelerating,
+                *correcting,
                 rod_work,
                 *columns,
             ):
@@ -50,10 +52,11 @@ def implicit_stages(time, dt, allowed, state, scratch, *columns):
                 for d in range(2):
                     acceleration[i, d] += correction[i, d]
                     change += correction[i, d] * correction[i, d]
+            insert(change_turns)
             change = by_v * math.sqrt(change)
             if not change < math.inf or (iteration > 1 and change > 2.0 * before):
                 return False
-            if change <= NEWTON_SHARE * allowed or change <= NEWTON_FLOOR * size_of(by_v, acceleration):
+            if change <= NEWTON_SHARE * allowed or change <= NEWTON_FLOOR * size_of(by_v, *sizing):
                 break
             if iteration == MOST_CORRECTIONS:
                 return False
@@ -64,15 +67,16 @@ def implicit_stages(time, dt, allowed, state, scratch, *columns):
     return True
 
 
-def size_of(by_v, acceleration):
+def size_of(by_v, sizing):
     """Change of velocity that an acceleration makes (m/s), Euclidean norm."""
     size = 0.0
     for i in range(acceleration.shape[0]):
         size += acceleration[i, 0] * acceleration[i, 0] + acceleration[i, 1] * acceleration[i, 1]
+    insert(size_of_turns)
     return by_v * math.sqrt(size)
 
 
-def tangent(time, dt, by_x, by_v, displacement, velocity, direction, along, across, diagonal, beside, *columns):
+def tangent(time, dt, by_x, by_v, placed, moving, direction, strung, diagonals, *columns):
     """How forces follow an acceleration that adds by_x × itself to displacements, by_v × itself to velocities.
 
     direction ← unit vectors of the rods; along, across ← stiffness of each rod along and across its axis (kN per
@@ -83,6 +87,7 @@ def tangent(time, dt, by_x, by_v, displacement, velocity, direction, along, acro
         diagonal[i, 0] = 0.001 * particles_mass[i]
         diagonal[i, 1] = 0.001 * particles_mass[i]
         beside[i, 0] = 0.0
+        insert(tangent_turns)
         insert(particles)
     insert(rods)
 
@@ -109,6 +114,17 @@ def particle_tangent():
     beside[i, 0] -= 0.5 * share * (fx - gx)
 
 
+def turning_tangent():
+    """Of one law that resists the turning of particle `i`."""
+    spin = angular_velocity[i, 0]
+    small = 1e-6 * abs(spin) + 1e-9
+    angular_velocity[i, 0] = spin + small
+    more = insert(moment)
+    angular_velocity[i, 0] = spin - small
+    turning_diagonal[i, 0] -= 0.5 * by_v / small * (more - insert(moment))
+    angular_velocity[i, 0] = spin
+
+
 def rod_tangent():
     """Of the laws of rod `r`, dampers apart."""
     direction[r, 0] = nx
@@ -126,9 +142,11 @@ def rod_tangent():
     stiffness = by_x * (more - axial_force) / (2.0 * small)
     elongation = here
     axial_force = total
+    insert(drawn)
     insert(dampers)
     along[r] = stiffness
     across[r] = by_x * total * inverse
+    insert(bending)
 
 
 def damper_tangent():
@@ -145,15 +163,17 @@ def damper_tangent():
     stiffness += by_v * (more - damping_force) / (2.0 * small)
 
 
-def correct(time, dt, by_x, by_v, trial, speed, forces, acceleration, correction, work, rod_work, *columns):
+def correct(time, dt, by_x, by_v, tried, forces, accelerating, correcting, rod_work, *columns):
     """correction ← Newton's, of the acceleration, by conjugate gradients; False if the matrix is not positive."""
     residual, search = work[STAGES + 5], work[STAGES + 6]
     product, solved = work[STAGES + 7], work[STAGES + 8]
     diagonal, beside = work[STAGES + 9], work[STAGES + 10]
     straight, skew = work[STAGES + 11], work[STAGES + 12]
+    insert(correct_turns)
     along, across = rod_work[0], rod_work[1]
-    tangent(time, dt, by_x, by_v, trial, speed, direction, along, across, diagonal, beside, *columns)
-    precondition(direction, along, across, diagonal, beside, straight, skew, rods_between, particles_mobility)
+    insert(tangent_rows_turns)
+    tangent(time, dt, by_x, by_v, *tried, direction, *strung, *diagonals, *columns)
+    precondition(direction, *strung, *diagonals, *inverses, rods_between, *mobilities)
     for i in range(trial.shape[0]):
         for d in range(2):
             correction[i, d] = 0.0
@@ -163,18 +183,21 @@ def correct(time, dt, by_x, by_v, trial, speed, forces, acceleration, correction
                 if RATES:
                     total += resisting[i, d]
                 residual[i, d] = total
-    size = relax(residual, solved, straight, skew)
+    insert(residual_turns)
+    size = relax(*residuals, *inverses)
     enough = SOLVER_SHARE * SOLVER_SHARE * size
     for i in range(trial.shape[0]):
         for d in range(2):
             search[i, d] = solved[i, d]
+    insert(search_turns)
     for _ in range(8 * trial.shape[0] + 64):
         if not size > enough:
             break
-        multiply(search, product, direction, along, across, diagonal, beside, rods_between, particles_mobility)
+        multiply(*multiplied, direction, *strung, *diagonals, rods_between, *mobilities)
         curvature = 0.0
         for i in range(trial.shape[0]):
             curvature += search[i, 0] * product[i, 0] + search[i, 1] * product[i, 1]
+        insert(curvature_turns)
         if not curvature > 0.0:
             return False
         share = size / curvature
@@ -182,20 +205,23 @@ def correct(time, dt, by_x, by_v, trial, speed, forces, acceleration, correction
             for d in range(2):
                 correction[i, d] += share * search[i, d]
                 residual[i, d] -= share * product[i, d]
+        insert(improve_turns)
         before = size
-        size = relax(residual, solved, straight, skew)
+        size = relax(*residuals, *inverses)
         ratio = size / before
         for i in range(trial.shape[0]):
             for d in range(2):
                 search[i, d] = solved[i, d] + ratio * search[i, d]
+        insert(search_on_turns)
     return size < math.inf
 
 
-def multiply(vector, product, direction, along, across, diagonal, beside, rods_between, particles_mobility):
+def multiply(vectors, direction, strung, diagonals, rods_between, mobilities):
     """product ← (M + γh C + (γh)² K) vector; constrained directions are left out."""
     for i in range(vector.shape[0]):
         product[i, 0] = diagonal[i, 0] * vector[i, 0] + beside[i, 0] * vector[i, 1]
         product[i, 1] = diagonal[i, 1] * vector[i, 1] + beside[i, 0] * vector[i, 0]
+    insert(multiply_turns)
     for r in range(rods_between.shape[0]):
         a = rods_between[r, 0]
         b = rods_between[r, 1]
@@ -206,6 +232,7 @@ def multiply(vector, product, direction, along, across, diagonal, beside, rods_b
         pull = (along[r] - across[r]) * (nx * sx + ny * sy)
         px = pull * nx + across[r] * sx
         py = pull * ny + across[r] * sy
+        insert(multiply_rod_turns)
         product[a, 0] -= px
         product[a, 1] -= py
         product[b, 0] += px
@@ -214,19 +241,22 @@ def multiply(vector, product, direction, along, across, diagonal, beside, rods_b
         for d in range(2):
             if particles_mobility[i, d] == 0.0:
                 product[i, d] = 0.0
+    insert(held_turns)
 
 
-def precondition(direction, along, across, diagonal, beside, straight, skew, rods_between, particles_mobility):
+def precondition(direction, strung, diagonals, inverses, rods_between, mobilities):
     """straight, skew ← the inverses of the 2 × 2 blocks on the diagonal of the matrix."""
     for i in range(diagonal.shape[0]):
         straight[i, 0] = diagonal[i, 0]
         straight[i, 1] = diagonal[i, 1]
         skew[i, 0] = beside[i, 0]
+    insert(precondition_turns)
     for r in range(rods_between.shape[0]):
         nx = direction[r, 0]
         ny = direction[r, 1]
         sideways = max(across[r], 0.0)
         stiffer = max(along[r], 0.0) - sideways
+        insert(precondition_rod_turns)
         for end in range(2):
             i = rods_between[r, end]
             straight[i, 0] += stiffer * nx * nx + sideways
@@ -242,13 +272,15 @@ def precondition(direction, along, across, diagonal, beside, straight, skew, rod
         straight[i, 0] = yy / determinant if particles_mobility[i, 0] > 0.0 else 0.0
         straight[i, 1] = xx / determinant if particles_mobility[i, 1] > 0.0 else 0.0
         skew[i, 0] = -xy / determinant
+    insert(inverted_turns)
 
 
-def relax(residual, solved, straight, skew):
+def relax(residuals, inverses):
     """solved ← preconditioned residual; returns their product, the squared norm of the residual."""
     size = 0.0
     for i in range(residual.shape[0]):
         solved[i, 0] = straight[i, 0] * residual[i, 0] + skew[i, 0] * residual[i, 1]
         solved[i, 1] = straight[i, 1] * residual[i, 1] + skew[i, 0] * residual[i, 0]
         size += solved[i, 0] * residual[i, 0] + solved[i, 1] * residual[i, 1]
+    insert(relax_turns)
     return size

@@ -467,7 +467,7 @@ class WideArray(OwnArray):
         (law(plain), "not compiled; put `@compiled`"),
         (law("systems.nowhere:law"), "cannot be found"),
         (law("systems.physics.kernels:nothing"), "cannot be found"),
-        (law(heated, each="rod"), "choose one of rods, particles, pairs, loads"),
+        (law(heated, each="rod"), "choose one of rods, ends, particles, rotations, pairs, loads"),
         (law(heated, reads=("rods.stiffness",), account="heat"), "choose one of work"),
         (law(failing, each="particles"), "name parameters <table>_<column>, time, dt or"),
         (commit(progressive, writes=("rods.yielding",)), "a parameter 'rate', but there is no column"),

@@ -1,0 +1,125 @@
+"""Frames, slow and obvious: the energy of corotational rods with bowing, and forces as its complex-step derivatives.
+
+Nothing here shares a formula with the program but the energy itself: forces and moments are derivatives by a complex
+step, exact to rounding. Slopes are those to the chord, wrapped once per rod by the mean of its rigid ends.
+"""
+
+import cmath
+import math
+from typing import Any
+
+import numpy as np
+
+from components.model import Model
+
+STEP = 1e-30
+
+
+def stiffness_of(hinged: tuple[bool, bool], bent: bool) -> tuple[np.ndarray, np.ndarray, np.ndarray, list[int]]:
+    """K/(EI/L₀), bowing, what slopes add to the area below the axis (per L₀²), and the rigid ends."""
+    if not bent or all(hinged):
+        return np.zeros((2, 2)), np.zeros((2, 2)), np.zeros(2), []
+    if hinged[0]:
+        return np.diag([0.0, 3.0]), np.diag([0.0, 0.2]), np.array([0.0, -1 / 8]), [1]
+    if hinged[1]:
+        return np.diag([3.0, 0.0]), np.diag([0.2, 0.0]), np.array([1 / 8, 0.0]), [0]
+    return (
+        np.array([[4.0, 2.0], [2.0, 4.0]]),
+        np.array([[4.0, -1.0], [-1.0, 4.0]]) / 30,
+        np.array([1 / 12, -1 / 12]),
+        [0, 1],
+    )
+
+
+def angle(sine: Any, cosine: Any) -> Any:
+    """atan2, also of numbers with a small imaginary part."""
+    real = math.atan2(sine.real, cosine.real)
+    turned = (cosine + 1j * sine) * cmath.exp(-1j * real)  # near the positive axis; exact in the imaginary part
+    derivative = (sine.imag * cosine.real - cosine.imag * sine.real) / (sine.real**2 + cosine.real**2)
+    assert turned.real > 0.0
+    return real + 1j * derivative
+
+
+def rod_energy(model: Model, row: int, shift: Any, turns: Any) -> Any:
+    """Elastic energy of a rod less the work of its distributed force on its bent axis, not on its ends (kN·m)."""
+    rod = model.rods[row]
+    dx, dy = rod.difference
+    x, y = dx + shift[0], dy + shift[1]
+    length = cmath.sqrt(x * x + y * y)
+    rest, original = rod.rest_length, rod.original_length
+    elongation = ((dx + x) * shift[0] + (dy + y) * shift[1]) / (length + original) + original - rest
+    elongation -= rest * rod.thermal_expansion * rod.temperature_change
+    stiffness, bowing, area, rigid = stiffness_of(rod.hinged, rod.bending_stiffness > 0.0)
+    chord = angle(dx * shift[1] - dy * shift[0], dx * x + dy * y)
+    mean = sum(turns[end].real for end in rigid) / len(rigid) if rigid else 0.0
+    chord += 2 * math.pi * round((mean - chord.real) / (2 * math.pi))
+    slopes = np.array([turns[0] - chord, turns[1] - chord])
+    curvature = -rod.thermal_expansion * rod.temperature_gradient
+    bent = slopes - np.array([-0.5, 0.5]) * curvature * rest
+    strain = elongation / rest + 0.5 * slopes @ bowing @ slopes
+    stored = 0.5 * rod.stiffness * rest * strain**2
+    stored += 0.5 * rod.bending_stiffness / rest * (bent @ stiffness @ bent)
+    across = (-rod.distributed_force[0] * y + rod.distributed_force[1] * x) / length
+    return stored - across * rest**2 * (area @ slopes)
+
+
+def energy(model: Model, displacement: Any, rotation: Any) -> Any:
+    """Elastic energy less the work of all constant forces and moments (kN·m)."""
+    particles = model.particles
+    total = -(particles.constant_force * displacement).sum() - (particles.constant_moment * rotation).sum()
+    for row, (first, second) in enumerate(model.rods.between.astype(int).tolist()):
+        shift = displacement[second] - displacement[first]
+        total += rod_energy(model, row, shift, (rotation[first], rotation[second]))
+    return total
+
+
+def forces(model: Model) -> tuple[np.ndarray, np.ndarray]:
+    """Forces (kN) and moments (kN·m) on the particles in the present state: the energy's negative derivatives."""
+    state = np.column_stack([model.particles.displacement, model.particles.rotation])
+    found = np.zeros_like(state)
+    for place in np.ndindex(*state.shape):
+        trial = state.astype(complex)
+        trial[place] += 1j * STEP
+        found[place] = -energy(model, trial[:, :2], trial[:, 2]).imag / STEP
+    return found[:, :2], found[:, 2]
+
+
+def random_frame(
+    lot: np.random.Generator, count: int = 5, *, loaded: bool = True, warm: bool = True
+) -> dict[str, Any]:
+    """A frame of so many particles in any state, with hinges, bars, distributed forces and warm sides."""
+    angles = np.sort(lot.uniform(0.0, 2.0 * math.pi, count))
+    position = np.column_stack([np.cos(angles), np.sin(angles)]) * lot.uniform(1.0, 3.0, (count, 1))
+    turned = float(lot.uniform(-9.0, 9.0))
+    rotated = np.array([[math.cos(turned), -math.sin(turned)], [math.sin(turned), math.cos(turned)]])
+    moved = position @ rotated.T - position + lot.normal(0.0, 0.05, (count, 2))
+    particles = [
+        {
+            "name": f"P{i}",
+            "position": position[i].tolist(),
+            "displacement": moved[i].tolist(),
+            "rotation": turned + float(lot.normal(0.0, 0.2)),
+            "force": lot.normal(0.0, 1.0, 2).tolist(),
+            "moment": float(lot.normal()),
+        }
+        for i in range(count)
+    ]
+    rods = []
+    for a in range(count):
+        for b in range(a + 1, count):
+            facts: dict[str, Any] = {
+                "name": f"R{a}{b}",
+                "between": [f"P{a}", f"P{b}"],
+                "stiffness": float(10 ** lot.uniform(2, 4)),
+                "rest_length": float(np.hypot(*(position[b] - position[a])) * lot.uniform(0.97, 1.03)),
+                "bending_stiffness": float(lot.choice([0.0, 10 ** lot.uniform(0, 2), 10 ** lot.uniform(0, 2)])),
+                "hinged": [bool(lot.random() < 0.25), bool(lot.random() < 0.25)],
+                "damping": float(lot.uniform(0.0, 1.0)),
+            }
+            if loaded:
+                facts["distributed_force"] = lot.normal(0.0, 1.0, 2).tolist()
+            if warm:
+                facts["temperature_gradient"] = float(lot.normal(0.0, 1000.0))
+            rods.append(facts)
+    rods[0] |= {"bending_stiffness": 10.0, "hinged": [False, False]}
+    return {"format": "pinjoint model", "version": 1, "particles": particles, "rods": rods}
