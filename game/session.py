@@ -34,7 +34,7 @@ from game.editor.scenes import all_scenes, scene_systems
 from game.editor.scenes.files import FileScene
 from game.editor.sliders import slider_stack, sliders_of
 from game.editor.toolbar import toolbar_of
-from game.editor.view_model import show
+from game.editor.view_model import follows, show
 from game.mods import load_all
 from game.mods.heeding import blamed_on_mod, heeding_mods
 from game.scripts.expectation import expect
@@ -287,6 +287,13 @@ class Session(Context):
         """Let toolbar and sliders show what can be done now; where they are not seen they stay as they were."""
         if not self.scenes.active.covers(self):
             self.view.toolbar, self.view.sliders = toolbar_of(self), slider_stack(self)
+
+    def follow(self) -> None:
+        """Fit the view in a window that what moves has left; recorded as the key that does so."""
+        if follows(self):
+            if self.on_press is not None:
+                self.on_press("home", None)
+            self.act("fit")
 
     def press(self, key: str, pixel: Vector | None = None) -> None:
         """Press a key, such as "k", "escape" or "ctrl+z"; one that means nothing in this scene does nothing.

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections import Counter
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass, field
+from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
@@ -65,6 +66,11 @@ class Sheet:
     shades: list[tuple[Rows, Colour]] = field(default_factory=list)
     scales: Placed = field(default_factory=dict)
     values: Counter[str] = field(default_factory=Counter)
+
+    @cached_property
+    def rod_length(self) -> float:
+        """The typical length of rods in pixels, as far as they are seen."""
+        return typical_length(self.start, self.end)
 
     @property
     def viewport(self) -> Viewport:
