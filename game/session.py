@@ -25,7 +25,7 @@ from game.documents import models
 from game.documents.document import ModelError
 from game.documents.open_documents import ModelFile, Source, file_of
 from game.editor.actions import ACTIONS, WHILE_DRAWING
-from game.editor.context import FAULTS, Context, Stage
+from game.editor.context import FAULTS, Context
 from game.editor.dropping import open_dropped
 from game.editor.frame import Actions, Frame, HeadlessFrame, ShowView
 from game.editor.menu import IN_MENU
@@ -44,6 +44,7 @@ from systems.catalogue import SYSTEMS, step_systems
 from systems.edit import Refusal
 from systems.edit.pull import Pull
 from systems.input.bindings import FILES, FORMS, TEXT, key_named, only_in_pause
+from systems.render.picture import Stage
 from systems.run.simulation import Simulation
 from systems.run.system import Time
 from systems.run.watch import watched
@@ -325,6 +326,7 @@ class Session(Context):
                 self.on_press(key, pressed)
             if self.time_passes:
                 self.get_ready()
+            self.view.pressed = self.view.button_at(pixel)
             left = self._left_for_tools() if for_tools(self, key, pixel) else ""
             if name != left:  # the tool that opens a scene closes it, too
                 self.act(name, at)

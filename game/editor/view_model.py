@@ -42,12 +42,14 @@ def show(context: Context, elapsed: float) -> None:
         else [*(remark.message for remark in context.remarks), "" if follows(context) else _gone(context)]
     )
     view.preview = _preview(context)
+    if view.pressed is not None and not (view.pointer is not None and view.pressed.contains(view.pointer)):
+        view.pressed = None
     view.flashes = _flashes(context)
     view.heading = scene.heading
     view.shape = context.document.shapes.shown
     pages = pages_of_help(context) if view.help else []
     view.keys = pages[min(view.help, len(pages)) - 1] if pages else []
-    view.more_keys = view.help < len(pages)
+    view.pages = len(pages)
     _show_readouts(context)
     _point_out(context)
     view.status = Status(

@@ -40,7 +40,7 @@ class Sheet:
     pulled, pushed: rows of the rods that are coloured by their axial force, since they have no room for more.
     shades: rows of rods and the colours that show a quantity of theirs.
     placed: where labels were in the last picture. legend: names of the colours that occur and mean something.
-    notes: scales to be shown. scales: those of arrows in this picture, to be kept in `placed`. values: how many
+    notes: scales to be shown. scales: those of arrows and the place of the scale, to be kept in `placed`. values: how many
     there are to show, by field, if there were room for all.
     """
 
