@@ -173,8 +173,8 @@ _BY_PURPOSE: dict[str, tuple[Binding, ...]] = {
         Binding("s", "save", (PAUSE,), "save as"),
         Binding("ctrl+shift+s", "save", LIVE, "save as"),
         Binding("ctrl+s", "save again", LIVE, "save under the same name"),
-        Binding("d", "load", (PAUSE,), "load"),
-        Binding("ctrl+o", "load", LIVE, "load"),
+        Binding("d", "load", (PAUSE,), "open a model"),
+        Binding("ctrl+o", "load", LIVE, "open a model"),
         Binding("ctrl+n", "new", LIVE, "new, empty model"),
     ),
     "Menu": (
