@@ -345,7 +345,7 @@ def test_a_hand_pulls_a_disc_through_a_pile() -> None:
 
 
 def test_what_falls_as_a_hand_pulls_something_else_falls_no_faster() -> None:
-    """Two blocks of discs push each other in mid-air by the steps of a pile; their momentum is that of their weight alone."""
+    """Two blocks of discs push each other in mid-air by the steps of a pile; their momentum is that of their weight."""
     blocks = [
         {
             "position": [side * (0.06 + 0.101 * i) + 0.003 * j, 0.101 * j + 0.01 * side],
