@@ -53,6 +53,18 @@ def slack_named(model: Model, slack: Flags) -> str:
     return f" {capitalised(rod_names(model, rows))} {verb} slack; tension {them} if that is not meant."
 
 
+def divide_named(model: Model, rows: Rows, parts: Rows) -> str:
+    """A sentence about rods that bend within themselves, and into how many to divide each; parts: of all rods."""
+    names = model.rods.column("name")
+    into = [f"{cut(str(names[row]))} into {parts[row]}" for row in rows.tolist()]
+    more = f" and {len(into) - NAMED} more" if len(into) > NAMED else ""
+    what = f"{capitalised(rod_names(model, rows))} {'bends within itself' if len(rows) == 1 else 'bend within themselves'}"
+    return (
+        f"{what}: compression bends a rod more than one can tell. For an error below 1 % divide"
+        f" {', '.join(into[:NAMED])}{more}."
+    )
+
+
 def describe_motion(model: Model, modes: Array) -> str:
     """Moving particles and their directions in modes (k, n, 2 or 3): "B and D along x, C in any direction".
 

@@ -11,7 +11,7 @@ from components.model import Model
 from systems.statics.equations import Array, Flags, largest, normalised
 from systems.statics.events import Event, NoEquilibrium
 from systems.statics.explain import capitalised, describe_motion, moved, rod_names, slack_named
-from systems.statics.factor import SOFT, is_stable, regular, soft_modes, softest
+from systems.statics.factor import SOFT, is_stable, regular, soft_modes, softest, unresisted
 from systems.statics.follow import Path, Point, Tangent
 from systems.statics.relax import RUNAWAY, STEPS, relax
 
@@ -74,6 +74,7 @@ class Loading:
         if self.unstressed:
             matrix = structure.tangent(before.response, tangent.soft)
             modes = soft_modes(matrix, structure.weight, tangent.factor)
+            modes = unresisted(structure, before.response, matrix, modes)
         self.mechanism = modes.shape[1] > 0
         if not path.push(before.response).any():  # improve the equilibrium, or leave it if it is not stable
             found = path.correct(self.point, self.point.displacement, 1.0, None)
@@ -94,7 +95,7 @@ class Loading:
     def _unresisted(self, tangent: Tangent) -> bool:
         """True if the load moves the structure against no more stiffness than round-off."""
         rate, push = tangent.rate, self.path.push(self.point.response)
-        return float(rate @ push) < SOFT * float(rate @ (self.path.structure.weight * rate))
+        return float(rate @ push) < SOFT * self.path.structure.effort(rate, self.point.response)
 
     # --- on the way ----------------------------------------------------------------------------------
 
