@@ -141,7 +141,7 @@ def derive_diagrams(world: World) -> None:
         rods.axial_force[:, None] - ahead * (tangential * rest)[:, None]
     )
     world.writable("rods.bending_moment")[...] = moment * [-1.0, 1.0]
-    world.writable("rods.end_rotation")[...] = chord[:, None] + _all_slopes(world, slopes, transverse)
+    world.writable("rods.end_rotation")[...] = chord[:, None] + all_slopes(world, slopes, transverse)
 
 
 def chord_rotation(world: World) -> Column:
@@ -157,7 +157,7 @@ def chord_rotation(world: World) -> Column:
     return turned
 
 
-def _all_slopes(world: World, slopes: Column, transverse: Column) -> Column:
+def all_slopes(world: World, slopes: Column, transverse: Column) -> Column:
     """Slopes of both ends of every rod, those at hinges by M = 0 of its cubic and a transverse force (kN/m)."""
     rods = world.tables["rods"]
     length, stiffness = rods.rest_length, rods.bending_stiffness

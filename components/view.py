@@ -8,6 +8,7 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 from numpy.typing import NDArray
 
+from components.bent import AXIAL, middles
 from components.camera import Camera, Viewport
 from components.field import Vector
 from components.kind import all_points
@@ -132,7 +133,8 @@ class Shape:
 class View:
     """How one model is shown in one viewport.
 
-    heading: the word top left ("Pause"), or "". all_diagrams: force diagrams of all elements.
+    heading: the word top left ("Pause"), or "". all_diagrams: force diagrams of all elements. quantity: which force
+    diagrams show where rods bend, "N", "M" or "V".
     legend: show the meaning of colours. help: the page of keys that is shown, from 1; 0: none. keys: its lines
     (key, meaning). more_keys: there is another page.
     pointer: the pixel under the mouse, or None outside. pixel_ratio: device pixels per point (HiDPI).
@@ -159,6 +161,7 @@ class View:
     camera: Camera = field(default_factory=Camera)
     heading: str = ""
     all_diagrams: bool = False
+    quantity: str = AXIAL
     forces_known: bool = True
     legend: bool = True
     help: int = 0
@@ -285,5 +288,5 @@ def drawn_positions(model: Model) -> NDArray[np.float64]:
 
 
 def drawn_places(model: Model) -> NDArray[np.float64]:
-    """All that a picture of a model is to show (m): drawn positions, and points of other elements, shape (n, 2)."""
-    return np.concatenate([drawn_positions(model), all_points(model)])
+    """All that a picture of a model is to show (m), (n, 2): drawn positions, bent rods, and points of other elements."""
+    return np.concatenate([drawn_positions(model), middles(model), all_points(model)])

@@ -45,6 +45,11 @@ def force(kilonewtons: float, *, nothing: float = 0.0) -> str:
     return f"{number(kilonewtons, nothing=nothing)} kN"
 
 
+def moment(kilonewton_metres: float, *, nothing: float = 0.0) -> str:
+    """A moment that was computed."""
+    return f"{number(kilonewton_metres, nothing=nothing)} kN·m"
+
+
 def displacement(metres: float, *, nothing: float = 0.0) -> str:
     """A displacement or an elongation."""
     return f"{number(_PER_METRE * metres, nothing=_PER_METRE * nothing)} {_LENGTH}"

@@ -149,10 +149,11 @@ def arrows(
     length: Values,
     colour: Colour,
     part: Owners,
+    width: float = 2.0,
 ) -> list[Mark]:
     """Arrows of elements from `tail` (n, 2) along unit vectors (n, 2), of so many pixels (n,).
 
-    part: the key of each among the parts of the picture.
+    part: the key of each among the parts of the picture. width: points, of their shafts.
     """
     u, (kind, which) = sheet.unit, part
     tip, across = tail + length[:, None] * along, along[:, ::-1] * [-1.0, 1.0]
@@ -171,7 +172,7 @@ def arrows(
         chosen = np.array([of[index][0] == table for index in seen.tolist()])
         rows = table, np.array([of[index][1] for index in seen.tolist()])[chosen]
         marks += [
-            Strokes(tail[chosen], neck[chosen], 2.0 * u, colour, rows),
+            Strokes(tail[chosen], neck[chosen], width * u, colour, rows),
             Fills(points[chosen], colour, rows),
         ]
     return marks

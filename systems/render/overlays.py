@@ -243,6 +243,7 @@ _MEANINGS = {
     "reaction": "reaction (kN)",
     "inertia": "inertia −m a (kN)",
     "velocity": "velocity",
+    "hinge": "hinge",
     "ghost": "undeformed",
 }
 
@@ -297,9 +298,13 @@ def _swatch(sheet: Sheet, name: str, x: float, y: float, width: float) -> list[M
     u, theme = sheet.unit, sheet.theme
     if name == "utilisation":
         return scale_bar(theme, x, y, width, u)
-    role = {"slack": "ink", "velocity": "ink", "inertia": "ink", "first": "yielding"}.get(name, name)
+    role = {"slack": "ink", "hinge": "ink", "velocity": "ink", "inertia": "ink", "first": "yielding"}.get(
+        name, name
+    )
     colour = getattr(theme, role)
     ends = np.array([[x, y]]), np.array([[x + width, y]])
+    if name == "hinge":
+        return [Stamps("ring", ends[0] + [width / 2, 0.0], 4.0 * u, u, theme.ink, theme.hollow)]
     if name in ("load", "reaction", "inertia", "velocity"):
         return [Stamps("arrow", ends[0], width, u, colour, colour)]
     if name == "first":

@@ -12,6 +12,7 @@ from systems.render.diagrams import draw_particle_diagrams, draw_rod_diagrams
 from systems.render.free_bodies import draw_free_bodies
 from systems.render.labels import Placed, place_labels
 from systems.render.marks import Picture
+from systems.render.members import draw_distributed_forces, draw_hinges, draw_moments
 from systems.render.overlays import BAR, draw_notice, draw_overlays, draw_scale, place_scale
 from systems.render.page import draw_page
 from systems.render.panel import compose_form
@@ -82,7 +83,10 @@ def _draw_structure(sheet: Sheet) -> None:
     shade_rods(sheet)
     draw_rods(sheet)
     draw_particles(sheet)
+    draw_hinges(sheet)
+    draw_distributed_forces(sheet)
     sheet.marks += [*draw_loads(sheet), *draw_velocities(sheet)]
+    draw_moments(sheet)
     draw_shape(sheet)
     draw_particle_diagrams(sheet, sides)
 
