@@ -214,3 +214,12 @@ def rigid_joints(model: Model) -> NDArray[np.bool_]:
     """Which particles have rigid rod ends, (particles,)."""
     rods = model.rods
     return flags(rods.between[rods.turning_shares > 0.0], model.particles.count)
+
+
+def distributed_shares(model: Model) -> Array:
+    """What of the force (kN) on each particle is its share of forces distributed along rods, (particles, 2)."""
+    rods, found = model.rods, np.zeros((model.particles.count, 2))
+    if rods.distributed_force.any():
+        half = 0.5 * rods.distributed_force * rods.rest_length[:, None]
+        np.add.at(found, rods.between.ravel(), np.repeat(half, 2, axis=0))
+    return found

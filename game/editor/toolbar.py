@@ -6,12 +6,13 @@ from collections.abc import Callable
 from typing import Any
 
 from components.particle import Particle
-from components.rod import Rod
+from components.rod import Rod, bends
 from components.tags import DiagramShown
 from components.toolbar import Tool, Toolbar
 from game.editor.context import Context
 from game.editor.gestures.drawing import Drawing
 from systems.input.bindings import Binding, offers, toolbar
+from systems.render.bending_diagrams import NAMES
 
 Condition = Callable[[Context], bool]
 
@@ -34,6 +35,8 @@ def tool(context: Context, binding: Binding, title: str = "") -> Tool:
         action not in _NEEDS or _NEEDS[action](context)
     )
     icon = "pause" if action == "toggle run" and pressed else action
+    if action == "toggle diagrams" and pressed and bends(context.model):
+        icon, title = f"diagram {context.view.quantity}", title or f"diagrams, now: {NAMES[context.view.quantity]}"
     return Tool(action, title or binding.title, binding.key, icon, pressed, enabled)
 
 

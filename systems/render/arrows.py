@@ -61,12 +61,17 @@ def lengths(sheet: Sheet, key: tuple[str, int], sizes: Values, largest: float) -
 
     Scales come in steps, and stay while they fit, so that an arrow grows and shrinks with its own size only.
     """
+    found: Values = np.clip(LONGEST * sizes / steady(sheet, key, largest), SHORTEST, LONGEST) * sheet.unit
+    return found
+
+
+def steady(sheet: Sheet, key: tuple[str, int], largest: float) -> float:
+    """A value of at least `largest`, in steps, which is that of the last picture while it fits."""
     needed = math.ceil(_STEPS * math.log10(largest) - 1e-9)
     step = sheet.placed.get(key, needed)
     step = step if needed <= step <= needed + _KEPT else needed
     sheet.scales[key] = step
-    found: Values = np.clip(LONGEST * sizes / 10.0 ** (step / _STEPS), SHORTEST, LONGEST) * sheet.unit
-    return found
+    return float(10.0 ** (step / _STEPS))
 
 
 def draw_loads(sheet: Sheet) -> Iterator[Mark]:

@@ -69,6 +69,8 @@ def draw_distributed_forces(sheet: Sheet) -> None:
     size, u, colour = np.hypot(*force[sheet.rods].T), sheet.unit, sheet.theme.load
     least, most = _ROW
     height = (least + (most - least) * size / np.hypot(*force.T).max()) * u
+    if sheet.view.all_diagrams and sheet.view.forces_known:
+        height = np.full(len(size), least * u)  # diagrams have the room
     told = _told(sheet, loaded)
     for index in loaded.tolist():
         row = int(sheet.rods[index])

@@ -235,6 +235,8 @@ _BAR_WIDTH = 70.0  # points, of a scale of colours
 _MEANINGS = {
     "tension": "tension (kN)",
     "compression": "compression (kN)",
+    "moment": "M on the tension side (kN·m)",
+    "shear": "shear V (kN)",
     "yielding": "yielding",
     "utilisation": "0 to 100 % of the strength",
     "first": "first at its strength",
@@ -298,7 +300,7 @@ def _swatch(sheet: Sheet, name: str, x: float, y: float, width: float) -> list[M
     u, theme = sheet.unit, sheet.theme
     if name == "utilisation":
         return scale_bar(theme, x, y, width, u)
-    role = {"slack": "ink", "hinge": "ink", "velocity": "ink", "inertia": "ink", "first": "yielding"}.get(
+    role = {"slack": "ink", "hinge": "ink", "moment": "ink", "shear": "ink", "velocity": "ink", "inertia": "ink", "first": "yielding"}.get(
         name, name
     )
     colour = getattr(theme, role)

@@ -8,7 +8,8 @@ from components.model import Model
 from components.toolbar import Toolbar
 from components.view import View
 from systems.render.arrows import draw_loads, draw_velocities
-from systems.render.diagrams import draw_particle_diagrams, draw_rod_diagrams
+from systems.render.bending_diagrams import draw_diagrams
+from systems.render.diagrams import draw_particle_diagrams
 from systems.render.free_bodies import draw_free_bodies
 from systems.render.labels import Placed, place_labels
 from systems.render.marks import Picture
@@ -75,7 +76,7 @@ def shown_panels(model: Model, view: View, theme: Theme) -> list[ShownPanel]:
 
 def _draw_structure(sheet: Sheet) -> None:
     """Rods, supports and particles, with diagrams, loads and velocities."""
-    draw_rod_diagrams(sheet)
+    draw_diagrams(sheet)
     draw_ghost(sheet)
     draw_halos(sheet)
     sides = support_sides(sheet)
@@ -84,6 +85,7 @@ def _draw_structure(sheet: Sheet) -> None:
     draw_rods(sheet)
     draw_particles(sheet)
     draw_hinges(sheet)
+    sheet.marks += sheet.above
     draw_distributed_forces(sheet)
     sheet.marks += [*draw_loads(sheet), *draw_velocities(sheet)]
     draw_moments(sheet)

@@ -44,7 +44,7 @@ class Sheet:
     bent, by their place among `rods`; None: none does. particles: rows of those that can be seen.
     pulled, pushed: rows of the rods that are coloured by their axial force, since they have no room for more.
     shades: rows of rods and the colours that show a quantity of theirs.
-    placed: where labels were in the last picture. legend: names of the colours that occur and mean something.
+    above: marks to be drawn over rods and particles. placed: where labels were in the last picture. legend: names of the colours that occur and mean something.
     notes: scales to be shown. scales: those of arrows in this picture, to be kept in `placed`. values: how many
     there are to show, by field, if there were room for all.
     """
@@ -66,6 +66,7 @@ class Sheet:
     pulled: Rows = field(default_factory=lambda: np.empty(0, dtype=np.intp))
     pushed: Rows = field(default_factory=lambda: np.empty(0, dtype=np.intp))
     marks: list[Mark] = field(default_factory=list)
+    above: list[Mark] = field(default_factory=list)
     labels: list[Label] = field(default_factory=list)
     legend: list[str] = field(default_factory=list)
     notes: list[str] = field(default_factory=list)
@@ -159,10 +160,9 @@ def measure(model: Model, view: View, theme: Theme, placed: Placed | None = None
     reach = margin if lines is None else margin + lines.reach * camera.scale
     start, end, rods = clip_rods(centres, ends, low - reach, high + reach)
     curved = _visible(lines, rods, view, (low - margin, high + margin)) if lines is not None else None
-    smallest: float | NDArray[np.float64] = _smallest_radius(start, end, unit)
+    radii = np.maximum(model.particles.radius * camera.scale, smallest := _smallest_radius(start, end, unit))
     if bends(model):
-        smallest = np.where(rigid_joints(model), _JOINT * smallest, smallest)
-    radii = np.maximum(model.particles.radius * camera.scale, smallest)
+        radii[rigid_joints(model) & (radii == smallest)] = _JOINT * smallest
     reach, seen = radii + 40.0 * unit, np.ones(len(centres), dtype=bool)
     for axis in (0, 1):
         seen &= (centres[:, axis] > low[axis] - reach) & (centres[:, axis] < high[axis] + reach)

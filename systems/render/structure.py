@@ -91,7 +91,8 @@ def _sagging(sheet: Sheet) -> Rows:
     along = sheet.end[sheet.curved.rods] - start
     away, length = sheet.curved.start - start, np.maximum(np.hypot(*along.T), 1e-9)
     aside = np.abs(along[:, 0] * away[:, 1] - along[:, 1] * away[:, 0]) / length
-    return sheet.rods[sheet.curved.rods[aside > _GHOST_FROM * sheet.unit]]
+    found: Rows = sheet.rods[sheet.curved.rods[aside > _GHOST_FROM * sheet.unit]]
+    return found
 
 
 def draw_halos(sheet: Sheet) -> None:
