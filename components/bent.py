@@ -20,6 +20,7 @@ Array = NDArray[np.float64]
 Rows = NDArray[np.intp]
 
 AXIAL, MOMENT, SHEAR = QUANTITIES = ("N", "M", "V")  # in the order in which their diagrams follow one another
+FLAT = 0.25  # pixels by which a curve may differ from the lines that are drawn of it
 MOST_PIECES = 32  # of a drawn rod
 _SAMPLES = 33  # between which a zero of a polynomial is looked for
 

@@ -42,7 +42,7 @@ from systems.render.theme import Colour, faded
 
 NAMES = {AXIAL: "axial force N", MOMENT: "bending moment M", SHEAR: "shear force V"}
 UNITS = {AXIAL: "kN", MOMENT: "kN·m", SHEAR: "kN"}
-_PIECES, _FEW_PIECES, _MANY = 16, 6, 300  # of a diagram, and of one of many rods
+_PIECES, _FEW_PIECES, _MANY = 24, 6, 300  # of a diagram, and of one of many rods
 _ROOM, _SHARE = 1.25, 0.3  # of the room of force diagrams; of the largest shear, the least that fills it with N
 _HATCH = 7.0  # points between lines across
 _NOTHING = 1e-3  # of the largest value: what is not told
@@ -187,10 +187,10 @@ def _note_areas(sheet: Sheet, rows: Rows, points: Points, normals: Points, heigh
     way = end - start
     across = np.stack([way[:, 1], -way[:, 0]], axis=1) / np.maximum(np.hypot(*way.T), 1e-9)[:, None]
     side = np.sign((across * normals[:, :-1].reshape(-1, 2)).sum(axis=1))
-    mean = 0.5 * (heights[:, :-1] + heights[:, 1:]).ravel()
-    sheet.occupancy.parts.diagrams(
-        ("rods", np.repeat(rows, heights.shape[1] - 1)), start, end, across * (side * mean)[:, None]
-    )
+    first, last = heights[:, :-1].ravel(), heights[:, 1:].ravel()
+    most = np.where(np.abs(first) > np.abs(last), first, last)
+    of = ("rods", np.repeat(rows, heights.shape[1] - 1))
+    sheet.occupancy.parts.diagrams(of, start, end, across * (side * most)[:, None])
 
 
 def _hatch(sheet: Sheet, diagram: _Diagram, drawn: NDArray[np.bool_], colour: Colour, name: str) -> None:

@@ -221,7 +221,7 @@ def label_moment(
     """The size of a moment outside its arrow."""
     text, font = f"{written.given(abs(moment), written.DIGITS)} kN·m", sheet.font(12.0)
     half = half_size(text, font, "semibold", sheet.unit)
-    angle = np.radians([90.0, 50.0, 130.0, 20.0, 160.0, 0.0, 180.0, -40.0, 220.0])
+    angle = np.radians([90.0, 52.5, 127.5, 15.0, 165.0, 0.0, 180.0, -40.0, 220.0])  # first corners of the arrow
     out = np.stack([np.cos(angle), -np.sin(angle)], axis=1)
     reach = radius + 2.0 * sheet.unit + np.abs(out) @ np.array(half)
     places = np.concatenate([at + out * reach[:, None], at + out * (reach + 8.0 * sheet.unit)[:, None]])

@@ -9,7 +9,7 @@ from dataclasses import dataclass, field
 import numpy as np
 from numpy.typing import NDArray
 
-from components.bent import Lines, curved_lines, rigid_joints
+from components.bent import FLAT, Lines, curved_lines, rigid_joints
 from components.camera import Viewport
 from components.model import Model
 from components.rod import bends
@@ -30,7 +30,6 @@ MANY = 2000  # rods, above which details of single elements are left out
 # Directions by quarter turns clockwise, in pixels: right, down, left, up.
 DIRECTIONS = np.array([[1.0, 0.0], [0.0, 1.0], [-1.0, 0.0], [0.0, -1.0]])
 
-_FLAT = 0.25  # pixels by which a curve may differ from the lines that are drawn of it
 _JOINT = 0.7  # radius of small rigid joints, of the usual one
 
 
@@ -156,7 +155,7 @@ def measure(model: Model, view: View, theme: Theme, placed: Placed | None = None
     viewport = view.canvas
     low, high = bounds(viewport)
     margin = 150.0 * unit  # so that the ends of a rod that leaves the viewport, and their labels, are not seen
-    lines = curved_lines(model, _FLAT / camera.scale)
+    lines = curved_lines(model, FLAT / camera.scale)
     reach = margin if lines is None else margin + lines.reach * camera.scale
     start, end, rods = clip_rods(centres, ends, low - reach, high + reach)
     curved = _visible(lines, rods, view, (low - margin, high + margin)) if lines is not None else None
