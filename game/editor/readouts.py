@@ -28,6 +28,7 @@ MOST_ELEMENTS = 3  # selected elements with a readout of their own
 SUM = 34  # characters of a line of a sum
 MOST_JOINTS = 6  # whose sums are shown while none is selected
 MOST_EVENTS = 10  # of a run, that are listed
+UNSEEN = 1e-7  # of the largest force on a body: left out of sums
 NOTHING = 1e-12  # of the largest exact value of its kind: round-off, shown as 0
 
 _BEFORE_SIGNS = re.compile("([+−=]) ")  # where a sum may be broken
@@ -118,7 +119,9 @@ def _sums(forces: Sequence[Force]) -> Iterator[tuple[str, str]]:
         about_start = any(force.lever for force in forces)
         each = [part for force in forces for part in (force.moment, force.lever)]
         parts["ΣM about its start" if about_start else "ΣM"] = each
+    largest = max((max(map(abs, terms)) for terms in parts.values() if terms), default=0.0)
     for title, terms in parts.items():
+        terms = [term if abs(term) > UNSEEN * largest else 0.0 for term in terms]
         lines = wrap(_BEFORE_SIGNS.sub("\\1\xa0", written.total(terms)), SUM)
         for number, line in enumerate(lines):
             yield "" if number else title, line.replace("\xa0", " ")

@@ -12,7 +12,7 @@ from components.rod import bends
 from components.tags import DiagramShown
 from systems.render.arrows import MOST, arrows, head_length
 from systems.render.labels import Label, half_size
-from systems.render.marks import Discs, Fills, Mark, Points, Strokes
+from systems.render.marks import Discs, Fills, Mark, Owners, Points, Strokes
 from systems.render.occupancy import STRONG
 from systems.render.sheet import Rows, Sheet
 from systems.render.symbols import RIM
@@ -24,6 +24,7 @@ _ROW = (11.0, 22.0)  # points, lengths of the arrows of the smallest and the lar
 _APART = 15.0  # points between them
 _MOST_ARROWS = 40  # of a rod
 _BESIDE = 5.0  # points between a rod and arrows along it
+_WIDEST_GAP, _GAP_SHARE = 84.0, 0.36  # between a joint and its rod drawn apart: points, and of the rod
 _ARC = {"load": 15.0, "reaction": 21.0}  # points, radii of the arrows of moments
 _SWEEP = np.radians(250.0)  # of these arrows
 _PIECES = 20
@@ -55,6 +56,12 @@ def draw_hinges(sheet: Sheet) -> None:
     sheet.occupancy.parts.symbols(("rods", rows), at, at, radius)
     sheet.occupancy.block_squares(at, radius)
     sheet.explain("hinge", at, at)
+
+
+def gaps(lengths: Values, unit: float) -> Values:
+    """What is left free between joints and rods of these lengths where they are drawn apart, in pixels."""
+    found: Values = np.minimum(_GAP_SHARE * lengths, _WIDEST_GAP * unit)
+    return found
 
 
 # --- distributed forces ------------------------------------------------------------------------------
@@ -115,6 +122,9 @@ def _tips(sheet: Sheet, index: int, along: Points) -> tuple[Points, bool]:
     count = int(np.clip(round(length / (_APART * u)), 2, _MOST_ARROWS))
     shifted = bool(abs(along @ way) > 0.97 * length)
     shares = np.linspace(0.0, 1.0, count + 1) if not shifted else (np.arange(count) + 1.0) / count
+    if sheet.view.free_bodies:
+        apart = float(gaps(np.array(length), u)) / length
+        shares = apart + shares * (1.0 - 2.0 * apart)
     points = sheet.view.camera.to_pixels(axes(sheet.model, np.array([row])).points(shares)[0])
     across = np.array([way[1], -way[0]]) / length
     if shifted:
@@ -179,39 +189,42 @@ def _draw_arcs(sheet: Sheet, name: str, moment: Values) -> None:
         return
     radius = sheet.radii[rows] + (_ARC[name] - 4.0) * sheet.unit
     key = "particles.applied_moment" if name == "load" else "particles.reaction_moment"
-    arcs = arc_marks(sheet, rows, sheet.centres[rows], radius, moment[rows], getattr(sheet.theme, name), key)
-    sheet.marks += arcs
+    colour, of = getattr(sheet.theme, name), ("particles", rows)
+    sheet.marks += arc_marks(sheet, of, sheet.centres[rows], radius, moment[rows], colour, key)
     sheet.explain(name, sheet.centres[rows], sheet.centres[rows])
     for at, size, row, value in zip(
         sheet.centres[rows], radius.tolist(), rows.tolist(), moment[rows].tolist(), strict=True
     ):
-        label_moment(sheet, at, size, value, getattr(sheet.theme, name), (key, row))
+        label_moment(sheet, at, size, value, colour, (key, row))
 
 
 def arc_marks(
-    sheet: Sheet, rows: Rows, at: Points, radius: Values, moment: Values, colour: Colour, key: str
+    sheet: Sheet, of: Owners, at: Points, radius: Values, moment: Values, colour: Colour, key: str
 ) -> list[Mark]:
     """Curved arrows about points (n, 2), of radii (n,), that turn as moments (n,) do, counter-clockwise if positive.
 
-    They are open below. key: of these parts of the picture, beside the row of the particle.
+    They are open below. key: of these parts of the picture, beside the rows of their elements.
     """
+    if not len(at):
+        return []
+    table, rows = of
     u, turn = sheet.unit, np.where(moment > 0.0, 1.0, -1.0)
     head = head_length(radius, u)
     angle = np.linspace(-0.5, 0.5, _PIECES + 1) * _SWEEP
     angle = np.pi / 2.0 + turn[:, None] * angle  # from the right, over the top
     points = at[:, None] + radius[:, None, None] * np.stack([np.cos(angle), -np.sin(angle)], axis=2)
     first, last = points[:, :-1].reshape(-1, 2), points[:, 1:].reshape(-1, 2)
-    of = np.repeat(rows, _PIECES)
+    every = np.repeat(rows, _PIECES)
     forward = points[:, -1] - points[:, -2]
     forward /= np.hypot(*forward.T)[:, None]
     neck, across = points[:, -1], forward[:, ::-1] * [-1.0, 1.0]
     tip, barb = neck + head[:, None] * forward, 0.5 * head[:, None] * across
-    sheet.occupancy.line(first, last, STRONG, (key, of))
-    for parts in ((first, last, of), (neck - barb, neck + barb, rows), (neck, tip, rows)):
+    sheet.occupancy.line(first, last, STRONG, (key, every))
+    for parts in ((first, last, every), (neck - barb, neck + barb, rows), (neck, tip, rows)):
         sheet.occupancy.parts.symbols((key, parts[2]), *parts[:2], u)
     return [
-        Strokes(first, last, 1.75 * u, colour, ("particles", of)),
-        Fills(np.stack([tip, neck + barb, neck - barb], axis=1), colour, ("particles", rows)),
+        Strokes(first, last, 1.75 * u, colour, (table, every)),
+        Fills(np.stack([tip, neck + barb, neck - barb], axis=1), colour, (table, rows)),
     ]
 
 

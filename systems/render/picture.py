@@ -102,6 +102,7 @@ def _composed(sheet: Sheet) -> tuple[Picture, list[ShownPanel]]:
     if sheet.view.free_bodies and sheet.view.forces_known:
         draw_halos(sheet)
         draw_free_bodies(sheet)
+        draw_distributed_forces(sheet)
         draw_particles(sheet)
     else:
         _draw_structure(sheet)
