@@ -37,6 +37,10 @@ class Axes:
     left: Array
     bow: Array
 
+    def some(self, which: Rows | NDArray[np.bool_]) -> Axes:
+        """Those of some of the rods."""
+        return Axes(self.start[which], self.end[which], self.left[which], self.bow[which])
+
     def points(self, shares: Array) -> Array:
         """Points at shares (k,) or (n, k), shape (n, k, 2)."""
         along = np.broadcast_to(shares, (len(self.start), np.shape(shares)[-1]))[..., None]
@@ -164,6 +168,16 @@ def derivative(polynomials: Array) -> Array:
     return found
 
 
+def largest_sag(model: Model) -> float:
+    """The largest deflection of a rod from the straight line between its ends (m), about."""
+    if not bends(model):
+        return 0.0
+    middle = values(
+        _state(model, np.flatnonzero(model.rods.bending_stiffness > 0.0)).deflection, np.array([0.5])
+    )
+    return float(np.abs(middle).max(initial=0.0))
+
+
 def middles(model: Model) -> Array:
     """Some points between the ends of the rods that bend, as drawn (m), (n, 2)."""
     if not bends(model):
@@ -179,30 +193,27 @@ class Lines(NamedTuple):
     end: Array
     rods: Rows
 
-    @property
-    def reach(self) -> float:
-        """How far any piece is from the first one of its rod, at most (m): what may be seen while its ends are not."""
-        first = np.searchsorted(self.rods, self.rods)
-        return float(np.abs(self.end - self.start[first]).max(initial=0.0))
 
+def curved_lines(model: Model, fineness: float, rows: Rows | None = None) -> Lines | None:
+    """Pieces along the rods that do not look straight, flat within `fineness` (m); None where all look so.
 
-def curved_lines(model: Model, fineness: float) -> Lines | None:
-    """Pieces along the rods that do not look straight, flat within `fineness` (m); None where all look so."""
+    rows: of the rods among which to look, in order, without them all.
+    """
     if not bends(model):
         return None
-    rows = np.flatnonzero(model.rods.bending_stiffness > 0.0)
+    stiff = model.rods.bending_stiffness > 0.0
+    rows = np.flatnonzero(stiff) if rows is None else rows[stiff[rows]]
     found = axes(model, rows)
     wanted = found.pieces / np.sqrt(fineness)
     curved = np.flatnonzero(np.isfinite(wanted) & (wanted > 1.0))
     if not len(curved):
         return None
-    least = np.array([4, 8, 16, MOST_PIECES])
+    least = np.array([2, 4, 8, 16, MOST_PIECES])
     count = least[np.minimum(np.searchsorted(least, wanted[curved]), len(least) - 1)]
     starts, ends, of = [], [], []
     for pieces in np.unique(count).tolist():
         some = curved[count == pieces]
-        part = Axes(found.start[some], found.end[some], found.left[some], found.bow[some])
-        points = part.points(np.linspace(0.0, 1.0, pieces + 1))
+        points = found.some(some).points(np.linspace(0.0, 1.0, pieces + 1))
         starts.append(points[:, :-1].reshape(-1, 2))
         ends.append(points[:, 1:].reshape(-1, 2))
         of.append(np.repeat(rows[some], pieces))

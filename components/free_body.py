@@ -89,9 +89,7 @@ def _of_bending(model: Model, along: Vectors) -> Vectors:
     left = np.stack([-along[:, 1], along[:, 0]], axis=1)
     length = np.maximum(rods.length, 1e-300)
     turning = ((particles.velocity[last] - particles.velocity[first]) * left).sum(axis=1) / length
-    rate = np.where(
-        rods.turning_shares > 0.0, particles.angular_velocity[rods.between] - turning[:, None], 0.0
-    )
+    rate = np.where(rods.turning_shares > 0.0, particles.angular_velocity[rods.between] - turning[:, None], 0.0)
     start, mixed, end = rods.end_damping.T
     damper = np.stack([start * rate[:, 0] + mixed * rate[:, 1], mixed * rate[:, 0] + end * rate[:, 1]], axis=1)
     shear = rods.shear + (damper.sum(axis=1) / length)[:, None]
@@ -111,9 +109,7 @@ def _left_over(model: Model, on_ends: Vectors) -> Vectors:
     rest = acting + answering
     for end in (0, 1):
         for part in range(3):
-            rest[:, part] -= np.bincount(
-                model.rods.between[:, end], on_ends[:, end, part], particles.count
-            )
+            rest[:, part] -= np.bincount(model.rods.between[:, end], on_ends[:, end, part], particles.count)
     found: Vectors = np.zeros_like(rest)
     for parts in (slice(0, 2), slice(2, 3)):
         largest = max(
@@ -135,7 +131,9 @@ def on_joint(model: Model, row: int, known: Apart | None = None) -> list[Force]:
     for rod, end in np.argwhere(rods.between == row).tolist():
         x, y, turn = (-known.on_ends[rod, end]).tolist()
         found.append(Force(model.describe(rods[rod]), "rod", x, y, moment=turn))
-    applied = np.append(particles.applied_force[row] - distributed_shares(model)[row], particles.applied_moment[row])
+    applied = np.append(
+        particles.applied_force[row] - distributed_shares(model)[row], particles.applied_moment[row]
+    )
     loads, time, rest = model.loads, model.clock.time, applied.copy()
     turns = bool(rigid_joints(model)[row])
     for k in np.flatnonzero(loads.on == row).tolist():
@@ -151,7 +149,9 @@ def on_joint(model: Model, row: int, known: Apart | None = None) -> list[Force]:
             found.append(Force(name, "load", *part[:2].tolist(), moment=float(part[2]) * turns))
     rest[2] *= turns
     if (np.abs(rest) > ROUNDING * np.array([*[np.abs(applied[:2]).max()] * 2, abs(applied[2])])).any():
-        found.append(Force("other", "load", *rest[:2].tolist(), moment=float(rest[2])))  # drag, laws of mods, a hand
+        found.append(
+            Force("other", "load", *rest[:2].tolist(), moment=float(rest[2]))
+        )  # drag, laws of mods, a hand
     for part, name in ((np.array([1.0, 0.0]), "reaction x"), (np.array([0.0, 1.0]), "reaction y")):
         if (reaction := particles.reaction[row] * part).any():
             found.append(Force(name, "reaction", *reaction.tolist()))

@@ -53,7 +53,11 @@ class Settings(Handle):
         overrides="displacement_scale",
     )
     diagram_scale: Field[float] = look(
-        "px/kN", default=1.0, minimum=0.0, title="force diagram scale", doc="Size of the force diagrams; where rods bend, relative to what fits."
+        "px/kN",
+        default=1.0,
+        minimum=0.0,
+        title="force diagram scale",
+        doc="Size of the force diagrams; where rods bend, relative to what fits.",
     )
     original_diagrams: Field[bool] = look(
         dtype=bool,

@@ -36,7 +36,10 @@ def tool(context: Context, binding: Binding, title: str = "") -> Tool:
     )
     icon = "pause" if action == "toggle run" and pressed else action
     if action == "toggle diagrams" and pressed and bends(context.model):
-        icon, title = f"diagram {context.view.quantity}", title or f"diagrams, now: {NAMES[context.view.quantity]}"
+        icon, title = (
+            f"diagram {context.view.quantity}",
+            title or f"diagrams, now: {NAMES[context.view.quantity]}",
+        )
     return Tool(action, title or binding.title, binding.key, icon, pressed, enabled)
 
 

@@ -21,11 +21,13 @@ from components.bent import (
 )
 from components.rod import bends
 from components.tags import DiagramShown, Selected
+from components.view import MARGIN
 from systems.render.arrows import steady
 from systems.render.diagrams import (
     FEW_VALUES,
     GAP,
     SHORTEST_WITH_DIAGRAM,
+    SHORTEST_WITH_VALUE,
     SMALLEST_FORCE,
     add_values,
     draw_rod_diagrams,
@@ -42,7 +44,9 @@ from systems.render.theme import Colour, faded
 
 NAMES = {AXIAL: "axial force N", MOMENT: "bending moment M", SHEAR: "shear force V"}
 UNITS = {AXIAL: "kN", MOMENT: "kN·m", SHEAR: "kN"}
-_PIECES, _FEW_PIECES, _MANY = 24, 6, 300  # of a diagram, and of one of many rods
+_MANY = 300  # rods, above which diagrams are outlines
+_PIECES = ((24, 24), (120, 12), (_MANY, 8), (np.inf, 4))  # of a diagram, by how many rods have one at most
+_PIECE = 5.0  # points, or longer
 _ROOM, _SHARE = 1.25, 0.3  # of the room of force diagrams; of the largest shear, the least that fills it with N
 _HATCH = 7.0  # points between lines across
 _NOTHING = 1e-3  # of the largest value: what is not told
@@ -50,6 +54,13 @@ _ALIKE = 5e-3  # of the largest value: what counts as the same
 _ZERO = 2.5  # points, radius of the mark of a zero point
 _INSIDE = 0.02  # share of a rod, from which on a zero point or an extreme is not at its end
 _STRAIGHT = 0.9  # cosine of the turn at a joint up to which two rods are one member
+_SLIDES = (
+    (0.0, 0.0),
+    (0.5, 0.5),
+    (-0.5, 1.0),
+    (1.0, 2.0),
+    (-1.0, -1.0),
+)  # of a value: between ends, and at one
 _PLACES = 3  # of values of a rod: start, end, between
 
 Values = NDArray[np.float64]
@@ -72,6 +83,13 @@ class _Diagram:
     normals: Points
     heights: Values
 
+    def some(self, which: NDArray[np.bool_]) -> _Diagram:
+        """The diagram of some of the rods."""
+        columns = self.polynomials, self.points, self.normals, self.heights
+        polynomials, points, normals, heights = (column[which] for column in columns)
+        base = self.base.some(which)
+        return _Diagram(self.rows[which], base, polynomials, self.scale, self.largest, points, normals, heights)
+
 
 def draw_diagrams(sheet: Sheet) -> None:
     """The diagrams of rods: where none bends, rectangles of their axial forces."""
@@ -91,7 +109,8 @@ def draw_diagrams(sheet: Sheet) -> None:
             sheet.pulled, sheet.pushed = rows[force[rows] > SMALLEST_FORCE], rows[force[rows] < -SMALLEST_FORCE]
         sheet.notes.append("zoom in to see force diagrams")
         return
-    diagram = _measured(sheet, rows, quantity, _ROOM * room_for(sheet, start, end))
+    room = min(_ROOM * room_for(sheet, start, end), MARGIN * sheet.unit)
+    diagram = _measured(sheet, rows, quantity, room)
     if diagram is not None:
         _draw(sheet, quantity, diagram)
         _mark_zeros(sheet, quantity, diagram)
@@ -110,11 +129,17 @@ def _measured(sheet: Sheet, rows: Rows, quantity: str, room: float) -> _Diagram 
     height = room * model.settings.diagram_scale
     scale = height / steady(sheet, (f"diagrams.{quantity}", 0), largest)
     base, polynomials = _baseline(sheet, rows), every[rows]
-    shares = np.linspace(0.0, 1.0, (_PIECES if len(rows) <= _MANY else _FEW_PIECES) + 1)
+    shares = np.linspace(0.0, 1.0, _pieces(sheet, rows) + 1)
     points, normals = _stations(sheet, base, shares, quantity)
     return _Diagram(
         rows, base, polynomials, scale, largest, points, normals, scale * values(polynomials, shares)
     )
+
+
+def _pieces(sheet: Sheet, rows: Rows) -> int:
+    """Into how many pieces diagrams are cut, more where rods are few and long."""
+    most = next(pieces for count, pieces in _PIECES if len(rows) <= count)
+    return int(np.clip(typical_length(sheet.start, sheet.end) / (_PIECE * sheet.unit), 2, most))
 
 
 def _baseline(sheet: Sheet, rows: Rows) -> Axes:
@@ -160,9 +185,7 @@ def _colour(sheet: Sheet, name: str) -> Colour:
     return found
 
 
-def _draw_areas(
-    sheet: Sheet, name: str, diagram: _Diagram, heights: Values, drawn: NDArray[np.bool_]
-) -> None:
+def _draw_areas(sheet: Sheet, name: str, diagram: _Diagram, heights: Values, drawn: NDArray[np.bool_]) -> None:
     rows, points, normals = diagram.rows[drawn], diagram.points[drawn], diagram.normals[drawn]
     colour, u = _colour(sheet, name), sheet.unit
     if not len(rows):
@@ -200,8 +223,7 @@ def _hatch(sheet: Sheet, diagram: _Diagram, drawn: NDArray[np.bool_], colour: Co
     count = np.clip(length / (_HATCH * sheet.unit), 1, 200).astype(np.intp)
     of = np.repeat(some, count)
     shares = (ranges(np.zeros_like(count), count) + 0.5) / np.repeat(count, count)
-    base = Axes(diagram.base.start[of], diagram.base.end[of], diagram.base.left[of], diagram.base.bow[of])
-    points, normals = _stations(sheet, base, shares[:, None], sheet.view.quantity)
+    points, normals = _stations(sheet, diagram.base.some(of), shares[:, None], sheet.view.quantity)
     height = diagram.scale * values(diagram.polynomials[of], shares[:, None])
     if name in ("tension", "compression"):
         height = np.maximum(height, 0.0) if name == "tension" else np.minimum(height, 0.0)
@@ -219,7 +241,7 @@ def _mark_zeros(sheet: Sheet, quantity: str, diagram: _Diagram) -> None:
     which, shares = which[kept], shares[kept]
     if not len(which):
         return
-    base = Axes(*(part[which] for part in (diagram.base.start, diagram.base.end, diagram.base.left, diagram.base.bow)))
+    base = diagram.base.some(which)
     at = _stations(sheet, base, shares[:, None], quantity)[0][:, 0]
     radius, of = np.full(len(at), _ZERO * sheet.unit), ("rods", diagram.rows[which])
     colour = sheet.theme.ink
@@ -232,16 +254,22 @@ def _mark_zeros(sheet: Sheet, quantity: str, diagram: _Diagram) -> None:
 def _label(sheet: Sheet, quantity: str, diagram: _Diagram) -> None:
     """Values at the ends and at the extreme between, where they are not told by a neighbour already."""
     field = f"rods.{quantity}"
+    selected = sheet.chosen(sheet.tagged(Selected, "rods"), diagram.rows)
+    if typical_length(sheet.start, sheet.end) < SHORTEST_WITH_VALUE * sheet.unit:
+        sheet.values[field] = int((~selected).sum())
+        diagram = diagram.some(selected)
     which, number, shares, value = _told(sheet, quantity, diagram)
-    base = Axes(*(part[which] for part in (diagram.base.start, diagram.base.end, diagram.base.left, diagram.base.bow)))
+    base = diagram.base.some(which)
     points, normals = _stations(sheet, base, shares[:, None], quantity)
     points, normals = points[:, 0], normals[:, 0]
     seen = np.flatnonzero(sheet.sees(points))
-    sheet.values[field] = len(seen)
+    sheet.values[field] += len(seen)
     rows = diagram.rows[which]
     keys = _PLACES * rows + number
     worth = worth_of(sheet, field, keys, value) + 1e6 * sheet.chosen(sheet.tagged(Selected, "rods"), rows)
     shown = most_important(sheet, worth, seen)
+    if not len(shown):
+        return
     few = len(seen) <= FEW_VALUES
     size = sheet.font(12.0 if few else 11.0)
     numbers = value[shown].tolist()
@@ -315,17 +343,16 @@ def _repeated(sheet: Sheet, diagram: _Diagram, ends: Values, largest: float) -> 
     slope = slope / np.maximum(sheet.model.rods.rest_length[rows], 1e-300)[:, None] * np.sign(ends)
     way = (diagram.points[:, -1] - diagram.points[:, 0])[:, None] * np.array([[1.0], [-1.0]])
     way = way / np.maximum(np.hypot(way[..., 0], way[..., 1]), 1e-9)[..., None]
-    first: dict[int, tuple[int, int]] = {}
-    for rod, end in np.argwhere(at[joints] == 2).tolist():
-        joint = int(joints[rod, end])
-        if joint not in first:
-            first[joint] = rod, end
-            continue
-        other = first[joint]
-        if abs(abs(ends[rod, end]) - abs(ends[other])) <= _ALIKE * largest:
-            repeated[rod, end] = True
-            if way[rod, end] @ way[other] < -_STRAIGHT and slope[rod, end] * slope[other] < 0.0:
-                repeated[other] = True  # the moment passes through
+    shared = np.flatnonzero(at[joints].ravel() == 2)
+    shared = shared[np.argsort(joints.ravel()[shared], kind="stable")]
+    pairs = np.flatnonzero(np.diff(joints.ravel()[shared]) == 0)
+    one, other = shared[pairs], shared[pairs + 1]
+    same = np.abs(np.abs(ends.ravel()[one]) - np.abs(ends.ravel()[other])) <= _ALIKE * largest
+    one, other = one[same], other[same]
+    way, slope = way.reshape(-1, 2), slope.ravel()
+    straight = (way[one] * way[other]).sum(axis=1) < -_STRAIGHT
+    repeated.ravel()[other] = True
+    repeated.ravel()[one[straight & (slope[one] * slope[other] < 0.0)]] = True  # the moment passes through
     return repeated
 
 
@@ -340,11 +367,17 @@ def _places(
     reach, extent = normal_x * half[:, 0] + normal_y * half[:, 1], normal_y * half[:, 0] + normal_x * half[:, 1]
     beside, fits = reach + GAP * u, height > 2.0 * reach
     beyond = height + beside
-    across = [beyond, np.where(fits, 0.5 * height, beyond), -beside, beyond + 10.0 * u, np.where(fits, beside, -beside)]
+    across = [
+        beyond,
+        np.where(fits, 0.5 * height, beyond),
+        -beside,
+        beyond + 10.0 * u,
+        np.where(fits, beside, -beside),
+    ]
     step = extent + 3.0 * u
     slides = [
         np.where(inward == 0.0, share * step, inward * other * step)
-        for share, other in ((0.0, 1.0), (0.5, 0.5), (-0.5, 0.0), (1.0, 2.0), (-1.0, -1.0))
+        for share, other in (_SLIDES if len(at) <= FEW_VALUES else _SLIDES[:3])
     ]
     offset = np.stack(across, axis=1)[:, :, None, None] * normal[:, None, None, :]
     slide = np.stack(slides, axis=1)[:, None, :, None] * along[:, None, None, :]

@@ -31,7 +31,7 @@ FEW_VALUES = 24  # up to which each carries its unit and keeps clear of rods
 _STEPS = (8.0, 6.0, 5.0, 4.0, 3.0, 2.0, 1.5, 1.0)
 _TOO_FLAT, _ENLARGED = 0.05, 0.3  # of the room: loads (one point per kN) below which, up to which, to enlarge
 SHORTEST_WITH_DIAGRAM = 6.0  # points
-_SHORTEST_WITH_VALUE = 24.0  # points; the values of shorter rods would only hide the structure
+SHORTEST_WITH_VALUE = 24.0  # points; the values of shorter rods would only hide the structure
 _MANY_ARROWS = 200  # of a kind, up to which all are drawn, though they may lie over each other
 _SQUARE = 20.0  # points, the side of squares of which each shows one of more arrows
 _TOLD = 1.5  # factor by which a new value must be larger to replace one of the last picture
@@ -173,7 +173,7 @@ def _label_rods(
     rows, values, normal, height = rows[seen], values[seen], normal[seen], height[seen]
     sheet.values[_ROD_VALUE] = len(rows)
     selected = sheet.chosen(sheet.tagged(Selected, "rods"), rows)
-    is_short = typical_length(sheet.start, sheet.end) < _SHORTEST_WITH_VALUE * sheet.unit
+    is_short = typical_length(sheet.start, sheet.end) < SHORTEST_WITH_VALUE * sheet.unit
     candidates = np.flatnonzero(selected) if is_short else np.arange(len(rows))
     worth = worth_of(sheet, _ROD_VALUE, rows, values) + 1e6 * selected
     shown = most_important(sheet, worth, candidates)
@@ -264,7 +264,9 @@ def draw_particle_diagrams(sheet: Sheet, sides: NDArray[np.int64]) -> None:
     particles = sheet.model.particles
     largest = max(largest_force(sheet.model, sheet.view), sheet.view.largest_force)
     taken = np.full((len(sheet.centres), 2), NO_SUPPORT)  # by reactions: a side of each particle, by axis
-    applied = (particles.applied_force - distributed_shares(sheet.model))[shown]  # rows of arrows show the others
+    applied = (particles.applied_force - distributed_shares(sheet.model))[
+        shown
+    ]  # rows of arrows show the others
     for name, force in (("reaction", particles.reaction[shown]), ("load", applied)):
         index, axis = _thinned(sheet, shown, force, *np.nonzero(np.abs(force) > SMALLEST_FORCE))
         if len(index):

@@ -147,10 +147,17 @@ def _draw_bending(
             arcs = ("rods", sheet.rods[which])
             sheet.marks += arc_marks(sheet, arcs, at[which], radius, turn[which], colour, "rods.bending_moment")
         for index in which.tolist():
-            text, row, at = written.moment(abs(float(moment[index]))), int(sheet.rods[index]), rod_ends[side][index]
+            text, row, at = (
+                written.moment(abs(float(moment[index]))),
+                int(sheet.rods[index]),
+                rod_ends[side][index],
+            )
             ends = [at - [0.0, _ARC * u], at + [0.0, _ARC * u]]
             places = [_beyond(sheet, text, end, (end - at) / (_ARC * u)) for end in ends]
-            places += [_beyond(sheet, text, at + sign * _ARC * u * across[index], sign * across[index]) for sign in (1, -1)]
+            places += [
+                _beyond(sheet, text, at + sign * _ARC * u * across[index], sign * across[index])
+                for sign in (1, -1)
+            ]
             _label(sheet, text, places, colour, ("rods.bending_moment", 2 * row + side), ("rods", row), ends)
 
 
@@ -195,7 +202,9 @@ def _draw_others(sheet: Sheet, row: int, forces: list[Force], largest: float) ->
             colour: Colour = sheet.theme.ink if force.kind == "inertia" else getattr(sheet.theme, force.kind)
             key, around = f"particles.{force.name}.moment", np.array([radius + 2.0 * _ARC * u])
             at, rows = centre[None], np.array([row])
-            sheet.marks += arc_marks(sheet, ("particles", rows), at, around, np.array([force.moment]), colour, key)
+            sheet.marks += arc_marks(
+                sheet, ("particles", rows), at, around, np.array([force.moment]), colour, key
+            )
             sheet.legend.append(force.kind)
             label_moment(sheet, centre, float(around[0]), force.moment, colour, (key, row))
         size = math.hypot(force.x, force.y)

@@ -300,9 +300,15 @@ def _swatch(sheet: Sheet, name: str, x: float, y: float, width: float) -> list[M
     u, theme = sheet.unit, sheet.theme
     if name == "utilisation":
         return scale_bar(theme, x, y, width, u)
-    role = {"slack": "ink", "hinge": "ink", "moment": "ink", "shear": "ink", "velocity": "ink", "inertia": "ink", "first": "yielding"}.get(
-        name, name
-    )
+    role = {
+        "slack": "ink",
+        "hinge": "ink",
+        "moment": "ink",
+        "shear": "ink",
+        "velocity": "ink",
+        "inertia": "ink",
+        "first": "yielding",
+    }.get(name, name)
     colour = getattr(theme, role)
     ends = np.array([[x, y]]), np.array([[x + width, y]])
     if name == "hinge":

@@ -9,7 +9,7 @@ from dataclasses import dataclass, field
 import numpy as np
 from numpy.typing import NDArray
 
-from components.bent import FLAT, Lines, curved_lines, rigid_joints
+from components.bent import FLAT, Lines, curved_lines, largest_sag, rigid_joints
 from components.camera import Viewport
 from components.model import Model
 from components.rod import bends
@@ -155,9 +155,9 @@ def measure(model: Model, view: View, theme: Theme, placed: Placed | None = None
     viewport = view.canvas
     low, high = bounds(viewport)
     margin = 150.0 * unit  # so that the ends of a rod that leaves the viewport, and their labels, are not seen
-    lines = curved_lines(model, FLAT / camera.scale)
-    reach = margin if lines is None else margin + lines.reach * camera.scale
+    reach = margin + 2.0 * largest_sag(model) * model.settings.displacement_scale * camera.scale
     start, end, rods = clip_rods(centres, ends, low - reach, high + reach)
+    lines = curved_lines(model, FLAT / camera.scale, rods)
     curved = _visible(lines, rods, view, (low - margin, high + margin)) if lines is not None else None
     radii = np.maximum(model.particles.radius * camera.scale, smallest := _smallest_radius(start, end, unit))
     if bends(model):
@@ -172,16 +172,16 @@ def measure(model: Model, view: View, theme: Theme, placed: Placed | None = None
 
 
 def _visible(lines: Lines, rods: Rows, view: View, within: tuple[Points, Points]) -> Lines:
-    """The pieces of the rods in those rows that can be seen, in pixels, by their place among the rows."""
-    place = np.full(max(rods.max(initial=-1), lines.rods.max()) + 1, -1)
-    place[rods] = np.arange(len(rods))
-    start, end, kept = clip_segments(
-        view.camera.to_pixels(lines.start), view.camera.to_pixels(lines.end), *within
-    )
-    of = place[lines.rods[kept]]
-    start, end, of = start[of >= 0], end[of >= 0], of[of >= 0]
+    """The pieces of rods that can be seen, in pixels, by the place of their rod among `rods`, which are in order."""
+    start, end = view.camera.to_pixels(lines.start), view.camera.to_pixels(lines.end)
+    of, (low, high) = np.searchsorted(rods, lines.rods), within
+    if (start < low).any() or (start > high).any() or (end < low).any() or (end > high).any():
+        start, end, kept = clip_segments(start, end, low, high)
+        of = of[kept]
     way = end - start
-    overlap = 0.5 * way / np.maximum(np.hypot(*way.T), 1e-9)[:, None]  # pixel, so that pieces close
+    overlap = (
+        0.5 * way / np.maximum(np.hypot(way[:, 0], way[:, 1]), 1e-9)[:, None]
+    )  # pixel, so that pieces close
     return Lines(start - overlap, end + overlap, of)
 
 

@@ -179,10 +179,15 @@ def draw_particles(sheet: Sheet) -> None:
         rigid = rigid_joints(sheet.model)[rows]
         small |= rigid & (sheet.radii[rows] <= _DOT * sheet.unit)
         dots = rows[rigid & ~small]
-    for chosen, rim in ((rows[small], 0.0), (rows[~small], RIM * sheet.unit)):
+    open_ones = np.setdiff1d(rows[~small], dots)
+    for chosen, ink, rim in (
+        (rows[small], theme.ink, 0.0),
+        (open_ones, theme.ink, RIM * sheet.unit),
+        (dots, theme.ghost, sheet.unit),
+    ):
         if len(chosen):
-            _draw_circles(sheet, chosen, theme.ink, theme.hollow, rim, 0.0)
-    if len(dots):  # larger ones are bodies that collide
+            _draw_circles(sheet, chosen, ink, theme.hollow, rim, 0.0)
+    if len(dots):  # the circles around them are the bodies that collide
         size = np.full(len(dots), _DOT * sheet.unit)
         sheet.marks.append(Discs(sheet.centres[dots], size, theme.ink, theme.ink, 0.0, ("particles", dots)))
     at, radii = sheet.centres[rows], sheet.radii[rows]

@@ -8,18 +8,15 @@ EA, EI = 1.2e6, 8000.0
 Source = dict[str, Any]
 
 
-def frame(
-    particles: dict[str, tuple[float, float, Source]], rods: dict[str, Source], **others: Any
-) -> Source:
+def frame(particles: dict[str, tuple[float, float, Source]], rods: dict[str, Source], **others: Any) -> Source:
     """A model: particles by name with place and facts; rods by the names of their ends ("A B") with facts."""
     return {
         "format": "pinjoint model",
         "version": 1,
-        "particles": [
-            {"name": name, "position": [x, y], **facts} for name, (x, y, facts) in particles.items()
-        ],
+        "particles": [{"name": name, "position": [x, y], **facts} for name, (x, y, facts) in particles.items()],
         "rods": [
-            {"name": ends.replace(" ", ""), "between": ends.split(), "stiffness": EA, "bending_stiffness": EI} | facts
+            {"name": ends.replace(" ", ""), "between": ends.split(), "stiffness": EA, "bending_stiffness": EI}
+            | facts
             for ends, facts in rods.items()
         ],
         **others,
@@ -42,6 +39,41 @@ def portal() -> Source:
         },
         loads=[{"name": "wind", "on": "B", "force": [10.0, 0.0]}],
     )
+
+
+def portal_at_rest() -> Source:
+    """It, where a run leads to."""
+    return at_rest(
+        portal(),
+        {
+            "A": (0.0, 0.0, 0.0),
+            "B": (0.0143417796, -0.000129422427, -0.00471245204),
+            "C": (0.0142846859, -0.000180144345, 0.00238775396),
+            "D": (0.0, 0.0, -0.00656343805),
+        },
+    )
+
+
+def gerber_at_rest() -> Source:
+    """It, where a run leads to."""
+    return at_rest(
+        gerber_beam(),
+        {
+            "A": (0.0, 0.0, -0.00843727505),
+            "B": (-5.06426433e-05, -0.0154682242, 0.000703111446),
+            "C": (-9.44651757e-05, 0.0, 0.00562479615),
+            "D": (-0.000108715718, 0.0064596491, -0.00380852385),
+            "E": (-0.00011757557, 0.0, 0.000937565011),
+        },
+    )
+
+
+def at_rest(source: Source, state: dict[str, tuple[float, float, float]]) -> Source:
+    """A model with displacements and rotations by particle."""
+    for particle in source["particles"]:
+        x, y, turn = state[particle["name"]]
+        particle |= {"displacement": [x, y], "rotation": turn}
+    return source
 
 
 def gerber_beam() -> Source:
