@@ -146,7 +146,8 @@ def on_joint(model: Model, row: int, known: Apart | None = None) -> list[Force]:
     for name, part in (("force", own), ("weight", np.append(weight, 0.0))):
         rest -= part
         if (part * [1.0, 1.0, turns]).any():
-            found.append(Force(name, "load", *part[:2].tolist(), moment=float(part[2]) * turns))
+            x, y, turn = part.tolist()
+            found.append(Force(name, "load", x, y, moment=turn * turns))
     rest[2] *= turns
     if (np.abs(rest) > ROUNDING * np.array([*[np.abs(applied[:2]).max()] * 2, abs(applied[2])])).any():
         found.append(
@@ -184,5 +185,6 @@ def on_rod(model: Model, row: int) -> list[Force]:
         bow = float(rods.load_shares[row] @ slopes) / rods.rest_length[row]  # mean deflection
         place = 0.5 * length * along + bow * np.array([-along[1], along[0]])
         lever = float(place[0] * pressed[1] - place[1] * pressed[0])
-        found.append(Force("distributed force", "load", *pressed.tolist(), lever=lever))
+        x, y = pressed.tolist()
+        found.append(Force("distributed force", "load", x, y, lever=lever))
     return found

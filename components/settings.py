@@ -61,7 +61,7 @@ class Settings(Handle):
     )
     original_diagrams: Field[bool] = look(
         dtype=bool,
-        title="diagrams on the original shape",
+        title="undeformed diagrams",
         doc="Force diagrams of rods that bend stand on these as they were originally, not as they are.",
     )
     automatic_displacement_scale: Field[float] = derived(default=1.0, doc="The one that suits the model.")

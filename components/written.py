@@ -84,7 +84,11 @@ def total(terms: Iterable[float]) -> str:
     shown = [term for term in known if abs(term) >= least]
     first, *others = (f"{abs(term):.{decimals}f}" for term in shown)
     signed = [f"{'−' if term < 0.0 else '+'} {text}" for term, text in zip(shown[1:], others, strict=True)]
-    result = "0" if abs(found) <= ROUNDING * largest else f"{found:.{decimals}f}".replace("-", "−")
+    result = (
+        "0"
+        if abs(found) <= ROUNDING * largest
+        else f"{round(found, decimals) + 0.0:.{decimals}f}".replace("-", "−")
+    )
     return " ".join([f"{'−' * (shown[0] < 0.0)}{first}", *signed, "=", result])
 
 

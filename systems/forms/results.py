@@ -10,14 +10,14 @@ import numpy as np
 from numpy.typing import NDArray
 
 from components import written
-from components.bent import MOMENT, inner_forces, largest, rigid_joints
+from components.bent import MOMENT, inner_forces, largest
 from components.field import CM, Field, Role
 from components.form import Form, Reading
 from components.handle import Handle
 from components.load import CONSTANT, Load, factor_at
 from components.model import Model
 from components.particle import Particle
-from components.rod import Rod, bends, utilisation
+from components.rod import Rod, utilisation
 
 SECTION = "Results"
 RESIDUAL = 1e-12  # of a length (m), force (kN) or speed (m/s): nothing, where all of them are as small
@@ -91,9 +91,7 @@ def told(model: Model, handle: Handle, *, forces_known: bool) -> list[tuple[str,
 def _of_rods(columns: _Columns, rows: NDArray[np.intp]) -> Iterator[Result]:
     rods, names = columns.model.rods, columns.model.rods.column("name")
     force = columns("rods.axial_force")
-    if len(rows) == 1 and bends(columns.model):
-        yield from _along(columns, int(rows[0]))
-    elif len(rows) == 1:
+    if len(rows) == 1:
         yield _result("axial force", _number(force[rows[0]], force, "kN"), Rod.axial_force)
     else:
         for title, pick, seen in (("tension", np.argmax, force > 0.0), ("compression", np.argmin, force < 0.0)):
@@ -113,28 +111,19 @@ def _of_rods(columns: _Columns, rows: NDArray[np.intp]) -> Iterator[Result]:
         if rods.plastic_strain[row]:
             plastic = 1000.0 * rods.plastic_strain
             yield _result("plastic strain", _number(plastic[row], plastic, "‰"), Rod.plastic_strain)
+    if len(rows) == 1 and rods.bending_stiffness[rows[0]]:
+        yield _largest_moment(columns, rows)
 
 
-def _along(columns: _Columns, row: int) -> Iterator[Result]:
-    """Axial force, shear and moment at both ends of a rod, one number where they are alike, and the largest moment."""
-    model = columns.model
-    for name, unit in (("end_axial_force", "kN"), ("shear", "kN"), ("bending_moment", "kN·m")):
-        column, field = columns(f"rods.{name}"), getattr(Rod, name)
-        if name != "end_axial_force" and not model.rods.bending_stiffness[row]:
-            continue
-        start, end = (_number(value, column) for value in column[row])
-        title = "axial force" if name == "end_axial_force" else field.title
-        text = "—" if start == "—" else f"{start} {unit}" if start == end else f"{start} to {end} {unit}"
-        yield _result(title, text, field)
-    if not model.rods.bending_stiffness[row]:
-        return
-    moment, text = columns("rods.bending_moment"), "—"
-    if not np.isnan(moment[row]).any():
-        (value,), (share,) = largest(inner_forces(model, np.array([row]), MOMENT))
-        at = written.length(share * model.rods.rest_length[row], written.DIGITS)
-        text = f"{_number(value, np.append(moment, value))} kN·m at {at}"
+def _largest_moment(columns: _Columns, rows: NDArray[np.intp]) -> Result:
+    """The largest moment along a rod and where it is."""
+    moments, text = columns("rods.bending_moment"), "—"
+    if not np.isnan(moments[rows]).any():
+        (value,), (share,) = largest(inner_forces(columns.model, rows, MOMENT))
+        at = written.length(share * columns.model.rods.rest_length[rows[0]], written.DIGITS)
+        text = f"{_number(value, np.append(moments, value))} kN·m at {at}"
     told = "Along it, and how far from its start; positive: the side on its right is in tension."
-    yield Result(SECTION, "largest moment", text, told)
+    return Result(SECTION, "largest moment", text, told)
 
 
 def _utilisation(columns: _Columns, rows: NDArray[np.intp]) -> Iterator[Result]:
@@ -165,7 +154,6 @@ def _of_particles(columns: _Columns, rows: NDArray[np.intp]) -> Iterator[Result]
             yield _vector("reaction", reactions[row], reactions, "kN", Particle.reaction, held)
         force = columns("particles.applied_force")
         yield _vector("external force", force[row], force, "kN", Particle.applied_force)
-        yield from _turning(columns, int(row))
         speed = np.hypot(*particles.velocity.T)
         yield _result("speed", _number(speed[row], speed, "m/s"), Particle.velocity)
         return
@@ -176,21 +164,6 @@ def _of_particles(columns: _Columns, rows: NDArray[np.intp]) -> Iterator[Result]
     if particles.fixed[rows].any():
         total = reactions[rows].sum(axis=0)
         yield _vector("sum of reactions", total, reactions, "kN", Particle.reaction)
-
-
-def _turning(columns: _Columns, row: int) -> Iterator[Result]:
-    """Rotation and moments of a joint of rods that bend."""
-    model = columns.model
-    if not (bends(model) and rigid_joints(model)[row]):
-        return
-    rotation = 1000.0 * model.particles.rotation
-    yield _result("rotation", _number(rotation[row], rotation, "mrad"), Particle.rotation)
-    loaded = model.particles.moment[row] or model.loads.moment[model.loads.on == row].any()
-    for name, wanted in (("reaction_moment", model.particles.fixed_rotation[row]), ("applied_moment", loaded)):
-        if wanted:
-            moment = columns(f"particles.{name}")
-            field: Field[Any] = getattr(Particle, name)
-            yield _result(field.title, _number(moment[row], moment, "kN·m"), field)
 
 
 # --- loads, and elements of mods -----------------------------------------------------------------------

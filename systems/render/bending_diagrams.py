@@ -51,6 +51,7 @@ _ROOM, _SHARE = 1.25, 0.3  # of the room of force diagrams; of the largest shear
 _HATCH = 7.0  # points between lines across
 _NOTHING = 1e-3  # of the largest value: what is not told
 _ALIKE = 5e-3  # of the largest value: what counts as the same
+_GREAT = 0.5  # of the largest value: what is told before all else
 _ZERO = 2.5  # points, radius of the mark of a zero point
 _INSIDE = 0.02  # share of a rod, from which on a zero point or an extreme is not at its end
 _STRAIGHT = 0.9  # cosine of the turn at a joint up to which two rods are one member
@@ -281,7 +282,8 @@ def _label(sheet: Sheet, quantity: str, diagram: _Diagram) -> None:
     along = normals[shown][:, ::-1] * ([1.0, -1.0] if quantity == MOMENT else [-1.0, 1.0])
     places = _places(at, normal, along, height, inward, half, sheet.unit)
     colours = [_colour_of(sheet, quantity, number) for number in numbers]
-    ranks = (-worth[shown]).tolist()
+    great = np.abs(value[shown]) > _GREAT * diagram.largest  # before arrows
+    ranks = (-worth[shown] - np.where(great, 2e9, 0.0)).tolist()
     of = [("rods", row) for row in rows[shown].tolist()]
     anchors = np.stack([at + normal * height[:, None], at + normal * (0.5 * height)[:, None], at], axis=1)
     labels = [(field, key) for key in keys[shown].tolist()]

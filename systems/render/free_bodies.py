@@ -99,8 +99,9 @@ def _draw_bodies(sheet: Sheet, start: Points, end: Points, gap: NDArray[np.float
         shares = gap[bent, None] + np.linspace(0.0, 1.0, _PIECES + 1) * (1.0 - 2.0 * gap[bent, None])
         points = sheet.view.camera.to_pixels(axes(sheet.model, rods[bent]).points(shares).reshape(-1, 2))
         points = points.reshape(-1, _PIECES + 1, 2)
-        start = np.concatenate([start[~bent], points[:, :-1].reshape(-1, 2)])
-        end = np.concatenate([end[~bent], points[:, 1:].reshape(-1, 2)])
+        overlap = 0.1 * (points[:, 1:] - points[:, :-1])  # so that pieces close
+        start = np.concatenate([start[~bent], (points[:, :-1] - overlap).reshape(-1, 2)])
+        end = np.concatenate([end[~bent], (points[:, 1:] + overlap).reshape(-1, 2)])
         rods = np.concatenate([rods[~bent], np.repeat(rods[bent], _PIECES)])
     sheet.marks.append(Strokes(start, end, 2.5 * u, sheet.theme.ink, ("rods", rods)))
     sheet.occupancy.line(start, end, STRONG)
@@ -152,7 +153,8 @@ def _draw_bending(
                 int(sheet.rods[index]),
                 rod_ends[side][index],
             )
-            ends = [at - [0.0, _ARC * u], at + [0.0, _ARC * u]]
+            down = np.array([0.0, _ARC * u])
+            ends = [at - down, at + down]
             places = [_beyond(sheet, text, end, (end - at) / (_ARC * u)) for end in ends]
             places += [
                 _beyond(sheet, text, at + sign * _ARC * u * across[index], sign * across[index])

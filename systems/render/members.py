@@ -119,12 +119,12 @@ def _tips(sheet: Sheet, index: int, along: Points) -> tuple[Points, bool]:
     length = float(np.hypot(*way))
     if length < 2.0 * _APART * u:
         return np.empty((0, 2)), False
-    count = int(np.clip(round(length / (_APART * u)), 2, _MOST_ARROWS))
     shifted = bool(abs(along @ way) > 0.97 * length)
+    apart = float(gaps(np.array(length), u)) / length if sheet.view.free_bodies else 0.0
+    seen = 1.0 - 2.0 * apart
+    count = int(np.clip(round(seen * length / (_APART * u)), 2, _MOST_ARROWS))
     shares = np.linspace(0.0, 1.0, count + 1) if not shifted else (np.arange(count) + 1.0) / count
-    if sheet.view.free_bodies:
-        apart = float(gaps(np.array(length), u)) / length
-        shares = apart + shares * (1.0 - 2.0 * apart)
+    shares = apart + shares * seen
     points = sheet.view.camera.to_pixels(axes(sheet.model, np.array([row])).points(shares)[0])
     across = np.array([way[1], -way[0]]) / length
     if shifted:

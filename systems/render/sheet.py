@@ -42,8 +42,8 @@ class Sheet:
     end: their visible parts in pixels, aligned with `rods`. curved: visible pieces in pixels of those of them that look
     bent, by their place among `rods`; None: none does. particles: rows of those that can be seen.
     pulled, pushed: rows of the rods that are coloured by their axial force, since they have no room for more.
-    shades: rows of rods and the colours that show a quantity of theirs.
-    above: marks to be drawn over rods and particles. placed: where labels were in the last picture. legend: names of the colours that occur and mean something.
+    shades: rows of rods and the colours that show a quantity of theirs. above: marks to be drawn over rods and particles.
+    placed: where labels were in the last picture. legend: names of the colours that occur and mean something.
     notes: scales to be shown. scales: those of arrows in this picture, to be kept in `placed`. values: how many
     there are to show, by field, if there were room for all.
     """
@@ -159,12 +159,13 @@ def measure(model: Model, view: View, theme: Theme, placed: Placed | None = None
     start, end, rods = clip_rods(centres, ends, low - reach, high + reach)
     lines = curved_lines(model, FLAT / camera.scale, rods)
     curved = _visible(lines, rods, view, (low - margin, high + margin)) if lines is not None else None
-    radii = np.maximum(model.particles.radius * camera.scale, smallest := _smallest_radius(start, end, unit))
+    smallest = _smallest_radius(start, end, unit)
+    radii: NDArray[np.float64] = np.maximum(model.particles.radius * camera.scale, smallest)
     if bends(model):
         radii[rigid_joints(model) & (radii == smallest)] = _JOINT * smallest
-    reach, seen = radii + 40.0 * unit, np.ones(len(centres), dtype=bool)
+    around, seen = radii + 40.0 * unit, np.ones(len(centres), dtype=bool)
     for axis in (0, 1):
-        seen &= (centres[:, axis] > low[axis] - reach) & (centres[:, axis] < high[axis] + reach)
+        seen &= (centres[:, axis] > low[axis] - around) & (centres[:, axis] < high[axis] + around)
     particles, occupancy = np.flatnonzero(seen), Occupancy(viewport, unit)
     placed = {} if placed is None else placed
     seen_of = rods, start, end, particles

@@ -57,19 +57,12 @@ def test_the_button_says_which_diagram_is_on() -> None:
     assert "bending moment M" in tool.title
 
 
-def test_numbers_of_members_and_joints() -> None:
+def test_the_largest_moment_of_a_member() -> None:
     session = Session.open(portal_at_rest())
     session.get_ready()
     model = session.model
     rows = dict(told(model, model.rods["BC"], forces_known=True))
-    assert rows["axial force"].startswith("−8.738")
-    assert rows["shear"] == "29.85 to −42.15 kN"
-    assert rows["bending moment"] == "1.359 to −35.55 kN·m"
     assert rows["largest moment"] == "38.55 kN·m at 248.8 cm"
-    joint = dict(told(model, model.particles["A"], forces_known=True))
-    assert joint["rotation"] == "0 mrad"
-    assert joint["reaction moment"] == "28.12 kN·m"
-    assert dict(told(model, model.particles["B"], forces_known=True))["rotation"] == "−4.712 mrad"
 
 
 @pytest.mark.parametrize("name", FRAMES)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 from typing import Any
 
 EA, EI = 1.2e6, 8000.0
@@ -98,7 +99,7 @@ def cantilever(count: int = 1, moment: float = 40.0) -> Source:
     particles["P0"] = (0.0, 0.0, CLAMPED)
     particles[names[-1]] = (4.0, 0.0, {"moment": moment})
     soft = {"stiffness": 2e4, "bending_stiffness": 50.0}
-    return frame(particles, {f"{a} {b}": soft for a, b in zip(names, names[1:], strict=False)})
+    return frame(particles, {f"{a} {b}": soft for a, b in itertools.pairwise(names)})
 
 
 def vierendeel() -> Source:

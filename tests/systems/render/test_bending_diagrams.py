@@ -102,7 +102,7 @@ def test_values_extremes_and_zero_points_of_a_portal() -> None:
 
 
 def test_axial_forces_have_their_colours_and_no_noise() -> None:
-    picture, session = shown(portal_at_rest(), AXIAL)
+    picture, _session = shown(portal_at_rest(), AXIAL)
     assert "compression (kN)" in picture.texts
     assert {"−8.738 kN", "−29.82 kN"} <= set(picture.texts)
     assert not [mark for mark in picture.marks if isinstance(mark, Bars)]
