@@ -11,7 +11,8 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from components.derived import all_slopes, chord_rotation
+from components.derived import chord_rotation
+from components.diagrams import all_slopes
 from components.model import Model
 from components.rod import bends
 from components.table import flags
@@ -72,17 +73,17 @@ def axes(model: Model, rows: Rows) -> Axes:
     particles, scale = model.particles, float(model.settings.displacement_scale)
     ends = rods.between[rows].astype(np.intp)
     drawn = particles.position[ends] + particles.displacement[ends] * scale
-    return Axes(drawn[:, 0], drawn[:, 1], state.left, scale * state.deflection)
+    return Axes(drawn[:, 0], drawn[:, 1], state.left, scale * (state.cubic + state.sag))
 
 
 class _State(NamedTuple):
-    """Of some rods: present length, unit vector to the left, distributed force along and across, deflection (n, 5)."""
+    """Of some rods: length, unit vector to the left, distributed force across, deflections (n, 5): cubic, and by that force."""
 
     length: Array
     left: Array
-    lengthwise: Array
     across: Array
-    deflection: Array
+    cubic: Array
+    sag: Array
 
 
 def _state(model: Model, rows: Rows) -> _State:
@@ -93,25 +94,26 @@ def _state(model: Model, rows: Rows) -> _State:
     along = present / np.where(length > 0.0, length, 1.0)[:, None]
     left = np.stack([-along[:, 1], along[:, 0]], axis=1)
     force = rods.distributed_force
-    lengthwise, across = (force * along).sum(axis=1), (force * left).sum(axis=1)
+    across = (force * left).sum(axis=1)
     rigid = np.where(
         rods.turning_shares > 0.0, particles.rotation[rods.between] - chord_rotation(model)[:, None], 0.0
     )
-    start, end = (length[:, None] * all_slopes(model, rigid, across))[rows].T
+    start, end = (length[:, None] * all_slopes(rods, rigid, across))[rows].T
     bent = rods.bending_stiffness > 0.0
     sag = np.divide(
         across * rods.rest_length**4, 24.0 * rods.bending_stiffness, out=np.zeros(len(bent)), where=bent
     )[rows]
     zero = np.zeros(len(sag))
-    deflection = np.stack([zero, start, sag - 2.0 * start - end, start + end - 2.0 * sag, sag], axis=1)
-    deflection[~bent[rows]] = 0.0
-    return _State(length[rows], left[rows], lengthwise[rows], across[rows], deflection)
+    cubic = np.stack([zero, start, -2.0 * start - end, start + end, zero], axis=1)
+    cubic[~bent[rows]] = 0.0
+    sags = np.stack([zero, zero, sag, -2.0 * sag, sag], axis=1)
+    return _State(length[rows], left[rows], across[rows], cubic, sags)
 
 
 def inner_forces(model: Model, rows: Rows, quantity: str) -> Array:
-    """N, V (kN) or M (kN·m) along some rods as polynomials (n, ≤ 5); at their ends the computed columns.
+    """N, V (kN) or M (kN·m) along some rods as polynomials; at their ends the computed columns.
 
-    M(ξ) = M_s (1 − ξ) + M_e ξ − ½ q L₀ L ξ (1 − ξ) + N v(ξ), with the force q across and the deflection v.
+    M(ξ) = M_s (1 − ξ) + M_e ξ − ½ q L₀ L ξ (1 − ξ) + N v(ξ), with the force q across and the cubic deflection v.
     """
     rods, state = model.rods, _state(model, rows)
     name = {AXIAL: "end_axial_force", SHEAR: "shear", MOMENT: "bending_moment"}[quantity]
@@ -119,21 +121,9 @@ def inner_forces(model: Model, rows: Rows, quantity: str) -> Array:
     if quantity != MOMENT:
         return np.stack([start, end - start], axis=1)
     sag = 0.5 * state.across * rods.rest_length[rows] * state.length
-    found: Array = rods.axial_force[rows, None] * state.deflection
+    found: Array = rods.axial_force[rows, None] * state.cubic[:, :4]
     found[:, :3] += np.stack([start, end - start - sag, sag], axis=1)
     return found
-
-
-def largest(polynomials: Array) -> tuple[Array, Array]:
-    """The value that is largest in size between 0 and 1, and at which share, (n,) each."""
-    which, shares = zeros(derivative(polynomials))
-    count = len(polynomials)
-    every = np.concatenate([np.tile(np.arange(count), 2), which])
-    at = np.concatenate([np.zeros(count), np.ones(count), shares])
-    found = values(polynomials[every], at[:, None])[:, 0]
-    order = np.lexsort((-np.arange(len(at)), np.abs(found), every))
-    last = order[np.searchsorted(every[order], np.arange(count), side="right") - 1]
-    return found[last], at[last]
 
 
 def zeros(polynomials: Array) -> tuple[Rows, Array]:
@@ -172,9 +162,8 @@ def largest_sag(model: Model) -> float:
     """The largest deflection of a rod from the straight line between its ends (m), about."""
     if not bends(model):
         return 0.0
-    middle = values(
-        _state(model, np.flatnonzero(model.rods.bending_stiffness > 0.0)).deflection, np.array([0.5])
-    )
+    state = _state(model, np.flatnonzero(model.rods.bending_stiffness > 0.0))
+    middle = values(state.cubic + state.sag, np.array([0.5]))
     return float(np.abs(middle).max(initial=0.0))
 
 

@@ -10,7 +10,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from components import written
-from components.bent import MOMENT, inner_forces, largest
 from components.field import CM, Field, Role
 from components.form import Form, Reading
 from components.handle import Handle
@@ -112,18 +111,16 @@ def _of_rods(columns: _Columns, rows: NDArray[np.intp]) -> Iterator[Result]:
             plastic = 1000.0 * rods.plastic_strain
             yield _result("plastic strain", _number(plastic[row], plastic, "‰"), Rod.plastic_strain)
     if len(rows) == 1 and rods.bending_stiffness[rows[0]]:
-        yield _largest_moment(columns, rows)
+        yield _largest_moment(columns, int(rows[0]))
 
 
-def _largest_moment(columns: _Columns, rows: NDArray[np.intp]) -> Result:
+def _largest_moment(columns: _Columns, row: int) -> Result:
     """The largest moment along a rod and where it is."""
-    moments, text = columns("rods.bending_moment"), "—"
-    if not np.isnan(moments[rows]).any():
-        (value,), (share,) = largest(inner_forces(columns.model, rows, MOMENT))
-        at = written.length(share * columns.model.rods.rest_length[rows[0]], written.DIGITS)
-        text = f"{_number(value, np.append(moments, value))} kN·m at {at}"
-    told = "Along it, and how far from its start; positive: the side on its right is in tension."
-    return Result(SECTION, "largest moment", text, told)
+    moments = columns("rods.largest_moment")
+    value, distance = moments[row]
+    text = _number(value, moments[:, 0], "kN·m")
+    at = "" if math.isnan(distance) else f" at {written.length(distance, written.DIGITS)}"
+    return _result("largest moment", f"{text}{at}", Rod.largest_moment)
 
 
 def _utilisation(columns: _Columns, rows: NDArray[np.intp]) -> Iterator[Result]:

@@ -140,7 +140,7 @@ def _measured(sheet: Sheet, rows: Rows, quantity: str, room: float) -> _Diagram 
 def _pieces(sheet: Sheet, rows: Rows) -> int:
     """Into how many pieces diagrams are cut, more where rods are few and long."""
     most = next(pieces for count, pieces in _PIECES if len(rows) <= count)
-    return int(np.clip(typical_length(sheet.start, sheet.end) / (_PIECE * sheet.unit), 2, most))
+    return int(np.clip(sheet.rod_length / (_PIECE * sheet.unit), 2, most))
 
 
 def _baseline(sheet: Sheet, rows: Rows) -> Axes:
@@ -256,7 +256,7 @@ def _label(sheet: Sheet, quantity: str, diagram: _Diagram) -> None:
     """Values at the ends and at the extreme between, where they are not told by a neighbour already."""
     field = f"rods.{quantity}"
     selected = sheet.chosen(sheet.tagged(Selected, "rods"), diagram.rows)
-    if typical_length(sheet.start, sheet.end) < SHORTEST_WITH_VALUE * sheet.unit:
+    if sheet.rod_length < SHORTEST_WITH_VALUE * sheet.unit:
         sheet.values[field] = int((~selected).sum())
         diagram = diagram.some(selected)
     which, number, shares, value = _told(sheet, quantity, diagram)

@@ -113,6 +113,9 @@ def _toggle_diagrams(context: Context, pixel: Vector) -> None:
     Where rods bend, those of N, M and V follow one another before there are none.
     """
     model, view = context.model, context.view
+    apart = view.put_together()
+    if apart and (view.all_diagrams or model.any_tagged(DiagramShown)):
+        return
     if not context.has_selected:
         view.all_diagrams = _following(context, view.all_diagrams)
         model.tag_only([], DiagramShown)
