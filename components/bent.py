@@ -56,7 +56,7 @@ class Axes:
         return found
 
     @property
-    def pieces(self) -> Array:
+    def curvature(self) -> Array:
         """Into how many pieces each would have to be cut to be straight within a metre, (n,); a root of a length."""
         second = derivative(derivative(self.bow))
         most: Array = np.sqrt(np.abs(second).sum(axis=1) / 8.0)
@@ -76,8 +76,30 @@ def axes(model: Model, rows: Rows) -> Axes:
     return Axes(drawn[:, 0], drawn[:, 1], state.left, scale * (state.cubic + state.sag))
 
 
+def moved_axes(model: Model, rows: Rows, places: Array, displacement: Array, rotation: Array) -> Axes:
+    """The axes of some rods by small displacements (particles, 2) and rotations (particles,) that lead to places.
+
+    Their ends, at places (particles, 2), are all that is drawn of what was before.
+    """
+    rods = model.rods
+    ends = rods.between[rows].astype(np.intp)
+    difference, length = rods.difference[rows], rods.original_length[rows]
+    left = np.stack([-difference[:, 1], difference[:, 0]], axis=1) / np.maximum(length, 1e-300)[:, None]
+    chord = ((displacement[ends[:, 1]] - displacement[ends[:, 0]]) * left).sum(axis=1)
+    rigid = rods.turning_shares[rows] > 0.0
+    slopes = np.where(rigid, length[:, None] * rotation[ends] - chord[:, None], 0.0)
+    slopes = np.where(rigid, slopes, np.where(rigid[:, ::-1], -0.5 * slopes[:, ::-1], 0.0))
+    return Axes(places[ends[:, 0]], places[ends[:, 1]], left, _cubic(*slopes.T))
+
+
+def _cubic(start: Array, end: Array) -> Array:
+    """The deflection (n, 5) between ends with slopes × length (n,)."""
+    zero = np.zeros(len(start))
+    return np.stack([zero, start, -2.0 * start - end, start + end, zero], axis=1)
+
+
 class _State(NamedTuple):
-    """Of some rods: length, unit vector to the left, distributed force across, deflections (n, 5): cubic, and by that force."""
+    """Of some rods: length, unit vector to the left, force across, deflections (n, 5): by slopes, and by that force."""
 
     length: Array
     left: Array
@@ -104,7 +126,7 @@ def _state(model: Model, rows: Rows) -> _State:
         across * rods.rest_length**4, 24.0 * rods.bending_stiffness, out=np.zeros(len(bent)), where=bent
     )[rows]
     zero = np.zeros(len(sag))
-    cubic = np.stack([zero, start, -2.0 * start - end, start + end, zero], axis=1)
+    cubic = _cubic(start, end)
     cubic[~bent[rows]] = 0.0
     sags = np.stack([zero, zero, sag, -2.0 * sag, sag], axis=1)
     return _State(length[rows], left[rows], across[rows], cubic, sags)
@@ -192,20 +214,24 @@ def curved_lines(model: Model, fineness: float, rows: Rows | None = None) -> Lin
         return None
     stiff = model.rods.bending_stiffness > 0.0
     rows = np.flatnonzero(stiff) if rows is None else rows[stiff[rows]]
-    found = axes(model, rows)
-    wanted = found.pieces / np.sqrt(fineness)
+    return pieces(axes(model, rows), rows, fineness)
+
+
+def pieces(found: Axes, rows: Rows, fineness: float) -> Lines | None:
+    """Axes of the rods in `rows` cut into pieces that are flat within `fineness` (m); None where all look straight."""
+    wanted = found.curvature / np.sqrt(fineness)
     curved = np.flatnonzero(np.isfinite(wanted) & (wanted > 1.0))
     if not len(curved):
         return None
     least = np.array([2, 4, 8, 16, MOST_PIECES])
     count = least[np.minimum(np.searchsorted(least, wanted[curved]), len(least) - 1)]
     starts, ends, of = [], [], []
-    for pieces in np.unique(count).tolist():
-        some = curved[count == pieces]
-        points = found.some(some).points(np.linspace(0.0, 1.0, pieces + 1))
+    for number in np.unique(count).tolist():
+        some = curved[count == number]
+        points = found.some(some).points(np.linspace(0.0, 1.0, number + 1))
         starts.append(points[:, :-1].reshape(-1, 2))
         ends.append(points[:, 1:].reshape(-1, 2))
-        of.append(np.repeat(rows[some], pieces))
+        of.append(np.repeat(rows[some], number))
     row = np.concatenate(of)
     order = np.argsort(row, kind="stable")
     return Lines(np.concatenate(starts)[order], np.concatenate(ends)[order], row[order])

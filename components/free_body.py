@@ -150,9 +150,8 @@ def on_joint(model: Model, row: int, known: Apart | None = None) -> list[Force]:
             found.append(Force(name, "load", x, y, moment=turn * turns))
     rest[2] *= turns
     if (np.abs(rest) > ROUNDING * np.array([*[np.abs(applied[:2]).max()] * 2, abs(applied[2])])).any():
-        found.append(
-            Force("other", "load", *rest[:2].tolist(), moment=float(rest[2]))
-        )  # drag, laws of mods, a hand
+        x, y, turn = rest.tolist()
+        found.append(Force("other", "load", x, y, moment=turn))  # drag, laws of mods, a hand
     for part, name in ((np.array([1.0, 0.0]), "reaction x"), (np.array([0.0, 1.0]), "reaction y")):
         if (reaction := particles.reaction[row] * part).any():
             found.append(Force(name, "reaction", *reaction.tolist()))

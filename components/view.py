@@ -122,12 +122,14 @@ class Shape:
     """A mechanism or a mode of vibration, to be drawn over the model.
 
     title: such as "Mode 1 of 5: 9.276 Hz". displacement: (m), as drawn, (n, 2). about: the displacement (m) of the
-    equilibrium that it leads away from, (n, 2); None: it leads away from the original positions.
+    equilibrium that it leads away from, (n, 2); None: it leads away from the original positions. rotation: (rad), on the
+    scale of the displacement, (n,); None: nothing turns.
     """
 
     title: str
     displacement: NDArray[np.float64] = field(compare=False, repr=False)
     about: NDArray[np.float64] | None = field(default=None, compare=False, repr=False)
+    rotation: NDArray[np.float64] | None = field(default=None, compare=False, repr=False)
 
 
 @dataclass

@@ -7,7 +7,7 @@ import math
 import numpy as np
 from numpy.typing import NDArray
 
-from components.bent import rigid_joints
+from components.bent import FLAT, moved_axes, pieces, rigid_joints
 from components.rod import bends
 from components.round_numbers import round_up
 from components.tags import Hovered, Selected
@@ -240,8 +240,19 @@ def draw_shape(sheet: Sheet) -> None:
     colour = faded(sheet.theme.sketch, _SHAPE_OPACITY)
     pixels = np.hypot(*shape.displacement.T) * sheet.view.camera.scale
     moving = pixels > _SHAPE_FROM * sheet.unit
-    ends = sheet.ends[moving[sheet.ends].any(axis=1)]
-    start, end, _ = clip_segments(places[ends[:, 0]], places[ends[:, 1]], *bounds(sheet.viewport))
+    if shape.rotation is not None:
+        moving |= shape.rotation != 0.0
+    rows = np.flatnonzero(moving[sheet.ends].any(axis=1))
+    ends = sheet.ends[rows]
+    start, end = places[ends[:, 0]], places[ends[:, 1]]
+    if shape.rotation is not None:
+        bent = moved_axes(sheet.model, rows, position + shape.displacement, shape.displacement, shape.rotation)
+        if (lines := pieces(bent, rows, FLAT / sheet.view.camera.scale)) is not None:
+            straight = ~sheet.chosen(lines.rods, rows)
+            to_pixels = sheet.view.camera.to_pixels
+            start = np.concatenate([start[straight], to_pixels(lines.start)])
+            end = np.concatenate([end[straight], to_pixels(lines.end)])
+    start, end, _ = clip_segments(start, end, *bounds(sheet.viewport))
     if len(start):
         sheet.occupancy.line(start, end, FAINT)
         sheet.marks.append(Strokes(start, end, _SHAPE_WIDTH * sheet.unit, colour))

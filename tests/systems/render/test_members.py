@@ -7,6 +7,7 @@ import pytest
 
 from components.bent import axes
 from components.tags import Selected
+from components.view import Shape
 from game import Session
 from systems.edit.picking import pick_rod
 from systems.render.marks import Discs, Fills, Picture, Stamps, Strokes
@@ -187,6 +188,24 @@ def test_moments_turn_as_they_act() -> None:
         one, other = arc.start[0] - centre, arc.end[0] - centre
         turn = -(one[0] * other[1] - one[1] * other[0])  # y down
         assert np.sign(turn) == np.sign(moment)
+
+
+def test_shapes_turn_joints() -> None:
+    """A portal that sways: its columns leave their clamps upright and meet the beam at right angles."""
+    session = opened(portal())
+    model = session.model
+    displacement = np.array([[0.0, 0.0], [0.5, 0.0], [0.5, 0.0], [0.0, 0.0]])
+    shape = Shape("sways", displacement, None, np.array([0.0, 0.0, 0.0, -0.1]))
+    session.view.shape = shape
+    (lines,) = [m for m in drawn(session).marks if isinstance(m, Strokes) and m.colour[:3] == LIGHT.sketch[:3]]
+    assert len(lines.start) > 8
+    foot = session.view.camera.to_pixels(model.particles.position[0])
+    first = int(np.argmin(np.hypot(*(lines.start - foot).T)))
+    way = lines.end[first] - lines.start[first]
+    assert abs(way[0]) < 0.1 * abs(way[1])
+    session.view.shape = Shape("sways", displacement)
+    (lines,) = [m for m in drawn(session).marks if isinstance(m, Strokes) and m.colour[:3] == LIGHT.sketch[:3]]
+    assert len(lines.start) == 3
 
 
 def test_reactions_turn_in_diagrams() -> None:
