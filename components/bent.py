@@ -14,7 +14,6 @@ from numpy.typing import NDArray
 from components.derived import chord_rotation
 from components.diagrams import all_slopes
 from components.model import Model
-from components.rod import bends
 from components.table import flags
 
 Array = NDArray[np.float64]
@@ -23,6 +22,7 @@ Rows = NDArray[np.intp]
 AXIAL, MOMENT, SHEAR = QUANTITIES = ("N", "M", "V")  # in the order in which their diagrams follow one another
 FLAT = 0.25  # pixels by which a curve may differ from the lines that are drawn of it
 MOST_PIECES = 32  # of a drawn rod
+_LARGEST = 1e6  # pieces that a rod would have to be cut into; such are left out
 _SAMPLES = 33  # between which a zero of a polynomial is looked for
 
 
@@ -61,6 +61,11 @@ class Axes:
         second = derivative(derivative(self.bow))
         most: Array = np.sqrt(np.abs(second).sum(axis=1) / 8.0)
         return most
+
+
+def is_frame(model: Model) -> bool:
+    """True if some rod bends, if only by what acts along it between hinges."""
+    return bool(model.rods.bending_stiffness.any())
 
 
 def axes(model: Model, rows: Rows) -> Axes:
@@ -182,16 +187,16 @@ def derivative(polynomials: Array) -> Array:
 
 def largest_sag(model: Model) -> float:
     """The largest deflection of a rod from the straight line between its ends (m), about."""
-    if not bends(model):
+    if not is_frame(model):
         return 0.0
     state = _state(model, np.flatnonzero(model.rods.bending_stiffness > 0.0))
     middle = values(state.cubic + state.sag, np.array([0.5]))
-    return float(np.abs(middle).max(initial=0.0))
+    return float(np.abs(middle[np.isfinite(middle)]).max(initial=0.0))
 
 
 def middles(model: Model) -> Array:
     """Some points between the ends of the rods that bend, as drawn (m), (n, 2)."""
-    if not bends(model):
+    if not is_frame(model):
         return np.empty((0, 2))
     rows = np.flatnonzero(model.rods.bending_stiffness > 0.0)
     return axes(model, rows).points(np.array([0.25, 0.5, 0.75])).reshape(-1, 2)
@@ -206,11 +211,11 @@ class Lines(NamedTuple):
 
 
 def curved_lines(model: Model, fineness: float, rows: Rows | None = None) -> Lines | None:
-    """Pieces along the rods that do not look straight, flat within `fineness` (m); None where all look so.
+    """Pieces along the rods that do not look straight, flat within `fineness` (m); None where all do.
 
     rows: of the rods among which to look, in order, without them all.
     """
-    if not bends(model):
+    if not is_frame(model):
         return None
     stiff = model.rods.bending_stiffness > 0.0
     rows = np.flatnonzero(stiff) if rows is None else rows[stiff[rows]]
@@ -220,7 +225,7 @@ def curved_lines(model: Model, fineness: float, rows: Rows | None = None) -> Lin
 def pieces(found: Axes, rows: Rows, fineness: float) -> Lines | None:
     """Axes of the rods in `rows` cut into pieces that are flat within `fineness` (m); None where all look straight."""
     wanted = found.curvature / np.sqrt(fineness)
-    curved = np.flatnonzero(np.isfinite(wanted) & (wanted > 1.0))
+    curved = np.flatnonzero((wanted > 1.0) & (wanted < _LARGEST))
     if not len(curved):
         return None
     least = np.array([2, 4, 8, 16, MOST_PIECES])

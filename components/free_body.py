@@ -12,11 +12,10 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from components.bent import distributed_shares, rigid_joints
+from components.bent import distributed_shares, is_frame, rigid_joints
 from components.derived import chord_rotation
 from components.load import factor_at
 from components.model import Model
-from components.rod import bends
 from components.written import ROUNDING
 
 Vectors = NDArray[np.float64]
@@ -61,7 +60,7 @@ def apart(model: Model) -> Apart:
     on_ends = np.zeros((len(pull), 2, 3))
     on_ends[:, 1, :2] = pull[:, None] * along
     on_ends[:, 0, :2] = -on_ends[:, 1, :2]
-    if bends(model):
+    if is_frame(model) or model.rods.distributed_force.any():
         on_ends += _of_bending(model, along)
     rest = _left_over(model, on_ends)
     return Apart(pull, along, on_ends, rest[:, :2], rest[:, 2])
@@ -172,12 +171,13 @@ def on_rod(model: Model, row: int) -> list[Force]:
     names, length = model.particles.names, float(rods.length[row])
     first, last = rods.between[row].tolist()
     (x, y, turn), (far_x, far_y, far_turn) = on_ends
+    pressed = rods.distributed_force[row] * rods.rest_length[row]
     lever = length * float(along[0] * far_y - along[1] * far_x)
+    lever *= is_frame(model) or bool(pressed.any())  # of a bar's it is rounding only
     found = [
         Force(f"at {names[first]}", "rod", x, y, moment=turn),
-        Force(f"at {names[last]}", "rod", far_x, far_y, moment=far_turn, lever=lever if bends(model) else 0.0),
+        Force(f"at {names[last]}", "rod", far_x, far_y, moment=far_turn, lever=lever),
     ]
-    pressed = rods.distributed_force[row] * rods.rest_length[row]
     if pressed.any():
         rigid = rods.turning_shares[row] > 0.0
         slopes = np.where(rigid, model.particles.rotation[rods.between[row]] - chord_rotation(model)[row], 0.0)

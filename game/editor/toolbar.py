@@ -5,8 +5,9 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import Any
 
+from components.bent import is_frame
 from components.particle import Particle
-from components.rod import Rod, bends
+from components.rod import Rod
 from components.tags import DiagramShown
 from components.toolbar import Tool, Toolbar
 from game.editor.context import Context
@@ -36,7 +37,7 @@ def tool(context: Context, binding: Binding, title: str = "") -> Tool:
         action not in _NEEDS or _NEEDS[action](context)
     )
     icon = "pause" if action == "toggle run" and pressed else action
-    if action == "toggle diagrams" and pressed and bends(context.model):
+    if action == "toggle diagrams" and pressed and is_frame(context.model):
         icon, title = (
             f"diagram {context.view.quantity}",
             title or f"diagrams, now: {NAMES[context.view.quantity]}",

@@ -11,6 +11,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from components.bent import is_frame
 from components.box import NUMBER, TEXT, WORD, Box
 from components.field import SAVED, Field
 from components.form import Form
@@ -18,7 +19,7 @@ from components.handle import Handle
 from components.load import HISTORIES, Load
 from components.model import Model
 from components.particle import Particle
-from components.rod import Rod, bends
+from components.rod import Rod
 from components.settings import Settings
 from systems.forms.typing import YES_NO
 
@@ -89,7 +90,7 @@ def subjects(model: Model, selected: Sequence[Handle]) -> list[Subject]:
         if not selected or kind in kinds:
             fields = model.tables[Settings.table].fields_in(*SAVED)
             chosen = tuple(field for field in fields if (field.name in _OF_RODS) is of_rods)
-            if not bends(model):
+            if not is_frame(model):
                 chosen = tuple(field for field in chosen if field is not Settings.original_diagrams)
             found.append(Subject(section, (model.settings,), np.zeros(1, dtype=np.intp), chosen))
     return found

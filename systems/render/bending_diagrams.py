@@ -19,7 +19,6 @@ from components.bent import (
     values,
     zeros,
 )
-from components.rod import bends
 from components.tags import DiagramShown, Selected
 from components.view import MARGIN
 from systems.render.arrows import steady
@@ -44,6 +43,7 @@ from systems.render.theme import Colour, faded
 
 NAMES = {AXIAL: "axial force N", MOMENT: "bending moment M", SHEAR: "shear force V"}
 UNITS = {AXIAL: "kN", MOMENT: "kN·m", SHEAR: "kN"}
+_LARGEST, _FAR = 1e100, 1e6  # kN or kN·m, pixels: what is beyond is left out
 _MANY = 300  # rods, above which diagrams are outlines
 _PIECES = ((24, 24), (120, 12), (_MANY, 8), (np.inf, 4))  # of a diagram, by how many rods have one at most
 _PIECE = 5.0  # points, or longer
@@ -94,7 +94,7 @@ class _Diagram:
 
 def draw_diagrams(sheet: Sheet) -> None:
     """The diagrams of rods: where none bends, rectangles of their axial forces."""
-    if not bends(sheet.model):
+    if not sheet.is_frame:
         draw_rod_diagrams(sheet)
         return
     shown = np.full(len(sheet.rods), sheet.view.forces_known)
@@ -121,10 +121,12 @@ def draw_diagrams(sheet: Sheet) -> None:
 def _measured(sheet: Sheet, rows: Rows, quantity: str, room: float) -> _Diagram | None:
     """The diagram of some rods, on the scale of all; None where there is nothing to be drawn."""
     model = sheet.model
-    every = np.nan_to_num(inner_forces(model, np.arange(model.rods.count), quantity))
+    every = inner_forces(model, np.arange(model.rods.count), quantity)
+    every[~(np.abs(every) < _LARGEST).all(axis=1)] = 0.0
     largest = float(np.abs(values(every, np.linspace(0.0, 1.0, 5))).max(initial=0.0))
     if quantity == AXIAL:  # small ones, as bending shortens rods, look small
-        largest = max(largest, _SHARE * float(np.abs(np.nan_to_num(model.rods.shear)).max(initial=0.0)))
+        shear = np.abs(model.rods.shear)
+        largest = max(largest, _SHARE * float(shear[shear < _LARGEST].max(initial=0.0)))
     if largest <= SMALLEST_FORCE:
         return None
     height = room * model.settings.diagram_scale
@@ -132,9 +134,9 @@ def _measured(sheet: Sheet, rows: Rows, quantity: str, room: float) -> _Diagram 
     base, polynomials = _baseline(sheet, rows), every[rows]
     shares = np.linspace(0.0, 1.0, _pieces(sheet, rows) + 1)
     points, normals = _stations(sheet, base, shares, quantity)
-    return _Diagram(
-        rows, base, polynomials, scale, largest, points, normals, scale * values(polynomials, shares)
-    )
+    heights = scale * values(polynomials, shares)
+    found = _Diagram(rows, base, polynomials, scale, largest, points, normals, heights)
+    return found.some((np.abs(points) < _FAR).all(axis=(1, 2)) & np.isfinite(normals).all(axis=(1, 2)))
 
 
 def _pieces(sheet: Sheet, rows: Rows) -> int:

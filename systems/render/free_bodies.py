@@ -10,7 +10,6 @@ from numpy.typing import NDArray
 from components import written
 from components.bent import axes
 from components.free_body import Apart, Force, apart, on_joint
-from components.rod import bends
 from systems.render.arrows import FORCES, GAP, arrows, lengths
 from systems.render.diagrams import SMALLEST_FORCE
 from systems.render.labels import Label, half_size
@@ -116,7 +115,7 @@ def _draw_bending(
     largest: float,
 ) -> None:
     """Shears and moments of members in the gaps: those on the ends of rods, and the opposite ones on their joints."""
-    if not bends(sheet.model):
+    if not sheet.is_frame:
         return
     u, colour = sheet.unit, sheet.theme.ink
     across = along[:, ::-1] * [1.0, -1.0]  # to the left, y down

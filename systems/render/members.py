@@ -8,7 +8,6 @@ from numpy.typing import NDArray
 from components import written
 from components.bent import axes, rigid_joints
 from components.model import Model
-from components.rod import bends
 from components.tags import DiagramShown
 from systems.render.arrows import MOST, arrows, head_length
 from systems.render.labels import Label, half_size
@@ -23,6 +22,7 @@ _SHORTEST = 5.0  # times its radius: the shortest rod at which a hinge is drawn
 _ROW = (11.0, 22.0)  # points, lengths of the arrows of the smallest and the largest distributed force
 _APART = 15.0  # points between them
 _MOST_ARROWS = 40  # of a rod
+_FAR = 1e6  # pixels; what is beyond is left out
 _BESIDE = 5.0  # points between a rod and arrows along it
 _WIDEST_GAP, _GAP_SHARE = 84.0, 0.36  # between a joint and its rod drawn apart: points, and of the rod
 _ARC = {"load": 15.0, "reaction": 21.0}  # points, radii of the arrows of moments
@@ -36,7 +36,7 @@ Values = NDArray[np.float64]
 def draw_hinges(sheet: Sheet) -> None:
     """Open circles at the ends of rods that turn freely at joints of others that do not, beside these joints."""
     model = sheet.model
-    if not bends(model) or not len(sheet.rods):
+    if not sheet.is_frame or not len(sheet.rods):
         return
     rigid, u = rigid_joints(model), sheet.unit
     free = (model.rods.turning_shares[sheet.rods] == 0.0) & rigid[sheet.ends[sheet.rods]]
@@ -83,7 +83,7 @@ def draw_distributed_forces(sheet: Sheet) -> None:
         row = int(sheet.rods[index])
         along = force[row] * [1.0, -1.0] / size[index]
         tips, shifted = _tips(sheet, index, along)
-        if not len(tips):
+        if not len(tips) or not (np.abs(tips) < _FAR).all():
             continue
         level = np.full(len(tips), height[index] if not shifted else _APART * u)
         tails = tips - level[:, None] * along
@@ -168,7 +168,7 @@ def full_moment(model: Model) -> Values:
 def draw_moments(sheet: Sheet) -> None:
     """Curved arrows of the moments on joints that can bear them: of loads, and in diagrams of reactions."""
     model = sheet.model
-    if not bends(model):
+    if not sheet.is_frame:
         return
     shown = np.zeros(model.particles.count, dtype=bool)
     if sheet.view.forces_known:
@@ -183,7 +183,9 @@ def draw_moments(sheet: Sheet) -> None:
 
 def _draw_arcs(sheet: Sheet, name: str, moment: Values) -> None:
     """Arrows of moments (n,) around their particles, and their values; of many the largest."""
-    rows = sheet.particles[np.abs(moment[sheet.particles]) > SMALLEST_MOMENT]
+    rows = sheet.particles[
+        (np.abs(moment[sheet.particles]) > SMALLEST_MOMENT) & np.isfinite(moment[sheet.particles])
+    ]
     rows = np.sort(rows[np.argsort(-np.abs(moment[rows]), kind="stable")][:MOST])
     if not len(rows):
         return
@@ -195,7 +197,8 @@ def _draw_arcs(sheet: Sheet, name: str, moment: Values) -> None:
     for at, size, row, value in zip(
         sheet.centres[rows], radius.tolist(), rows.tolist(), moment[rows].tolist(), strict=True
     ):
-        label_moment(sheet, at, size, value, colour, (key, row))
+        text = written.moment(abs(value)) if name == "reaction" else ""
+        label_moment(sheet, at, size, value, colour, (key, row), text)
 
 
 def arc_marks(
@@ -229,10 +232,16 @@ def arc_marks(
 
 
 def label_moment(
-    sheet: Sheet, at: Points, radius: float, moment: float, colour: Colour, key: tuple[str, int]
+    sheet: Sheet,
+    at: Points,
+    radius: float,
+    moment: float,
+    colour: Colour,
+    key: tuple[str, int],
+    said: str = "",
 ) -> None:
-    """The size of a moment outside its arrow."""
-    text, font = f"{written.given(abs(moment), written.DIGITS)} kN·m", sheet.font(12.0)
+    """The size of a moment outside its arrow; said: in other words than what a person gave."""
+    text, font = said or f"{written.given(abs(moment), written.DIGITS)} kN·m", sheet.font(12.0)
     half = half_size(text, font, "semibold", sheet.unit)
     angle = np.radians([90.0, 52.5, 127.5, 15.0, 165.0, 0.0, 180.0, -40.0, 220.0])  # first corners of the arrow
     out = np.stack([np.cos(angle), -np.sin(angle)], axis=1)

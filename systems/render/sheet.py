@@ -10,10 +10,9 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
-from components.bent import FLAT, Lines, curved_lines, largest_sag, rigid_joints
+from components.bent import FLAT, Lines, curved_lines, is_frame, largest_sag, rigid_joints
 from components.camera import Viewport
 from components.model import Model
-from components.rod import bends
 from components.tags import Hovered
 from components.view import View, drawn_positions
 from systems.render.clip import bounds, clip_rods, clip_segments
@@ -40,8 +39,8 @@ class Sheet:
 
     unit: pixels per point. centres: particles in pixels, shape (n, 2). radii: drawn radii in pixels (n,).
     ends: rows of the particles at the rods' ends (m, 2). rods: rows of the rods that can be seen; start,
-    end: their visible parts in pixels, aligned with `rods`. curved: visible pieces in pixels of those of them that look
-    bent, by their place among `rods`; None: none does. particles: rows of those that can be seen.
+    end: their visible parts in pixels, aligned with `rods`. is_frame: some rod bends. curved: visible pieces in
+    pixels of those that look bent, by their place among `rods`; None: none does. particles: rows of those that can be seen.
     pulled, pushed: rows of the rods that are coloured by their axial force, since they have no room for more.
     shades: rows of rods and the colours that show a quantity of theirs. above: marks to be drawn over rods and particles.
     placed: where labels were in the last picture. legend: names of the colours that occur and mean something.
@@ -62,6 +61,7 @@ class Sheet:
     particles: Rows
     occupancy: Occupancy
     placed: Placed
+    is_frame: bool = False
     curved: Lines | None = None
     pulled: Rows = field(default_factory=lambda: np.empty(0, dtype=np.intp))
     pushed: Rows = field(default_factory=lambda: np.empty(0, dtype=np.intp))
@@ -161,13 +161,17 @@ def measure(model: Model, view: View, theme: Theme, placed: Placed | None = None
     viewport = view.canvas
     low, high = bounds(viewport)
     margin = 150.0 * unit  # so that the ends of a rod that leaves the viewport, and their labels, are not seen
-    reach = margin + 2.0 * largest_sag(model) * model.settings.displacement_scale * camera.scale
+    frame, reach, lines = is_frame(model), margin, None
+    if frame:
+        sag = largest_sag(model) * model.settings.displacement_scale * camera.scale
+        reach += min(2.0 * sag, float((high - low).max()))
     start, end, rods = clip_rods(centres, ends, low - reach, high + reach)
-    lines = curved_lines(model, FLAT / camera.scale, rods)
+    if frame:
+        lines = curved_lines(model, FLAT / camera.scale, rods)
     curved = _visible(lines, rods, view, (low - margin, high + margin)) if lines is not None else None
     smallest = _smallest_radius(start, end, unit)
     radii: NDArray[np.float64] = np.maximum(model.particles.radius * camera.scale, smallest)
-    if bends(model):
+    if frame:
         radii[rigid_joints(model) & (radii == smallest)] = _JOINT * smallest
     around, seen = radii + 40.0 * unit, np.ones(len(centres), dtype=bool)
     for axis in (0, 1):
@@ -175,7 +179,7 @@ def measure(model: Model, view: View, theme: Theme, placed: Placed | None = None
     particles, occupancy = np.flatnonzero(seen), Occupancy(viewport, unit)
     placed = {} if placed is None else placed
     seen_of = rods, start, end, particles
-    return Sheet(model, view, theme, unit, centres, radii, ends, *seen_of, occupancy, placed, curved)
+    return Sheet(model, view, theme, unit, centres, radii, ends, *seen_of, occupancy, placed, frame, curved)
 
 
 def _visible(lines: Lines, rods: Rows, view: View, within: tuple[Points, Points]) -> Lines:

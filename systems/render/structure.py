@@ -8,7 +8,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from components.bent import FLAT, moved_axes, pieces, rigid_joints
-from components.rod import bends
 from components.round_numbers import round_up
 from components.tags import Hovered, Selected
 from systems.render.clip import bounds, clip_segments
@@ -161,10 +160,10 @@ def _draw_lines(sheet: Sheet, mask: NDArray[np.bool_] | slice, width: float, col
 
 def _depths(sheet: Sheet, rows: Rows) -> list[tuple[float, NDArray[np.bool_] | slice]]:
     """Widths of the lines of rods, as the depths of sections with their bending stiffness, in steps; which have each."""
-    stiffness = sheet.model.rods.bending_stiffness
-    largest = float(stiffness.max(initial=0.0))
-    if largest == 0.0:
+    if not sheet.is_frame:
         return [(1.0, slice(None))]
+    stiffness = sheet.model.rods.bending_stiffness
+    largest = float(stiffness.max())
     depth = np.maximum((stiffness[rows] / largest) ** 0.25, _THINNEST)
     level = np.round(_THICKEST * depth * _DEPTHS) / _DEPTHS
     return [(factor, level == factor) for factor in np.unique(level).tolist()]
@@ -175,7 +174,7 @@ def draw_particles(sheet: Sheet) -> None:
     theme, rows = sheet.theme, sheet.particles
     small = sheet.radii[rows] < 3.0 * sheet.unit
     dots = rows[:0]
-    if bends(sheet.model):
+    if sheet.is_frame:
         rigid = rigid_joints(sheet.model)[rows]
         small |= rigid & (sheet.radii[rows] <= _DOT * sheet.unit)
         dots = rows[rigid & ~small]

@@ -9,7 +9,9 @@ from components.tags import DiagramShown
 from game import Session
 from game.commands.command_line import main
 from systems.forms.results import told
-from tests.systems.render.frame_models import FRAMES, portal, portal_at_rest
+from systems.render.picture import compose
+from systems.render.theme import load_theme
+from tests.systems.render.frame_models import FRAMES, PINNED, ROLLER, frame, portal, portal_at_rest
 
 
 def test_the_key_of_diagrams_goes_through_all_quantities() -> None:
@@ -82,6 +84,37 @@ def test_everything_apart_is_in_equilibrium(name: str) -> None:
         assert abs(sum(force.x for force in forces)) <= 1e-12 * scale
         assert abs(sum(force.y for force in forces)) <= 1e-12 * scale
         assert abs(sum(force.moment + force.lever for force in forces)) <= 1e-12 * scale
+
+
+def test_a_bar_between_hinges_bends_under_what_lies_on_it() -> None:
+    source = frame(
+        {"A": (0.0, 0.0, PINNED), "B": (4.0, 0.0, ROLLER)},
+        {"A B": {"hinged": [True, True], "distributed_force": [0.0, -3.0]}},
+    )
+    session = Session.open(source)
+    session.resize(900, 600)
+    session.view.fit(session.model)
+    session.press("i")
+    session.press("i")
+    session.get_ready()
+    session.update_view()
+    assert session.view.quantity == "M"
+    assert "6.000 kN·m" in compose(session.model, session.view, load_theme("light")).texts
+
+
+@pytest.mark.parametrize("stiffness", [0.0, 50.0])
+def test_bars_with_a_force_along_them_are_in_equilibrium_apart(stiffness: float) -> None:
+    facts = {"bending_stiffness": stiffness, "distributed_force": [1.0, -3.0]}
+    source = frame({"A": (0.0, 0.0, PINNED), "B": (4.0, 1.0, ROLLER)}, {"A B": facts})
+    session = Session.open(source)
+    session.run(time=0.002)
+    for particle in session.model.particles:
+        forces = on_joint(session.model, particle.row)
+        assert abs(sum(force.x for force in forces)) < 1e-9
+        assert abs(sum(force.y for force in forces)) < 1e-9
+    forces = on_rod(session.model, 0)
+    assert abs(sum(force.y for force in forces)) < 1e-9
+    assert abs(sum(force.moment + force.lever for force in forces)) < 1e-9
 
 
 def test_what_is_left_over_turns_a_joint() -> None:

@@ -147,7 +147,8 @@ def _turns(text: Text, model: Model, row: int) -> bool:
     """Whether a text is the size of the moment of its colour on a joint."""
     particles = model.particles
     moment = particles.applied_moment if text.colour == LIGHT.load else particles.reaction_moment
-    return text.text.removesuffix(" kN·m") == given(abs(float(moment[row])), DIGITS)
+    size = abs(float(moment[row]))
+    return text.text.removesuffix(" kN·m") in (given(size, DIGITS), number(size))
 
 
 def _says(text: Text, shaft: Part, model: Model, row: int) -> bool:

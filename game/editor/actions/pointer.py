@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-from components.bent import AXIAL, QUANTITIES
+from components.bent import AXIAL, QUANTITIES, is_frame
 from components.field import Vector
 from components.particle import Particle
-from components.rod import Rod, bends
+from components.rod import Rod
 from components.tags import DiagramShown
 from game.editor.context import ACTIONS, Context, action
 from game.editor.gestures.drawing import TOOLS, Drawing, DrawSupport
@@ -130,7 +130,7 @@ def _toggle_diagrams(context: Context, pixel: Vector) -> None:
 def _following(context: Context, shown: bool) -> bool:
     """Whether diagrams are shown after this, of the next quantity where rods bend."""
     view, last = context.view, QUANTITIES[-1]
-    if not bends(context.model):
+    if not is_frame(context.model):
         return not shown
     if shown and view.quantity == last:
         return False

@@ -5,7 +5,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from components.bent import axes
+from components.bent import QUANTITIES, axes
 from components.tags import Selected
 from components.view import Shape
 from game import Session
@@ -218,3 +218,18 @@ def test_reactions_turn_in_diagrams() -> None:
     loads = {text for text in picture.texts if text.endswith(" kN")}
     assert "10.00 kN" in loads
     assert "36.00 kN" not in loads, "the arrows of the distributed force show it"
+
+
+@pytest.mark.parametrize("quantity", QUANTITIES)
+@pytest.mark.parametrize("size", [1e-300, 1e-30, 1e30, 1e150, np.inf, np.nan])
+def test_extreme_states_are_drawn_or_left_out(size: float, quantity: str) -> None:
+    """Nothing raises, whatever a run that diverges has left."""
+    for column in ("particles.displacement", "particles.rotation", "rods.end_moment", "rods.axial_force"):
+        session = opened(portal_at_rest())
+        session.get_ready()
+        session.view.all_diagrams, session.view.quantity = True, quantity
+        with np.errstate(all="ignore"):
+            session.model.writable(column)[1] = size
+            for free in (False, True):
+                session.view.free_bodies = free
+                drawn(session)
