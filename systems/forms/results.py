@@ -139,7 +139,7 @@ def _of_particles(columns: _Columns, rows: NDArray[np.intp]) -> Iterator[Result]
         if held.any():
             yield _vector("reaction", reactions[row], reactions, "kN", Particle.reaction, held)
         force = columns("particles.applied_force")
-        yield _vector("external force", force[row], force, "kN", Particle.applied_force)
+        yield _vector("sum of loads", force[row], force, "kN", Particle.applied_force)
         speed = np.hypot(*particles.velocity.T)
         yield _result("speed", _number(speed[row], speed, "m/s"), Particle.velocity)
         return
