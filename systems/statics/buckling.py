@@ -11,17 +11,22 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from components.model import Model
+from systems.statics.bending import needed_parts
 from systems.statics.equations import Array, Matrix, Structure, normalised
 from systems.statics.events import NoEquilibrium
-from systems.statics.explain import capitalised, describe_motion, rod_names
-from systems.statics.factor import NO_STIFFNESS, SOFT, Factor, pseudo_random, regular, soft_modes
+from systems.statics.explain import describe_motion, divide_named, rod_names
+from systems.statics.factor import NO_STIFFNESS, SOFT, Factor, pseudo_random, regular, soft_modes, unresisted
 from systems.statics.state import Start
 from systems.statics.theory import linear
 
 FULL = 600  # unknowns up to which all eigenvalues are computed
 MODES = 5
 NOTHING = 1e-10  # of the largest axial force, or of the largest eigenvalue: round-off
-STIFFENED = (1e-6, 1e-8, 1e-10)  # of the rods' stiffness: by what tension is to hold a mechanism before it gives way
+STIFFENED = (
+    1e-6,
+    1e-8,
+    1e-10,
+)  # of the rods' stiffness: by what tension is to hold a mechanism before it gives way
 STRAINED = 0.1  # strain at a critical factor above which no material is still elastic
 
 
@@ -74,7 +79,7 @@ def buckling(model: Model, count: int = MODES, start: Start | None = None) -> Bu
 
 
 def _geometric(structure: Structure, axial_force: Array, share: float) -> Matrix:
-    """The stiffness of straight rods by these axial forces alone, and by the turning of a share of the distributed forces."""
+    """The stiffness of straight rods by these axial forces alone, and by what a share of the distributed forces turns."""
     bending, bent = structure.bending, structure.unmoved.bent
     if bending is not None and bent is not None:
         still = {name: np.zeros_like(values) for name, values in vars(bent).items()}
@@ -85,9 +90,7 @@ def _geometric(structure: Structure, axial_force: Array, share: float) -> Matrix
     return replace(structure, bending=bending).tangent(rods, np.ones(len(axial_force), dtype=bool))
 
 
-def _resisting(
-    model: Model, structure: Structure, stiffness: Matrix, softening: Matrix
-) -> Matrix:
+def _resisting(model: Model, structure: Structure, stiffness: Matrix, softening: Matrix) -> Matrix:
     """The stiffness at a load so small that every motion is resisted: none, but where tension holds mechanisms."""
     weight = structure.weight
     if regular(stiffness, weight, -SOFT).definite:
@@ -158,8 +161,9 @@ def _factors(structure: Structure, vectors: Array, steady: Matrix, softening: Ma
 
 
 def _upright(mode: Array) -> Array:
-    """A mode or its opposite: that of which the largest part is positive."""
-    most = np.unravel_index(np.abs(mode).argmax(), mode.shape)
+    """A mode or its opposite: that of which the largest part is positive, of displacements if there are any."""
+    part = np.abs(mode) * ([1.0, 1.0, 0.0][: mode.shape[1]] if np.abs(mode[:, :2]).max() > 0.5 else 1.0)
+    most = np.unravel_index(part.argmax(), mode.shape)
     turned: Array = mode if mode[most] > 0.0 else -mode
     return turned
 
@@ -188,7 +192,7 @@ def _why_none(model: Model, live: Array) -> str:
 
 
 def _notes(model: Model, factors: Array, lowest: Array) -> list[str]:
-    """What the lowest factor leaves out: strain beyond what is elastic, struts, and rods that one cubic is too coarse for."""
+    """What the lowest factor leaves out: strains that are not elastic, struts, and rods that one cubic is too coarse for."""
     if not len(factors):
         return []
     rods, notes = model.rods, []
@@ -207,4 +211,7 @@ def _notes(model: Model, factors: Array, lowest: Array) -> list[str]:
             f"Before, {rod_names(model, rows)} would buckle between {'its' if len(rows) == 1 else 'their'} hinges, at"
             " π² EI/L². Divide what is to bend between hinges."
         )
+    parts = needed_parts(model, lowest)
+    if (parts > 1).any():
+        notes.append(divide_named(model, np.flatnonzero(parts > 1), parts))
     return notes
