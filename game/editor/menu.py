@@ -33,7 +33,7 @@ _RESULTS = (
 )
 _SUPPORTS = ("free", "pin", "hold y", "hold x")
 _FROM_HERE = (
-    ("force", "force: click its end"),
+    ("force", "load: click its end"),
     ("velocity", "velocity: click its end"),
     ("rod", "rod from here"),
 )

@@ -110,6 +110,17 @@ def _of_rods(columns: _Columns, rows: NDArray[np.intp]) -> Iterator[Result]:
         if rods.plastic_strain[row]:
             plastic = 1000.0 * rods.plastic_strain
             yield _result("plastic strain", _number(plastic[row], plastic, "‰"), Rod.plastic_strain)
+    if len(rows) == 1 and rods.bending_stiffness[rows[0]]:
+        yield _largest_moment(columns, int(rows[0]))
+
+
+def _largest_moment(columns: _Columns, row: int) -> Result:
+    """The largest moment along a rod and where it is."""
+    moments = columns("rods.largest_moment")
+    value, distance = moments[row]
+    text = _number(value, moments[:, 0], "kN·m")
+    at = "" if math.isnan(distance) else f" at {written.length(distance, written.DIGITS)}"
+    return _result("largest moment", f"{text}{at}", Rod.largest_moment)
 
 
 def _utilisation(columns: _Columns, rows: NDArray[np.intp]) -> Iterator[Result]:
@@ -139,7 +150,7 @@ def _of_particles(columns: _Columns, rows: NDArray[np.intp]) -> Iterator[Result]
         if held.any():
             yield _vector("reaction", reactions[row], reactions, "kN", Particle.reaction, held)
         force = columns("particles.applied_force")
-        yield _vector("external force", force[row], force, "kN", Particle.applied_force)
+        yield _vector("sum of loads", force[row], force, "kN", Particle.applied_force)
         speed = np.hypot(*particles.velocity.T)
         yield _result("speed", _number(speed[row], speed, "m/s"), Particle.velocity)
         return

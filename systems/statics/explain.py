@@ -6,6 +6,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
+from components import written
 from components.model import Model
 from components.wording import cut
 from systems.statics.equations import TURNS_ONLY, Array, Flags, Rows, largest
@@ -118,9 +119,8 @@ def moved(model: Model, before: Array, after: Array) -> str:
     before, after = before[:, :2], after[:, :2]
     change = after - before
     row = int(np.hypot(change[:, 0], change[:, 1]).argmax())
-    return f"{names[row]} by {_pair(change[row])} m, to the displacement {_pair(after[row])} m"
+    return f"{names[row]} by {_pair(change[row])}, to the displacement {_pair(after[row])}"
 
 
 def _pair(vector: Array) -> str:
-    shown = np.where(np.abs(vector) < 1e-9 * np.abs(vector).max(), 0.0, vector)
-    return f"({shown[0]:.5g}, {shown[1]:.5g})"
+    return written.place(np.where(np.abs(vector) < 1e-9 * np.abs(vector).max(), 0.0, vector), written.DIGITS)

@@ -6,6 +6,7 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
+from components import written
 from components.model import Model
 from systems.statics.equations import Array, Flags, largest, normalised
 from systems.statics.events import Event, NoEquilibrium
@@ -275,7 +276,7 @@ class Loading:
 
     def _lost(self, point: Point | None = None) -> NoEquilibrium:
         message = (
-            f"The equilibrium could not be followed beyond the load factor {self.factor(self.point.t):.6g};"
+            f"The equilibrium could not be followed beyond the load factor {written.number(self.factor(self.point.t))};"
             " the last one is kept. Run the model through time, or apply the load in other steps."
         ) + (slack_named(self.model, point.response.slack) if point is not None else "")
         return NoEquilibrium("limit reached", message)
@@ -289,8 +290,8 @@ class Loading:
 
     def _at(self, t: float) -> str:
         factor = self.factor(t)
-        load = f" ({abs(factor) * self.total:.6g} kN in all)" if self.total > 0.0 else ""
-        return f"at the load factor {factor:.6g}{load}"
+        load = f" ({written.force(abs(factor) * self.total)} in all)" if self.total > 0.0 else ""
+        return f"at the load factor {written.number(factor)}{load}"
 
     def _tell(
         self, kind: str, t: float, message: str, rods: Flags | None = None, motion: Array | None = None

@@ -125,7 +125,7 @@ class DrawRod(Drawing):
             rod = join(model, first, self._end)
         made = model.particles.count - before
         new = f", with {made} new particle{'s' * (made > 1)}" if made else ""
-        context.notice = f"{context.name(rod)}: {written.length(rod.rest_length)}{new}"
+        context.notice = f"{context.name(rod)}: {written.length(rod.rest_length, written.DIGITS)}{new}"
 
     def finish(self, context: Context, pixel: Vector) -> None:
         """End at a pixel; a click where a chain of rods has come to ends the chain."""
@@ -154,7 +154,7 @@ class DrawRod(Drawing):
             return Preview("rod", start, end, written.length(math.dist(start, end), 3))
         try:
             check_ends(context.model, self._begin, other)
-            label = written.length(distance(self._begin, other))
+            label = written.length(distance(self._begin, other), written.DIGITS)
         except Refusal:
             label = "joined already"
         return Preview("rod", start, drawn_at(context, other), label)
@@ -170,7 +170,7 @@ class DrawArrow(DrawFromParticle):
     def __init__(self, context: Context, particle: Particle) -> None:
         super().__init__(context, particle)
         key = self.tool[0].upper()
-        self.hint = f"{self.tool} of {particle.name}: {key} or click where its arrow ends     Esc cancel"
+        self.hint = f"{self.title.lower()} {particle.name}: {key} or click where its arrow ends     Esc cancel"
 
     def value(self, context: Context, pixel: Vector) -> Vector:
         """The vector that the arrow to a pixel stands for."""
@@ -178,7 +178,7 @@ class DrawArrow(DrawFromParticle):
 
     def shown(self, value: Vector) -> str:
         """The text of a vector."""
-        return f"{written.vector(value)} {self.unit}"
+        return f"{written.vector(value, written.DIGITS)} {self.unit}"
 
     def drop(self, context: Context, pixel: Vector) -> None:
         value = self.value(context, pixel)
@@ -194,7 +194,7 @@ class DrawArrow(DrawFromParticle):
 class DrawForce(DrawArrow):
     """The constant force on a particle."""
 
-    tool, title, unit, usual = "force", "Force on", "kN", staticmethod(usual_force)
+    tool, title, unit, usual = "force", "Load on", "kN", staticmethod(usual_force)
 
 
 class DrawVelocity(DrawArrow):
@@ -245,7 +245,7 @@ class DrawElement(Drawing):
 
 def _length_and_angle(start: Vector, end: Vector) -> str:
     angle = math.degrees(math.atan2(end[1] - start[1], end[0] - start[0])) + 0.0
-    return f"{written.length(math.dist(start, end))}, {written.given(angle, 4)}°"
+    return f"{written.length(math.dist(start, end), written.DIGITS)}, {written.given(angle, 4)}°"
 
 
 def drawing_of(kind: type[Handle], tool: str, key: str) -> type[DrawElement]:
@@ -309,7 +309,7 @@ TOOL_HINTS = {
     "place": "click where particles are to be     Esc done",
     "support": "supports: drag from a particle to its ground, or click for the next kind     Esc done",
     "rod": "rods: click from place to place, or drag     double click ends a chain     Esc done",
-    "force": "forces: drag an arrow from a particle     F or Esc done",
+    "force": "loads: drag an arrow from a particle     F or Esc done",
     "velocity": "velocities: drag an arrow from a particle     V or Esc done",
 }
 TOOLS: dict[str, type[Drawing]] = {kind.tool: kind for kind in (DrawRod, DrawForce, DrawVelocity)}

@@ -4,7 +4,9 @@ from __future__ import annotations
 
 import pytest
 
+from components.bent import QUANTITIES
 from components.camera import Viewport
+from components.tags import DiagramShown
 from components.toolbar import Button, Tool
 from components.view import drawn_positions
 from game import Session
@@ -55,7 +57,13 @@ def test_every_tool_is_an_action_with_a_key_and_an_icon() -> None:
         assert icon(action)
         assert any(binding.action == action and binding.title for binding in BINDINGS)
     added = [binding.action for binding in ADDED_BUTTONS]
-    assert {*icons(), *ADDED} == {*offered, *added, "pause", "more tools"}
+    assert {*icons(), *ADDED} == {
+        *offered,
+        *added,
+        "pause",
+        "more tools",
+        *(f"diagram {quantity}" for quantity in QUANTITIES),
+    }
 
 
 @pytest.mark.parametrize("size", SIZES)
@@ -298,3 +306,16 @@ def test_what_free_bodies_do_not_show_is_not_lit_and_puts_them_together(key: str
         session.press("x")
         while getattr(session.view, shown):
             session.press(key)
+
+
+def test_the_button_of_diagrams_is_lit_and_puts_them_out_whatever_is_selected() -> None:
+    session = opened("hyperstatic")
+    push(session, "toggle diagrams")
+    session.select(session.rods["AC"])
+    session.update_view()
+    assert tool(session, "toggle diagrams").pressed
+    push(session, "toggle diagrams")
+    assert not session.view.all_diagrams
+    push(session, "toggle diagrams")
+    assert session.model.any_tagged(DiagramShown)
+    assert not session.view.all_diagrams
