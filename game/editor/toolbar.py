@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import Any
 
+from components.bent import is_frame
 from components.particle import Particle
 from components.rod import Rod
 from components.tags import DiagramShown
@@ -12,6 +13,7 @@ from components.toolbar import Tool, Toolbar
 from game.editor.context import Context
 from game.editor.gestures.drawing import Drawing
 from systems.input.bindings import Binding, offers, toolbar
+from systems.render.bending_diagrams import NAMES
 
 Condition = Callable[[Context], bool]
 
@@ -35,6 +37,11 @@ def tool(context: Context, binding: Binding, title: str = "") -> Tool:
         action not in _NEEDS or _NEEDS[action](context)
     )
     icon = "pause" if action == "toggle run" and pressed else action
+    if action == "toggle diagrams" and pressed and is_frame(context.model):
+        icon, title = (
+            f"diagram {context.view.quantity}",
+            title or f"diagrams, now: {NAMES[context.view.quantity]}",
+        )
     return Tool(action, title or binding.title, binding.key, icon, pressed, enabled)
 
 

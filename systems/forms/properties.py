@@ -11,6 +11,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from components.bent import is_frame
 from components.box import NUMBER, TEXT, WORD, Box
 from components.field import SAVED, Field
 from components.form import Form
@@ -25,7 +26,12 @@ from systems.forms.typing import YES_NO
 MIXED = "mixed"
 KIND = "kind"  # the part of a history that is its kind
 EXACT, DIGITS = 12, 9  # significant digits: numbers with so few are shown in full, others rounded
-_OF_RODS = ("diagram_scale", "plasticity", "sleeping")  # settings that concern rods; the others particles
+_OF_RODS = (
+    "diagram_scale",
+    "original_diagrams",
+    "plasticity",
+    "sleeping",
+)  # settings that concern rods; the others particles
 _DECIDED = (Particle.asleep, Rod.yielded_at)  # by the run
 CROSS_SECTION = "Cross-section"
 _OF_SECTION = (Rod.youngs_modulus, Rod.area)  # which may give the stiffness instead of a person
@@ -84,6 +90,8 @@ def subjects(model: Model, selected: Sequence[Handle]) -> list[Subject]:
         if not selected or kind in kinds:
             fields = model.tables[Settings.table].fields_in(*SAVED)
             chosen = tuple(field for field in fields if (field.name in _OF_RODS) is of_rods)
+            if not is_frame(model):
+                chosen = tuple(field for field in chosen if field is not Settings.original_diagrams)
             found.append(Subject(section, (model.settings,), np.zeros(1, dtype=np.intp), chosen))
     return found
 

@@ -110,6 +110,17 @@ def _of_rods(columns: _Columns, rows: NDArray[np.intp]) -> Iterator[Result]:
         if rods.plastic_strain[row]:
             plastic = 1000.0 * rods.plastic_strain
             yield _result("plastic strain", _number(plastic[row], plastic, "‰"), Rod.plastic_strain)
+    if len(rows) == 1 and rods.bending_stiffness[rows[0]]:
+        yield _largest_moment(columns, int(rows[0]))
+
+
+def _largest_moment(columns: _Columns, row: int) -> Result:
+    """The largest moment along a rod and where it is."""
+    moments = columns("rods.largest_moment")
+    value, distance = moments[row]
+    text = _number(value, moments[:, 0], "kN·m")
+    at = "" if math.isnan(distance) else f" at {written.length(distance, written.DIGITS)}"
+    return _result("largest moment", f"{text}{at}", Rod.largest_moment)
 
 
 def _utilisation(columns: _Columns, rows: NDArray[np.intp]) -> Iterator[Result]:
