@@ -11,6 +11,7 @@ from components.particle import Particle
 from components.rod import Rod
 from game.editor.context import Context
 from game.editor.toolbar import tool
+from systems.edit.dividing import DIVISIONS
 from systems.forms.properties import heading
 from systems.input.bindings import ADDED_BUTTONS, ADDED_TOOLS, FORCE_METHOD, LIVE, offers, toolbar
 
@@ -38,6 +39,7 @@ _FROM_HERE = (
     ("rod", "rod from here"),
 )
 _PARTS = (("copy", "copy"), ("duplicate", "duplicate"), ("delete", "delete"))
+_DIVISIONS = (*DIVISIONS.values(),)
 _OF_RODS = (("toggle cable", "cable: tension only"), ("release", "release it in the force method"))
 
 
@@ -79,6 +81,7 @@ def _of_selection(selected: Sequence[Handle]) -> Groups:
         _SUPPORTS if particles else (),
         _FROM_HERE if one else (),
         only_rod if rods else (),
+        _DIVISIONS if rods else (),
         _PARTS,
     ]
 

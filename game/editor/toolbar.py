@@ -11,6 +11,7 @@ from components.tags import DiagramShown
 from components.toolbar import Tool, Toolbar
 from game.editor.context import Context
 from game.editor.gestures.drawing import Drawing
+from systems.edit.dividing import DIVISIONS
 from systems.input.bindings import Binding, offers, toolbar
 
 Condition = Callable[[Context], bool]
@@ -102,6 +103,9 @@ _NEEDS: dict[str, Condition] = {
     "restart": lambda context: not context.document.is_undeformed,
     **dict.fromkeys(
         ("settle", "support", "force", "velocity"), lambda context: context.model.particles.count > 0
+    ),
+    **dict.fromkeys(
+        DIVISIONS.values(), lambda context: any(r.bending_stiffness > 0.0 for r in context.selected_of(Rod))
     ),
     "next grid": lambda context: context.model.grids.count > 0,
     "force method": lambda context: context.model.rods.count > 0,

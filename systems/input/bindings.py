@@ -198,6 +198,8 @@ WITHOUT_KEY: tuple[Binding, ...] = (
     Binding("", "hold y", LIVE, "on a roller: held in y"),
     Binding("", "hold x", LIVE, "on a roller: held in x"),
     Binding("", "toggle cable", LIVE, "cable: tension only"),
+    Binding("", "divide in two", LIVE, "divide in two"),
+    Binding("", "divide in four", LIVE, "divide in four"),
     Binding("", "release", (PAUSE,), "release it in the force method"),
     Binding("", "environment", LIVE, "properties of the environment"),
     Binding("", "more tools", (*LIVE, FORCE_METHOD), "more"),

@@ -14,6 +14,7 @@ from game.editor.gestures.drawing import Drawing
 from game.editor.menu import menu_at
 from game.editor.scenes.force_method import ForceMethod
 from systems.edit import Refusal
+from systems.edit.dividing import DIVISIONS, divide
 from systems.edit.picking import pick, pick_line, pick_particle
 from systems.edit.supports import support
 from systems.input.bindings import LIVE
@@ -122,8 +123,28 @@ def _toggle_cable(context: Context, pixel: Vector) -> None:
         raise Refusal("No rod is selected; click one first.")
     cable = not all(rod.tension_only for rod in rods)
     context.model.assign(rods, "tension_only", cable)
-    named = context.name(rods[0]) if len(rods) == 1 else f"{len(rods)} rods"
-    context.notice = f"{named}: {'tension only, as a cable' if cable else 'tension and compression'}"
+    context.notice = (
+        f"{all_of(context, rods)}: {'tension only, as a cable' if cable else 'tension and compression'}"
+    )
+
+
+def _divide(parts: int) -> Action:
+    """Divide the selected rods, and select their parts."""
+
+    def act(context: Context, pixel: Vector) -> None:
+        rods = context.selected_of(Rod)
+        if not rods:
+            raise Refusal("No rod is selected; click one first.")
+        named = all_of(context, rods)
+        context.select(*divide(context.model, rods, parts))
+        each = "" if len(rods) == 1 else "each "
+        context.notice = f"{named}: {each}divided into {parts}"
+
+    return act
+
+
+for _parts, _title in DIVISIONS.items():
+    action(_title)(_divide(_parts))
 
 
 @action("release")
