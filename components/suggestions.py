@@ -7,7 +7,7 @@ from collections.abc import Collection
 
 from components.wording import LONGEST, cut
 
-_FEW = 30  # names; so few are listed
+_FEW = 50  # names; so few are listed: all keys of a rod are
 
 
 def nearest(name: str, names: Collection[str], cutoff: float = 0.6) -> str | None:
