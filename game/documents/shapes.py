@@ -11,6 +11,7 @@ from components.field import Role
 from components.mistake import Mistake
 from components.model import Model
 from components.view import Shape
+from systems.edit.arrows import extent
 
 DRAWN_SHARE = 0.12  # of the structure's size that the largest displacement is drawn as
 LOWEST = 10  # mechanisms, and modes, in the round of `next`
@@ -125,8 +126,3 @@ def _shape(
     model: Model, title: str, motion: NDArray[np.float64], about: NDArray[np.float64] | None = None
 ) -> Shape:
     return Shape(title, DRAWN_SHARE * extent(model) * motion, about)
-
-
-def extent(model: Model) -> float:
-    """The larger of width and height (m)."""
-    return float(np.ptp(model.particles.position, axis=0).max())

@@ -15,6 +15,7 @@ from components.field import Vector
 from components.form import Form
 from components.handle import Handle
 from components.model import Model
+from components.rod import bends
 from components.settings import Settings
 from components.tags import Selected
 from components.toolbar import Toolbar
@@ -329,6 +330,8 @@ class Context:
         """Show the document that is open now, from the first frame on."""
         self.make_room()
         self.view.fit(self.model)
+        if self.model.rods.count:
+            self.view.rigid = bends(self.model)
         if missing := missing_mods(self.model):
             self.notice = (
                 f"This model holds data of mods that are not loaded: {', '.join(missing)}. They are kept and"

@@ -17,11 +17,10 @@ from components.rod import Rod
 from components.round_numbers import round_up
 from components.settings import Settings
 from components.slider import Aim, Control, SetSliders, Slider, SliderStack
-from game.documents.shapes import extent
 from game.documents.sliders import unmovable
 from game.editor.context import Context
 from systems.edit import Refusal
-from systems.edit.arrows import usual_force
+from systems.edit.arrows import extent, usual_force
 from systems.input.bindings import LIVE
 
 SCALE = -1  # the key of the control of the displacement scale

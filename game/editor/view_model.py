@@ -9,7 +9,7 @@ from components.model import Model
 from components.tags import Hovered
 from components.view import Preview, Readout, Status, drawn_positions
 from game.editor.context import Context
-from game.editor.gestures.drawing import TOOL_HINTS
+from game.editor.gestures.drawing import TOOL_HINTS, end_pointed_at
 from game.editor.host import Waiting
 from game.editor.readouts import own_readouts
 from systems.base import StopReason
@@ -128,7 +128,9 @@ def _flashes(context: Context) -> NDArray[np.float64]:
 
 def _preview(context: Context) -> Preview | None:
     try:
-        return context.gesture.preview(context, context.pointer) if context.gesture is not None else None
+        if context.gesture is None:
+            return end_pointed_at(context, context.pointer) if context.scene in LIVE else None
+        return context.gesture.preview(context, context.pointer)
     except Refusal as error:
         context.gesture, context.notice = None, str(error)
         return None

@@ -14,9 +14,8 @@ from game.editor.gestures.drawing import Drawing
 from game.editor.menu import menu_at
 from game.editor.scenes.force_method import ForceMethod
 from systems.edit import Refusal
-from systems.edit.dividing import DIVISIONS, divide
 from systems.edit.picking import pick, pick_line, pick_particle
-from systems.edit.supports import support
+from systems.edit.supports import SUPPORTS, Held, support
 from systems.input.bindings import LIVE
 from systems.render.menu import menu_of
 
@@ -94,25 +93,20 @@ def _environment(context: Context, pixel: Vector) -> None:
     ACTIONS["properties"](context, pixel)
 
 
-def _hold(fixed: tuple[bool, bool]) -> Action:
+def _hold(wanted: Held) -> Action:
     """Give all selected particles a support."""
 
     def act(context: Context, pixel: Vector) -> None:
         particles = context.selected_of(Particle)
         if not particles:
             raise Refusal("No particle is selected; click one first.")
-        context.notice = f"{all_of(context, particles)}: {support(context.model, particles, fixed)}"
+        context.notice = f"{all_of(context, particles)}: {support(context.model, particles, wanted)}"
 
     return act
 
 
-for _name, _fixed in {
-    "free": (False, False),
-    "pin": (True, True),
-    "hold y": (False, True),
-    "hold x": (True, False),
-}.items():
-    action(_name)(_hold(_fixed))
+for _name, _wanted in SUPPORTS.items():
+    action(_name)(_hold(_wanted))
 
 
 @action("toggle cable")
@@ -126,25 +120,6 @@ def _toggle_cable(context: Context, pixel: Vector) -> None:
     context.notice = (
         f"{all_of(context, rods)}: {'tension only, as a cable' if cable else 'tension and compression'}"
     )
-
-
-def _divide(parts: int) -> Action:
-    """Divide the selected rods, and select their parts."""
-
-    def act(context: Context, pixel: Vector) -> None:
-        rods = context.selected_of(Rod)
-        if not rods:
-            raise Refusal("No rod is selected; click one first.")
-        named = all_of(context, rods)
-        context.select(*divide(context.model, rods, parts))
-        each = "" if len(rods) == 1 else "each "
-        context.notice = f"{named}: {each}divided into {parts}"
-
-    return act
-
-
-for _parts, _title in DIVISIONS.items():
-    action(_title)(_divide(_parts))
 
 
 @action("release")
