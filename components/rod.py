@@ -78,7 +78,7 @@ class Rod(Handle):
         nullable=True,
         absent="unknown",
         above=0.0,
-        title="second moment of area",
+        title="second moment",
         doc="I of the cross-section: E·I is the bending stiffness.",
         shown=("cm⁴", 1e8),
     )
@@ -153,7 +153,7 @@ class Rod(Handle):
         minimum=0.0,
         title="bending stiffness",
         key="bending_stiffness",
-        doc="EI: moment per curvature; 0: a bar, pinned; automatic: E × second moment of area, 0 where one is unknown.",
+        doc="EI: moment per curvature; 0: a bar, pinned; automatic: E × second moment, 0 where one is unknown.",
         overrides="bending_stiffness",
     )
     hinged: Field[tuple[bool, bool]] = Field(
@@ -190,7 +190,7 @@ class Rod(Handle):
     )
     bending_stiffness: Field[float] = derived(
         "kN·m²",
-        doc="EI: prescribed, or Young's modulus × second moment of area, or 0: a bar, pinned at both ends.",
+        doc="EI: prescribed, or Young's modulus × second moment, or 0: a bar, pinned at both ends.",
         overridden_by="prescribed_bending_stiffness",
     )
     rest_length: Field[float] = derived(

@@ -9,7 +9,7 @@ from components.model import Model
 from components.tags import Hovered
 from components.view import Preview, Readout, Status, drawn_positions
 from game.editor.context import Context
-from game.editor.gestures.drawing import TOOL_HINTS, end_pointed_at
+from game.editor.gestures.drawing import end_pointed_at, hint_of_tool
 from game.editor.host import Waiting
 from game.editor.readouts import own_readouts
 from systems.base import StopReason
@@ -139,7 +139,7 @@ def _preview(context: Context) -> Preview | None:
 def _drawing_hint(context: Context) -> str:
     if context.scene not in LIVE:
         return ""
-    return context.gesture.hint if context.gesture is not None else TOOL_HINTS.get(context.view.tool, "")
+    return context.gesture.hint if context.gesture is not None else hint_of_tool(context)
 
 
 def _state_word(context: Context) -> str:

@@ -41,6 +41,8 @@ def problem(model: Model, box: Box) -> str:
     try:
         field.check(_with_part(box.elements[0], field, part, value), box.section)
     except FieldError as error:
+        if field.choices is not None:  # too many to be named here
+            return f"no {field.title} is called so"
         return str(error).removeprefix(f"{box.section}: ").removesuffix(".")
     return ""
 

@@ -161,6 +161,7 @@ def _entered(box: Box, character: str) -> tuple[str, int] | None:
     words: Sequence[str] = box.words or ()
     whole = box.marked or (box.text in words and box.accepts != NAME)
     before, after = ("", "") if whole else (box.text[: box.caret], box.text[box.caret :])
+    after = "" if box.accepts == NAME and box.text in words else after
     if box.accepts == NUMBER:
         if box.unit in LENGTHS and _WITH_UNIT_SO_FAR.fullmatch(before + character + after):
             return before + character + after, len(before) + 1

@@ -165,6 +165,8 @@ class _Writer:
             unit = box.unit
             if self._has_room_for_unit(place, box):
                 unit = "" if box.changed or self._has_room_for_note(place, box) else box.note
+                if text_width(f"{box.title} {unit}", size) + 8.0 * u > place.width:
+                    unit = unit.replace("automatic", "auto")
             taken = text_width(unit, size) + 8.0 * u if unit else 0.0
             title = shortened(box.title, place.width - taken, size)
             marks.append(Text(title, place.left, above, size, theme.muted))

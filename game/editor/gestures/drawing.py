@@ -114,8 +114,7 @@ class DrawRod(Drawing):
         begin = self._begin
         named = f" from {begin.name}" if isinstance(begin, Particle) else ""
         done = "double click ends the chain     Esc done" if self.goes_on else "Esc cancel"
-        kind = "rigid at both ends, Ctrl+R pinned" if context.view.rigid else "pinned, Ctrl+R rigid"
-        self.hint = f"rod{named}: L or click where it ends     {done}     {kind}"
+        self.hint = f"rod{named}: L or click where it ends     {kind_of_rods(context)}     {done}"
 
     @classmethod
     def begin(cls, context: Context, pixel: Vector) -> Drawing | None:
@@ -404,6 +403,18 @@ class DrawSupport(DrawFromParticle):
         reach = PARTICLE_REACH * context.view.pixel_ratio / context.view.camera.scale
         along = end[0] - start[0], end[1] - start[1]
         return along if math.hypot(*along) > max(reach, self.particle.radius) else None
+
+
+def kind_of_rods(context: Context) -> str:
+    """What rods are drawn with now, and how to change that, for the status line."""
+    return "rigid ends (Ctrl+R: pinned)" if context.view.rigid else "pinned (Ctrl+R: rigid ends)"
+
+
+def hint_of_tool(context: Context) -> str:
+    """The status line while clicks use the tool in hand."""
+    tool = context.view.tool
+    hint = TOOL_HINTS.get(tool, "")
+    return hint.replace("     ", f"     {kind_of_rods(context)}     ", 1) if tool == DrawRod.tool else hint
 
 
 def end_pointed_at(context: Context, pixel: Vector) -> Preview | None:

@@ -16,7 +16,7 @@ class Pause(Scene):
     def hint(self, context: Context) -> str:
         if context.model.particles.count == 0:
             return (
-                "P new particle under the pointer     L rods, from place to place     C support     F force"
+                "P new particle under the pointer     L rods, from place to place     Ctrl+R rigid or pinned     C support     F force"
                 "     Right\u00a0click menu     D open a model     F1 all keys"
             )
         selected = context.model.rows_tagged(Selected)

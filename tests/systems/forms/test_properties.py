@@ -206,7 +206,7 @@ def test_a_section_and_a_material_are_typed_or_turned_to() -> None:
     entered(session, "section", "ipe 2")
     assert session.rods["AB"].section == "IPE 200"
     assert session.boxes["section"] == "IPE 200"
-    assert session.boxes["second moment of area"] == "1943.17"
+    assert session.boxes["second moment"] == "1943.17"
     assert session.boxes["material"] == "S235"
     box = box_of(session, "bending stiffness")
     assert (box.text[:4], box.note) == ("4080", "automatic")
