@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import ArrayLike
 
+from components.diagrams import NAMES, diagrams
 from components.field import Column
 from components.load import CONSTANT
 from components.particle import DEFAULT_MASS
@@ -125,27 +126,12 @@ def derive_diagrams(world: World) -> None:
     """
     particles, rods = world.tables["particles"], world.tables["rods"]
     first, second = rods.between.astype(np.intp).T
-    rest = rods.rest_length
     present = rods.difference + particles.displacement[second] - particles.displacement[first]
     length = np.hypot(present[:, 0], present[:, 1])
-    along = present / np.where(length > 0.0, length, 1.0)[:, None]
-    left = np.stack([-along[:, 1], along[:, 0]], axis=1)
-    force = rods.distributed_force
-    transverse, tangential = (force * left).sum(axis=1), (force * along).sum(axis=1)
-    chord, rotation = chord_rotation(world), particles.rotation[rods.between]
-    rigid = rods.turning_shares > 0.0
-    slopes = np.where(rigid, rotation - chord[:, None], 0.0)
-    couple = -tangential * (rods.load_shares * slopes).sum(axis=1)
-    moment = rods.end_moment
-    with np.errstate(divide="ignore", invalid="ignore"):
-        shear = np.where(length > 0.0, (moment.sum(axis=1) + couple) / length, 0.0)
-    ahead = np.array([-0.5, 0.5])
-    world.writable("rods.shear")[...] = shear[:, None] + ahead * (transverse * rest)[:, None]
-    world.writable("rods.end_axial_force")[...] = (
-        rods.axial_force[:, None] - ahead * (tangential * rest)[:, None]
-    )
-    world.writable("rods.bending_moment")[...] = moment * [-1.0, 1.0]
-    world.writable("rods.end_rotation")[...] = chord[:, None] + _all_slopes(world, slopes, transverse)
+    axis = present / np.where(length > 0.0, length, 1.0)[:, None]
+    rotation, forces = particles.rotation[rods.between], (rods.axial_force, rods.end_moment)
+    for name, values in diagrams(rods, axis, length, chord_rotation(world), rotation, forces).items():
+        world.writable(f"rods.{name}")[...] = values
 
 
 def chord_rotation(world: World) -> Column:
@@ -159,21 +145,6 @@ def chord_rotation(world: World) -> Column:
     mean = (rods.turning_shares * particles.rotation[rods.between]).sum(axis=1)
     turned: Column = chord + 2.0 * np.pi * np.rint((mean - chord) / (2.0 * np.pi))
     return turned
-
-
-def _all_slopes(world: World, slopes: Column, transverse: Column) -> Column:
-    """Slopes of both ends of every rod, those at hinges by M = 0 of its cubic and a transverse force (kN/m)."""
-    rods = world.tables["rods"]
-    length, stiffness = rods.rest_length, rods.bending_stiffness
-    rigid, bent = rods.turning_shares > 0.0, stiffness > 0.0
-    by_force = np.divide(transverse * length**3, 48.0 * stiffness, out=np.zeros(len(length)), where=bent)
-    warped = np.where(bent, 0.5 * rods.thermal_expansion * rods.temperature_gradient * length, 0.0)
-    signs = np.array([1.0, -1.0])
-    free = signs * warped[:, None]
-    loaded = signs * by_force[:, None]
-    beyond = (slopes - free)[:, ::-1]  # of the other end
-    hinged = free + np.where(rigid[:, ::-1], loaded - 0.5 * beyond, 2.0 * loaded)
-    return np.where(rigid, slopes, hinged)
 
 
 def derive_limits(world: World) -> None:
@@ -278,7 +249,7 @@ DERIVATIONS = (
         derive_inertia,
     ),
     Derivation(
-        ("rods.end_axial_force", "rods.shear", "rods.bending_moment", "rods.end_rotation"),
+        tuple(f"rods.{name}" for name in NAMES),
         (
             *(
                 "particles.displacement",

@@ -264,6 +264,12 @@ class Rod(Handle):
     end_rotation: Field[Vector] = derived(
         "rad", shape=(2,), axes=ENDS, doc="Of its ends, counter-clockwise, also where they are hinged."
     )
+    largest_moment: Field[Vector] = derived(
+        "kN·m",
+        shape=(2,),
+        axes=("value", "distance"),
+        doc="The bending moment of largest size, and how far from the start (m).",
+    )
     yielding: Field[bool] = derived(dtype=bool, doc="Axial force is at a strength.")
 
     @property

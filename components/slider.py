@@ -14,7 +14,7 @@ from components.round_numbers import round_down
 
 WIDTH, HEIGHT, GAP, EDGE = 226.0, 36.0, 4.0, 8.0  # points, of a slider, between and around them
 PAD, BUTTON = 10.0, 30.0  # points: beside the track, and the width of the button at its right
-SUPPORT, ARROW, NARROW = 30.0, 44.0, 620.0  # points below a particle; and the width of a narrow canvas
+SUPPORT, ARROW, NARROW = 30.0, 44.0, 620.0  # points about a particle; and the width of a narrow canvas
 SHARE = 0.6  # of the height of a canvas that sliders take at most
 STEPS = 100.0  # from end to end; on a logarithmic one numbers have DIGITS
 DIGITS = 2
@@ -140,17 +140,19 @@ class SliderStack:
     controls: tuple[Control, ...] = ()
     above: float = 0.0
 
-    def reserve(self, canvas: Viewport, unit: float, margin: float) -> int:
+    def reserve(self, canvas: Viewport, unit: float, margin: float, *, arrows: bool) -> int:
         """Pixels of the height to be left free of a model, below which there is a margin (points) anyway.
 
-        Supports stand in the margin and, where a canvas is narrow, arrows above the sliders.
+        Supports stand in the margin above the sliders, and if need be arrows; where a canvas is narrow, always.
         """
         if not self.controls:
             return 0
-        first = self.above + EDGE + HEIGHT + SUPPORT + (ARROW if canvas.width < NARROW * unit else 0.0)
+        first = self.above + EDGE + HEIGHT + SUPPORT
+        first += ARROW if arrows or canvas.width < NARROW * unit else 0.0
         least = min(margin, LEAST_MARGIN * canvas.height / unit)
+        missing = max(first - least, 0.0) / (1.0 - LEAST_MARGIN if arrows and least < margin else 1.0)
         further = (len(self.controls) - 1) * (HEIGHT + GAP)
-        return round((max(first - least, 0.0) + further) * unit)
+        return round((missing + further) * unit)
 
     def places(self, canvas: Viewport, unit: float) -> list[Place]:
         """Where the controls are in a canvas with `unit` pixels per point."""

@@ -8,13 +8,13 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 from numpy.typing import NDArray
 
-from components.camera import Camera, Viewport
+from components.camera import LEAST_MARGIN, Camera, Viewport
 from components.field import Vector
 from components.kind import all_points
 from components.menu import Menu
 from components.model import Model
-from components.slider import Place, SliderStack, under
-from components.toolbar import Toolbar
+from components.slider import ARROW, SUPPORT, Place, SliderStack, under
+from components.toolbar import Button, Toolbar
 
 # Sizes of type and symbols that a person can choose, relative to the usual one.
 MAGNIFICATIONS = (0.5, 0.65, 0.8, 0.9, 1.0, 1.1, 1.25, 1.5, 1.75, 2.0, 2.5, 3.0, 4.0)
@@ -22,6 +22,7 @@ COMFORTABLE = 1080.0  # points: on displays higher than this, type and symbols g
 COMFORTABLE_HEIGHT, LEAST_HEIGHT = 480.0, 240.0  # points that are left in a window by itself, and at all
 BETWEEN = " " * 5  # the steps of a hint
 MARGIN = 110.0  # points around a fitted model, room for supports, diagrams and labels
+COVERED = 0.75  # of this margin, what arrows and the legend may take
 COLUMN, COLUMN_SHARE, WIDEST_COLUMN = 306.0, 0.34, 340.0  # points, share of the canvas: the column of panels
 SIDE, LEAST_SIDE, SIDE_SHARE = 332.0, 286.0, 0.54  # points, and share of the canvas: boxes to type into
 LEAST_MODEL = 240.0  # points that the model keeps beside them, or they take all
@@ -136,11 +137,12 @@ class View:
 
     rigid: rods are drawn with rigid ends.
     heading: the word top left ("Pause"), or "". all_diagrams: force diagrams of all elements.
-    legend: show the meaning of colours. help: the page of keys that is shown, from 1; 0: none. keys: its lines
-    (key, meaning). more_keys: there is another page.
+    legend: show the meaning of colours. explains_all: of those of the pictures beside this one, too.
+    help: the page of keys that is shown, from 1; 0: none. keys: its lines (key, meaning). pages: how many there are.
     pointer: the pixel under the mouse, or None outside. pixel_ratio: device pixels per point (HiDPI).
     forces_known: False while a large model waits for the program that computes forces; then no forces are shown.
     caption: lines at the top: a title, and facts about the model. page: text in place of the model.
+    pressed: the button of the toolbar that was pressed and is still under the pointer: it shows no tip.
     tool: "place", "rod", "support", "force" or "velocity" while clicks and drags make one, or "".
     preview: what is being drawn. toolbar: what can be clicked at the left edge; hidden with the legend.
     flashes: points (m) where particles collided just now, shape (k, 2).
@@ -165,11 +167,12 @@ class View:
     rigid: bool = False
     forces_known: bool = True
     legend: bool = True
+    explains_all: bool = False
     help: int = 0
     pixel_ratio: float = 1.0
     status: Status = field(default_factory=Status)
     keys: list[tuple[str, str]] = field(default_factory=list)
-    more_keys: bool = False
+    pages: int = 0
     pointer: Vector | None = None
     tool: str = ""
     preview: Preview | None = None
@@ -177,6 +180,7 @@ class View:
     caption: tuple[str, ...] = ()
     page: Page | None = None
     toolbar: Toolbar = field(default_factory=Toolbar)
+    pressed: Button | None = None
     sliders: SliderStack = field(default_factory=SliderStack)
     menu: Menu | None = None
     theme: str = "light"
@@ -195,20 +199,39 @@ class View:
     aside: Viewport | None = None
 
     def fit(self, model: Model) -> None:
-        """Let the camera show the whole model."""
+        """Let the camera show the whole model, clear of the sliders."""
         self.camera.fit(drawn_places(model), MARGIN, self.room, self.pixel_ratio)
+        if self._meets_sliders(model):
+            more = self._reserve(arrows=True) - self._reserve(arrows=False)
+            room = replace(self.room, height=max(self.room.height - more, 1))
+            self.camera.fit(drawn_places(model), MARGIN, room, self.pixel_ratio)
         self.fitted = True
 
-    def follow(self, model: Model) -> None:
-        """Fit the model anew if it has left the picture, unless somebody looks closer."""
-        if self.fitted and not self.shows(model):
+    def follow(self, model: Model, *, clear: bool = False) -> None:
+        """Fit the model anew if it has left the picture, unless somebody looks closer; clear: or lies under something."""
+        shown = self.shows(model, COVERED) and not self._meets_sliders(model) if clear else self.shows(model)
+        if self.fitted and not shown:
             self.fit(model)
 
-    def shows(self, model: Model) -> bool:
-        """True if nothing of the model lies outside the room for it."""
+    def shows(self, model: Model, share: float = 0.0) -> bool:
+        """True if all of the model lies in the room for it, above and below a share of the margin of a fit away."""
         room, (x, y) = self.room, self.camera.to_pixels(drawn_places(model)).T
-        across = (x >= room.left) & (x <= room.left + room.width)
-        return bool((across & (y >= room.top) & (y <= room.top + room.height)).all())
+        margin = share * min(MARGIN * self.pixel_ratio, LEAST_MARGIN * room.height)
+        across = (x >= room.left) & (x <= room.right)
+        return bool((across & (y >= room.top + margin) & (y <= room.bottom - margin)).all())
+
+    def _reserve(self, *, arrows: bool) -> int:
+        """Pixels of the height of the canvas that are left to the sliders; arrows: with those that reach down to them."""
+        return self.sliders.reserve(self.canvas, self.pixel_ratio, MARGIN, arrows=arrows)
+
+    def _meets_sliders(self, model: Model) -> bool:
+        """True if some of a model, with its supports and arrows, may lie under the sliders."""
+        places, reach = self.slider_places, (SUPPORT + ARROW) * self.pixel_ratio
+        x, y = self.camera.to_pixels(drawn_places(model)).T
+        if not places or not len(x):
+            return False
+        right, top = places[0].right, places[-1].top
+        return bool(x.min() - ARROW * self.pixel_ratio < right and y.max() + reach > top)
 
     def share(self, model: Model, *, shares: bool) -> None:
         """Leave room for panels, or not, and fit the model into what is left, unless somebody looks closer."""
@@ -224,6 +247,18 @@ class View:
         if not self.legend:
             return Viewport(window.left, window.top, 0, window.height)
         return self.toolbar.strip(window, self.pixel_ratio)
+
+    def put_together(self) -> bool:
+        """Show the structure in one piece, for what free bodies do not show; False if it was."""
+        apart, self.free_bodies = self.free_bodies, False
+        return apart
+
+    def button_at(self, pixel: Vector | None) -> Button | None:
+        """The button of the toolbar at a pixel."""
+        if pixel is None or not self.strip.contains(pixel):
+            return None
+        buttons = self.toolbar.buttons(self.camera.viewport, self.pixel_ratio)
+        return next((button for button in buttons if button.contains(pixel)), None)
 
     @property
     def canvas(self) -> Viewport:
@@ -273,7 +308,7 @@ class View:
     def room(self) -> Viewport:
         """The part of the canvas that a model is fitted into."""
         c, panels = self.canvas, self.panels
-        c = replace(c, height=max(c.height - self.sliders.reserve(c, self.pixel_ratio, MARGIN), 1))
+        c = replace(c, height=max(c.height - self._reserve(arrows=False), 1))
         if not self.shares or panels == self.canvas:
             return c
         if panels.width < c.width:

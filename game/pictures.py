@@ -21,7 +21,7 @@ from game.session import Session
 from systems.render.labels import Placed
 from systems.render.marks import Owner, Picture, Points
 from systems.render.pdf import as_pdf
-from systems.render.picture import compose
+from systems.render.picture import compose, compose_all
 from systems.render.plots import draw_plot
 from systems.render.svg import as_svg
 from systems.render.theme import load_theme
@@ -73,7 +73,7 @@ def write(
     colours, path = load_theme(theme), Path(path)
     if background == "white":
         colours = replace(colours, background=_WHITE)
-    pictures = [compose(model, view, colours) for model, view in stages]
+    pictures = compose_all(stages, colours)
     paths = [partial(path_of, model) for model, _ in stages]
     if background == "transparent":
         pictures = [replace(picture, background=None) for picture in pictures]

@@ -25,7 +25,7 @@ from game.documents import models
 from game.documents.document import ModelError
 from game.documents.open_documents import ModelFile, Source, file_of
 from game.editor.actions import ACTIONS, WHILE_DRAWING
-from game.editor.context import FAULTS, Context, Stage
+from game.editor.context import FAULTS, Context
 from game.editor.dropping import open_dropped
 from game.editor.frame import Actions, Frame, HeadlessFrame, ShowView
 from game.editor.menu import IN_MENU
@@ -34,7 +34,7 @@ from game.editor.scenes import all_scenes, scene_systems
 from game.editor.scenes.files import FileScene
 from game.editor.sliders import slider_stack, sliders_of
 from game.editor.toolbar import toolbar_of
-from game.editor.view_model import show
+from game.editor.view_model import follows, show
 from game.mods import load_all
 from game.mods.heeding import blamed_on_mod, heeding_mods
 from game.scripts.expectation import expect
@@ -45,6 +45,7 @@ from systems.edit import Refusal
 from systems.edit.dividing import divide
 from systems.edit.pull import Pull
 from systems.input.bindings import FILES, FORMS, TEXT, key_named, only_in_pause
+from systems.render.picture import Stage
 from systems.run.simulation import Simulation
 from systems.run.system import Time
 from systems.run.watch import watched
@@ -303,6 +304,13 @@ class Session(Context):
         if not self.scenes.active.covers(self):
             self.view.toolbar, self.view.sliders = toolbar_of(self), slider_stack(self)
 
+    def follow(self) -> None:
+        """Fit the view in a window that what moves has left; recorded as the key that does so."""
+        if follows(self):
+            if self.on_press is not None:
+                self.on_press("home", None)
+            self.act("fit")
+
     def press(self, key: str, pixel: Vector | None = None) -> None:
         """Press a key, such as "k", "escape" or "ctrl+z"; one that means nothing in this scene does nothing.
 
@@ -334,6 +342,7 @@ class Session(Context):
                 self.on_press(key, pressed)
             if self.time_passes:
                 self.get_ready()
+            self.view.pressed = self.view.button_at(pixel)
             left = self._left_for_tools() if for_tools(self, key, pixel) else ""
             if name != left:  # the tool that opens a scene closes it, too
                 self.act(name, at)

@@ -20,7 +20,10 @@ if TYPE_CHECKING:  # they import scipy
     from systems.statics.verify import Comparison, Theories
 
 Moment = tuple[int, float]  # of a run: the revision of its last edit, and the time (s)
-_SHAPE = ("rods.between", "particles.position", "particles.fixed")  # on which the degrees depend
+_SHAPE = (  # on which the degrees depend
+    *("rods.between", "rods.turning_shares"),
+    *("particles.position", "particles.fixed", "particles.fixed_rotation"),
+)
 LARGEST = 2000  # rods up to which theory is found without being asked for; more would take noticeable time
 
 
@@ -54,13 +57,13 @@ class Assessment:
     @property
     def theories(self) -> Theories:
         """Linear and exact answers from the beginning of the run, under the present load."""
-        from systems.statics.settle import Start
+        from systems.statics.state import Start
         from systems.statics.verify import theories
 
         begun = self._begun
         revision = self._model.newest(Role.DOCUMENT, *(() if begun else (Role.STATE,)))
         if self._theories is None or self._theories[0] != revision:
-            names = ("particles.displacement", "rods.plastic_strain")
+            names = ("particles.displacement", "rods.plastic_strain", "particles.rotation")
             start = Start(*(begun.column(self._model, name).copy() for name in names)) if begun else None
             self._theories = revision, theories(self._model, start)
         return self._theories[1]
@@ -133,7 +136,8 @@ class Assessment:
             return False
         if self._model.clock.collisions or not self._laws_are_known():
             return False
-        moved = (beginning.columns[f"particles.{name}"].any() for name in ("displacement", "velocity"))
+        states = ("displacement", "velocity", "rotation", "angular_velocity")
+        moved = (beginning.columns[f"particles.{name}"].any() for name in states)
         return not any(moved) and len(_histories(self._model)) == 1
 
     def _laws_are_known(self) -> bool:
@@ -146,8 +150,9 @@ class Assessment:
 def _histories(model: Model) -> set[str]:
     """The different ways in which the loads of a model change in time, as text."""
     particles, environment = model.particles, model.environment
-    steady = particles.force.any() or particles.acceleration.any()
-    found = {repr(dict(load.history)) for load in model.loads if any(load.force)}
+    steady = particles.force.any() or particles.moment.any() or particles.acceleration.any()
+    steady = steady or model.rods.distributed_force.any()
+    found = {repr(dict(load.history)) for load in model.loads if any(load.force) or load.moment}
     if steady or any(environment.force) or any(environment.acceleration):
         found.add(repr(CONSTANT))
     unsteady = (static_factor(load.history) != 1.0 for load in model.loads)

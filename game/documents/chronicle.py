@@ -10,6 +10,7 @@ from components import written
 from components.field import Column, Role
 from components.load import load_factor
 from components.model import Model
+from components.obstacles import obstacles
 from components.rod import can_yield, has_cables
 from systems.base import StopReason
 from systems.run.simulation import Simulation
@@ -19,6 +20,7 @@ COLLAPSED = (
     4.0  # plastic strain over that at which a rod yields, beyond which one that nothing resists is no overshoot
 )
 MOST_NAMED = 3  # elements in a sentence
+FIRST_IMPACTS, LOOKED_THROUGH = 3, 64  # instants of impacts that are told one by one, among so many impacts
 TOLD, MOST_TOLD = 5.0, 2  # s for which a person is told of something, and of how much at a time
 
 
@@ -26,7 +28,8 @@ TOLD, MOST_TOLD = 5.0, 2  # s for which a person is told of something, and of ho
 class Happening:
     """Something that happened in a run.
 
-    kind: "yield", "collapse", "snap-through", "slack", "rest", "diverged", or the name of an event of a mod.
+    kind: "yield", "collapse", "snap-through", "slack", "impact", "impacts" (those that are only counted, as of the
+    last), "rest", "diverged", or the name of an event of a mod.
     time: s. message: a sentence. elements: names of those concerned. load_factor: that of the loads then, if they share one.
     """
 
@@ -47,8 +50,8 @@ class Happening:
 class Chronicle:
     """What happened in a run so far, without what was taken back.
 
-    Yielding, rest, divergence and events of mods are read from the state, which knows their instants. Cables that go slack,
-    collapses and snap-throughs are found by looking, in a window at every frame: they are dated to the look.
+    Yielding, impacts, rest, divergence and events of mods are read from the state, which knows their instants. Cables
+    that go slack, collapses and snap-throughs are found by looking, in a window at every frame: they are dated to the look.
     """
 
     def __init__(self, model: Model, simulation: Simulation) -> None:
@@ -58,6 +61,7 @@ class Chronicle:
         self._slack: frozenset[str] | None = None  # names of cables at the last look
         self._looked = -1.0
         self._yielded: tuple[Column, list[Happening]] = np.empty(0), []
+        self._struck: tuple[bytes, list[Happening], int] = b"", [], 0
         self._factors: tuple[int, dict[float, float | None]] = -1, {}
         self._known: set[Happening] = set()
         self._telling: list[tuple[Happening, float]] = []
@@ -66,7 +70,12 @@ class Chronicle:
     def happenings(self) -> tuple[Happening, ...]:
         """All of the run, in order of time."""
         now = self._model.clock.time
-        found = [*self._yields(), *self._events(), *(seen for seen in self._seen if seen.time <= now)]
+        found = [
+            *self._yields(),
+            *self._events(),
+            *self._impacts(),
+            *(seen for seen in self._seen if seen.time <= now),
+        ]
         found.sort(key=lambda happening: happening.time)
         return (*found, *self._end())
 
@@ -87,7 +96,7 @@ class Chronicle:
     def told(self, elapsed: float) -> str:
         """What happened lately, in sentences: each for TOLD seconds, of which so many passed since the last call."""
         now = self.happenings
-        new = [happening for happening in now if happening not in self._known]
+        new = [one for one in now if one not in self._known and one.kind != "impacts"]
         self._known = set(now)
         left = [(happening, seconds - elapsed) for happening, seconds in self._telling if seconds > elapsed]
         self._telling = [pair for pair in left if pair[0] in self._known] + [(one, TOLD) for one in new]
@@ -120,6 +129,39 @@ class Chronicle:
             message = f"{what[:1].upper()}{what[1:]}: {_listed(some)}."
             found.append(self._happening(event.event, event.time, message, some))
         return found
+
+    def _impacts(self) -> list[Happening]:
+        """The first impacts one by one, those of one instant together; how many came after them."""
+        impacts, count = self._simulation.impacts, self._model.clock.collisions
+        if count == 0:
+            return []
+        time = impacts.time
+        first = time[
+            : LOOKED_THROUGH if len(time) == count else 0
+        ]  # of more than are kept, the first are not known
+        if self._struck[0] != first.tobytes():
+            self._struck = first.tobytes(), *self._collisions(first)
+        _, told, shown = self._struck
+        if shown == count:
+            return told
+        last = float(time[-1]) if len(time) else self._model.clock.time
+        further = f"{count - shown} {'more ' * (shown > 0)}impact{'s' * (count - shown > 1)}."
+        return [*told, Happening("impacts", last, further)]
+
+    def _collisions(self, time: Column) -> tuple[list[Happening], int]:
+        """What is told of the first impacts, and of how many."""
+        names = [*self._model.particles.names, *obstacles(self._model).names]
+        impacts, found, shown = self._simulation.impacts, [], 0
+        instant = np.cumsum(np.diff(time, prepend=time[:1]) > written.ROUNDING * time)
+        for number in range(min(instant.max(initial=-1) + 1, FIRST_IMPACTS)):
+            those = np.flatnonzero(instant == number)
+            pairs = np.stack([impacts.first[those], impacts.second[those]], axis=1)
+            shown += len(pairs)
+            said = _listed(tuple(f"{names[first]} and {names[second]}" for first, second in pairs.tolist()))
+            some = tuple(names[row] for row in dict.fromkeys(pairs.ravel().tolist()))
+            message = f"{said[:1].upper()}{said[1:]} collide."
+            found.append(self._happening("impact", float(time[those[0]]), message, some))
+        return found, shown
 
     def _end(self) -> list[Happening]:
         """How the run ended by itself, if it did."""

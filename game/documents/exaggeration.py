@@ -100,10 +100,12 @@ def _with_yielding(model: Model, elastic: Displacement) -> Displacement | None:
     """
     if model.rods.count > LARGEST_YIELDING:
         return elastic if model.rods.count > (model.particles.mobility > 0.0).sum() else None
-    from systems.statics.settle import Start, settle  # scipy
+    from systems.statics.settle import settle  # scipy
+    from systems.statics.state import Start
 
     supports = np.where(model.particles.fixed, elastic, 0.0)
-    final = settle(model, start=Start(supports, np.zeros(model.rods.count))).final
+    clamps = np.where(model.particles.fixed_rotation, model.particles.rotation, 0.0)
+    final = settle(model, start=Start(supports, np.zeros(model.rods.count), clamps)).final
     return final.displacement if final.balanced else None
 
 

@@ -14,6 +14,7 @@ from components.collision_state import PersistentContacts
 from components.field import SAVED
 from components.load import load_ends
 from components.model import Model
+from components.rod import bends
 from components.snapshot import Snapshot
 from game.documents import models
 from game.documents.assessment import Assessment
@@ -30,6 +31,8 @@ from systems.schedule import Schedule
 
 Source = str | Path | Mapping[str, Any]  # of a model: a file, the name of a bundled one, or its content
 Stamp = tuple[int, ...]
+
+SETTLED = ("particles.displacement", "particles.rotation", "rods.plastic_strain")  # what settling changes
 
 EQUILIBRIUM_WITHOUT_MODS = "equilibrium without mods"  # the status of statics that does not know all laws
 
@@ -115,9 +118,9 @@ class OpenDocument:
             return bool(self.model.clock.time == 0.0)
         if self.simulation.passed_since(self.undeformed):
             return False
-        names = ("particles.displacement", "rods.plastic_strain")
         return all(
-            np.array_equal(self.undeformed.column(self.model, name), self.model.column(name)) for name in names
+            np.array_equal(self.undeformed.column(self.model, name), self.model.column(name))
+            for name in SETTLED
         )
 
     def _note_undeformed(self) -> None:
@@ -154,7 +157,7 @@ class OpenDocument:
         """Take back what settling did while no time has passed: an edit, since a run is entered by its time."""
         model = self.model
         with model.transaction("restart"):
-            for name in ("particles.displacement", "rods.plastic_strain"):
+            for name in SETTLED:
                 model.give(name, begun.column(model, name))
             velocity = begun.column(model, "particles.velocity").copy()
             velocity[model.particles.fixed] = 0.0
@@ -174,6 +177,9 @@ class OpenDocument:
         with model.transaction("settle"):
             model.give("particles.displacement", found.final.displacement)
             model.give("particles.velocity", np.zeros_like(found.final.displacement))
+            if bends(model):
+                model.give("particles.rotation", found.final.rotation)
+                model.give("particles.angular_velocity", np.zeros_like(found.final.rotation))
             model.give("rods.plastic_strain", found.final.plastic_strain)
             time = max([clock.time, *(end for end in load_ends(model) if end < math.inf)])
             model.give("clock.time", np.array([time]))

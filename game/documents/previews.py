@@ -11,7 +11,6 @@ from typing import Any
 import numpy as np
 
 from components.model import Model
-from components.rod import bends
 from game.documents import models
 
 LARGEST_SOLVED = 60  # rods, up to which a structure that never moved is solved for its picture
@@ -23,11 +22,13 @@ def preview(source: str | Path) -> Model:
     if isinstance(source, str):
         return _example(source)
     model = models.load(source)
-    if has_moved(model) and model.rods.count <= LARGEST_SHOWN and not bends(model):  # statics knows bars
+    if has_moved(model) and model.rods.count <= LARGEST_SHOWN:
         # Here only, since most pictures do without.
         from systems.statics.equations import Structure
 
-        moved = Structure.of(model).respond(model.particles.displacement, model.rods.plastic_strain)
+        structure, particles = Structure.of(model), model.particles
+        place = structure.field(particles.displacement, particles.rotation)
+        moved = structure.respond(place, model.rods.plastic_strain)
         model.writable("rods.axial_force")[...] = moved.axial_force
     return model
 
@@ -38,7 +39,7 @@ def solved(path: Path) -> Model | None:
     from systems.statics.theory import linear  # scipy
 
     model = models.load(path)
-    if has_moved(model) or not 0 < model.rods.count <= LARGEST_SOLVED or bends(model):
+    if has_moved(model) or not 0 < model.rods.count <= LARGEST_SOLVED:
         return None
     try:
         model.writable("rods.axial_force")[...] = linear(model).axial_force

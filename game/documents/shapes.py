@@ -87,16 +87,15 @@ def mode_shapes(model: Model, most: int | None = None) -> list[Shape]:
     About the present state, if that is an equilibrium under load, whose forces stiffen or soften the structure;
     else of the unloaded structure, less its mechanisms.
     """
-    from systems.statics.settle import Start
+    from systems.statics.state import Start
     from systems.statics.theory import indeterminacy
     from systems.statics.vibration import FULL, rests_under_load, vibrations
 
     if model.rods.count == 0:
         return []
     degrees = indeterminacy(model)
-    rank = model.rods.count - degrees.static  # of the compatibility matrix
     about = Start.present(model) if rests_under_load(model) else None
-    unknowns = degrees.mechanisms + rank
+    unknowns = degrees.mechanisms + degrees.rank
     wanted = min(unknowns if unknowns <= FULL else LOWEST_OF_LARGE, unknowns if most is None else most)
     found = vibrations(model, about, count=degrees.mechanisms + wanted)
     still = degrees.mechanisms if about is None else int((found.angular_squared <= 0.0).sum())
@@ -125,4 +124,4 @@ def numbered(model: Model, kind: str, number: int) -> Shape:
 def _shape(
     model: Model, title: str, motion: NDArray[np.float64], about: NDArray[np.float64] | None = None
 ) -> Shape:
-    return Shape(title, DRAWN_SHARE * extent(model) * motion, about)
+    return Shape(title, DRAWN_SHARE * extent(model) * motion[:, :2], about)

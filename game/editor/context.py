@@ -12,13 +12,12 @@ from typing import ClassVar, TypeVar
 
 from components.camera import Viewport
 from components.field import Vector
-from components.form import Form
 from components.handle import Handle
 from components.model import Model
 from components.rod import bends
 from components.settings import Settings
+from components.slider import Place, under
 from components.tags import Selected
-from components.toolbar import Toolbar
 from components.view import Preview, Readout, View
 from game.documents import models
 from game.documents.autosave import Autosave
@@ -34,6 +33,7 @@ from systems.base import Mod
 from systems.collision.impacts import Impacts
 from systems.edit.pull import Pull
 from systems.physics.pace import natural_pace
+from systems.render.picture import Stage
 from systems.run.energy import Energy
 from systems.run.real_time import TimeScale
 from systems.run.simulation import Simulation
@@ -43,7 +43,6 @@ from systems.statics.events import Event
 
 H = TypeVar("H", bound=Handle)
 
-Stage = tuple[Model | Form | Toolbar, View]  # what is shown, and how
 
 # --- actions ---------------------------------------------------------------------------------------------
 
@@ -598,6 +597,11 @@ class Context:
     def focus(self) -> tuple[Model, View]:
         """The model that a pointer picks from, and its view."""
         return self.scenes.active.focus(self)
+
+    def slider_at(self, pixel: Vector) -> Place | None:
+        """The slider at a pixel, of whichever model that the scene shows."""
+        models = (view for shown, view in self.scenes.active.stages(self) if isinstance(shown, Model))
+        return next(filter(None, (under(view.slider_places, pixel) for view in models)), None)
 
     @property
     def pointer(self) -> Vector:

@@ -44,7 +44,7 @@ class HeadlessFrame(Frame):
 
 
 class Actions(System):
-    """Turns what was pressed into actions, and makes the transitions between scenes that were requested."""
+    """Turns what was pressed into actions, lets the view follow, and makes the transitions of scenes requested."""
 
     name = "edit.actions"
     phase = Phase.EDIT
@@ -55,8 +55,9 @@ class Actions(System):
         self._keyed = ""  # the scene in which a key was pressed last
 
     def process(self, frame: Any) -> None:
-        """Perform the actions of the frame in their order, then let the scene change."""
+        """Let the view follow, perform the actions of the frame in their order, then let the scene change."""
         session = frame.session
+        session.follow()
         for key, pixel in frame.pressed if not session.performing else ():
             if not key.startswith(TEXT):
                 self._keyed = session.scene

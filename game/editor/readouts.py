@@ -5,6 +5,7 @@ from __future__ import annotations
 import re
 from collections.abc import Iterator, Sequence
 from dataclasses import replace
+from operator import itemgetter
 from textwrap import wrap
 from typing import TYPE_CHECKING
 
@@ -14,12 +15,12 @@ from components.free_body import Force, on_joint, on_rod
 from components.handle import Handle
 from components.model import Model
 from components.particle import Particle
-from components.rod import Rod
+from components.rod import Rod, bends
 from components.view import Readout
 from game.documents.assessment import LARGEST
 from game.editor.context import Context
 from systems.base import StopReason
-from systems.statics.counting import FORMULA, counted
+from systems.statics.counting import counted
 
 if TYPE_CHECKING:  # it imports scipy
     from systems.statics.verify import Comparison, Row, Theories
@@ -31,7 +32,15 @@ MOST_EVENTS = 10  # of a run, that are listed
 NOTHING = 1e-12  # of the largest exact value of its kind: round-off, shown as 0
 
 _BEFORE_SIGNS = re.compile("([+−=]) ")  # where a sum may be broken
-_SHOWN = {"axial_force": ("N", "kN", 1.0), "reaction": ("R", "kN", 1.0), "displacement": ("u", *CM)}
+_SHOWN = {
+    "axial_force": ("N", "kN", 1.0),
+    "reaction": ("R", "kN", 1.0),
+    "displacement": ("u", *CM),
+    "rotation": ("θ", "rad", 1.0),
+    "reaction_moment": ("M", "kN·m", 1.0),
+    "shear": ("V", "kN", 1.0),
+    "bending_moment": ("M", "kN·m", 1.0),
+}
 _WAYS = {"simulation": "run", "linear": "linear theory", "exact": "exact theory"}
 
 
@@ -65,9 +74,10 @@ def _energy(context: Context) -> Iterator[Readout]:
     ]
     error = None if context.busy else context.document.assessment.error()  # which takes a run of its own
     if error is not None:
-        shares = error.relative, error.relative_velocity, error.relative_axial_force
-        titles = "displacement error", "velocity error", "axial force error"
-        rows += [(title, _error(share, " of the largest")) for title, share in zip(titles, shares, strict=True)]
+        for key, share in error.record(bent=bends(context.model)).items():
+            if key.startswith("relative"):
+                of = key.removeprefix("relative").strip("_").replace("_", " ") or "displacement"
+                rows.append((f"{of} error", _error(share, " of the largest")))
     yield Readout("Energy account", tuple(rows))
 
 
@@ -160,7 +170,7 @@ def _overview(context: Context, theory: Theories, comparison: Comparison) -> Ite
 def _indeterminacy(context: Context) -> Iterator[tuple[str, str]]:
     """The degree with its formula, and what the rank says beside it."""
     count, degrees = counted(context.model), context.document.assessment.indeterminacy
-    yield FORMULA, count.numbers
+    yield count.formula, count.numbers
     if said := count.by_rank(degrees.static, degrees.mechanisms):
         yield "by rank", said
 
@@ -185,11 +195,9 @@ def _symbol(row: Row) -> str:
 
 def _of_element(handle: Handle, comparison: Comparison) -> Iterator[Readout]:
     """Readouts of all quantities of an element that theory computes."""
-    if isinstance(handle, Rod):
-        yield _beside(comparison, "axial_force", (handle.row,))
-    elif isinstance(handle, Particle):
-        for axis, fixed in enumerate(handle.fixed):
-            yield _beside(comparison, "reaction" if fixed else "displacement", (handle.row, axis))
+    if isinstance(handle, Rod | Particle):
+        for quantity, place in sorted(comparison.of(handle.table, handle.row), key=itemgetter(1)):
+            yield _beside(comparison, quantity, place)
 
 
 def _beside(comparison: Comparison, quantity: str, place: tuple[int, ...]) -> Readout:

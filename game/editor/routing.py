@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 from components.field import Vector
-from components.slider import under
 from game.editor.context import Context
 from game.editor.view_model import pages_of_help
-from systems.input.bindings import FORCE_METHOD, FORMS, LIVE, MENU, action_for
+from systems.input.bindings import FORMS, LIVE, MENU, action_for
+from systems.render.empty_card import card_button_at
 from systems.render.help import help_closed_by
 from systems.render.menu import menu_of
 from systems.render.picture import on_status_bar, panel_at
@@ -45,13 +45,20 @@ def meaning(context: Context, key: str, pixel: Vector) -> Meaning:
     if for_tools(context, key, pixel):
         on_toolbar = view.strip.contains(pixel)
         return _on_toolbar(context, key, pixel) if on_toolbar else action_for(LIVE[0], key), pixel
-    if key in AT_POINTER and _slider_at(context, pixel):
+    if (
+        key in ONCE
+        and context.scene in LIVE
+        and (tool := card_button_at(context.model, view, pixel)) is not None
+    ):
+        return tool.action if tool.enabled else None, (view.strip.left, view.strip.top)  # as by the toolbar
+    if key in AT_POINTER and context.slider_at(pixel):
         return ON_SLIDER.get(key), pixel
-    to_model = key in BUTTONS and context.scene in LIVE and not context.performing
-    if to_model and on_status_bar(view, pixel):
-        return None, pixel
-    if to_model and (panel := panel_at(context.model, view, load_theme(view.theme), pixel)) is not None:
-        return (panel.action_at(pixel) if key in ONCE else None), pixel
+    if key in BUTTONS and not context.performing and not context.scenes.active.covers(context):
+        model, shown = context.focus
+        if on_status_bar(shown, pixel):
+            return None, pixel
+        if (panel := panel_at(model, shown, load_theme(view.theme), pixel)) is not None:
+            return (panel.action_at(pixel) if key in ONCE else None), pixel
     return scene_meaning(context.scene, key), pixel
 
 
@@ -70,22 +77,15 @@ def for_tools(context: Context, key: str, pixel: Vector) -> bool:
 def layer(context: Context, pixel: Vector) -> Layer:
     """What takes a click at a pixel."""
     view = context.view
-    slider = _slider_at(context, pixel)
-    return context.scene, view.menu is not None, view.help > 0, view.strip.contains(pixel), slider
+    slider = context.slider_at(pixel)
+    on_slider = slider.control.title if slider is not None else ""
+    return context.scene, view.menu is not None, view.help > 0, view.strip.contains(pixel), on_slider
 
 
 def scene_meaning(scene: str, key: str) -> str | None:
     """The action of a key in a scene; where a second click means nothing special, it is another click."""
     found = action_for(scene, key)
     return action_for(scene, "click") if found is None and key == "double click" else found
-
-
-def _slider_at(context: Context, pixel: Vector) -> str:
-    """The title of the slider at a pixel, "" if there is none."""
-    if context.scene not in (*LIVE, FORCE_METHOD):
-        return ""
-    place = under(context.focus[1].slider_places, pixel)
-    return place.control.title if place is not None else ""
 
 
 def _in_menu(context: Context, key: str, pixel: Vector) -> Meaning | None:
@@ -110,6 +110,8 @@ def _on_help(context: Context, key: str, pixel: Vector) -> str | None:
     """Clicks on the help leaf through it or close it, and go no further."""
     if key == "escape":
         return "close help"
+    if key in ("wheel up", "wheel down"):
+        return "help back" if key == "wheel up" else "help on"
     if key not in ("click", "ctrl+click", "double click", "right click"):
         return None
     pages, shown = pages_of_help(context), context.view.help
@@ -120,7 +122,5 @@ def _on_help(context: Context, key: str, pixel: Vector) -> str | None:
 
 
 def _on_toolbar(context: Context, key: str, pixel: Vector) -> str | None:
-    view = context.view
-    buttons = view.toolbar.buttons(view.camera.viewport, view.pixel_ratio)
-    hit = (button.tool for button in buttons if button.contains(pixel))
-    return next((tool.action for tool in hit if tool.enabled and key in CLICKS), None)
+    button = context.view.button_at(pixel)
+    return button.tool.action if button is not None and button.tool.enabled and key in CLICKS else None

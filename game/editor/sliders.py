@@ -164,6 +164,9 @@ def add_slider(context: Context, elements: Sequence[Handle], field: str, axis: s
     slider = _limited(_around(model, found, value, aims), found)
     _set(context, (*model.sliders, slider), "new slider")
     context.view.legend = True  # it is hidden with the toolbar and the legend
+    context.view.sliders = sliders_of(context)
+    if context.view.fitted:
+        context.view.fit(model)
     context.notice = f"Slider at the lower left: {_title(model, aims[0], first, found)}"
     return slider
 

@@ -32,7 +32,8 @@ def toolbar_of(context: Context) -> Toolbar:
 def tool(context: Context, binding: Binding, title: str = "") -> Tool:
     """What a button or an entry of a menu says of an action now; title: where that of the table does not fit."""
     action = binding.action
-    pressed = action == _in_hand(context) or (action in _PRESSED and _PRESSED[action](context))
+    hidden = context.view.free_bodies and action in _OF_ONE_PIECE
+    pressed = action == _in_hand(context) or (not hidden and action in _PRESSED and _PRESSED[action](context))
     enabled = context.scenes.active.tools in binding.scenes and (
         action not in _NEEDS or _NEEDS[action](context)
     )
@@ -100,6 +101,8 @@ _PRESSED: dict[str, Condition] = {
     "toggle cable": _are_cables,
     "toggle help": lambda context: context.view.help > 0,
 }
+# What these show is not seen while rods and joints are apart.
+_OF_ONE_PIECE = ("toggle diagrams", "toggle utilisation", "next shape")
 # By action: whether it would do something now.
 _NEEDS: dict[str, Condition] = {
     "undo": lambda context: context.can_undo,

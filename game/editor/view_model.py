@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 from numpy.typing import NDArray
 
 from components.model import Model
 from components.tags import Hovered
-from components.view import Preview, Readout, Status, drawn_positions
+from components.view import MARGIN, Preview, Readout, Status, drawn_places, drawn_positions
 from game.editor.context import Context
 from game.editor.gestures.drawing import end_pointed_at, hint_of_tool
 from game.editor.host import Waiting
@@ -17,10 +19,13 @@ from systems.edit import Refusal
 from systems.forms.results import told
 from systems.input.bindings import LIVE, help_lines
 from systems.render.help import help_pages
+from systems.render.overlays import BAR
 
 COMPILING = "Compiling the step program, which models of this size wait for once:"
 FLASH = 0.15  # s shown, for which an impact is marked
 MOST_WATCHED = 2000  # particles, up to which it is told that they left the picture
+FARTHEST = 8.0  # times: by how much the view shows more than the original structure to follow what moves
+SHOWN_BY = "Home (right click: fit the view)"
 MOST_FLASHES = 500  # impacts marked at a time
 
 
@@ -34,15 +39,17 @@ def show(context: Context, elapsed: float) -> None:
     lasting = (
         [context.notice]
         if context.notice
-        else [*(remark.message for remark in context.remarks), _gone(context)]
+        else [*(remark.message for remark in context.remarks), "" if follows(context) else _gone(context)]
     )
     view.preview = _preview(context)
+    if view.pressed is not None and not (view.pointer is not None and view.pressed.contains(view.pointer)):
+        view.pressed = None
     view.flashes = _flashes(context)
     view.heading = scene.heading
     view.shape = context.document.shapes.shown
     pages = pages_of_help(context) if view.help else []
     view.keys = pages[min(view.help, len(pages)) - 1] if pages else []
-    view.more_keys = view.help < len(pages)
+    view.pages = len(pages)
     _show_readouts(context)
     _point_out(context)
     view.status = Status(
@@ -80,15 +87,34 @@ def _gone(context: Context) -> str:
         return ""
     x, y = view.camera.to_pixels(drawn_positions(model)).T
     v, reach = view.canvas, model.particles.radius * view.camera.scale
-    inside = (x > v.left - reach) & (x < v.right + reach) & (y > v.top - reach) & (y < v.bottom + reach)
+    bottom = v.bottom - BAR * view.pixel_ratio
+    inside = (x > v.left - reach) & (x < v.right + reach) & (y > v.top - reach) & (y < bottom + reach)
     moving = ~model.particles.fixed.all(axis=1) & model.particles.displacement.any(axis=1)
     gone = np.flatnonzero(moving & ~inside)
     if not len(gone) or (moving & inside).sum() > len(gone):
         return ""
     if (moving & inside).any():
         names = ", ".join(model.particles.names[row] for row in gone[:3])
-        return f"{names[:1].upper()}{names[1:]} left the picture: Home shows all."
-    return "All that moves has left the picture: Home shows it."
+        return f"{names[:1].upper()}{names[1:]} left the picture: {SHOWN_BY} shows all."
+    return f"All that moves has left the picture: {SHOWN_BY} shows it."
+
+
+def follows(context: Context) -> bool:
+    """True if a window is to show all again now, since what moves has left it and nobody looks elsewhere.
+
+    Scripts and recordings fit the view by lines of their own. What goes too far is not followed: nothing would be seen.
+    """
+    view, model = context.view, context.model
+    by_itself = context.window is not None and context.busy and not context.performing
+    busy = context.gesture is not None or view.menu is not None or view.tool or view.help
+    if not by_itself or busy or not view.fitted or not _gone(context):
+        return False
+    scales = []
+    for places in (drawn_places(model), model.particles.position):
+        camera = replace(view.camera)
+        camera.fit(places, MARGIN, view.room, view.pixel_ratio)
+        scales.append(camera.scale)
+    return scales[0] * FARTHEST > scales[1]
 
 
 def _point_out(context: Context) -> None:

@@ -9,7 +9,6 @@ from components import written
 from components.field import CM
 from components.view import BETWEEN
 from game.force_method import PARTS
-from systems.statics.counting import FORMULA
 
 if TYPE_CHECKING:  # they import scipy
     from game.force_method.guide import Guide
@@ -105,7 +104,7 @@ def working(guide: Guide) -> tuple[str, ...]:
     """The compatibility equations with their numbers, and their solution (part 7)."""
     solution = guide.solution
     if guide.part == 1:
-        formula = f"{FORMULA} = {guide.count.numbers}"
+        formula = f"{guide.count.formula} = {guide.count.numbers}"
         return (
             formula,
             _degree(guide.degree),

@@ -217,9 +217,9 @@ def panels(session: Context) -> Sequence[Readout]:
 
 def close(session: Context, pixel: Vector) -> None:
     """Take away the plot whose panel is at a pixel."""
-    probes, view = probes_of(session), session.view
-    panel = panel_at(session.model, view, load_theme(view.theme), pixel)
-    closed = _names(panel.readout) if panel is not None and panel.readout is not None else ()
+    probes, (model, view) = probes_of(session), session.focus
+    panel = panel_at(model, view, load_theme(view.theme), pixel)
+    closed = _names(panel.readout) if panel is not None else ()
     shown = zip(probes.all, panels(session), strict=True)
     probes.all = [probe for probe, readout in shown if _names(readout) != closed]
 

@@ -133,10 +133,7 @@ class Constraints(NamedTuple):
     @classmethod
     def of(cls, n: int, joined: Any, size: int, counts: Integers) -> Constraints:
         """Constraints of n discs: these pairs never collide, and there is room for `size` entries of contacts."""
-        pairs = np.asarray(joined, dtype=np.int64).reshape(-1, 2)
-        ends = np.concatenate([pairs, pairs[:, ::-1]])
-        ends = ends[np.lexsort((ends[:, 1], ends[:, 0]))]
-        first, partners = np.searchsorted(ends[:, 0], np.arange(n + 1)), np.ascontiguousarray(ends[:, 1])
+        first, partners = partners_of(n, joined)
         contacts = np.zeros(n, dtype=np.int64), np.zeros((0, 2), dtype=np.int64), np.zeros(0)
         return cls(first, partners, *contacts).cleared(size, counts)
 
@@ -157,6 +154,14 @@ class Constraints(NamedTuple):
         counts[Count.SPARE] = old
         counts[Count.SPARES] += size - old
         return self._replace(persistent=persistent, forces=forces)
+
+
+def partners_of(n: int, joined: Any) -> tuple[Integers, Integers]:
+    """`first` and `partners` of Constraints: of n discs, of which these pairs never collide."""
+    pairs = np.asarray(joined, dtype=np.int64).reshape(-1, 2)
+    ends = np.concatenate([pairs, pairs[:, ::-1]])
+    ends = ends[np.lexsort((ends[:, 1], ends[:, 0]))]
+    return np.searchsorted(ends[:, 0], np.arange(n + 1)), np.ascontiguousarray(ends[:, 1])
 
 
 class Entry(IntEnum):

@@ -408,9 +408,9 @@ class Program:
             if steps == 0:
                 return 0, StopReason.DONE
         if self.between is not None:
-            idle = self._idle
-            idle.real[Real.UNTIL], idle.real[Real.END] = until, landing
-            return self._enter(idle, steps, alone=True)
+            real = self._idle[0].real
+            real[Real.UNTIL], real[Real.END] = until, landing
+            return self._enter(self._idle, steps, alone=True)
         origin, limit = self._origin.tolist()
         total, since = self._counts.tolist()
         chosen = (self.tolerance, limit or math.inf) if controlled else (size,)
@@ -440,17 +440,18 @@ class Program:
 
     # --- among particles that may meet -----------------------------------------------------------------
 
-    def drive(self, driven: Any, steps: int, until: float) -> tuple[StopReason, bool]:
-        """Take up to so many steps that end by `until` (s) as `driven` says in between; returns why it stopped, and whether
-        they are done: Whole.NEED may say what is needed before it goes on.
+    def drive(self, arrays: Any, steps: int, until: float) -> tuple[StopReason, bool]:
+        """Take up to so many steps that end by `until` (s) as the arrays of what is in between say; returns why it stopped,
+        and whether they are done: Whole.NEED may say what is needed before it goes on.
         """
+        driven = arrays[0]
         wanted = steps if self.module.is_loaded else min(steps, self.module.portion)
         if driven.whole[Whole.PHASE] == Phase.BETWEEN:
             self._catch_up()
         driven.real[Real.UNTIL] = until
         driven.real[Real.PUSH] = self.integrator.push if self.integrator.mod is None else 0.0
         try:
-            taken, reason = self._enter(driven, wanted, alone=False)
+            taken, reason = self._enter(arrays, wanted, alone=False)
         except ProgramError:
             raise
         except Exception as error:
@@ -462,9 +463,9 @@ class Program:
         waits = driven.whole[Whole.NEED] != 0
         return reason, not waits and (taken < wanted or wanted == steps or reason is not StopReason.DONE)
 
-    def _enter(self, driven: Any, steps: int, *, alone: bool) -> tuple[int, StopReason]:
+    def _enter(self, arrays: Any, steps: int, *, alone: bool) -> tuple[int, StopReason]:
         """Enter the program with these arrays; returns how many steps it took, and why it stopped."""
-        form = self.module.form
+        form, driven = self.module.form, arrays[0]
         assert self.between is not None
         whole, (total, since) = driven.whole, self._counts.tolist()
         origin, limit = self._origin.tolist()
@@ -476,8 +477,8 @@ class Program:
             whole[Whole.REASON] = StopReason.DONE
         driven.real[Real.ORIGIN] = origin
         form.drive(
-            self.between.function(compiled=form.is_machine),
-            driven,
+            *self.between.functions(compiled=form.is_machine),
+            *arrays,
             *self._motion,
             *((self.tolerance, limit) if self.integrator.controlled else ()),
             self._breaks,

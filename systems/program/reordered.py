@@ -156,10 +156,10 @@ class ReorderedProgram(Program):
             self._store()
         return taken, reason
 
-    def drive(self, driven: Any, steps: int, until: float) -> tuple[StopReason, bool]:
+    def drive(self, arrays: Any, steps: int, until: float) -> tuple[StopReason, bool]:
         """Take steps among particles that may meet, as every program does."""
         self._load()
-        result = super().drive(driven, steps, until)
+        result = super().drive(arrays, steps, until)
         self._store()
         return result
 

@@ -23,6 +23,7 @@ LONGEST, SHORTEST = 46.0, 13.0  # points: of the largest of its kind, and of any
 HEAD = 9.0  # points, or of short arrows a share of them
 GAP = 3.0  # points between an arrow and its particle
 NOTHING = 1e-6  # of the usual speed in a run: a slower motion counts as none
+SLOW = 0.02  # of it, below which motion has no arrow while time passes, since it would flicker in piles
 FORCES, VELOCITIES = ("arrows.force", 0), ("arrows.velocity", 0)  # keys by which scales are kept
 
 _STEPS = 6.0  # of a scale in a power of ten
@@ -88,7 +89,7 @@ def draw_loads(sheet: Sheet) -> Iterator[Mark]:
 
 
 def draw_velocities(sheet: Sheet) -> Iterator[Mark]:
-    """The velocity of free particles, and of nodes before their first step, while time stands still.
+    """The velocity of free particles, and of nodes before their first step.
 
     At rest there is none: what is left in the state is below what counts as motion.
     """
@@ -98,11 +99,11 @@ def draw_velocities(sheet: Sheet) -> Iterator[Mark]:
     if clock.steps:
         moving &= ~nodes(model)
     rows = sheet.particles[moving[sheet.particles]]
-    if sheet.view.status.speed or (clock.at_rest and clock.steps) or not 0 < len(rows) <= MOST:
+    if (clock.at_rest and clock.steps) or not 0 < len(rows) <= MOST:
         return
     speed = np.hypot(*velocity[rows].T)
     usual = math.sqrt(2.0 * clock.energy_scale / model.particles.mass[rows].sum()) if clock.steps else 0.0
-    seen = speed > NOTHING * usual
+    seen = speed > (SLOW if sheet.view.status.speed else NOTHING) * usual
     rows, speed = rows[seen], speed[seen]
     if not len(rows):
         return

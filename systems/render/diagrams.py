@@ -143,7 +143,7 @@ def _outward_normals(sheet: Sheet, rows: Rows, start: Points, end: Points) -> Po
 
 def _draw_rectangles(sheet: Sheet, name: str, rows: Rows, start: Points, end: Points, rise: Points) -> None:
     colour: Colour = getattr(sheet.theme, name)
-    outlined = typical_length(sheet.start, sheet.end) > 16.0 * sheet.unit
+    outlined = sheet.rod_length > 16.0 * sheet.unit
     bars = Bars(start, end, rise, faded(colour, 0.16 if outlined else 0.5), ("rods", rows))
     sheet.marks.append(bars)
     sheet.occupancy.parts.diagrams(("rods", rows), start, end, rise)
@@ -172,7 +172,7 @@ def _label_rods(
     rows, values, normal, height = rows[seen], values[seen], normal[seen], height[seen]
     sheet.values[_ROD_VALUE] = len(rows)
     selected = sheet.chosen(sheet.tagged(Selected, "rods"), rows)
-    is_short = typical_length(sheet.start, sheet.end) < _SHORTEST_WITH_VALUE * sheet.unit
+    is_short = sheet.rod_length < _SHORTEST_WITH_VALUE * sheet.unit
     candidates = np.flatnonzero(selected) if is_short else np.arange(len(rows))
     worth = _worth(sheet, _ROD_VALUE, rows, values) + 1e6 * selected
     shown = _most_important(sheet, worth, candidates)

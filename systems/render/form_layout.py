@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field, replace
+from functools import lru_cache
 from itertools import groupby
 
 from components.box import Box
@@ -23,7 +25,9 @@ LOW = 330.0  # points: a viewport less high does without explanations
 TITLE, BOX, BELOW = 18.0, 26.0, 10.0  # points: title above a box, the box, to what follows
 PROBLEM = 14.0  # points that the reason for which a box is refused takes below it
 READING, MOST_READINGS = 20.0, 0.4  # points of a row; share of the height that they take without being scrolled
-MESSAGE, MESSAGE_LINE = 12.0, 16.0  # points, size of type and distance of lines of a message
+MESSAGE, MESSAGE_LINE = 12.0, 16.0  # points, size of type and distance of lines of a message or explanation
+HINT, EXPLAINED, MOST_EXPLAINED = 26.0, 2, 6  # points at the bottom; lines of explanation, usual and at most
+SMALL, LOW_TYPE = 560.0, (11.0, 14.0)  # points: a viewport less high explains in smaller type, and lines apart
 SECTION = 28.0
 COLUMN_GAP = 10.0
 HEADING = 104.0  # points, where a low viewport has the box beside the heading
@@ -36,7 +40,7 @@ BESIDE, SEARCH = (
     340.0,
 )  # points of width from which the name stands beside the heading, and that it takes there
 LOWEST = 0.65  # share of a picture's height that it keeps where one more row fits then
-LEAST_PICTURE = 40.0  # points
+LEAST_PICTURE = 30.0  # points
 
 PROPERTIES = "Properties"  # the heading of an element's own boxes, where its results stand above them
 
@@ -57,7 +61,7 @@ class FormLayout:
     unit: pixels per point. left, right: the edges of all text. header: the middle of the heading's line, whose text
     has the room `heading_width`. message: the middle of the message's first line. top, bottom: the edges of the rows.
     rows: those that are scrolled. first, shown: the number of the first one in sight, and of those in sight.
-    close, accept: the buttons that leave it, and that do what Return does.
+    close, accept: the buttons that leave it, and that do what Return does. explained: how many lines an explanation has.
     """
 
     viewport: Viewport
@@ -71,6 +75,7 @@ class FormLayout:
     bottom: float
     close: Rectangle
     accept: Rectangle | None
+    explained: int = EXPLAINED
     first: int = 0
     shown: int = 0
     rows: list[Row] = field(default_factory=list)
@@ -100,7 +105,8 @@ def lay_out(form: Form, viewport: Viewport, unit: float) -> FormLayout:
     low = v.height < LOW * u
     header = v.top + (18.0 if low else 26.0) * u
     top = header + (16.0 if low else 24.0) * u
-    bottom = v.top + v.height - (22.0 if low else 58.0) * u
+    explained = 0 if low else _lines_of_explanations(form, width, v, u)
+    bottom = v.bottom - (22.0 if low else HINT + explanation_type(v, u)[1] * explained) * u
     close = Rectangle(left + width - CLOSE * u, header - CLOSE * u / 2, CLOSE * u, CLOSE * u)
     fixed: list[Place] = []
     accept, heading_width = None, width - (CLOSE + 8.0) * u
@@ -118,12 +124,30 @@ def lay_out(form: Form, viewport: Viewport, unit: float) -> FormLayout:
         fixed += _placed(row, left, top, width, height, u)
         top += height
     lines = len(message_lines(form, width, u))
-    message = top + (0.5 * MESSAGE_LINE if readings else -11.0) * u  # below the heading there is room for a line
+    message = (
+        top + (0.5 * MESSAGE_LINE if readings else -11.0) * u
+    )  # below the heading there is room for a line
     top += max(lines - (not readings), 0) * MESSAGE_LINE * u
-    layout = FormLayout(
-        v, u, left, left + width, header, heading_width, message, top, bottom, close, accept, form.heading.first
-    )
-    return _with_rows(layout, fixed, rows)
+    right, first = left + width, form.heading.first
+    edges = left, right, header, heading_width, message, top, bottom
+    return _with_rows(FormLayout(v, u, *edges, close, accept, explained, first), fixed, rows)
+
+
+def explanation_type(v: Viewport, u: float) -> tuple[float, float]:
+    """Points of the type of explanations, and between its lines."""
+    return (MESSAGE, MESSAGE_LINE) if v.height >= SMALL * u else LOW_TYPE
+
+
+def _lines_of_explanations(form: Form, width: float, v: Viewport, u: float) -> int:
+    """How many lines the longest explanation of a tile takes, so that none is cut that is not very long."""
+    size = font_size(explanation_type(v, u)[0], u)
+    lines = (_line_count(tile.explanation, width, size) for tile in form.tiles)
+    return min(max(lines, default=EXPLAINED), MOST_EXPLAINED) if len(form.tiles) else EXPLAINED
+
+
+@lru_cache(maxsize=1000)
+def _line_count(text: str, width: float, size: int) -> int:
+    return len(wrapped(text, width, size))
 
 
 def _name_place(
@@ -166,12 +190,20 @@ def _with_rows(layout: FormLayout, fixed: list[Place], rows: list[Row]) -> FormL
     for row, height in zip(rows[first:], heights[first:], strict=True):
         if top + height > layout.bottom + 0.5 and shown:
             break
-        places += _placed(row, layout.left, top, width, height, u)
+        beside = _most_beside(rows, first + shown)
+        places += _placed(row, layout.left, top, width, height, u, beside)
         top += height
         shown += 1
     if shown > 1 and isinstance(rows[first + shown - 1], str):  # a heading without visible tiles
         places.pop()
     return replace(layout, first=first, shown=shown, rows=rows, places=places)
+
+
+def _most_beside(rows: Sequence[Row], number: int) -> int:
+    """How many items the first row of the section of a row has; the last one may have fewer."""
+    while number and not isinstance(rows[number - 1], str):
+        number -= 1
+    return len(rows[number])
 
 
 def _last_first(heights: Sequence[float], room: float) -> int:
@@ -226,6 +258,8 @@ def _tile_rows(form: Form, width: float) -> Iterator[Row]:
             those = [*those[: max(columns - 1, 1)], *rest[: columns - 1]]  # of one column the first tile only
         if section:
             yield section
+        if _are_pills(tiles):  # rows about equally long
+            columns = math.ceil(len(those) / math.ceil(len(those) / columns))
         yield from in_rows(those, columns)
 
 
@@ -274,7 +308,10 @@ def _tile_width(width: float, u: float) -> float:
     return (width - (columns - 1) * TILE_GAP * u) / columns
 
 
-def _placed(row: Row, left: float, top: float, width: float, height: float, u: float) -> Iterator[Place]:
+def _placed(
+    row: Row, left: float, top: float, width: float, height: float, u: float, columns: int = 1
+) -> Iterator[Place]:
+    """The places of the items of a row; columns: how many pills stand side by side in its section."""
     if isinstance(row, str):
         yield Place(left, top, width, height, row)
     elif isinstance(row[0], Reading):
@@ -286,8 +323,8 @@ def _placed(row: Row, left: float, top: float, width: float, height: float, u: f
         for column, box in enumerate(row):
             yield Place(left + column * (each + gap), top + TITLE * u, each, BOX * u, box)
     elif _are_pills(row):
-        gap, columns = PILL_GAP * u, pill_columns(width / u)
-        each = min((width - (columns - 1) * gap) / columns, 1.4 * PILL_WIDTH * u)
+        gap = PILL_GAP * u
+        each = min((width - (columns - 1) * gap) / columns, 1.6 * PILL_WIDTH * u)
         for column, tile in enumerate(row):
             yield Place(left + column * (each + gap), top, each, height - gap, tile)
     else:

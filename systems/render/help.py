@@ -14,7 +14,7 @@ from systems.render.theme import Theme, faded
 from systems.render.typography import font_size, line_height, text_width
 
 _PAD, _GAP = 22.0, 26.0  # points: inside the card, between columns
-_HEAD = 200.0  # points, least width of the heading
+_HEAD = 320.0  # points, least width of the heading
 _CLOSE = 22.0  # points, side of the button that closes it
 _SIZES = (*((points, 1.1) for points in (13.0, 12.0, 11.0, 10.0, 9.0)), (9.0, 1.0))  # points, and lines apart
 
@@ -56,8 +56,10 @@ def draw_help(view: View, v: Viewport, theme: Theme) -> list[Mark]:
         return []
     corners = [(v.left, v.top), (v.right, v.top), (v.right, v.bottom), (v.left, v.bottom)]
     veil = Fills(np.array([corners], dtype=np.float64), faded(theme.background, 0.75))
-    says = "F1 or a click: more" if view.more_keys else "F1 or a click closes"
-    return [veil, *_card(view.keys, v, view.pixel_ratio).marks(theme, says)]
+    last = view.help >= view.pages
+    says = "F1 or a click closes" if last else "F1, a click or the wheel: more"
+    heading = f"Keys, page {min(view.help, view.pages)} of {view.pages}" if view.pages > 1 else "Keys"
+    return [veil, *_card(view.keys, v, view.pixel_ratio).marks(theme, heading, says)]
 
 
 def _card(lines: Lines, viewport: Viewport, unit: float) -> _Card:
@@ -102,13 +104,13 @@ class _Card:
         side = _CLOSE * u
         self.close = Rectangle(left + self.width - side - 6.0 * u, top + 6.0 * u, side, side)
 
-    def marks(self, theme: Theme, says: str) -> list[Mark]:
+    def marks(self, theme: Theme, heading: str, says: str) -> list[Mark]:
         """The card, its heading, how to go on, and its lines."""
         u, pad, large = self.u, self.pad, font_size(16.0, self.u)
         left, top, y = self.place.left, self.place.top, self.close.top + self.close.height / 2
         marks: list[Mark] = [
             Panel(left, top, self.width, self.height, 10.0 * u, theme.panel, theme.line),
-            Text("Keys", left + pad, y, large, theme.text, "semibold"),
+            Text(heading, left + pad, y, large, theme.text, "semibold"),
             Text(says, self.close.left - 6.0 * u, y, self.size, theme.muted, anchor="right"),
             cross(self.close, u, theme.muted),
         ]

@@ -150,11 +150,15 @@ Mark = Strokes | Fills | Bars | Stamps | Discs | Rectangles | Panel | Text
 
 @dataclass
 class Picture:
-    """Everything to be drawn in one viewport; without a background, over what is there already."""
+    """Everything to be drawn in one viewport; without a background, over what is there already.
+
+    meanings: names of the colours that occur in it and mean something.
+    """
 
     viewport: Viewport
     background: Colour | None
     marks: list[Mark] = field(default_factory=list)
+    meanings: tuple[str, ...] = ()
 
     @property
     def texts(self) -> list[str]:

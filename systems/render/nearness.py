@@ -4,9 +4,10 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass, fields, replace
+from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
 
 from components.camera import Viewport
 from systems.render.clip import bounds
@@ -57,6 +58,7 @@ class Parts:
         self._kept: list[_Bands] = []
         self._seen: _Bands
         self._pieces: _Pieces
+        self._outlines: _Pieces  # of the bands that are seen, without their width
         self._squares: _Squares
 
     def lines(self, of: Owners, start: Points, end: Points, half: float) -> None:
@@ -146,6 +148,7 @@ class Parts:
             seen = _Bands(*map(np.concatenate, columns))
             self._seen = seen.some(np.argsort(seen.of, kind="stable"))
             self._pieces = _cut(self._seen, _SIDE * self.unit)
+            self._outlines = _cut(replace(self._seen, half=np.zeros(len(self._seen.of))), np.inf)
             squares.fill(self._pieces)
         self._squares = squares
 
@@ -156,13 +159,12 @@ class Parts:
             return to_any, to_any
         left, right = (np.searchsorted(self._seen.of, own, side) for side in ("left", "right"))
         many = (right - left)[boxes.of]
-        box, bands = np.repeat(np.arange(len(many)), many), self._seen.some(ranges(left[boxes.of], many))
+        box, band = np.repeat(np.arange(len(many)), many), ranges(left[boxes.of], many)
+        bands = self._seen.some(band)
         start, end = bands.start + bands.rise, bands.end + bands.rise
         away = _to_segments(boxes.middle[box], boxes.half[box], start, end)
         away = np.where((start == end).all(axis=1), np.maximum(away - bands.half, 0.0), away)
-        nothing = np.zeros(len(box))
-        outlines = _cut(replace(bands, half=nothing), np.inf)
-        away[_are_within(boxes, box, outlines, np.arange(len(box)), nothing)] = 0.0
+        away[_are_within(boxes, box, self._outlines, band, np.zeros(len(box)))] = 0.0
         np.minimum.at(to_any, box, away)
         lines, to_line = bands.kind == LINE, to_any.copy()
         to_line[box[lines]] = np.inf
@@ -205,7 +207,7 @@ def _cut(bands: _Bands, longest: float) -> _Pieces:
     """Rectangles that are no longer than `longest`."""
     step = bands.end - bands.start
     length = np.hypot(step[:, 0], step[:, 1])
-    count = np.clip(np.ceil(length / longest), 1, _MOST_PIECES).astype(np.intp)
+    count = within(np.ceil(length / longest), 1.0, _MOST_PIECES).astype(np.intp)
     which, number = np.repeat(np.arange(len(count)), count), ranges(np.zeros_like(count), count)
     height = np.hypot(bands.rise[:, 0], bands.rise[:, 1])
     along = np.where(length[:, None] > 0.0, step / np.maximum(length, 1e-300)[:, None], [1.0, 0.0])[which]
@@ -224,6 +226,12 @@ def ranges(first: Indices, count: Indices) -> Indices:
     return found
 
 
+def within(values: NDArray[Any], low: ArrayLike, high: ArrayLike) -> NDArray[Any]:
+    """Values between bounds: np.clip for the small arrays of single labels, of which it takes a multiple of the time."""
+    found: NDArray[Any] = np.minimum(np.maximum(values, low), high)
+    return found
+
+
 class _Squares:
     """Squares of a picture, and which pieces are in each; those at the rim hold what lies beyond, too."""
 
@@ -236,7 +244,7 @@ class _Squares:
 
     def _cells(self, points: Points) -> Indices:
         """Column and row of the squares that hold points (n, 2)."""
-        return np.clip((points - self.low) / self.side, 0, self.size - 1).astype(np.intp)
+        return within((points - self.low) / self.side, 0.0, self.size - 1).astype(np.intp)
 
     def of(self, points: Points) -> Indices:
         """The squares that hold points (n, 2)."""
@@ -314,7 +322,7 @@ def _to_segments(middle: Points, half: Points, start: Points, end: Points) -> Nu
     square = np.maximum((step**2).sum(axis=1), 1e-300)
     for sign in ((1.0, 1.0), (1.0, -1.0), (-1.0, 1.0), (-1.0, -1.0)):
         corner = half * sign - start
-        share = np.clip((corner * step).sum(axis=1) / square, 0.0, 1.0)
+        share = within((corner * step).sum(axis=1) / square, 0.0, 1.0)
         away = np.minimum(away, np.hypot(*(corner - share[:, None] * step).T))
     found: Numbers = away
     return found

@@ -7,12 +7,12 @@ from numpy.typing import NDArray
 
 from components.camera import Viewport
 from systems.render.marks import Owners, Points
-from systems.render.nearness import NOBODY, Codes, Parts
+from systems.render.nearness import NOBODY, Codes, Parts, within
 
 FAINT, STRONG = 1, 2  # lines that names never cover; lines that values cover only in need
 _FAR = 1e6  # pixels
 _MANY_LINES = 4000
-_ALONG = 12  # cells of a diagonal that are looked at
+_SHARES = np.linspace(0.0, 1.0, 12)[:, None]  # of a diagonal, where cells are looked at
 _CELL = 3.0  # points: how finely the picture is divided into free and taken
 
 
@@ -75,19 +75,24 @@ class Occupancy:
     def are_free(self, cells: NDArray[np.intp], covering: int) -> NDArray[np.bool_]:
         """For each box of `cells` (n, 4), whether nothing takes any and no line in it is stronger than `covering`.
 
-        The sum over a box is the difference of four sums over boxes that begin at the first cell.
+        A box is covered by four whose sides are powers of two, and what is in those of one size is found by halves.
         """
-        height, width = self.taken.shape
-        sums = np.zeros((height + 1, width + 1), dtype=np.int32)
-        sums[1:, 1:] = self.taken | (self.lined > covering)
-        np.cumsum(sums, axis=1, out=sums)
-        sums = np.ascontiguousarray(sums.T)  # sums along contiguous memory are several times faster
-        np.cumsum(sums, axis=1, out=sums)
         left, top, right, bottom = cells.T
-        nothing: NDArray[np.bool_] = (
-            sums[right, bottom] - sums[right, top] == sums[left, bottom] - sums[left, top]
-        )
-        return nothing
+        free: NDArray[np.bool_] = np.ones(len(cells), dtype=bool)
+        blocked = self.taken | (self.lined > covering)
+        wide, tall = (
+            np.frexp(size)[1] - 1 for size in (right - left, bottom - top)
+        )  # -1: nothing of it is seen
+        for columns in range(wide.max(initial=-1) + 1):
+            blocked = _doubled(blocked, columns)
+            there = blocked.T
+            for rows in range(tall[wide == columns].max(initial=-1) + 1):
+                there = _doubled(there, rows)
+                some = np.flatnonzero((wide == columns) & (tall == rows))
+                first, last = left[some], right[some] - (1 << columns)
+                high, low = top[some], bottom[some] - (1 << rows)
+                free[some] = ~(there[first, high] | there[last, high] | there[first, low] | there[last, low])
+        return free
 
     def may_be_of(self, cells: NDArray[np.intp], *owners: Codes) -> NDArray[np.bool_]:
         """For each box of `cells` (n, 4), False where lines through it are seen to be of others than `owners`, each (n,).
@@ -96,12 +101,12 @@ class Occupancy:
         """
         left, top, right, bottom = cells.T
         width, height = right - left - 3, bottom - top - 3
-        share = np.linspace(0.0, 1.0, _ALONG)[:, None]
-        down, across = (top + 1 + share * height).astype(np.intp), (left + 1 + share * width).astype(np.intp)
-        possible = np.ones(len(cells), dtype=bool)
         rows, columns = self.taken.shape
+        down = within((top + 1 + _SHARES * height).astype(np.intp), 0, rows - 1)
+        across = within((left + 1 + _SHARES * width).astype(np.intp), 0, columns - 1)
+        possible = np.ones(len(cells), dtype=bool)
         for row in (down, down[::-1]):
-            found = self.owner[np.clip(row, 0, rows - 1), np.clip(across, 0, columns - 1)]
+            found = self.owner[row, across]
             strange = found != NOBODY
             for owner in owners:
                 strange &= found != owner
@@ -112,7 +117,7 @@ class Occupancy:
         """Rows and columns of the cells that hold points (n, 2)."""
         height, width = self.taken.shape
         cells = (points - [self.viewport.left, self.viewport.top]) / self.cell
-        found: NDArray[np.intp] = np.clip(cells, 0, [width - 1, height - 1]).astype(np.intp)[:, ::-1]
+        found: NDArray[np.intp] = within(cells, 0.0, [width - 1, height - 1]).astype(np.intp)[:, ::-1]
         return found
 
     def cells_of(self, corners: Points, sizes: Points) -> NDArray[np.intp]:
@@ -120,8 +125,8 @@ class Occupancy:
         height, width = self.taken.shape
         corners = corners - [self.viewport.left, self.viewport.top]
         most = [width, height]
-        low = np.clip(corners / self.cell, 0, most).astype(np.intp)
-        high = np.clip(np.clip((corners + sizes) / self.cell, -1, most).astype(np.intp) + 1, low, most)
+        low = within(corners / self.cell, 0.0, most).astype(np.intp)
+        high = within(within((corners + sizes) / self.cell, -1.0, most).astype(np.intp) + 1, low, most)
         return np.concatenate([low, high], axis=1)
 
     def _cells(self, left: float, top: float, width: float, height: float) -> tuple[slice, slice]:
@@ -129,3 +134,9 @@ class Occupancy:
         x, y = left - self.viewport.left, top - self.viewport.top
         columns = slice(max(int(x / self.cell), 0), max(int((x + width) / self.cell) + 1, 0))
         return slice(max(int(y / self.cell), 0), max(int((y + height) / self.cell) + 1, 0)), columns
+
+
+def _doubled(blocked: NDArray[np.bool_], power: int) -> NDArray[np.bool_]:
+    """Whether something is in the 2 ** power cells of a row from each on, which is known of half as many."""
+    half = 1 << power >> 1
+    return blocked[:, :-half] | blocked[:, half:] if half else blocked

@@ -1,8 +1,10 @@
-"""Overlays: heading, status bar, problem banner, legend, scale bar, and the card of an empty model."""
+"""Overlays: heading, status bar, problem banner, legend and scale bar."""
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 
@@ -26,6 +28,7 @@ _NOISE = 1e-6  # pixels; smaller displacements count as none
 BAR = 28.0  # points, height of the status bar
 _ROW, _ROWS_BESIDE = 28.0, 2  # of the legend: points, and how many stand beside the heading
 _STRIP = 19.0  # points, height of the scale
+_SCALE = ("scale", 0)  # the key by which its place is kept
 
 
 def draw_overlays(sheet: Sheet) -> tuple[list[Mark], tuple[float, float]]:
@@ -33,10 +36,8 @@ def draw_overlays(sheet: Sheet) -> tuple[list[Mark], tuple[float, float]]:
     marks, bottom = _status_bar(sheet)
     heading, heading_end = _heading(sheet)
     legend, top = _legend(sheet, heading_end)
-    blank = sheet.model.particles.count == 0 and sheet.view.page is None
-    empty = _empty(sheet, bottom) if blank else []
     caption, top = _caption(sheet, top)
-    return marks + heading + legend + caption + empty, (top, bottom)
+    return marks + heading + legend + caption, (top, bottom)
 
 
 # --- the status bar --------------------------------------------------------------------------------
@@ -46,7 +47,7 @@ def _status_bar(sheet: Sheet) -> tuple[list[Mark], float]:
     """The bar at the bottom, if there is anything to say, and the height that is left above it."""
     v, u, theme, status = sheet.viewport, sheet.unit, sheet.theme, sheet.view.status
     bottom = float(v.bottom)
-    if not (status.state or (status.hint and _shows_hint(sheet))):
+    if not (status.state or status.hint):
         return [], bottom
     top, thin = round(bottom - BAR * u), max(round(u), 1)
     sheet.occupancy.block(v.left, top, v.width, BAR * u)
@@ -79,16 +80,9 @@ def _append(
     return x + width + 18.0 * sheet.unit
 
 
-def _shows_hint(sheet: Sheet) -> bool:
-    """False where the hint stands on the card of an empty model instead."""
-    return sheet.model.particles.count > 0 or sheet.view.page is not None
-
-
 def _append_hint(sheet: Sheet, marks: list[Mark], x: float, y: float) -> None:
     """The next possible steps at the right end, as many as there is room for."""
     v, u, size = sheet.viewport, sheet.unit, sheet.font(12.0)
-    if not _shows_hint(sheet):
-        return
     right = v.right - _EDGE * u
     room, steps = right - x - 6.0 * u, sheet.view.status.hint.split(BETWEEN)
     while len(steps) > 1 and text_width(BETWEEN.join(steps), size) > room:
@@ -110,11 +104,17 @@ def _state_colour(sheet: Sheet) -> Colour:
 # --- heading and problem ---------------------------------------------------------------------------
 
 
-def heading_height(text: str, width: float, unit: float) -> float:
-    """Pixels that a heading takes at the top of a viewport."""
-    size = font_size(_HEADING, unit)
-    lines = wrapped(text, width - 2 * _EDGE * unit, size, "semibold")
-    return len(lines) * line_height(size) + _EDGE * unit + 4.0 * unit
+def heading_height(text: str, width: float, unit: float, explained: Sequence[str] = ()) -> float:
+    """Pixels that a heading takes at the top of a viewport, with a legend that explains these names."""
+    size, widest = font_size(_HEADING, unit), width - 2 * _EDGE * unit
+    lines = wrapped(text, widest, size, "semibold")
+    height = len(lines) * line_height(size) + (_EDGE + 4.0) * unit
+    if not explained:
+        return height
+    right = _EDGE * unit + max(text_width(line, size, "semibold") for line in lines)
+    legend = _arranged(explained, width, right, unit)
+    rows = len(legend.rows) * _ROW * unit
+    return max(height, rows + 2 * _ABOVE * unit - 4.0 * unit) if legend.beside else height + rows
 
 
 def _heading(sheet: Sheet) -> tuple[list[Mark], tuple[float, float]]:
@@ -232,7 +232,8 @@ def _progress(sheet: Sheet, left: float, top: float, width: float) -> list[Mark]
 # --- legend ----------------------------------------------------------------------------------------
 
 _BAR_WIDTH = 70.0  # points, of a scale of colours
-_MEANINGS = {
+_ABOVE, _PAD, _BETWEEN = 10.0, 9.0, 14.0  # points: to the edges, inside a row, between its entries
+MEANINGS = {
     "tension": "tension (kN)",
     "compression": "compression (kN)",
     "yielding": "yielding",
@@ -253,43 +254,71 @@ def _legend(sheet: Sheet, heading_end: tuple[float, float]) -> tuple[list[Mark],
     They stand beside the heading if one or two rows have room there, else below it.
     """
     v, u, theme, size = sheet.viewport, sheet.unit, sheet.theme, sheet.font(11.0)
-    names = [name for name in _MEANINGS if name in sheet.legend] if sheet.view.legend else []
-    right = v.right - 10.0 * u
+    names = [name for name in MEANINGS if name in sheet.legend] if sheet.view.legend else []
     if not names or v.width < 240.0 * u:
         return [], heading_end[1]
-    pad, swatch, gap, height = 9.0 * u, 16.0 * u, 14.0 * u, 24.0 * u
-    swatches = [_BAR_WIDTH * u if name == "utilisation" else swatch for name in names]
-    entries = [
-        wide + 6.0 * u + text_width(_MEANINGS[name], size) for name, wide in zip(names, swatches, strict=True)
-    ]
-    room, whole = right - heading_end[0] - gap - 2 * pad, right - v.left - 10.0 * u - 2 * pad
-    beside = max(entries) <= room and len(_rows(entries, gap, room)) <= _ROWS_BESIDE
-    if not beside and v.height < _SMALL * u:
+    legend = _arranged(names, v.width, heading_end[0] - v.left, u)
+    if not legend.beside and v.height < _SMALL * u and not sheet.view.explains_all:
         return [], heading_end[1]
-    top = v.top + 10.0 * u if beside else heading_end[1] + 8.0 * u
+    top = v.top + _ABOVE * u if legend.beside else heading_end[1] + 8.0 * u
     marks: list[Mark] = []
-    for first, last in _rows(entries, gap, room if beside else whole):
-        width = sum(entries[first:last]) + gap * (last - first - 1) + 2 * pad
-        left, x = right - width, right - width + pad
+    height = 24.0 * u
+    for row in legend.rows:
+        width = sum(entry.width for entry in row) + _BETWEEN * u * (len(row) - 1) + 2 * _PAD * u
+        left = v.right - _ABOVE * u - width
         sheet.occupancy.block(left, top, width, height)
         marks.append(Panel(left, top, width, height, 6.0 * u, faded(theme.panel, 0.94), theme.line))
-        for name, wide, entry in list(zip(names, swatches, entries, strict=True))[first:last]:
-            marks += _swatch(sheet, name, x, top + height / 2, wide)
-            marks.append(Text(_MEANINGS[name], x + wide + 6.0 * u, top + height / 2, size, theme.text))
-            x += entry + gap
+        x = left + _PAD * u
+        for entry in row:
+            marks += _swatch(sheet, entry.name, x, top + height / 2, entry.swatch)
+            says = x + entry.swatch + 6.0 * u
+            marks.append(Text(MEANINGS[entry.name], says, top + height / 2, size, theme.text))
+            x += entry.width + _BETWEEN * u
         top += _ROW * u
     return marks, max(top - 4.0 * u, heading_end[1])
 
 
-def _rows(widths: list[float], gap: float, room: float) -> list[tuple[int, int]]:
-    """Ranges of entries that fit side by side into `room`, at least one each."""
-    rows, first, used = [], 0, 0.0
-    for index, width in enumerate(widths):
-        if index > first and used + width > room:
-            rows.append((first, index))
-            first, used = index, 0.0
-        used += width + gap
-    return [*rows, (first, len(widths))]
+class _Entry(NamedTuple):
+    """What a legend says of one name, and the pixels that it and its sample take."""
+
+    name: str
+    swatch: float
+    width: float
+
+
+class _Legend(NamedTuple):
+    """The rows of a legend, and whether they stand beside the heading, else below it."""
+
+    rows: list[list[_Entry]]
+    beside: bool
+
+
+def _arranged(names: Sequence[str], width: float, heading: float, u: float) -> _Legend:
+    """A legend in a viewport that is so wide, of which the heading takes the left up to `heading`."""
+    entries = []
+    for name in names:
+        swatch = (_BAR_WIDTH if name == "utilisation" else 16.0) * u
+        entries.append(_Entry(name, swatch, swatch + 6.0 * u + text_width(MEANINGS[name], font_size(11.0, u))))
+    whole = width - 2 * (_ABOVE + _PAD) * u
+    room = width - heading - (_ABOVE + _BETWEEN + 2 * _PAD) * u
+    beside = max(entry.width for entry in entries) <= room
+    rows = _rows(entries, _BETWEEN * u, room) if beside else []
+    if beside and len(rows) <= _ROWS_BESIDE:
+        return _Legend(rows, True)
+    return _Legend(_rows(entries, _BETWEEN * u, whole), False)
+
+
+def _rows(entries: Sequence[_Entry], gap: float, room: float) -> list[list[_Entry]]:
+    """The entries in rows that fit into `room`, at least one each."""
+    rows: list[list[_Entry]] = [[]]
+    used = 0.0
+    for entry in entries:
+        if rows[-1] and used + entry.width > room:
+            rows.append([])
+            used = 0.0
+        rows[-1].append(entry)
+        used += entry.width + gap
+    return rows
 
 
 def _swatch(sheet: Sheet, name: str, x: float, y: float, width: float) -> list[Mark]:
@@ -387,16 +416,25 @@ def _freest(sheet: Sheet, width: float, room: tuple[float, float]) -> tuple[floa
     first, last = v.left + 8.0 * u, v.right - width - 8.0 * u
     places = [(first, low), ((first + last) / 2, low), (last, low), (first, high), (last, high)]
     places.append((first, max(high - _ROW * u, v.top)))  # beside the last row of the legend
-    return _freest_of(sheet, places, width, height)
+    stays = sheet.placed.get(_SCALE, 0)  # where it was, while that is as free as any
+    best = min(
+        (stays, *(place for place in range(len(places)) if place != stays)),
+        key=lambda place: _hidden(sheet, places[place], width, height),
+    )
+    sheet.scales[_SCALE] = best
+    return places[best]
 
 
 def _freest_of(
     sheet: Sheet, places: list[tuple[float, float]], width: float, height: float
 ) -> tuple[float, float]:
     """Left and top of the first of the places where a box lies on nothing else, if possible, and hides least."""
-    occupancy = sheet.occupancy
-    hides = [(occupancy.is_taken(*at, width, height), occupancy.crossed(*at, width, height)) for at in places]
-    return places[hides.index(min(hides))]
+    return min(places, key=lambda at: _hidden(sheet, at, width, height))
+
+
+def _hidden(sheet: Sheet, at: tuple[float, float], width: float, height: float) -> tuple[bool, int]:
+    """Whether a box lies on something else, and how much it hides."""
+    return sheet.occupancy.is_taken(*at, width, height), sheet.occupancy.crossed(*at, width, height)
 
 
 def _ruler(sheet: Sheet, x: int, y: int, length: int) -> Mark:
@@ -414,41 +452,3 @@ def _displacements(sheet: Sheet) -> list[str]:
     if not _NOISE < largest * sheet.view.camera.scale < sheet.unit:
         return []
     return [f"displacements up to {written.length(largest, 2)}, too small to see; their slider enlarges them"]
-
-
-# --- nothing to see --------------------------------------------------------------------------------
-
-
-def _empty(sheet: Sheet, bottom: float) -> list[Mark]:
-    """A card in the middle that says how to begin."""
-    v, u, theme = sheet.viewport, sheet.unit, sheet.theme
-    title, size = sheet.font(20.0), sheet.font(13.0)
-    steps = [step.split(" ", 1) for step in sheet.view.status.hint.split(BETWEEN) if " " in step]
-    keys = max((text_width(key, size, "semibold") for key, _ in steps), default=0) + 12.0 * u
-    widest = keys + max((text_width(rest, size) for _, rest in steps), default=0)
-    width = min(v.width - 2 * _EDGE * u, max(widest + 64.0 * u, 280.0 * u))
-    emblem = 68.0 * u if v.height >= _SMALL * u else 0.0
-    height = emblem + 62.0 * u + len(steps) * 1.1 * line_height(size)
-    middle, top = v.left + v.width / 2, v.top + (bottom - v.top - height) / 2
-    marks: list[Mark] = [
-        Panel(middle - width / 2, top, width, height, 12.0 * u, theme.background, theme.line),
-        *(_emblem(sheet, middle, top + 24.0 * u) if emblem else []),
-        Text("An empty model", middle, top + emblem + 26.0 * u, title, theme.text, "semibold", "centre"),
-    ]
-    left, y = middle - widest / 2, top + emblem + 58.0 * u
-    for number, (key, rest) in enumerate(steps):
-        at = y + number * 1.1 * line_height(size)
-        marks.append(Text(key, left, at, size, theme.text, "semibold"))
-        marks.append(Text(rest, left + keys, at, size, theme.muted))
-    return marks
-
-
-def _emblem(sheet: Sheet, middle: float, top: float) -> list[Mark]:
-    """Two small triangles of rods."""
-    u, theme = sheet.unit, sheet.theme
-    nodes = np.array([[-36.0, 42.0], [0.0, 42.0], [36.0, 42.0], [-18.0, 6.0], [18.0, 6.0]]) * u + [middle, top]
-    rods = np.array([[0, 1], [1, 2], [0, 3], [3, 1], [1, 4], [4, 2], [3, 4]])
-    return [
-        Strokes(nodes[rods[:, 0]], nodes[rods[:, 1]], 2.0 * u, theme.ghost),
-        Stamps("ring", nodes, 5.0 * u, u, theme.ghost, theme.background),
-    ]

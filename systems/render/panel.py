@@ -10,12 +10,13 @@ from components.form import Form, Reading, Tile
 from components.view import BETWEEN, View
 from systems.render.form_layout import (
     CAPTION,
-    LOW,
+    HINT,
     MESSAGE,
     MESSAGE_LINE,
     PILL,
     FormLayout,
     Place,
+    explanation_type,
     lay_out,
     message_lines,
 )
@@ -100,11 +101,12 @@ class _Writer:
         width, bottom = layout.right - layout.left, v.bottom
         hint = _steps(self.view.status.hint, width, size)
         marks: list[Mark] = [Text(hint, layout.left, bottom - 13.0 * self.unit, size, self.theme.muted)]
-        if v.height >= LOW * self.unit:
+        if layout.explained:
             told, colour = self._explanation()
-            lines = wrapped(told, width, size)
-            for number, line in enumerate(at_most(lines, 2, width, size)):
-                y = bottom - (50.0 - 16.0 * number) * self.unit
+            points, apart = explanation_type(v, self.unit)
+            size = self.font(points)
+            for number, line in enumerate(at_most(wrapped(told, width, size), layout.explained, width, size)):
+                y = bottom - (HINT - 8.0 + apart * (layout.explained - number)) * self.unit
                 marks.append(Text(line, layout.left, y, size, colour))
         return marks
 

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable, Sequence
+
 from components.field import Vector
 from components.form import Form
 from components.model import Model
@@ -9,6 +11,7 @@ from components.toolbar import Toolbar
 from components.view import View
 from systems.render.arrows import draw_loads, draw_velocities
 from systems.render.diagrams import draw_particle_diagrams, draw_rod_diagrams
+from systems.render.empty_card import draw_card, shows_card
 from systems.render.free_bodies import draw_free_bodies
 from systems.render.labels import Placed, place_labels
 from systems.render.marks import Picture
@@ -34,24 +37,50 @@ from systems.render.toolbar import compose_toolbar
 from systems.render.tools import draw_flashes, draw_preview
 from systems.render.utilisation import shade_rods
 
+Stage = tuple[Model | Form | Toolbar, View]  # what is shown, and how
 
-def compose(model: Model | Form | Toolbar, view: View, theme: Theme, placed: Placed | None = None) -> Picture:
+
+def compose_all(
+    stages: Sequence[Stage],
+    theme: Theme,
+    placed: Callable[[Model | Form | Toolbar, View], Placed] | None = None,
+) -> list[Picture]:
+    """The pictures of all stages, in their order; placed: where labels of a stage were.
+
+    Those that depend on others come to know them: legends that explain all, and the toolbar's tip.
+    """
+    pictures: dict[int, Picture] = {}
+    ranks = [2 if isinstance(shown, Toolbar) else int(view.explains_all) for shown, view in stages]
+    for index in sorted(range(len(stages)), key=ranks.__getitem__):
+        where = placed(*stages[index]) if placed is not None else None
+        pictures[index] = compose(*stages[index], theme, where, [*pictures.values()])
+    return [pictures[index] for index in range(len(stages))]
+
+
+def compose(
+    model: Model | Form | Toolbar,
+    view: View,
+    theme: Theme,
+    placed: Placed | None = None,
+    others: Sequence[Picture] = (),
+) -> Picture:
     """The model (or form, or toolbar) as seen in a view, as marks in pixels. Reads it, changes nothing.
 
     Forces are read only where a diagram shows them, yielding only where a rod has a strength, and neither
     before they are known. placed: where labels were in the last picture of this model and view, updated to
-    this one; labels move, come and go as little as possible.
+    this one; labels move, come and go as little as possible. others: pictures beside or below this one, whose
+    colours its legend explains if it does so for all, and which the tip of the toolbar does not cover.
     """
     if isinstance(model, Form):
         return compose_form(model, view, theme)
     if isinstance(model, Toolbar):
-        return compose_toolbar(model, view, theme)
+        return compose_toolbar(model, view, theme, others)
     sheet = measure(model, view, theme, placed)
-    return (
-        _composed(sheet)[0]
-        if view.page is None
-        else Picture(sheet.viewport, theme.background, draw_page(sheet))
-    )
+    if view.page is None:
+        return _composed(sheet)[0]
+    if view.explains_all:
+        sheet.legend = [name for picture in others for name in picture.meanings]
+    return Picture(sheet.viewport, theme.background, draw_page(sheet))
 
 
 def on_status_bar(view: View, pixel: Vector) -> bool:
@@ -108,6 +137,8 @@ def _composed(sheet: Sheet) -> tuple[Picture, list[ShownPanel]]:
     overlays += readouts
     overlays += draw_notice(sheet, room)
     scale = place_scale(sheet, room) if model.particles.count else None
+    if shows_card(model, sheet.view):
+        overlays += draw_card(sheet.view, theme)
     labels = place_labels(sheet.labels, sheet.occupancy, sheet.unit, sheet.placed)
     over = [
         *draw_scale(sheet, scale),
@@ -117,4 +148,5 @@ def _composed(sheet: Sheet) -> tuple[Picture, list[ShownPanel]]:
         *draw_pointed(sheet),
     ]
     sheet.placed |= sheet.scales
-    return Picture(sheet.viewport, theme.background, [*sheet.marks, *labels, *over]), panels
+    marks = [*sheet.marks, *labels, *over]
+    return Picture(sheet.viewport, theme.background, marks, tuple(sheet.legend)), panels

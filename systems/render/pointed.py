@@ -10,13 +10,15 @@ from components.rod import Rod
 from components.tags import Hovered
 from systems.render.clip import bounds, clip_segments
 from systems.render.marks import Mark, Panel, Points, Text
+from systems.render.occupancy import STRONG
 from systems.render.sheet import Sheet
 from systems.render.symbols import SUPPORT_DEPTH
 from systems.render.theme import faded
 from systems.render.typography import line_height, text_width
 
 _PAD, _GAP, _NEAR = 8.0, 14.0, 16.0  # points: inside the box, between columns, to the pointer
-_MOST = 8  # lines
+_ROWS = (8, 2, 1)  # how many are told, where that many find room
+_STEP = 8.0  # points between places that are tried where those beside the pointer are taken
 _AROUND = [(1, 1), (1, -1), (-1, 1), (-1, -1), (0, 1), (0, -1), (1, 0), (-1, 0)]
 
 Box = tuple[float, float, float, float]  # left, top, width, height
@@ -27,13 +29,15 @@ def draw_pointed(sheet: Sheet) -> list[Mark]:
     pointed, handle = sheet.view.pointed, _hovered(sheet)
     if pointed is None or handle is None or sheet.view.preview is not None or sheet.view.help:
         return []
-    u, theme, size, rows = sheet.unit, sheet.theme, sheet.font(12.0), pointed.rows[:_MOST]
-    names = max((text_width(name, size) for name, _ in rows), default=0)
-    values = max((text_width(value, size, "semibold") for _, value in rows), default=0)
-    inner = max(names + _GAP * u + values, text_width(pointed.title, size, "semibold"))
-    line = line_height(size)
-    place = _place(sheet, handle, inner + 2 * _PAD * u, (len(rows) + 1) * line + _PAD * u)
-    if place is None:
+    u, theme, size, line = sheet.unit, sheet.theme, sheet.font(12.0), line_height(sheet.font(12.0))
+    for count in _ROWS:  # fewer where more would cover values
+        rows = pointed.rows[:count]
+        inner = _inner_width(sheet, pointed.title, rows)
+        box = inner + 2 * _PAD * u, (len(rows) + 1) * line + _PAD * u
+        place = _beside(sheet, handle, *box) or _farther(sheet, handle, *box)
+        if place is not None:
+            break
+    else:
         return []
     left, top, width, height = place
     x, y = left + _PAD * u, top + (_PAD * u + line) / 2
@@ -48,6 +52,14 @@ def draw_pointed(sheet: Sheet) -> list[Mark]:
     return marks
 
 
+def _inner_width(sheet: Sheet, title: str, rows: tuple[tuple[str, str], ...]) -> float:
+    """Pixels of the title, or of the widest name beside the widest value."""
+    size = sheet.font(12.0)
+    names = max((text_width(name, size) for name, _ in rows), default=0)
+    values = max((text_width(value, size, "semibold") for _, value in rows), default=0)
+    return max(names + _GAP * sheet.unit + values, text_width(title, size, "semibold"))
+
+
 def _hovered(sheet: Sheet) -> Handle | None:
     for name, table in sheet.model.tables.items():
         for row in sheet.tagged(Hovered, name).tolist():
@@ -56,8 +68,8 @@ def _hovered(sheet: Sheet) -> Handle | None:
     return None
 
 
-def _place(sheet: Sheet, handle: Handle, width: float, height: float) -> Box | None:
-    """The box beside the pointer that covers least, and never the element; None where there is no such place."""
+def _beside(sheet: Sheet, handle: Handle, width: float, height: float) -> Box | None:
+    """The box beside the pointer that covers least, no value and not the element; None where there is no such place."""
     (low, high), pointer = bounds(sheet.viewport), sheet.view.pointer or sheet.view.camera.middle
     best: tuple[float, Box] | None = None
     for rank, (reach, (across, down)) in enumerate((r, way) for r in (1.0, 2.0, 4.0, 7.0) for way in _AROUND):
@@ -69,9 +81,26 @@ def _place(sheet: Sheet, handle: Handle, width: float, height: float) -> Box | N
         if _covers(sheet, handle, (left, top, width, height)):
             continue
         hidden = sheet.occupancy.crossed(left, top, width, height) + 4.0 * rank
-        if best is None or hidden < best[0]:
+        free = not sheet.occupancy.is_taken(left, top, width, height)
+        if free and (best is None or hidden < best[0]):
             best = hidden, (left, top, width, height)
     return best[1] if best is not None else None
+
+
+def _farther(sheet: Sheet, handle: Handle, width: float, height: float) -> Box | None:
+    """The place nearest to the pointer, anywhere in the picture, where a box covers no value, name or panel."""
+    (low, high), pointer = bounds(sheet.viewport), sheet.view.pointer or sheet.view.camera.middle
+    step, size = _STEP * sheet.unit, np.array([width, height])
+    x, y = (np.arange(low[axis], high[axis] - size[axis], step) for axis in (0, 1))
+    corners = np.stack(np.meshgrid(x, y), axis=-1).reshape(-1, 2)
+    sizes = np.broadcast_to(size, corners.shape)
+    corners = corners[sheet.occupancy.are_free(sheet.occupancy.cells_of(corners, sizes), STRONG)]
+    for corner in corners[np.argsort(np.hypot(*(corners + size / 2 - pointer).T), kind="stable")]:
+        box = float(corner[0]), float(corner[1]), width, height
+        beside = not (box[0] <= pointer[0] <= box[0] + width and box[1] <= pointer[1] <= box[1] + height)
+        if beside and not _covers(sheet, handle, box):
+            return box
+    return None
 
 
 def _covers(sheet: Sheet, handle: Handle, box: Box) -> bool:

@@ -14,7 +14,7 @@ from components.toolbar import Toolbar
 from components.view import View
 from systems.base import Phase, System
 from systems.render.labels import Placed
-from systems.render.picture import compose
+from systems.render.picture import compose_all
 from systems.render.pygame_canvas import Canvas
 from systems.render.raster import Raster
 from systems.render.theme import load_theme
@@ -52,9 +52,8 @@ class PygameRender(System):
             theme = load_theme(frame.session.view.theme)
             self._sketch = False
             self._placed = {_looked_at(*stage): self._placed.get(_looked_at(*stage), {}) for stage in stages}
-            for model, view in stages:
-                placed = self._placed[_looked_at(model, view)]
-                self._canvas.draw(self.surface, compose(model, view, theme, placed))
+            for picture in compose_all(stages, theme, lambda *stage: self._placed[_looked_at(*stage)]):
+                self._canvas.draw(self.surface, picture)
                 self._sketch |= self._canvas.sketch
             self._shown = (id(self.surface), looks, _revisions(stages))
 

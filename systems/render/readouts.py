@@ -21,22 +21,21 @@ _PLOT, _LEAST_PLOT = 150.0, 84.0  # points, height of a plot with its axes, and 
 
 @dataclass(frozen=True)
 class ShownPanel:
-    """Where a panel is, and its button that closes it, if it has one. readout: None for those that are folded."""
+    """Where a panel is, or the row of a folded one, and its button that closes it, if it has one."""
 
     place: Rectangle
-    readout: Readout | None = None
+    readout: Readout
     close: Rectangle | None = None
 
     def action_at(self, pixel: Vector) -> str | None:
         """The action of a click at a pixel, if it has one."""
-        on_button = self.close is not None and self.close.contains(pixel)
-        return self.readout.closes if on_button and self.readout is not None else None
+        return self.readout.closes if self.close is not None and self.close.contains(pixel) else None
 
 
 def draw_readouts(sheet: Sheet, room: tuple[float, float]) -> tuple[list[Mark], list[ShownPanel]]:
     """The panels between `room`'s top and bottom, and where they are; none where they are hidden.
 
-    Where room is short, plots are lower, and the oldest panels are folded into one with their titles.
+    Where room is short, plots are lower, and the oldest panels are folded into one with a row for each.
     """
     readouts = sheet.view.readouts if sheet.view.legend else ()
     place, u = sheet.view.panels, sheet.unit
@@ -48,15 +47,17 @@ def draw_readouts(sheet: Sheet, room: tuple[float, float]) -> tuple[list[Mark], 
     marks, shown = list[Mark](), list[ShownPanel]()
     heights = _heights(sheet, readouts, width, bottom - top)
     for index, height in sorted(heights.items()):
-        panel = _placed(sheet, readouts[index], Rectangle(left, top, width, height))
+        middle = top + _PAD * u + _line(sheet) / 2  # of the title's line
+        panel = _with_button(sheet, readouts[index], Rectangle(left, top, width, height), middle)
         marks += _panel(sheet, readouts[index], panel)
         shown.append(panel)
         top += height + _BETWEEN * u
-    folded = _folded(sheet, [r for index, r in enumerate(readouts) if index not in heights], width)
+    folded = [readout for index, readout in enumerate(readouts) if index not in heights]
     if folded:
-        box = left, top, width, _height_of(sheet, folded)
-        marks += _titles(sheet, folded, box)
-        shown.append(ShownPanel(Rectangle(*box)))
+        box = left, top, width, _folded_height(sheet, len(folded))
+        rows = _rows(sheet, folded, box)
+        marks += _titles(sheet, rows, box)
+        shown += rows
     return marks, shown
 
 
@@ -68,8 +69,8 @@ def _heights(sheet: Sheet, readouts: Sequence[Readout], width: float, room: floa
     left = room
     for index in newest:
         height = _height(sheet, readouts[index], width, _LEAST_PLOT)
-        others = [r for other, r in enumerate(readouts) if other != index and other not in shown]
-        folded = _height_of(sheet, _folded(sheet, others, width)) + gap if others else 0.0
+        others = len(readouts) - len(shown) - 1
+        folded = _folded_height(sheet, others) + gap if others else 0.0
         if height + folded <= left:
             shown[index] = height
             left -= height + gap
@@ -81,28 +82,33 @@ def _heights(sheet: Sheet, readouts: Sequence[Readout], width: float, room: floa
     return shown
 
 
-def _folded(sheet: Sheet, readouts: Sequence[Readout], width: float) -> list[str]:
-    """Titles of panels for which there is no room, in lines."""
-    titles = ", ".join(readout.title for readout in readouts)
-    return wrapped(titles, width - 2 * _PAD * sheet.unit, sheet.font(12.0)) if titles else []
+def _folded_height(sheet: Sheet, count: int) -> float:
+    """Height in pixels of a panel with the titles of those for which there is no room."""
+    return count * _line(sheet) + _PAD * sheet.unit
 
 
-def _height_of(sheet: Sheet, lines: Sequence[str]) -> float:
-    return len(lines) * _line(sheet) + _PAD * sheet.unit
+def _rows(sheet: Sheet, folded: Sequence[Readout], box: Box) -> list[ShownPanel]:
+    """A row for each, from edge to edge, with its button."""
+    left, top, width, _ = box
+    rows, line = list[ShownPanel](), _line(sheet)
+    for number, readout in enumerate(folded):
+        y = top + _PAD * sheet.unit / 2 + number * line
+        rows.append(_with_button(sheet, readout, Rectangle(left, y, width, line), y + line / 2))
+    return rows
 
 
-def _titles(sheet: Sheet, lines: Sequence[str], box: Box) -> list[Mark]:
-    """A panel with titles only."""
-    u, theme, (left, top, _, _) = sheet.unit, sheet.theme, box
+def _titles(sheet: Sheet, rows: Sequence[ShownPanel], box: Box) -> list[Mark]:
+    """A panel with the titles of folded ones only."""
+    u, theme, size = sheet.unit, sheet.theme, sheet.font(12.0)
     sheet.occupancy.block(*box)
-    first = top + (_PAD * u + _line(sheet)) / 2
-    return [
-        Panel(*box, 6.0 * u, faded(theme.panel, 0.94), theme.line),
-        *(
-            Text(line, left + _PAD * u, first + number * _line(sheet), sheet.font(12.0), theme.muted)
-            for number, line in enumerate(lines)
-        ),
-    ]
+    marks: list[Mark] = [Panel(*box, 6.0 * u, faded(theme.panel, 0.94), theme.line)]
+    for row in rows:
+        left, right = row.place.left + _PAD * u, row.close.left if row.close else row.place.right
+        room = right - 4.0 * u - left
+        title = shortened(row.readout.title, room, size)
+        marks.append(Text(title, left, row.place.top + row.place.height / 2, size, theme.muted))
+        marks += _closing(sheet, row.close) if row.close else []
+    return marks
 
 
 def _line(sheet: Sheet) -> float:
@@ -137,12 +143,11 @@ def _width(sheet: Sheet, readout: Readout) -> float:
     return max(names + _GAP * u + values, title) + 2 * _PAD * u
 
 
-def _placed(sheet: Sheet, readout: Readout, place: Rectangle) -> ShownPanel:
-    """A panel with its button in the corner, as high as the title with what is above it."""
+def _with_button(sheet: Sheet, readout: Readout, place: Rectangle, middle: float) -> ShownPanel:
+    """A panel with its button at the right end of the line about `middle`, if it can be closed."""
     if not readout.closes:
         return ShownPanel(place, readout)
-    side = _CLOSE * sheet.unit
-    middle = place.top + _PAD * sheet.unit + _line(sheet) / 2
+    side = min(_CLOSE * sheet.unit, place.height)
     close = Rectangle(place.right - side - 3.0 * sheet.unit, middle - side / 2, side, side)
     return ShownPanel(place, readout, close)
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections import Counter
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass, field
+from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
@@ -39,7 +40,7 @@ class Sheet:
     pulled, pushed: rows of the rods that are coloured by their axial force, since they have no room for more.
     shades: rows of rods and the colours that show a quantity of theirs.
     placed: where labels were in the last picture. legend: names of the colours that occur and mean something.
-    notes: scales to be shown. scales: those of arrows in this picture, to be kept in `placed`. values: how many
+    notes: scales to be shown. scales: those of arrows and the place of the scale, to be kept in `placed`. values: how many
     there are to show, by field, if there were room for all.
     """
 
@@ -65,6 +66,11 @@ class Sheet:
     shades: list[tuple[Rows, Colour]] = field(default_factory=list)
     scales: Placed = field(default_factory=dict)
     values: Counter[str] = field(default_factory=Counter)
+
+    @cached_property
+    def rod_length(self) -> float:
+        """The typical length of rods in pixels, as far as they are seen."""
+        return typical_length(self.start, self.end)
 
     @property
     def viewport(self) -> Viewport:

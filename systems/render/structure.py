@@ -13,7 +13,7 @@ from systems.render.clip import bounds, clip_segments
 from systems.render.labels import Label, half_size
 from systems.render.marks import Discs, Fills, Points, Rectangles, Strokes
 from systems.render.occupancy import FAINT, STRONG
-from systems.render.sheet import FEW, MANY, Rows, Sheet, typical_length
+from systems.render.sheet import FEW, MANY, Rows, Sheet
 from systems.render.symbols import LARGEST_STAMP, RIM, arcs, circle, dashed
 from systems.render.theme import Colour, faded
 
@@ -81,7 +81,7 @@ def draw_ghost(sheet: Sheet) -> None:
 def draw_halos(sheet: Sheet) -> None:
     """Neutral halos around selected elements and, lighter, the one that a click would hit; forces keep their colours."""
     theme, u = sheet.theme, sheet.unit
-    around = float(np.clip(_HALO * typical_length(sheet.start, sheet.end), 1.5 * u, 5.0 * u))
+    around = float(np.clip(_HALO * sheet.rod_length, 1.5 * u, 5.0 * u))
     for tag, colour in ((Hovered, theme.hover), (Selected, theme.selected)):
         glow = faded(colour, HALO_OPACITY)
         rods = sheet.chosen(sheet.tagged(tag, "rods"), sheet.rods)
@@ -118,7 +118,7 @@ def draw_rods(sheet: Sheet) -> None:
 
 def _rod_width(sheet: Sheet) -> float:
     """Pixels; less where rods are short."""
-    return float(np.clip(0.12 * typical_length(sheet.start, sheet.end) / sheet.unit, 0.5, 2.5)) * sheet.unit
+    return float(np.clip(0.12 * sheet.rod_length / sheet.unit, 0.5, 2.5)) * sheet.unit
 
 
 def _draw_lines(sheet: Sheet, mask: NDArray[np.bool_] | slice, width: float, colour: Colour) -> None:

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 import numpy as np
 
 from components.toolbar import Button, Toolbar
@@ -16,10 +18,10 @@ _ICON = 0.85  # points for each of the 20 units of an icon's square
 _RADIUS = 5.0  # points, of a button's corners
 
 
-def compose_toolbar(toolbar: Toolbar, view: View, theme: Theme) -> Picture:
-    """The toolbar in its strip of a view; without a background, since it lies over the picture."""
+def compose_toolbar(toolbar: Toolbar, view: View, theme: Theme, below: Sequence[Picture] = ()) -> Picture:
+    """The toolbar in its strip of a view; without a background, since it lies over the pictures below."""
     writer = _Writer(toolbar, view, theme)
-    marks = [*writer.strip(), *draw_help(view, view.canvas, theme), *writer.tip(), *draw_menu(view, theme)]
+    marks = [*writer.strip(), *draw_help(view, view.canvas, theme), *writer.tip(below), *draw_menu(view, theme)]
     return Picture(view.camera.viewport, None, marks)
 
 
@@ -30,9 +32,7 @@ class _Writer:
         self.view, self.theme, self.unit = view, theme, view.pixel_ratio
         shown = view.strip.width > 0
         self.buttons = toolbar.buttons(view.camera.viewport, self.unit) if shown else []
-        pointer = view.pointer
-        under = (button for button in self.buttons if pointer is not None and button.contains(pointer))
-        self.hovered = next(under, None)
+        self.hovered = view.button_at(view.pointer)
 
     def strip(self) -> list[Mark]:
         """The bar with a hairline at its right edge, and its buttons."""
@@ -51,28 +51,64 @@ class _Writer:
         middle = np.array([[button.left + button.width / 2, button.top + button.height / 2]])
         ink = faded(theme.muted, 0.4) if not tool.enabled else theme.focus if tool.pressed else theme.text
         icon = Stamps(tool.icon, middle, _ICON * u, u, ink, ink)
-        if not tool.pressed and not (button is self.hovered and tool.enabled):
+        if not tool.pressed and not (button == self.hovered and tool.enabled):
             return [icon]
         colour = faded(theme.focus, 0.16) if tool.pressed else faded(theme.text, 0.09)
         width, height = button.width - 2 * u, button.height - 2 * u
         return [Panel(button.left + u, button.top + u, width, height, _RADIUS * u, colour), icon]
 
-    def tip(self) -> list[Mark]:
-        """The title and the key of the button under the pointer, beside the button."""
+    def tip(self, below: Sequence[Picture]) -> list[Mark]:
+        """The title and the key of the button under the pointer, near by where they cover nothing that is said."""
         button = self.hovered
-        if button is None or self.view.menu is not None:
+        if button is None or self.view.menu is not None or self.view.pressed is not None:
             return []
         u, theme, size = self.unit, self.theme, font_size(12.0, self.unit)
         title = titled(button.tool)
         key = written_key(button.tool.key) if button.tool.key else ""
         title_width, key_width = text_width(title, size), text_width(key, size, "semibold")
         pad, gap, height = 10.0 * u, 14.0 * u if key else 0.0, line_height(size) + 10.0 * u
-        left, middle = self.view.canvas.left + 6.0 * u, button.top + button.height / 2
-        window = self.view.camera.viewport
-        top = min(max(middle - height / 2, window.top + 2.0 * u), window.bottom - height - 2.0 * u)
-        width, y = title_width + gap + key_width + 2 * pad, top + height / 2
+        width, middle = title_width + gap + key_width + 2 * pad, button.top + button.height / 2
+        left, top = self._free_place(middle - height / 2, width, height, below)
+        y = top + height / 2
         return [
             Panel(left, top, width, height, 6.0 * u, theme.background, theme.line),
             Text(title, left + pad, y, size, theme.text),
             *([Text(key, left + pad + title_width + gap, y, size, theme.muted, "semibold")] if key else []),
         ]
+
+    def _free_place(
+        self, top: float, width: float, height: float, below: Sequence[Picture]
+    ) -> tuple[float, float]:
+        """Left and top of the place nearest to the strip's edge at `top` where a box covers no text and no panel."""
+        u, window, gap = self.unit, self.view.camera.viewport, 2.0 * self.unit
+        lefts = np.arange(self.view.strip.right + 6.0 * u, window.right - width - gap, 12.0 * u)
+        tops = np.arange(window.top + gap, window.bottom - height - gap, 4.0 * u)
+        first = window.left + self.view.strip.width + 6.0 * u
+        nearest = first, min(max(top, window.top + gap), window.bottom - height - gap)
+        places = np.array([nearest, *((x, y) for x in lefts for y in tops)])
+        places = places[np.argsort(np.hypot(*(places - nearest).T), kind="stable")]
+        size = np.array([width, height])
+        said = np.array([_box(mark) for picture in below for mark in picture.marks if _says(mark)])
+        if not len(said):
+            return nearest
+        for box in said:
+            apart = (places <= box[:2] - size - gap) | (places >= box[2:] + gap)
+            if len(places := places[apart.any(axis=1)]) == 0:
+                return nearest
+        left, upper = places[0].tolist()
+        return left, upper
+
+
+def _says(mark: Mark) -> bool:
+    """Whether a mark is a text, or a panel on which something stands."""
+    return isinstance(mark, Text) or (isinstance(mark, Panel) and mark.outline is not None)
+
+
+def _box(mark: Mark) -> tuple[float, float, float, float]:
+    """Left, top, right and bottom of a text or panel."""
+    if isinstance(mark, Panel):
+        return mark.left, mark.top, mark.left + mark.width, mark.top + mark.height
+    assert isinstance(mark, Text)
+    width = text_width(mark.text, mark.size, mark.weight)
+    left = mark.x - {"left": 0.0, "centre": 0.5, "right": 1.0}[mark.anchor] * width
+    return left, mark.y - 0.6 * mark.size, left + width, mark.y + 0.6 * mark.size

@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, fields
+from dataclasses import asdict, dataclass, fields
 
 import numpy as np
 
 from components.field import Column
+from components.rod import bends
 from components.snapshot import Snapshot
 from systems.base import REVIEW_INTERVAL
 from systems.entries import SMALLEST_ENERGY
@@ -16,6 +17,7 @@ from systems.run.simulation import STUCK, Simulation
 
 FINER_TOLERANCE = 1e-2  # of the run's, by which it is taken again where the error is controlled
 FINEST_TOLERANCE = 1e-13
+OF_BENDING = "rotation", "bending_moment"
 PIECES = 64  # parts of a run at whose ends the quantities are compared
 MOST_CREATED = 10.0  # of all energy supplied; Verlet creates 4 times as much at 0.9 of its stable step
 MOST_LOST = 0.25  # of it; more: finer steps lose much, too, and agree on what is wrong
@@ -28,7 +30,8 @@ class MeasuredError:
     """Of the state that a run has reached.
 
     displacement, velocity, axial_force: the largest of any particle or rod (m, m/s, kN). relative,
-    relative_velocity, relative_axial_force: the same to the largest that was seen of all in the run.
+    relative_velocity, relative_axial_force: the same to the largest that was seen of all in the run. Likewise rotation (rad)
+    and bending_moment (kN·m), 0 where nothing bends.
     """
 
     displacement: float
@@ -37,6 +40,14 @@ class MeasuredError:
     relative_velocity: float
     axial_force: float
     relative_axial_force: float
+    rotation: float
+    relative_rotation: float
+    bending_moment: float
+    relative_bending_moment: float
+
+    def record(self, *, bent: bool) -> dict[str, float]:
+        """As plain data, without what only members that bend have if there are none."""
+        return {key: value for key, value in asdict(self).items() if bent or not key.endswith(OF_BENDING)}
 
 
 def work(simulation: Simulation) -> int:
@@ -85,27 +96,36 @@ def measure_error(simulation: Simulation, beginning: Snapshot) -> MeasuredError 
 
 @dataclass(frozen=True)
 class _Quantities:
-    """What is compared: of all particles (n, 2) in m and m/s, and of all rods (n,) in kN."""
+    """What is compared: of all particles (n, 2) in m and m/s, of all rods (n,) in kN, and of what bends in rad and kN·m."""
 
     displacement: Column
     velocity: Column
     axial_force: Column
+    rotation: Column
+    bending_moment: Column
 
     @classmethod
     def of(cls, program: Program) -> _Quantities:
         """Those of the present state."""
         program.observe()
         particles, rods = program.model.particles, program.model.rods
-        return cls(particles.displacement.copy(), particles.velocity.copy(), rods.axial_force.copy())
+        bent = particles.rotation, rods.bending_moment if bends(program.model) else np.zeros(0)
+        return cls(
+            particles.displacement.copy(),
+            particles.velocity.copy(),
+            rods.axial_force.copy(),
+            *(column.copy() for column in bent),
+        )
 
     def __sub__(self, other: _Quantities) -> _Quantities:
         return _Quantities(*(getattr(self, f.name) - getattr(other, f.name) for f in fields(self)))
 
     @property
     def sizes(self) -> Column:
-        """The largest of any particle or rod, shape (3,)."""
-        lengths = (np.hypot(*self.displacement.T), np.hypot(*self.velocity.T), np.abs(self.axial_force))
-        return np.array([length.max(initial=0.0) for length in lengths])
+        """The largest of any particle or rod, shape (5,)."""
+        lengths = (np.hypot(*self.displacement.T), np.hypot(*self.velocity.T))
+        sizes = map(np.abs, (self.axial_force, self.rotation, self.bending_moment))
+        return np.array([length.max(initial=0.0) for length in (*lengths, *sizes)])
 
 
 def _by_tolerance(program: Program, target: float) -> Column:
@@ -151,4 +171,4 @@ def _pieces(program: Program, target: float) -> Column:
     return largest
 
 
-_UNKNOWN = np.full(3, math.nan)
+_UNKNOWN = np.full(len(fields(_Quantities)), math.nan)

@@ -83,7 +83,7 @@ class Discs:
 
     def beside(self, structure: Structure) -> Structure:
         """A structure with the obstacles added as held particles."""
-        still = np.zeros((len(self.obstacles), 2))
+        still = np.zeros((len(self.obstacles), structure.width))
         return replace(
             structure,
             position=self.start,
@@ -101,7 +101,7 @@ class Discs:
 
     def _place(self, displacement: Array) -> Array:
         place = self.start.copy()
-        place[: len(displacement)] += displacement
+        place[: len(displacement)] += displacement[:, :2]
         return place
 
     def lines(self, displacement: Array, pairs: Rows) -> Array:
@@ -169,14 +169,16 @@ class Sinking:
     lengthened (k,): the share by which contacts are longer than the sum of their radii.
     """
 
-    def __init__(self, structure: Structure, discs: Discs, load: Array, start: Point) -> None:
-        scale = largest(load) or 1.0
+    def __init__(self, structure: Structure, discs: Discs, load: Array, start: Point, share: float) -> None:
+        scale = structure.largest(load) or 1.0
         own = scale / CONTACT_STRAIN * discs.is_alone / np.where(discs.is_alone, discs.radius, 1.0)
-        self.bare = replace(structure, unknown=discs.movable, own_weight=own)
+        unknown = np.column_stack([discs.movable, structure.unknown[:, 2:]])
+        self.bare = replace(structure, unknown=unknown, own_weight=own)
         self.discs, self.load, self.stiffness = discs, load, scale / CONTACT_STRAIN
         self.pairs, self.lengthened = np.zeros((0, 2), dtype=np.intp), np.zeros(0)
         self.way, self.axis, self.flat = discs.axes(start.displacement, self.pairs)
-        self.path = Path(self.bare, load, np.zeros_like(load))
+        self.shares = share, share
+        self.path = Path(self.bare, load, np.zeros_like(load), self.shares)
         self.point, self.rods = start, slice(len(structure.ends))
 
     def run(self) -> str:
@@ -205,7 +207,7 @@ class Sinking:
             if crept is None:
                 break
             penalty = crept
-            if largest(self.point.displacement) > RUNAWAY * self.bare.extent:
+            if largest(self.point.displacement[:, :2]) > RUNAWAY * self.bare.extent:
                 return "falls"
         return "gave up"
 
@@ -233,7 +235,7 @@ class Sinking:
         self.lengthened = lengthened
         plastic_strain = np.zeros(self.rods.stop + len(lengthened))
         plastic_strain[self.rods] = self.point.plastic_strain[self.rods]
-        self.path = Path(self._with_contacts(), self.load, np.zeros_like(self.load))
+        self.path = Path(self._with_contacts(), self.load, np.zeros_like(self.load), self.shares)
         start = self.path.start(self.point.displacement, plastic_strain)
         self.point = replace(start, dissipated=self.point.dissipated)
 
@@ -255,6 +257,7 @@ class Sinking:
             compression_limit=np.concatenate([bare.compression_limit, unlimited]),
             sense=np.concatenate([bare.sense, np.full(len(reach), -1.0)]),
             flat=np.concatenate([bare.flat, self.flat]),
+            bending=None if bare.bending is None else bare.bending.with_bars(reach),
         )
 
     def _pressed(self) -> Flags:
@@ -271,16 +274,17 @@ class Sinking:
         """Go to the equilibrium nearby, if there is one: "equilibrium" or "unstable", else ""."""
         borne = np.zeros(len(self.discs.radius), dtype=bool)
         borne[self.pairs[self._pressed()]] = True
-        pulled = self.discs.is_alone & (self.discs.movable & (self.load != 0.0)).any(axis=1)
+        pulled = self.discs.is_alone & (self.discs.movable & (self.load[:, :2] != 0.0)).any(axis=1)
         if (pulled & ~borne).any():
             return ""
-        if largest(self._residual()) > NEAR_REST * self.path.scale:
+        structure = self.path.structure
+        if structure.greatest(self._residual()) > NEAR_REST * self.path.scale:
             return ""
         found = self.path.correct(self.point, self.point.displacement, 0.0, None)
-        if found is None or (np.hypot(*(found.displacement - self.point.displacement).T) > moves).any():
+        if found is None or (_travel(found.displacement, self.point.displacement) > moves).any():
             return ""
-        stable = is_stable(self.path.structure, found.response)
-        if not stable and largest(self._residual()) > BALANCED * self.path.scale:
+        stable = is_stable(structure, found.response)
+        if not stable and structure.greatest(self._residual()) > BALANCED * self.path.scale:
             return ""
         self.point = found
         return "equilibrium" if stable else "unstable"
@@ -297,16 +301,22 @@ class Sinking:
         residual, structure, start = self._residual(), self.path.structure, self.point.displacement
         if penalty == 0.0:
             pace = structure.spread(residual / structure.weight)
-            penalty = float((np.hypot(*pace.T) / moves).max(initial=0.0))
+            penalty = float((np.hypot(*pace[:, :2].T) / moves).max(initial=0.0))
         penalty = max(penalty, SMALLEST_PENALTY)
         crept = creep(
             self.path,
             self.point,
             residual,
             penalty,
-            lambda to: float((np.hypot(*(to - start).T) / moves).max()),
+            lambda to: float((_travel(to, start) / moves).max()),
         )
         if crept is None:
             return None
         self.point, penalty = crept
         return penalty
+
+
+def _travel(displacement: Array, start: Array) -> Array:
+    """How far each body has moved between two fields of displacements (m), (N,)."""
+    far: Array = np.hypot(*(displacement - start)[:, :2].T)
+    return far

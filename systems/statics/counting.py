@@ -1,36 +1,55 @@
-"""Counting: the degree of indeterminacy g = m + r − 2n by Maxwell's rule, with its numbers, and what the rank says."""
+"""Counting: the degree of indeterminacy by hand, with its numbers, and what the rank says.
+
+Of trusses by Maxwell's rule, g = m + r − 2n; where members bend, by g = 3m + r − 3n − h.
+"""
 
 from __future__ import annotations
 
 from dataclasses import dataclass
 
-from components.model import Model
-from components.rod import nodes
+import numpy as np
 
-FORMULA = "g = m + r − 2n"
+from components.model import Model
+from components.rod import bends, nodes
+from components.table import flags
 
 
 @dataclass(frozen=True)
 class Count:
-    """What Maxwell's rule counts: m rods, r constraints of their nodes, and n nodes.
+    """What is counted by hand: m rods, r constraints of their nodes, n nodes, and where members bend h hinges.
 
     g is the number of states of self-stress less that of mechanisms: the degree of static indeterminacy where there
     are no mechanisms, which only the rank of the compatibility matrix tells.
+
+    hinges: releases. A joint of which all rod ends are hinged counts as one of them less: one may be thought rigid. None
+    in a truss, all joints of which are such, so that the formula is shorter.
     """
 
     rods: int
     constraints: int
     nodes: int
+    hinges: int | None = None
+
+    @property
+    def formula(self) -> str:
+        """The rule in symbols."""
+        return "g = m + r − 2n" if self.hinges is None else "g = 3m + r − 3n − h"
 
     @property
     def degree(self) -> int:
         """g."""
-        return self.rods + self.constraints - 2 * self.nodes
+        if self.hinges is None:
+            return self.rods + self.constraints - 2 * self.nodes
+        return 3 * self.rods + self.constraints - 3 * self.nodes - self.hinges
 
     @property
     def numbers(self) -> str:
         """The right side of the formula with the numbers filled in, and its value."""
-        return f"{self.rods} + {self.constraints} − 2·{self.nodes} = {self.degree}".replace("-", "−")
+        if self.hinges is None:
+            filled = f"{self.rods} + {self.constraints} − 2·{self.nodes}"
+        else:
+            filled = f"3·{self.rods} + {self.constraints} − 3·{self.nodes} − {self.hinges}"
+        return f"{filled} = {self.degree}".replace("-", "−")
 
     def by_rank(self, static: int, mechanisms: int) -> str:
         """What the rank says beside it, "" where the rule tells it all: there are no mechanisms."""
@@ -41,6 +60,12 @@ class Count:
 
 
 def counted(model: Model) -> Count:
-    """The rods, constraints and nodes of a model; particles without rods are no nodes."""
-    used = nodes(model)
-    return Count(model.rods.count, int(model.particles.fixed[used].sum()), int(used.sum()))
+    """The rods, constraints and nodes of a model, and its hinges if it bends; particles without rods are no nodes."""
+    particles, rods, used = model.particles, model.rods, nodes(model)
+    constraints = int(particles.fixed[used].sum())
+    if not bends(model):
+        return Count(rods.count, constraints, int(used.sum()))
+    rigid = rods.turning_shares > 0.0
+    turns = flags(rods.between[rigid], particles.count)
+    hinges = int(np.count_nonzero(~rigid)) - int((used & ~turns).sum())
+    return Count(rods.count, constraints + int(particles.fixed_rotation[turns].sum()), int(used.sum()), hinges)

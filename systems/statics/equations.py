@@ -1,7 +1,10 @@
-"""Equilibrium equations of pin-jointed rods in exact geometry, as functions of the displacements.
+"""Equilibrium equations of rods in exact geometry, as functions of the displacements of their particles.
 
 The unknowns are the displacements of particles with rods in their free directions: a vector of shape (N,),
 or a field (n, 2) over all particles. Lengths in m, forces in kN.
+
+Where members bend, fields are (n, 3): the third coordinate of a particle is the rotation (rad) of its rigid rod ends, and
+what acts along it a moment (kN·m). What is called displacement or force here has three then.
 """
 
 from __future__ import annotations
@@ -13,10 +16,11 @@ from typing import TYPE_CHECKING, TypeAlias, Union
 import numpy as np
 from numpy.typing import NDArray
 
-from components.field import FieldError
 from components.model import Model
 from components.rod import bends
+from components.table import flags
 from systems.islands import lowest_joined
+from systems.statics.bending import Bending, Bent
 
 if TYPE_CHECKING:  # only large structures need it
     from scipy.sparse import csc_matrix
@@ -29,17 +33,9 @@ Matrix: TypeAlias = Union[Array, "csc_matrix"]  # full up to DENSE unknowns, els
 SYMMETRIC = {"SymmetricMode": True}  # pivots on the diagonal
 DENSE = 100  # unknowns up to which full matrices are faster
 
+TURNS_ONLY = 1e-9  # m/rad: a motion that shifts particles by less is one of rotations
 AT_LIMIT = 1e-10  # share of its strength within which a rod counts as yielding
 ROUND_OFF = float(np.finfo(np.float64).eps)
-
-
-def refuse_bending(model: Model) -> None:
-    """Raise FieldError if members bend, which statics does not know yet."""
-    if bends(model):
-        named = model.describe(model.rods[int(np.flatnonzero(model.rods.turning_shares.any(axis=1))[0])])
-        raise FieldError(
-            f"Statics computes bars only, but {named} bends. Run the model until rest, or set the bending stiffness to 0."
-        )
 
 
 def largest(values: Array) -> float:
@@ -48,8 +44,11 @@ def largest(values: Array) -> float:
 
 
 def normalised(motion: Array) -> Array:
-    """A motion (n, 2) scaled so that the particle that moves most moves by 1."""
-    scaled: Array = motion / np.hypot(*motion.T).max()
+    """A motion (n, 2 or 3) scaled so that the particle that moves most moves by 1; one of rotations, turns by 1."""
+    size = np.hypot(*motion[:, :2].T).max()
+    if motion.shape[1] > 2 and size <= TURNS_ONLY * np.abs(motion[:, 2]).max():
+        size = np.abs(motion[:, 2]).max()
+    scaled: Array = motion / size
     return scaled
 
 
@@ -59,7 +58,8 @@ class Response:
 
     elastic_force: the trial force, before yielding. plastic_strain: after yielding. axis: unit vectors from
     first to second end, (rods, 2). flowing: rods that yield now. slack: one-sided rods without force.
-    round_off: what rounding alone makes of elastic_force (kN).
+    round_off: what rounding alone makes of elastic_force (kN). elongation: of the axis, which may bow. bent: how
+    members bend; None where none do. share: of the distributed forces that acts.
     """
 
     elongation: Array
@@ -72,6 +72,8 @@ class Response:
     flowing: Flags
     slack: Flags
     round_off: Array
+    bent: Bent | None = None
+    share: float = 0.0
 
     @property
     def soft(self) -> Flags:
@@ -111,12 +113,14 @@ class Structure:
 
     ends: rows of the particles at both ends, (rods, 2). difference: between their original positions.
     unknown: the free directions that are solved for, (n, 2): those of particles with rods, less one of
-        every body that nothing holds along an axis (its translation is arbitrary).
+        every body that nothing holds along an axis (its translation is arbitrary). Where members bend,
+        (n, 3) with the rotations of particles with rigid rod ends, as `fixed` with their clamps.
     body: number of the connected body of each particle, (n,).
     sense: 1 for cables (tension only), −1 for contacts (compression only), else 0.
     own_weight: stiffness added to that of its rods in the `weight` of a particle (kN/m), (n,).
     flat: rods whose axis keeps its direction, such as contacts with a straight side.
     linear: first-order theory: elongations and equilibrium about the original positions.
+    bending: of the rods; None where none bends.
     """
 
     position: Array
@@ -135,21 +139,21 @@ class Structure:
     own_weight: Array
     flat: Flags
     linear: bool
+    bending: Bending | None = None
 
     @classmethod
     def of(cls, model: Model, geometry: str = "exact") -> Structure:
-        """The structure of a model in "exact" or "linear" geometry; without plasticity no rod yields.
-
-        Raises FieldError if members bend.
-        """
+        """The structure of a model in "exact" or "linear" geometry; without plasticity no rod yields."""
         if geometry not in ("exact", "linear"):
             raise ValueError(f"Geometry is '{geometry}'; it must be 'exact' or 'linear'.")
-        refuse_bending(model)
         particles, rods = model.particles, model.rods
         yields = bool(model.settings.plasticity)
         ends = rods.between.astype(np.intp)
         body = _bodies(particles.count, ends)
         fixed = particles.fixed.copy()
+        bending = Bending.of(model, bows=geometry == "exact") if bends(model) else None
+        if bending is not None:
+            fixed = np.column_stack([fixed, particles.fixed_rotation])
         return cls(
             position=particles.position.copy(),
             ends=ends,
@@ -162,16 +166,17 @@ class Structure:
             compression_limit=rods.compression_limit.copy() if yields else np.full(rods.count, np.inf),
             sense=rods.tension_only.astype(np.float64),
             fixed=fixed,
-            unknown=_held_by_rods(particles.count, ends) & ~fixed & ~_arbitrary(fixed, body),
+            unknown=_held_by_rods(particles.count, ends, bending) & ~fixed & ~_arbitrary(fixed, body),
             body=body,
             own_weight=np.zeros(particles.count),
             flat=np.zeros(rods.count, dtype=bool),
             linear=geometry == "linear",
+            bending=bending,
         )
 
     def with_translations(self) -> Structure:
         """The same structure with the arbitrary translations of free bodies among the unknowns."""
-        return replace(self, unknown=_held_by_rods(len(self.position), self.ends) & ~self.fixed)
+        return replace(self, unknown=_held_by_rods(len(self.position), self.ends, self.bending) & ~self.fixed)
 
     # --- unknowns ----------------------------------------------------------------------------------
 
@@ -184,8 +189,8 @@ class Structure:
         from scipy.sparse import csc_matrix, identity
         from scipy.sparse.linalg import splu
 
-        links = compatibility(self.ends, np.ones((len(self.ends), 2)), len(self.position))[:, index]
-        pattern = csc_matrix(abs(links).T @ abs(links) + identity(len(index)))
+        links = _by_ends(np.ones((len(self.ends), 2 * self.width)), self.ends, len(self.position))[:, index]
+        pattern = csc_matrix(links.T @ links + identity(len(index)))
         order = splu(pattern, permc_spec="MMD_AT_PLUS_A", diag_pivot_thresh=0.0, options=SYMMETRIC).perm_c
         return index[np.argsort(order)]
 
@@ -193,6 +198,60 @@ class Structure:
     def size(self) -> int:
         """The number of unknowns N."""
         return len(self.index)
+
+    @property
+    def width(self) -> int:
+        """Coordinates of a particle: 2, or 3 where members bend."""
+        return int(self.unknown.shape[1])
+
+    def field(self, displacement: Array, rotation: Array) -> Array:
+        """Displacements (n, 2) and rotations (n,) as one field; particles without rigid rod ends have no rotation."""
+        if self.bending is None:
+            return displacement
+        rigid = flags(self.ends[self.bending.rigid], len(rotation))
+        return np.column_stack([displacement, np.where(rigid, rotation, 0.0)])
+
+    def rotation(self, field: Array) -> Array:
+        """The rotations (or moments) in a field (n,); zeros where nothing bends."""
+        return field[:, 2] if self.bending is not None else np.zeros(len(field))
+
+    def end_moments(self, response: Response) -> Array:
+        """Moments on the ends of all rods, (rods, 2)."""
+        return response.bent.moment if response.bent is not None else np.zeros(self.ends.shape)
+
+    @cached_property
+    def lever(self) -> Array:
+        """What forces in a field are multiplied by where they are compared, (n, 2), or (n, 3): moments, by 1/the shortest
+        rod (1/m) at the particle."""
+        lever = np.ones(self.unknown.shape)
+        if self.bending is not None:
+            shortest = np.full(len(self.position), np.inf)
+            np.minimum.at(shortest, self.ends, self.rest_length[:, None])
+            lever[:, 2] = 1.0 / shortest
+        return lever
+
+    @cached_property
+    def measure(self) -> Array:
+        """What unknowns are multiplied by where they are compared, (N,): rotations, by the mean length (m) of what bends."""
+        measure = np.ones(self.unknown.shape)
+        if self.bending is not None:
+            measure[:, 2] = self.rest_length[self.bending.rigid.any(axis=1)].mean()
+        return self.gather(measure)
+
+    def largest(self, field: Array) -> float:
+        """The largest force (kN) in a field of forces, moments counting by their levers."""
+        return largest(field) if self.bending is None else largest(field * self.lever)
+
+    def largest_force(self, response: Response) -> float:
+        """The largest axial force (kN) of a rod, or end moment over its rest length."""
+        pulled = largest(response.axial_force)
+        if response.bent is None:
+            return pulled
+        return max(pulled, largest(response.bent.moment / self.rest_length[:, None]))
+
+    def greatest(self, vector: Array) -> float:
+        """The same of the unknowns' forces."""
+        return largest(vector) if self.bending is None else largest(vector * self.gather(self.lever))
 
     def gather(self, field: Array) -> Array:
         """The unknowns in a field."""
@@ -212,19 +271,36 @@ class Structure:
 
     def relative(self, field: Array) -> Array:
         """Second end minus first end of every rod, (rods, 2)."""
-        return field[self.ends[:, 1]] - field[self.ends[:, 0]]
+        return field[self.ends[:, 1], :2] - field[self.ends[:, 0], :2]
 
-    def move(self, vector: Array, reach: Array) -> float:
-        """The largest change of a rod, in length or direction, relative to its reach."""
-        change = np.hypot(*self.relative(self.spread(vector)).T)
+    def turns(self, field: Array) -> Array:
+        """The rotations at both ends of every rod, (rods, 2)."""
+        turns: Array = field[self.ends, 2]
+        return turns
+
+    def move(self, vector: Array, response: Response) -> float:
+        """The largest change of a rod, in length or direction relative to its reach, or of the slope of an end."""
+        field = self.spread(vector)
+        change, reach = np.hypot(*self.relative(field).T), response.reach
         moved = change > 0.0
         with np.errstate(divide="ignore"):  # the ends may be at the same place, as yet
-            return float((change[moved] / reach[moved]).max(initial=0.0))
+            largest_move = float((change[moved] / reach[moved]).max(initial=0.0))
+        if self.bending is None:
+            return largest_move
+        return max(largest_move, largest(self.slope_rates(field, response)))
 
     def elongation_rate(self, vector: Array, response: Response) -> Array:
-        """Rate of elongation of every rod when the unknowns change at this rate."""
-        rate: Array = (self.relative(self.spread(vector)) * response.axis).sum(axis=1)
+        """Rate of elongation of the axis of every rod when the unknowns change at this rate."""
+        field = self.spread(vector)
+        rate: Array = (self.relative(field) * response.axis).sum(axis=1)
+        if response.bent is not None:
+            rate += (response.bent.bowed * self.slope_rates(field, response)).sum(axis=1)
         return rate
+
+    def slope_rates(self, field: Array, response: Response) -> Array:
+        """Rates of the slopes of the rods' ends, (rods, 2), when all particles move at these rates."""
+        assert self.bending is not None
+        return self.bending.slope_rates(self.relative(field), self.turns(field), response.axis, response.length)
 
     @cached_property
     def original_axis(self) -> Array:
@@ -240,10 +316,17 @@ class Structure:
 
     @cached_property
     def weight(self) -> Array:
-        """Sum of EA/L₀ of the rods at each unknown's particle (kN/m), the scale of its stiffness, (N,)."""
+        """Sum of EA/L₀ of the rods at each unknown's particle (kN/m), the scale of its stiffness, (N,).
+
+        Of rotations, of what rigid ends there resist (kN·m).
+        """
         per_rod = self.stiffness / self.rest_length
         total = np.bincount(self.ends.ravel(), np.repeat(per_rod, 2), len(self.position)).astype(np.float64)
-        return self.gather(np.repeat(total + self.own_weight, 2).reshape(-1, 2))
+        weight = np.repeat(total + self.own_weight, 2).reshape(-1, 2)
+        if self.bending is not None:
+            of_ends = self.bending.end_stiffness[:, ::2].ravel()
+            weight = np.column_stack([weight, np.bincount(self.ends.ravel(), of_ends, len(weight))])
+        return self.gather(weight)
 
     # --- forces --------------------------------------------------------------------------------------
 
@@ -257,15 +340,25 @@ class Structure:
         """The tangent at the original positions, without axial forces and with taut cables."""
         return self.tangent(self.unmoved, np.zeros(len(self.ends), dtype=bool), geometric=False)
 
-    def respond(self, displacement: Array, plastic_strain: Array) -> Response:
-        """Axial forces N = EA (ε − ε_p), ε = (L − L₀)/L₀, limited by yielding; both limits move with ε_p."""
-        stretch, axis, length = self._stretch(self.relative(displacement))
+    def respond(self, displacement: Array, plastic_strain: Array, share: float = 0.0) -> Response:
+        """Axial forces N = EA (ε − ε_p), ε = (L − L₀)/L₀, limited by yielding; both limits move with ε_p.
+
+        share: of the distributed forces that acts between the ends.
+        """
+        change = self.relative(displacement)
+        stretch, axis, length = self._stretch(change)
         elongation = stretch + self.misfit
+        if self.bending is not None:
+            slopes = self._slopes(displacement)
+            elongation = elongation + self.bending.bow(slopes)[1]
         strain = elongation / self.rest_length
         elastic = self.stiffness * (strain - plastic_strain)
         slack = self.sense * elastic < 0.0
         force = np.where(slack, 0.0, np.clip(elastic, -self.compression_limit, self.tension_limit))
         flowing = (force != elastic) & ~slack
+        bent = None
+        if self.bending is not None:
+            bent = self.bending.bent(slopes, force, axis, length, share, couples=not self.linear)
         return Response(
             elongation=elongation,
             strain=strain,
@@ -276,14 +369,39 @@ class Structure:
             plastic_strain=np.where(flowing, strain - force / self.stiffness, plastic_strain),
             flowing=flowing,
             slack=slack,
-            round_off=self._round_off_of_forces(displacement, plastic_strain),
+            round_off=self._round_off_of_forces(displacement, plastic_strain, bent),
+            bent=bent,
+            share=share,
         )
 
-    def _round_off_of_forces(self, displacement: Array, plastic_strain: Array) -> Array:
+    def chords(self, displacement: Array) -> Array:
+        """How far the chords of rods have turned: atan2(D × Δ, D · (D + Δ)), and full turns if they bend; (rods,)."""
+        difference, change = self.difference, self.relative(displacement)
+        sine = difference[:, 0] * change[:, 1] - difference[:, 1] * change[:, 0]
+        if self.linear:
+            squared: Array = np.where(self.original_length > 0.0, self.original_length, np.inf) ** 2
+            return sine / squared
+        cosine = (difference * (difference + change)).sum(axis=1)
+        chord = np.arctan2(sine, cosine)
+        return chord if self.bending is None else self.bending.with_full_turns(chord, self.turns(displacement))
+
+    def _slopes(self, displacement: Array) -> Array:
+        """Slopes of the rigid ends to the chord, (rods, 2)."""
+        assert self.bending is not None
+        turned = self.turns(displacement) - self.chords(displacement)[:, None]
+        return np.where(self.bending.rigid, turned, 0.0)
+
+    def _round_off_of_forces(self, displacement: Array, plastic_strain: Array, bent: Bent | None) -> Array:
         """By the sizes of what elastic strains are sums of, which may cancel: displacements, misfits, plastic strains."""
-        moved = np.abs(displacement).sum(axis=1)
+        moved = np.abs(displacement[:, :2]).sum(axis=1)
         summed = (moved[self.ends].sum(axis=1) + np.abs(self.misfit)) / self.rest_length
         round_off: Array = 4.0 * ROUND_OFF * self.stiffness * (summed + np.abs(plastic_strain))
+        return round_off if bent is None else round_off + self._round_off_of_bows(displacement, bent)
+
+    def _round_off_of_bows(self, displacement: Array, bent: Bent) -> Array:
+        """What rounding of the rotations makes of the axial forces of rods that bow (kN)."""
+        bows = (np.abs(bent.bowed) * np.abs(self.turns(displacement))).sum(axis=1)
+        round_off: Array = 4.0 * ROUND_OFF * self.stiffness / self.rest_length * bows
         return round_off
 
     def _stretch(self, change: Array) -> tuple[Array, Array, Array]:
@@ -308,17 +426,45 @@ class Structure:
         return stretch, axis, length
 
     def internal(self, response: Response) -> Array:
-        """Forces (n, 2) that hold the particles against the rods' pull."""
-        return self.scatter(response.axial_force[:, None] * response.axis)
+        """Forces (n, 2), or (n, 3), that hold the particles against the rods and what acts between their ends."""
+        pull = response.axial_force[:, None] * response.axis
+        if response.bent is None:
+            return self.scatter(pull)
+        return self._sheared(response, pull, response.bent.moment, response.bent.shear)
 
-    def scatter(self, pull: Array) -> Array:
-        """Forces (n, 2): each rod's vector on its second end, its opposite on the first."""
+    def resistance(self, field: Array) -> Array:
+        """Forces that hold the particles at small displacements from the original positions, by first-order theory."""
+        response = self.unmoved
+        stretched = (self.relative(field) * response.axis).sum(axis=1)
+        pull = (self.stiffness / self.rest_length * stretched)[:, None] * response.axis
+        if self.bending is None:
+            return self.scatter(pull)
+        moment, length = self.bending.moments(self.slope_rates(field, response)), response.length
+        return self._sheared(
+            response, pull, moment, moment.sum(axis=1) / np.where(length > 0.0, length, np.inf)
+        )
+
+    def carried(self, response: Response) -> Array:
+        """What the whole distributed forces would add to the particles' forces, besides halves of them on both ends."""
+        if self.bending is None or response.bent is None:
+            return np.zeros(self.unknown.shape)
+        moment, shear = self.bending.carried(response.bent, response.axis, response.length, not self.linear)
+        return -self._sheared(response, np.zeros_like(response.axis), moment, shear)
+
+    def _sheared(self, response: Response, pull: Array, moment: Array, shear: Array) -> Array:
+        left = np.column_stack([-response.axis[:, 1], response.axis[:, 0]])
+        return self.scatter(pull - shear[:, None] * left, moment)
+
+    def scatter(self, pull: Array, moment: Array | None = None) -> Array:
+        """Forces (n, 2): each rod's vector on its second end, its opposite on the first; with moments (rods, 2), (n, 3)."""
         count = len(self.position)
         first, second = self.ends[:, 0], self.ends[:, 1]
-        field = np.empty((count, 2))
+        field = np.zeros(self.unknown.shape)
         for axis in range(2):
             field[:, axis] = np.bincount(second, pull[:, axis], count)
             field[:, axis] -= np.bincount(first, pull[:, axis], count)
+        if moment is not None:
+            field[:, 2] = np.bincount(self.ends.ravel(), moment.ravel(), count)
         return field
 
     def at_limit(self, response: Response) -> Flags:
@@ -345,30 +491,42 @@ class Structure:
             verge=verge,
         )
 
-    def round_off(self, displacement: Array) -> float:
+    def round_off(self, displacement: Array, response: Response) -> float:
         """The residual (kN) that rounding of the displacements alone causes."""
         size = np.abs(self.gather(displacement))
-        return 2.0 * ROUND_OFF * float((self.weight * size).max(initial=0.0))
+        pulled = 2.0 * ROUND_OFF * self.greatest(self.weight * size)
+        return (
+            pulled
+            if response.bent is None
+            else max(pulled, largest(self._round_off_of_bows(displacement, response.bent)))
+        )
 
     # --- tangent -------------------------------------------------------------------------------------
 
     def tangent(self, response: Response, soft: Flags, *, geometric: bool = True) -> Matrix:
-        """dF/du over the unknowns: Σ EA/L₀ a aᵀ (not of soft rods) + Σ N/L (1 − a aᵀ)."""
+        """dF/du over the unknowns: Σ EA/L₀ a aᵀ (not of soft rods) + Σ N/L (1 − a aᵀ), and what bending adds."""
         along = np.where(soft, 0.0, self.stiffness / self.rest_length)
         across = np.zeros_like(along)
-        if geometric and not self.linear:
+        geometric = geometric and not self.linear
+        if geometric:
             length = np.where(self.flat, np.inf, response.length)
             across = np.where(length > 0.0, response.axial_force / np.where(length > 0.0, length, 1.0), 0.0)
         a = response.axis
         block = (along - across)[:, None, None] * (a[:, :, None] * a[:, None, :])
         block[:, 0, 0] += across
         block[:, 1, 1] += across
-        return self._assembled(block)
-
-    def _assembled(self, block: Array) -> Matrix:
-        """Sum of the rods' 2 × 2 blocks: + at its ends, − between them."""
         signs = np.array([[1.0, -1.0], [-1.0, 1.0]])
-        parts = (signs[None, :, None, :, None] * block[:, None, :, None, :]).ravel()
+        parts = signs[None, :, None, :, None] * block[:, None, :, None, :]
+        if self.bending is not None and response.bent is not None:
+            bars = parts
+            parts = self.bending.stiffness(
+                response.bent, along, response.axial_force, a, response.length, geometric
+            ).reshape(-1, 2, 3, 2, 3)
+            parts[:, :, :2, :, :2] += bars
+        return self._assembled(parts.ravel())
+
+    def _assembled(self, parts: Array) -> Matrix:
+        """Sum of the rods' matrices (rods, 2 ends × width, 2 ends × width), flattened."""
         if self.size <= DENSE:
             kept, place = self._dense_pattern
             full = np.bincount(place, parts[kept], self.size**2).astype(np.float64)
@@ -381,12 +539,13 @@ class Structure:
 
     @cached_property
     def _dense_pattern(self) -> tuple[Rows, Rows]:
-        """Those of the rods' 16 entries that are between unknowns, and the place of each in the flat matrix."""
+        """Those of the rods' entries that are between unknowns, and the place of each in the flat matrix."""
         number = np.full(self.unknown.size, -1, dtype=np.intp)
         number[self.index] = np.arange(self.size, dtype=np.intp)
-        own = number.reshape(-1, 2)[self.ends].reshape(-1, 4)
-        row = np.repeat(own, 4, axis=1).ravel()
-        column = np.tile(own, (1, 4)).ravel()
+        each = 2 * self.width
+        own = number.reshape(-1, self.width)[self.ends].reshape(-1, each)
+        row = np.repeat(own, each, axis=1).ravel()
+        column = np.tile(own, (1, each)).ravel()
         kept = np.flatnonzero((row >= 0) & (column >= 0))
         return kept, column[kept] * self.size + row[kept]
 
@@ -399,32 +558,74 @@ class Structure:
         starts = np.concatenate([[0], np.cumsum(counts)]).astype(np.int32)
         return kept, slot, (places % self.size).astype(np.int32), starts
 
+    @property
+    def deformations(self) -> int:
+        """Rows of the compatibility matrix: one for each rod, and each of its rigid ends."""
+        return len(self.ends) + (0 if self.bending is None else int(self.bending.rigid.sum()))
+
     def compatibility(self, response: Response) -> csc_matrix:
-        """Elongations of rods from the unknowns, (rods, N); its transpose is the equilibrium matrix."""
-        return compatibility(self.ends, response.axis, len(self.position))[:, self.index].tocsc()
+        """Deformations of rods from the unknowns; its transpose is the equilibrium matrix.
+
+        Elongations (rods, N); where members bend, those of the axes and below them the slopes of all rigid ends.
+        """
+        by_ends, ends = self._elongations(response), self.ends
+        if self.bending is not None:
+            rigid = self.bending.rigid
+            by_slopes = self._slopes_by_ends(response)
+            by_ends = np.concatenate([by_ends, by_slopes[rigid]])
+            ends = np.concatenate([ends, np.repeat(self.ends, rigid.sum(axis=1), axis=0)])
+        return _by_ends(by_ends, ends, len(self.position))[:, self.index].tocsc()
 
     def elongations(self, response: Response, rows: Rows) -> Array:
-        """Some rows of the compatibility matrix in full, (k, N)."""
+        """The elongations of some rods from the unknowns, in full, (k, N)."""
         matrix = np.zeros((len(rows), *self.unknown.shape))
-        for sign, end in zip((-1.0, 1.0), self.ends[rows].T, strict=True):
-            matrix[np.arange(len(rows)), end] = sign * response.axis[rows]
+        of_ends = self._elongations(response)[rows].reshape(-1, 2, self.width)
+        for end in range(2):
+            matrix[np.arange(len(rows)), self.ends[rows, end]] = of_ends[:, end]
         return matrix.reshape(len(rows), -1)[:, self.index]
+
+    def _elongations(self, response: Response) -> Array:
+        """Elongations of the axes from the coordinates of both ends, (rods, 2 × width)."""
+        axis = response.axis
+        if response.bent is None:
+            return np.concatenate([-axis, axis], axis=1)
+        zero = np.zeros((len(axis), 1))
+        chord = np.concatenate([-axis, zero, axis, zero], axis=1)
+        found: Array = chord + (response.bent.bowed[:, :, None] * self._slopes_by_ends(response)).sum(axis=1)
+        return found
+
+    def _slopes_by_ends(self, response: Response) -> Array:
+        """Slopes of the ends from the coordinates of both, (rods, 2, 6)."""
+        length = response.length
+        left = np.column_stack([-response.axis[:, 1], response.axis[:, 0]])
+        left = left / np.where(length > 0.0, length, np.inf)[:, None]
+        by_ends = np.zeros((len(length), 2, 6))
+        by_ends[:, :, :2], by_ends[:, :, 3:5] = left[:, None], -left[:, None]
+        by_ends[:, 0, 2] = by_ends[:, 1, 5] = 1.0
+        return by_ends
 
 
 def compatibility(ends: Rows, axis: Array, particles: int) -> csc_matrix:
     """Elongations from the displacements of all particles, (rods, 2n)."""
+    return _by_ends(np.concatenate([-axis, axis], axis=1), ends, particles)
+
+
+def _by_ends(entries: Array, ends: Rows, particles: int) -> csc_matrix:
+    """A matrix (rows, width × n) of which each row has its entries (rows, 2 × width) at the coordinates of two particles."""
     from scipy.sparse import csc_matrix
 
-    columns = 2 * ends[:, [0, 0, 1, 1]] + np.array([0, 1, 0, 1])
-    entries = np.concatenate([-axis, axis], axis=1)
-    rows = np.repeat(np.arange(len(ends)), 4)
-    return csc_matrix((entries.ravel(), (rows, columns.ravel())), (len(ends), 2 * particles))
+    width = entries.shape[1] // 2
+    columns = width * np.repeat(ends, width, axis=1) + np.tile(np.arange(width), 2)
+    rows = np.repeat(np.arange(len(ends)), 2 * width)
+    return csc_matrix((entries.ravel(), (rows, columns.ravel())), (len(ends), width * particles))
 
 
-def _held_by_rods(particles: int, ends: Rows) -> Flags:
-    """Both directions of particles with rods, (n, 2)."""
-    held = np.zeros((particles, 2), dtype=bool)
-    held[ends] = True
+def _held_by_rods(particles: int, ends: Rows, bending: Bending | None) -> Flags:
+    """Both directions of particles with rods, (n, 2); where members bend, and rotations of those with rigid ends."""
+    held = np.zeros((particles, 2 if bending is None else 3), dtype=bool)
+    held[ends, :2] = True
+    if bending is not None:
+        held[ends[bending.rigid], 2] = True
     return held
 
 

@@ -20,7 +20,7 @@ class Event:
     kind: "yield", "slack", "taut", "plastic mechanism", "snap-through", "bifurcation", "collapse", "mechanism",
         "free body" or "note"; "overshoot" or "other equilibrium" of a simulation compared with statics.
     load_factor: that of the event. rods: names of the rods concerned.
-    motion: of all particles, (n, 2), the largest 1; None if nothing moves.
+    motion: of all particles, (n, 2), where members bend with rotations (n, 3), the largest 1; None if nothing moves.
     """
 
     kind: str
@@ -31,7 +31,7 @@ class Event:
 
 
 def event_record(model: Model, event: Event) -> dict[str, Any]:
-    """An event as plain data; its motion as {name: [x, y]} of the particles that take part."""
+    """An event as plain data; its motion as {name: [x, y]}, or [x, y, rotation], of the particles that take part."""
     record: dict[str, Any] = {
         "kind": event.kind,
         "load_factor": event.load_factor,
@@ -40,7 +40,7 @@ def event_record(model: Model, event: Event) -> dict[str, Any]:
     }
     if event.motion is not None:
         names = model.particles.column("name")
-        taking_part = np.flatnonzero(np.hypot(*event.motion.T) > RESTS)
+        taking_part = np.flatnonzero(np.abs(event.motion).max(axis=1) > RESTS)
         record["motion"] = {str(names[row]): event.motion[row].tolist() for row in taking_part}
     return record
 

@@ -8,7 +8,7 @@ import numpy as np
 
 from components.model import Model
 from components.wording import cut
-from systems.statics.equations import Array, Flags, Rows
+from systems.statics.equations import TURNS_ONLY, Array, Flags, Rows, largest
 
 NAMED = 5  # at most so many by name, then "and 7 more"
 DIRECTIONS = 3  # at most so many, then "and 7 more"
@@ -53,8 +53,15 @@ def slack_named(model: Model, slack: Flags) -> str:
 
 
 def describe_motion(model: Model, modes: Array) -> str:
-    """Moving particles and their directions in modes (k, n, 2): "B and D along x, C in any direction"."""
+    """Moving particles and their directions in modes (k, n, 2 or 3): "B and D along x, C in any direction".
+
+    Rotations are named only where no particle moves.
+    """
     names = model.particles.column("name")
+    turns, modes = modes[:, :, 2:], modes[:, :, :2]
+    if largest(modes) <= TURNS_ONLY * largest(turns):
+        turning = np.flatnonzero(np.abs(turns).max(axis=(0, 2)) > TAKES_PART * largest(turns))
+        return f"{listed([str(names[row]) for row in turning.tolist()])} round itself"
     size = np.sqrt((modes**2).sum(axis=(0, 2)))
     movers = np.flatnonzero(size > TAKES_PART * size.max())
     groups: dict[str, list[str]] = {}
@@ -81,11 +88,11 @@ def _direction(motions: Array) -> str:
 
 
 def describe_way(model: Model, motion: Array) -> str:
-    """The particles that move most in a motion (n, 2), and which way: "ball, which moves down"."""
+    """The particles that move most in a motion (n, 2 or 3), and which way: "ball, which moves down"."""
     names = model.particles.column("name")
-    size = np.hypot(*motion.T)
+    size = np.hypot(*motion[:, :2].T)
     far = np.flatnonzero(size > 0.5 * size.max())
-    x, y = motion[int(size.argmax())] / size.max()
+    x, y = motion[int(size.argmax()), :2] / size.max()
     if abs(x) < ONE_WAY:
         way = "up" if y > 0.0 else "down"
     elif abs(y) < ONE_WAY:
@@ -99,6 +106,7 @@ def describe_way(model: Model, motion: Array) -> str:
 def moved(model: Model, before: Array, after: Array) -> str:
     """The particle that moved most between two fields of displacements (m), and its new displacement."""
     names = model.particles.column("name")
+    before, after = before[:, :2], after[:, :2]
     change = after - before
     row = int(np.hypot(change[:, 0], change[:, 1]).argmax())
     return f"{names[row]} by {_pair(change[row])} m, to the displacement {_pair(after[row])} m"

@@ -8,6 +8,8 @@ import numpy as np
 
 from components.load import static_factor
 from components.model import Model
+from components.rod import bends
+from components.table import flags
 from systems.statics.equations import Array, Rows, Structure
 from systems.statics.events import Event
 from systems.statics.explain import listed
@@ -17,7 +19,11 @@ NO_NET_FORCE = 1e-12  # of the sum of a body's forces: a smaller net force is ro
 
 @dataclass(frozen=True)
 class External:
-    """Forces (n, 2) in kN. scaled: forces and loads at factor 1; steady: mass × acceleration; notes: sentences."""
+    """Forces (n, 2) in kN, where members bend with moments (n, 3) in kN·m.
+
+    scaled: forces and loads at factor 1, with halves of distributed forces at both ends of each rod; steady: mass ×
+    acceleration; notes: sentences.
+    """
 
     scaled: Array
     steady: Array
@@ -30,16 +36,25 @@ class External:
 
 def external_forces(model: Model) -> External:
     """The external forces on a model; a varying load counts with the factor of its history in statics."""
-    particles, environment = model.particles, model.environment
-    scaled = particles.force + np.array(environment.force)
+    particles, rods, environment = model.particles, model.rods, model.environment
+    scaled, moment = particles.force + np.array(environment.force), particles.moment.copy()
+    if rods.distributed_force.any():
+        halves = 0.5 * rods.distributed_force * rods.rest_length[:, None]
+        np.add.at(scaled, rods.between.ravel(), np.repeat(halves, 2, axis=0))
     notes = []
     for load in model.loads:
         factor = static_factor(load.history)
         np.add.at(scaled, load.on, factor * np.array(load.force))
+        moment[load.on] += factor * load.moment
         if factor == 0.0:
             notes.append(f"The {load.history['kind']} load on {load.particle.name} counts as 0 in statics.")
     acceleration = particles.acceleration + np.array(environment.acceleration)
-    return External(scaled, particles.mass[:, None] * acceleration / 1000.0, tuple(notes))
+    steady = particles.mass[:, None] * acceleration / 1000.0
+    if bends(model):
+        turns = flags(rods.between[rods.turning_shares > 0.0], particles.count) | particles.fixed_rotation
+        scaled = np.column_stack([scaled, np.where(turns, moment, 0.0)])
+        steady = np.column_stack([steady, np.zeros(particles.count)])
+    return External(scaled, steady, tuple(notes))
 
 
 @dataclass(frozen=True)
@@ -52,7 +67,7 @@ class LooseBody:
 
 
 def loose_bodies(structure: Structure, load: Array) -> list[LooseBody]:
-    """The bodies without a constraint along x, then along y, under a load (n, 2); lone particles only if pulled."""
+    """The bodies without a constraint along x, then along y, under a load (n, …); lone particles only if pulled."""
     count = int(structure.body.max(initial=-1)) + 1
     members = np.bincount(structure.body, minlength=count)
     found = []

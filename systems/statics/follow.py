@@ -21,6 +21,7 @@ LARGEST_MOVE = 0.1  # of a rod's length, in one increment; larger: fewer increme
 MISS = 0.2  # share of an increment by which it may miss where the tangent pointed
 TURN = 0.5  # share by which the tangent may change over an increment
 NEWTON_ITERATIONS = 25
+POLISHING = 4
 PATIENCE = 6  # iterations after which a step that does not lessen the residual is shortened
 SMALLEST_SHARE = 1 / 8
 CONVERGED = 1e-11  # of the largest force: a smaller residual that falls no more is round-off
@@ -106,35 +107,59 @@ class Step:
 class Path:
     """The equilibria of a structure under force + t × change (fields of kN), up to t = 1.
 
+    shares: of the distributed forces that act at t = 0 and t = 1.
     passes_limits: a path without end that goes on beyond a loss of stability, with a growing or falling load;
     False: where stability is lost, another set of yielding rods that is stable is sought.
     """
 
     def __init__(
-        self, structure: Structure, force: Array, change: Array, *, passes_limits: bool = False
+        self,
+        structure: Structure,
+        force: Array,
+        change: Array,
+        shares: tuple[float, float] = (0.0, 0.0),
+        *,
+        passes_limits: bool = False,
     ) -> None:
         self.passes_limits = passes_limits
         self.end = math.inf if passes_limits else 1.0
         self.structure = structure
         self.force = force
         self.change = change
-        self.push = structure.gather(change)
+        self.shares = shares
+        self._dead_push = structure.gather(change)
         self.exact_events = len(structure.ends) <= EXACT_EVENTS
-        self.scale = max(largest(force), largest(force + change))
+        self.scale = max(structure.largest(force), structure.largest(force + change))
         self.reference = 0.0  # size of du/dt that counts as much as dt does; that of the first tangent
 
     def load(self, t: float) -> Array:
         """The external force at t."""
         return self.force + t * self.change
 
+    def share(self, t: float) -> float:
+        """The share of the distributed forces that acts at t."""
+        first, last = self.shares
+        return last if t == 1.0 else first + t * (last - first)
+
+    def push(self, response: Response) -> Array:
+        """The change of the load on the unknowns with t; distributed forces act on the bent axes."""
+        first, last = self.shares
+        if first == last or response.bent is None:
+            return self._dead_push
+        return self._dead_push + (last - first) * self.structure.gather(self.structure.carried(response))
+
+    def respond(self, displacement: Array, plastic_strain: Array, t: float) -> Response:
+        """The rods at these displacements, and under what acts between their ends at t."""
+        return self.structure.respond(displacement, plastic_strain, self.share(t))
+
     def start(self, displacement: Array, plastic_strain: Array) -> Point:
         """The point at t = 0 in this state; rods beyond a strength yield at once."""
-        yielded = self.structure.respond(displacement, plastic_strain).plastic_strain
-        return Point(displacement, yielded, 0.0, self.structure.respond(displacement, yielded), 0.0)
+        yielded = self.respond(displacement, plastic_strain, 0.0).plastic_strain
+        return Point(displacement, yielded, 0.0, self.respond(displacement, yielded, 0.0), 0.0)
 
     def after(self, start: Point, displacement: Array, t: float) -> Point:
         """The point with these displacements and t, yielding from an earlier one."""
-        response = self.structure.respond(displacement, start.plastic_strain)
+        response = self.respond(displacement, start.plastic_strain, t)
         spent = np.abs(response.axial_force * (response.plastic_strain - start.plastic_strain))
         dissipated = start.dissipated + 1000.0 * float(spent @ self.structure.rest_length)
         return Point(displacement, response.plastic_strain, t, response, dissipated)
@@ -145,7 +170,7 @@ class Path:
 
     def largest_force(self, response: Response) -> float:
         """The largest force (kN) of the load on the path or of a rod."""
-        return max(self.scale, largest(response.axial_force))
+        return max(self.scale, self.structure.largest_force(response))
 
     # --- directions --------------------------------------------------------------------------------
 
@@ -226,7 +251,7 @@ class Path:
         structure = self.structure
         flowing, slack = giving & ~branches.verge, branches.slack | (giving & branches.verge)
         factor = regular(structure.tangent(response, flowing | slack), structure.weight)
-        rate = factor.solve(self.push) if factor.exists else np.zeros(structure.size)
+        rate = factor.solve(self.push(response)) if factor.exists else np.zeros(structure.size)
         forward = onward is None or self._goes_on(response, branches, factor, rate, onward)
         return Tangent(rate, flowing, slack, factor, 1.0 if forward else -1.0)
 
@@ -293,7 +318,11 @@ class Path:
         """Increment along the path for an increment of t."""
         if self.reference == 0.0:
             return 1.0
-        return math.hypot(1.0, float(np.linalg.norm(tangent.rate)) / self.reference)
+        return math.hypot(1.0, self.size(tangent.rate) / self.reference)
+
+    def size(self, rate: Array) -> float:
+        """The size (m) of a change of the unknowns, rotations counting by their measure."""
+        return float(np.linalg.norm(self.structure.measure * rate))
 
     # --- increments ----------------------------------------------------------------------------------
 
@@ -302,7 +331,7 @@ class Path:
 
         An increment ends where a rod begins to yield, slackens or tightens; one that fails is halved.
         """
-        far = LARGEST_MOVE / max(self.structure.move(tangent.rate, point.response.reach), 1e-300)
+        far = LARGEST_MOVE / max(self.structure.move(tangent.rate, point.response), 1e-300)
         nearest = min(self._until_event(point, tangent), 0.99 * far * self.stretch(tangent))
         trial, failed, shares = min(increment, nearest), False, 0
         while trial > min(SMALLEST, HALF * nearest):
@@ -339,7 +368,7 @@ class Path:
         change = structure.gather(found.displacement - point.displacement)
         if self._reversed(tangent, found, reached[1], increment):
             return HALF
-        fine = self._went_along(point.response.reach, tangent, reached[1], predicted, change)
+        fine = self._went_along(point.response, tangent, reached[1], predicted, change)
         switched = not np.array_equal(found.response.soft, tangent.soft)
         coarse = not self.exact_events and switched and abs(dt) <= RESOLUTION
         return reached if fine or coarse else HALF
@@ -381,9 +410,9 @@ class Path:
         self, point: Point, tangent: Tangent, found: Point, following: Tangent, predicted: Array
     ) -> bool:
         """True if a stable point is not farther away than was predicted."""
-        change, reach = self.structure.gather(found.displacement - point.displacement), point.response.reach
-        limit = (1.0 + MISS) * self.structure.move(predicted, reach)
-        return following.stable and self.structure.move(change, reach) <= limit
+        change = self.structure.gather(found.displacement - point.displacement)
+        limit = (1.0 + MISS) * self.structure.move(predicted, point.response)
+        return following.stable and self.structure.move(change, point.response) <= limit
 
     def correct(
         self, start: Point, guess: Array, t: float, across: Tangent | None, piece: Tangent | None = None
@@ -393,18 +422,20 @@ class Path:
         piece: that in which all rods stay on the pieces of their laws that this tangent is on.
         """
         structure = self.structure
-        normal = across.rate / self.reference**2 if across is not None and self.reference > 0.0 else None
+        normal = None
+        if across is not None and self.reference > 0.0:
+            normal = structure.measure**2 * across.rate / self.reference**2
         displacement, step = guess, np.zeros_like(guess)
         before, dt, share, soft = math.inf, 0.0, 1.0, None
         for iteration in range(NEWTON_ITERATIONS):
-            response = structure.respond(displacement, start.plastic_strain)
+            response = self.respond(displacement, start.plastic_strain, t)
             if piece is not None:
                 response = self._on_piece(start, piece, response)
             residual = structure.gather(self.load(t) - structure.internal(response))
-            size, scale = largest(residual), self.largest_force(response)
+            size, scale = structure.greatest(residual), self.largest_force(response)
             if not size <= 1e6 * scale:
                 return None
-            noise = structure.round_off(displacement) + 4.0 * ROUND_OFF * scale
+            noise = structure.round_off(displacement, response) + 4.0 * ROUND_OFF * scale
             if size <= noise or (size >= 0.5 * before and size <= CONVERGED * scale + 64.0 * noise):
                 return self.after(start, displacement, t)
             switched = soft is not None and not np.array_equal(response.soft, soft)
@@ -419,9 +450,26 @@ class Path:
             before, share, soft = size, 1.0, response.soft
             displacement, t = displacement + step, t + dt
             change = structure.gather(displacement - start.displacement)
-            if not structure.move(change, start.response.reach) <= 2.0 * LARGEST_MOVE:
+            if not structure.move(change, start.response) <= 2.0 * LARGEST_MOVE:
                 return None
         return None
+
+    def polished(self, point: Point) -> Point:
+        """A point after a few more steps of Newton's method at its t, where members bend.
+
+        Round-off of axial forces, at which `correct` ends, is coarse beside what shears and moments can be.
+        """
+        structure, before = self.structure, math.inf
+        for _ in range(POLISHING if structure.bending is not None else 0):
+            residual = structure.gather(self.load(point.t) - structure.internal(point.response))
+            moved = self._newton_step(point.response, residual, None)
+            if moved is None or not self.size(moved[0]) <= HALF * before:
+                break
+            found = self.after(point, point.displacement + structure.spread(moved[0]), point.t)
+            if not np.array_equal(found.response.soft, point.response.soft):
+                break
+            point, before = found, self.size(moved[0])
+        return point
 
     def _newton_step(
         self, response: Response, residual: Array, normal: Array | None
@@ -432,26 +480,26 @@ class Path:
             return None
         if normal is None:
             return factor.solve(residual), 0.0
-        solved = factor.solve(np.column_stack([residual, self.push]))
+        solved = factor.solve(np.column_stack([residual, self.push(response)]))
         dt = -float(normal @ solved[:, 0]) / (float(normal @ solved[:, 1]) + 1.0)
         return solved[:, 0] + dt * solved[:, 1], dt
 
     def _went_along(
-        self, reach: Array, tangent: Tangent, following: Tangent, predicted: Array, change: Array
+        self, response: Response, tangent: Tangent, following: Tangent, predicted: Array, change: Array
     ) -> bool:
         """True if the increment went where the tangent pointed and the tangent did not turn much."""
         structure = self.structure
-        size = structure.move(change, reach)
+        size = structure.move(change, response)
         if size > LARGEST_MOVE:
             return False
-        if structure.move(change - predicted, reach) > MISS * size + 64.0 * ROUND_OFF:
+        if structure.move(change - predicted, response) > MISS * size + 64.0 * ROUND_OFF:
             return False
         if not np.array_equal(following.soft, tangent.soft):
             return True
         before = tangent.sense / self.stretch(tangent) * tangent.rate
         after = following.sense / self.stretch(following) * following.rate
-        largest = max(structure.move(before, reach), structure.move(after, reach))
-        return structure.move(after - before, reach) <= TURN * largest
+        largest = max(structure.move(before, response), structure.move(after, response))
+        return structure.move(after - before, response) <= TURN * largest
 
     # --- yielding, slackening, tightening ------------------------------------------------------------
 

@@ -88,6 +88,15 @@ class Solution:
         return SetState(displacement, axial_force)
 
 
+def refuse_bending(model: Model) -> None:
+    """Raise ForceMethodError if members bend, whose moments are no unknowns here yet."""
+    for row in np.flatnonzero((model.rods.turning_shares > 0.0).any(axis=1))[:1]:
+        raise ForceMethodError(
+            f"The force method takes bars only as yet, but {model.describe(model.rods[row])} bends. Make it a bar"
+            " (bending stiffness 0), or compare theory and simulation: pinjoint verify."
+        )
+
+
 def find_unknown(model: Model, name: str) -> Unknown:
     """The unknown called "AC" (a rod) or "A.y" (a support). Raises ForceMethodError."""
     if name in model.rods:
@@ -165,6 +174,7 @@ def solve(model: Model, unknowns: Sequence[Unknown]) -> Solution:
     problem = incomputable(model)
     if problem:
         raise ForceMethodError(problem)
+    refuse_bending(model)
     if model.rods.tension_only.any():
         raise ForceMethodError(
             f"{cables_named(model)} in tension only: superposition needs linear behaviour. Let slack cables go"
@@ -238,6 +248,7 @@ def redundants(model: Model) -> list[Unknown]:
 
     Rods before supports. As many as the degree of static indeterminacy; none if it is isostatic.
     """
+    refuse_bending(model)
     structure = Structure.of(model)
     used = np.zeros(model.particles.count, dtype=bool)
     used[structure.ends] = True

@@ -50,10 +50,10 @@ class Loading:
         increment = np.inf
         for _ in range(MOST_INCREMENTS):
             if self.point.t >= 1.0:
-                return self.point
+                return self.path.polished(self.point)
             self._note_cables(tangent)
             tangent, increment = self._increment(tangent, increment)
-            if largest(self.point.displacement) > RUNAWAY * self.path.structure.extent:
+            if largest(self.point.displacement[:, :2]) > RUNAWAY * self.path.structure.extent:
                 motion = self.path.structure.spread(tangent.rate)
                 if tangent.flowing.any():
                     raise self._collapse(tangent.flowing, motion)
@@ -74,7 +74,7 @@ class Loading:
             matrix = structure.tangent(before.response, tangent.soft)
             modes = soft_modes(matrix, structure.weight, tangent.factor)
         self.mechanism = modes.shape[1] > 0
-        if not path.push.any():  # improve the equilibrium, or leave it if it is not stable
+        if not path.push(before.response).any():  # improve the equilibrium, or leave it if it is not stable
             found = path.correct(self.point, self.point.displacement, 1.0, None)
             if found is None or not tangent.stable:
                 self._relax(1.0, None)
@@ -87,13 +87,13 @@ class Loading:
             event = first_order_mechanism(self.model, self.factor(0.0), structure.fields(modes), slack, *places)
             self.events.append(event)
         tangent = path.tangent(self.point)
-        path.reference = float(np.linalg.norm(tangent.rate))
+        path.reference = path.size(tangent.rate)
         return tangent
 
     def _unresisted(self, tangent: Tangent) -> bool:
         """True if the load moves the structure against no more stiffness than round-off."""
-        rate = tangent.rate
-        return float(rate @ self.path.push) < SOFT * float(rate @ (self.path.structure.weight * rate))
+        rate, push = tangent.rate, self.path.push(self.point.response)
+        return float(rate @ push) < SOFT * float(rate @ (self.path.structure.weight * rate))
 
     # --- on the way ----------------------------------------------------------------------------------
 
@@ -171,7 +171,7 @@ class Loading:
         else:
             self._pass(critical, beyond, mode, plastic)
         change = path.structure.gather(self.point.displacement - critical.displacement)
-        if path.structure.move(change, critical.response.reach) < STALLED:
+        if path.structure.move(change, critical.response) < STALLED:
             self.stalls += 1
         if self.stalls > MOST_STALLS:
             self._leap()
@@ -204,9 +204,10 @@ class Loading:
             return beyond.rate
         _, mode = softest(structure, response, beyond.soft)
         flow = structure.elongation_rate(mode, response) * np.sign(response.axial_force) * beyond.flowing
-        pushed = float(mode @ self.path.push)
+        push = self.path.push(response)
+        pushed = float(mode @ push)
         lean = float(flow.sum()) if flow.any() else pushed
-        if abs(pushed) <= UNEXCITED * np.linalg.norm(mode) * np.linalg.norm(self.path.push):
+        if abs(pushed) <= UNEXCITED * np.linalg.norm(mode) * np.linalg.norm(push):
             lean = float(mode[np.abs(mode).argmax()]) if not beyond.flowing.any() else lean
         return mode if lean >= 0.0 else -mode
 
@@ -226,7 +227,7 @@ class Loading:
             raise self._collapse(found.response.flowing, found.displacement - start.displacement)
 
     def _note_jump(self, beyond: Tangent, critical: Point, mode: Array) -> None:
-        push = self.path.push
+        push = self.path.push(critical.response)
         share = abs(float(mode @ push)) / (np.linalg.norm(mode) * np.linalg.norm(push))
         kind, what, after = "snap-through", "the structure passed through its unstable position", ""
         if beyond.sense > 0.0 and share < UNEXCITED:

@@ -13,7 +13,8 @@ from components.suggestions import missing
 from systems.statics.equations import Array, Structure
 from systems.statics.external import External, external_forces
 from systems.statics.follow import Path, Point, Step, Tangent
-from systems.statics.settle import StaticState, settle
+from systems.statics.settle import settle
+from systems.statics.state import StaticState
 
 DETAIL = 0.02  # of a rod's length between points; smaller: a smoother curve
 FIRST = 1e-3  # of the same, for the first increment
@@ -25,13 +26,17 @@ LANDINGS = 60  # trials
 class Curve:
     """Equilibria in order along a path: load_factor (k,), displacement (k, n, 2) in m, axial_force (k, rods) in kN.
 
+    Where members bend: rotation (k, n) in rad, bending_moment (k, rods, 2) in kN·m; else zeros.
+
     stable: (k,), False where the structure would snap or collapse under a dead load. complete: False if it
     has as many points as were asked for, or its path was lost, before the goal.
     """
 
     load_factor: Array
     displacement: Array
+    rotation: Array
     axial_force: Array
+    bending_moment: Array
     stable: NDArray[np.bool_]
     complete: bool
 
@@ -80,14 +85,17 @@ def load_path(model: Model, goal: Goal, *, points: int = 500, detail: float = DE
     if not unloaded.balanced:
         raise ValueError(f"There is no equilibrium to start from. {unloaded.message}")
     structure, external = Structure.of(model), external_forces(model)
-    if not structure.gather(external.scaled).any():
+    loaded = external.scaled + structure.carried(structure.unmoved)
+    if not structure.gather(loaded).any():
         raise ValueError("No force or load acts on a free direction; apply one that the factor can scale.")
     search = _Search.towards(goal, structure, external, unloaded)
     found, complete = search.run(points, detail)
     return Curve(
         load_factor=search.sign * np.array([point.t for point, _ in found]),
-        displacement=np.array([point.displacement for point, _ in found]),
+        displacement=np.array([point.displacement[:, :2] for point, _ in found]),
+        rotation=np.array([structure.rotation(point.displacement) for point, _ in found]),
         axial_force=np.array([point.response.axial_force for point, _ in found]),
+        bending_moment=np.array([structure.end_moments(point.response) * [-1.0, 1.0] for point, _ in found]),
         stable=np.array([tangent.stable for _, tangent in found]),
         complete=complete,
     )
@@ -107,8 +115,9 @@ class _Search:
         """The path that begins in the direction of a goal."""
         found = None
         for sign in (1.0, -1.0):
-            path = Path(structure, external.at(0.0), sign * external.scaled, passes_limits=True)
-            start = path.start(unloaded.displacement, unloaded.plastic_strain)
+            path = Path(structure, external.at(0.0), sign * external.scaled, (0.0, sign), passes_limits=True)
+            place = structure.field(unloaded.displacement, unloaded.rotation)
+            start = path.start(place, unloaded.plastic_strain)
             search = cls(path, start, sign, goal)
             rate = structure.spread(path.tangent(start).rate)
             speed = sign if goal.displaced is None else float(rate[goal.displaced])
@@ -127,10 +136,10 @@ class _Search:
         """Points and tangents up to the goal; and whether it was reached."""
         path, point = self.path, self.start
         tangent = path.tangent(point)
-        path.reference = float(np.linalg.norm(tangent.rate))
+        path.reference = path.size(tangent.rate)
         found, increment, side = [(point, tangent)], FIRST, self.beyond(point)
         while side != 0.0 and len(found) < points:
-            largest = detail / path.structure.move(tangent.rate, point.response.reach) * path.stretch(tangent)
+            largest = detail / path.structure.move(tangent.rate, point.response) * path.stretch(tangent)
             step = path.advance(point, tangent, min(largest, increment * largest))
             if step is None:
                 return found, False

@@ -41,11 +41,11 @@ def relax(path: Path, start: Point, nudge: Array | None = None, steps: int = STE
             rested = path.correct(point, point.displacement, point.t, None)
             if rested is not None and is_stable(structure, rested.response):
                 return rested, "equilibrium"
-        elif largest(residual) <= BALANCED * path.largest_force(point.response):
+        elif structure.greatest(residual) <= BALANCED * path.largest_force(point.response):
             point = _nudged(path, point, softest(structure, point.response)[1])
             continue
         if penalty == 0.0:
-            pace = structure.move(residual / structure.weight, point.response.reach)
+            pace = structure.move(residual / structure.weight, point.response)
             penalty = max(pace, 1e-9) / LARGEST_MOVE
         crept = creep(path, point, residual, penalty, partial(_travel, structure, point))
         if crept is None:
@@ -53,7 +53,7 @@ def relax(path: Path, start: Point, nudge: Array | None = None, steps: int = STE
         point, penalty = crept
         if largest(point.plastic_strain - start.plastic_strain) > LARGEST_PLASTIC_STRAIN:
             return point, "strained apart"
-        if largest(point.displacement) > RUNAWAY * structure.extent:
+        if largest(point.displacement[:, :2]) > RUNAWAY * structure.extent:
             return point, "ran away"
     return point, "gave up"
 
@@ -61,13 +61,13 @@ def relax(path: Path, start: Point, nudge: Array | None = None, steps: int = STE
 def _travel(structure: Structure, point: Point, displacement: Array) -> float:
     """The largest change of a rod from a point to these displacements, as a share of the largest in a step."""
     change = structure.gather(displacement - point.displacement)
-    return structure.move(change, point.response.reach) / LARGEST_MOVE
+    return structure.move(change, point.response) / LARGEST_MOVE
 
 
 def _nudged(path: Path, point: Point, direction: Array) -> Point:
     """The point moved by NUDGE in a direction, shape (N,)."""
     structure = path.structure
-    share = NUDGE / structure.move(direction, point.response.reach)
+    share = NUDGE / structure.move(direction, point.response)
     return path.after(point, point.displacement + structure.spread(share * direction), point.t)
 
 
@@ -90,16 +90,16 @@ def creep(
 def implicit_step(path: Path, point: Point, residual: Array, penalty: float) -> Array | None:
     """Displacements u with force − internal(u) = penalty × W (u − u₀), or None if Newton's method fails."""
     structure = path.structure
-    wanted = STEP_CONVERGED * largest(residual)
+    wanted = STEP_CONVERGED * structure.greatest(residual)
     moved, step = np.zeros(structure.size), np.zeros(structure.size)
     before, share, soft = np.inf, 1.0, point.response.soft
     for _ in range(NEWTON_ITERATIONS):
         displacement = point.displacement + structure.spread(moved)
-        response = structure.respond(displacement, point.plastic_strain)
+        response = path.respond(displacement, point.plastic_strain, point.t)
         pull = structure.gather(path.load(point.t) - structure.internal(response))
         pull -= penalty * structure.weight * moved
-        size = largest(pull)
-        if size <= max(wanted, structure.round_off(displacement)):
+        size = structure.greatest(pull)
+        if size <= max(wanted, structure.round_off(displacement, response)):
             return displacement
         if size >= before and share > SMALLEST_SHARE and not np.array_equal(response.soft, soft):
             share *= 0.5  # other rods are soft than in the tangent of the step: take less of it
@@ -111,6 +111,6 @@ def implicit_step(path: Path, point: Point, residual: Array, penalty: float) -> 
         step = factor.solve(pull)
         before, share, soft = size, 1.0, response.soft
         moved = moved + step
-        if not structure.move(moved, point.response.reach) <= 4.0 * LARGEST_MOVE:
+        if not structure.move(moved, point.response) <= 4.0 * LARGEST_MOVE:
             return None
     return None

@@ -17,15 +17,15 @@ from components.model import Model
 from components.numeric_range import incomputable
 from components.wording import quoted
 from systems.statics.contacts import Discs, Sinking
-from systems.statics.equations import ROUND_OFF, Array, Flags, Rows, Structure, largest, normalised
+from systems.statics.equations import ROUND_OFF, Array, Structure, largest, normalised
 from systems.statics.events import Event, NoEquilibrium
 from systems.statics.explain import describe_motion, describe_way, slack_named
 from systems.statics.external import external_forces, loose_bodies, loose_event
 from systems.statics.factor import SOFT, soft_modes, softest
 from systems.statics.follow import Path, Point
 from systems.statics.loading import Loading, first_order_mechanism
+from systems.statics.state import NEUTRAL, STABLE, UNSTABLE, Start, StaticState, state_of
 
-STABLE, NEUTRAL, UNSTABLE = EQUILIBRIA = ("equilibrium", "neutral equilibrium", "unstable equilibrium")
 MOST_TOLD = 3  # events in an account besides the message
 TOLD = ("free body", "mechanism", "snap-through", "bifurcation", "note")  # kinds of events that messages repeat
 NEARLY_SOFT = 1e-9  # of the rods' stiffness: a note about a motion that is resisted less
@@ -36,41 +36,6 @@ MOST_DISCS = 250  # without rods; more would take minutes
 IN_ONE_PLACE = 0.75  # of the sum of their radii: forces hardly part discs that overlap by more
 HELD = 1e-3  # of the forces that hold a state: a smaller difference from a scaled load counts as none
 UNSTRESSED = 1e-9  # of the largest force: smaller forces that hold the present state count as none
-
-
-@dataclass(frozen=True)
-class StaticState:
-    """The state at one load factor, in m, kN and J: the particles' fields are (n, 2), the rods' (rods,).
-
-    reaction: the supports' force in constrained directions, 0 elsewhere. residual: the largest unbalanced
-    force over the largest force so far. dissipated_plastic: since settling began. status: "equilibrium";
-    "neutral equilibrium" where nothing resists some motion, so that the place is one of many; "unstable equilibrium";
-    "mechanism", "collapse" or "limit reached", with which all values are those of the last equilibrium on the way.
-    events: those on the way from the state before. contacts: rows of the discs that press each other, (k, 2), with
-    contact_force (k,).
-    """
-
-    load_factor: float
-    displacement: Array
-    plastic_strain: Array
-    axial_force: Array
-    strain: Array
-    length: Array
-    yielding: Flags
-    reaction: Array
-    residual: float
-    elastic_energy: float
-    dissipated_plastic: float
-    status: str
-    message: str
-    events: tuple[Event, ...]
-    contacts: Rows
-    contact_force: Array
-
-    @property
-    def balanced(self) -> bool:
-        """True if all forces are in balance, whether or not the state is stable."""
-        return self.status in EQUILIBRIA
 
 
 @dataclass(frozen=True)
@@ -106,19 +71,6 @@ class Settlement:
     def events(self) -> tuple[Event, ...]:
         """The events of all states, in order."""
         return tuple(event for state in self.states for event in state.events)
-
-
-@dataclass(frozen=True)
-class Start:
-    """The state that settling starts from: displacement (n, 2) in m and plastic strain (rods,)."""
-
-    displacement: Array
-    plastic_strain: Array
-
-    @classmethod
-    def present(cls, model: Model) -> Start:
-        """A model's present state."""
-        return cls(model.particles.displacement.copy(), model.rods.plastic_strain.copy())
 
 
 def settle(
@@ -183,13 +135,6 @@ def _factors(given: Sequence[float] | float) -> list[float]:
     return found
 
 
-def apply(model: Model, state: StaticState) -> None:
-    """Put a model into a static state: its displacements and plastic strains, without velocity."""
-    model.writable("particles.displacement")[...] = state.displacement
-    model.writable("particles.velocity")[...] = 0.0
-    model.writable("rods.plastic_strain")[...] = state.plastic_strain
-
-
 class _Settling:
     """A structure on its way through the load factors: its last equilibrium and the load that holds it there."""
 
@@ -200,10 +145,16 @@ class _Settling:
         self.events = [Event("note", 0.0, note) for note in self.external.notes]
         self.looked_for_bodies = self.soft = False
         at_rest = Path(self.structure, self._nothing, self._nothing)
-        self.point = at_rest.start(start.displacement, start.plastic_strain)
-        self.largest = largest(self.point.response.axial_force)
+        self.point = at_rest.start(
+            self.structure.field(start.displacement, start.rotation), start.plastic_strain
+        )
+        self.largest = self.structure.largest_force(self.point.response)
         self.load = self._holding()
-        self.factor = self._held_factor()
+        self.factor = self.share = self._held_factor()
+        if self.share:
+            self.load = self.load - self.share * self._carried()
+            at_present = Path(self.structure, self._nothing, self._nothing, (self.share, self.share))
+            self.point = at_present.start(self.point.displacement, start.plastic_strain)
         self.slack = at_rest.branches(self.point.response).slack
 
     @property
@@ -213,12 +164,17 @@ class _Settling:
     def _holding(self) -> Array:
         """The forces in free directions that hold the present state."""
         held = np.where(self.structure.unknown, self.structure.internal(self.point.response), 0.0)
-        greatest = max(largest(self.external.at(1.0)), self.largest)
-        return held if largest(held) > UNSTRESSED * greatest else self._nothing
+        of = self.structure.largest
+        greatest = max(of(self.external.at(1.0)), self.largest)
+        return held if of(held) > UNSTRESSED * greatest else self._nothing
+
+    def _carried(self) -> Array:
+        """What whole distributed forces would add, in free directions, to the particles' forces in the present state."""
+        return np.where(self.structure.unknown, self.structure.carried(self.point.response), 0.0)
 
     def _held_factor(self) -> float:
         """The load factor of the forces that hold the present state; 0 if they are no scaled load."""
-        scaled = np.where(self.structure.unknown, self.external.scaled, 0.0)
+        scaled = np.where(self.structure.unknown, self.external.scaled, 0.0) + self._carried()
         size = float((scaled * scaled).sum())
         factor = float((self.load * scaled).sum()) / size if size > 0.0 else 0.0
         return factor if largest(self.load - factor * scaled) <= HELD * largest(self.load) else 0.0
@@ -239,29 +195,31 @@ class _Settling:
         try:
             self._check_bodies(target, factor)
             if self.load.any() and not self.structure.gather(self.point.displacement).any():
-                self._change(self._nothing, self.factor)
-            self._change(target, factor)
+                self._change(self._nothing, self.factor, 0.0)
+            self._change(target, factor, factor)
             status = self._stability(factor)
             self._check_balance(factor)
         except NoEquilibrium as end:
             status, message = end.status, str(end)
         return self._state(status, message)
 
-    def _change(self, target: Array, factor: float) -> None:
+    def _change(self, target: Array, factor: float, share: float) -> None:
+        """Exchange the load for a target, and for so much of the distributed forces, which has this load factor."""
         change = target - self.load
-        if largest(change) <= UNCHANGED * largest(target):
-            path = Path(self.structure, target, self._nothing)
+        exchanged = change + (share - self.share) * self._carried()
+        if largest(exchanged) <= UNCHANGED * largest(target):
+            path = Path(self.structure, target, self._nothing, (share, share))
         else:
-            path = Path(self.structure, self.load, change)
-        total = float(np.hypot(*self.external.scaled.T).sum())
+            path = Path(self.structure, self.load, change, (self.share, share))
+        total = float(np.hypot(*self.external.scaled[:, :2].T).sum())
         start, way = replace(self.point, t=0.0), (self.factor, factor)
         loading = Loading(self.model, path, way, total, not self.load.any(), self.events, start, self.slack)
         try:
             self.point = loading.run()
-            self.load, self.factor = target, factor
+            self.load, self.factor, self.share = target, factor, share
         except NoEquilibrium:
-            self.point = loading.point
-            self.load, self.factor = path.load(loading.point.t), loading.factor(loading.point.t)
+            self.point, t = loading.point, loading.point.t
+            self.load, self.factor, self.share = path.load(t), loading.factor(t), path.share(t)
             raise
         finally:
             self.slack = loading.slack
@@ -309,9 +267,10 @@ class _Settling:
     def _residual(self) -> float:
         """The largest unbalanced force over the largest force so far."""
         response = self.point.response
-        self.largest = max(self.largest, largest(self.load), largest(response.axial_force))
-        unbalanced = np.where(self.structure.fixed, 0.0, self.structure.internal(response) - self.load)
-        return largest(unbalanced) / self.largest if self.largest > 0.0 else 0.0
+        structure = self.structure
+        self.largest = max(self.largest, structure.largest(self.load), structure.largest_force(response))
+        unbalanced = np.where(structure.fixed, 0.0, structure.internal(response) - self.load)
+        return structure.largest(unbalanced) / self.largest if self.largest > 0.0 else 0.0
 
     def _check_bodies(self, target: Array, factor: float) -> None:
         """Report bodies that nothing holds along an axis. Raises NoEquilibrium if one is pulled along it."""
@@ -324,30 +283,19 @@ class _Settling:
         self.looked_for_bodies = True
 
     def _state(self, status: str, message: str) -> StaticState:
-        structure, response = self.structure, self.point.response
-        rods = slice(self.model.rods.count)  # what follows them are contacts
-        pressing = rods.stop + np.flatnonzero(response.axial_force[rods.stop :] < 0.0)
-        count = self.model.particles.count  # what follows them are obstacles
-        unbalanced = structure.internal(response) - self.load
         told = [message] if message else [e.message for e in self.events if e.kind in TOLD]
-        elastic = (response.axial_force**2 * structure.rest_length / structure.stiffness)[rods]
-        state = StaticState(
+        state = state_of(
+            self.model,
+            self.structure,
+            self.point.response,
+            self.point.displacement,
+            self.load,
             load_factor=self.factor,
-            displacement=self.point.displacement[:count],
-            plastic_strain=self.point.plastic_strain[rods],
-            axial_force=response.axial_force[rods],
-            strain=response.strain[rods],
-            length=response.length[rods],
-            yielding=structure.at_limit(response)[rods],
-            reaction=np.where(structure.fixed, unbalanced, 0.0)[:count],
-            residual=self._residual(),
-            elastic_energy=500.0 * float(elastic.sum()),
             dissipated_plastic=self.point.dissipated,
+            residual=self._residual(),
             status=status,
             message=" ".join(told),
             events=tuple(self.events),
-            contacts=structure.ends[pressing],
-            contact_force=-response.axial_force[pressing],
         )
         self.events.clear()
         return state
@@ -360,18 +308,18 @@ class _SettlingWithDiscs(_Settling):
         super().__init__(model, "exact", start)
         self.discs = discs
         self.structure = self.bare = discs.beside(self.structure)
-        self.point = replace(self.point, displacement=self._all(start.displacement))
-        self.load, self.factor, self.outcome = self._nothing, 0.0, ""
+        self.point = replace(self.point, displacement=self._all(self.point.displacement))
+        self.load, self.factor, self.share, self.outcome = self._nothing, 0.0, 0.0, ""
 
     def _all(self, field: Array) -> Array:
-        """A field over the particles (n, 2) as one over particles and obstacles."""
-        return np.concatenate([field, np.zeros((len(self.discs.radius) - len(field), 2))])
+        """A field over the particles (n, …) as one over particles and obstacles."""
+        return np.concatenate([field, np.zeros((len(self.discs.radius) - len(field), field.shape[1]))])
 
     def _particles(self, field: Array) -> Array:
         """The particles' part of a field over particles and obstacles."""
         return field[: self.model.particles.count]
 
-    def _change(self, target: Array, factor: float) -> None:
+    def _change(self, target: Array, factor: float, share: float) -> None:
         alone = int(self.discs.is_alone.sum())
         if alone > MOST_DISCS:
             raise NoEquilibrium(
@@ -380,7 +328,7 @@ class _SettlingWithDiscs(_Settling):
             )
         self._check_apart()
         target = self._all(target)
-        sinking = Sinking(self.bare, self.discs, target, self.point)
+        sinking = Sinking(self.bare, self.discs, target, self.point, share)
         outcome = sinking.run()
         if outcome == "gave up":
             message = "The discs found no rest within the steps that settling takes. Run the model until rest."
@@ -393,7 +341,7 @@ class _SettlingWithDiscs(_Settling):
         if self.structure is self.bare:
             self._note_mechanism(sinking.point)
         self.structure, self.point = sinking.path.structure, sinking.point
-        self.load, self.factor = target, factor
+        self.load, self.factor, self.share = target, factor, share
         self.outcome = outcome
 
     def _check_apart(self) -> None:

@@ -13,7 +13,7 @@ from systems.statics.events import NoEquilibrium
 from systems.statics.explain import cables_named, describe_motion
 from systems.statics.external import external_forces, loose_bodies, loose_event
 from systems.statics.factor import SOFT, pseudo_random, regular, soft_count, soft_modes
-from systems.statics.settle import Start
+from systems.statics.state import STABLE, Start, StaticState, state_of
 
 REFINEMENTS = 4  # of a linear solution
 FULL = 600  # unknowns up to which singular values are computed
@@ -23,16 +23,7 @@ MOST_MODES = 20  # mechanisms or states of self-stress of larger structures
 # --- linear theory -----------------------------------------------------------------------------------
 
 
-@dataclass(frozen=True)
-class Answer:
-    """displacement (n, 2) in m, axial_force (rods,) in kN and reaction (n, 2) in kN, 0 in free directions."""
-
-    displacement: Array
-    axial_force: Array
-    reaction: Array
-
-
-def linear(model: Model, start: Start | None = None) -> Answer:
+def linear(model: Model, start: Start | None = None) -> StaticState:
     """The direct stiffness method: K u = f about the original positions, all rods elastic.
 
     start: a state (None: the present one) of which plastic strain acts as initial forces, like lack of fit, and
@@ -44,17 +35,31 @@ def linear(model: Model, start: Start | None = None) -> Answer:
     for body in loose_bodies(structure, load):
         if body.pull:
             raise NoEquilibrium("mechanism", loose_event(model, body, 1.0).message)
-    supports = np.where(structure.fixed, start.displacement, 0.0)
-    initial = structure.respond(supports, start.plastic_strain)
-    displacement = supports + _deflection(model, structure, load - _internal(structure, initial))
-    final = structure.respond(displacement, start.plastic_strain)
-    reaction = np.where(structure.fixed, _internal(structure, final) - load, 0.0)
-    return Answer(displacement, final.elastic_force, reaction)
+    supports = np.where(structure.fixed, structure.field(start.displacement, start.rotation), 0.0)
+    initial = structure.respond(supports, start.plastic_strain, 1.0)
+    moved = supports + _deflection(model, structure, load - _internal(structure, initial))
+    final = structure.respond(moved, start.plastic_strain, 1.0)
+    elastic = replace(final, axial_force=final.elastic_force, plastic_strain=start.plastic_strain)
+    unbalanced = np.where(structure.fixed, 0.0, structure.internal(elastic) - load)
+    forces = max(structure.largest(load), structure.largest_force(elastic))
+    return state_of(
+        model,
+        structure,
+        elastic,
+        moved,
+        load,
+        load_factor=1.0,
+        dissipated_plastic=0.0,
+        residual=structure.largest(unbalanced) / forces if forces > 0.0 else 0.0,
+        status=STABLE,
+        message="",
+        events=(),
+    )
 
 
 def _internal(structure: Structure, response: Response) -> Array:
-    """Forces (n, 2) that hold the particles against the rods, none of which yields in linear theory."""
-    return structure.scatter(response.elastic_force[:, None] * response.axis)
+    """Forces (n, …) that hold the particles against the rods, none of which yields in linear theory."""
+    return structure.internal(replace(response, axial_force=response.elastic_force))
 
 
 def _deflection(model: Model, structure: Structure, load: Array) -> Array:
@@ -88,33 +93,35 @@ def _deflection(model: Model, structure: Structure, load: Array) -> Array:
 class Indeterminacy:
     """Degrees of static indeterminacy: in all, internal (of the rods) and external (of the supports).
 
-    mechanisms: number of independent motions without elongation, those of free bodies included (kinematic
-    indeterminacy).
+    mechanisms: number of independent motions that deform no rod, those of free bodies included (kinematic
+    indeterminacy). rank: of the compatibility matrix.
     """
 
     static: int
     internal: int
     external: int
     mechanisms: int
+    rank: int
 
 
 def indeterminacy(model: Model) -> Indeterminacy:
     """Degrees by the rank r of the compatibility matrix, with supports and without; cables count as taut.
 
-    m rods between particles with f free directions have m − r states of self-stress and f − r mechanisms.
+    m rods between particles with f free directions have m − r states of self-stress and f − r mechanisms. A rigid end of
+    a rod that bends counts as one more of the m, a rotation as a direction.
     """
     structure = Structure.of(model, "linear").with_translations()
     unsupported = replace(structure, fixed=np.zeros_like(structure.fixed)).with_translations()
-    rods, rank = len(structure.ends), _rank(structure)
-    static, internal = rods - rank, rods - _rank(unsupported)
-    return Indeterminacy(static, internal, static - internal, structure.size - rank)
+    deformations, rank = structure.deformations, _rank(structure)
+    static, internal = deformations - rank, deformations - _rank(unsupported)
+    return Indeterminacy(static, internal, static - internal, structure.size - rank, rank)
 
 
 def mechanisms(model: Model) -> Array:
-    """Motions (k, n, 2) that elongate no rod, the largest of each 1; of large structures at most 20."""
+    """Motions (k, n, 2 or 3) that deform no rod, the largest of each 1; of large structures at most 20."""
     structure = Structure.of(model, "linear").with_translations()
     if structure.size <= FULL:
-        modes = _null_space(structure.compatibility(structure.unmoved).toarray())
+        modes = _null_space(_scaled(structure)) / structure.measure[:, None]
     else:
         matrix = structure.initial_tangent
         modes = soft_modes(matrix, structure.weight, most=min(MOST_MODES, soft_count(matrix, structure.weight)))
@@ -123,16 +130,18 @@ def mechanisms(model: Model) -> Array:
 
 
 def self_stress(model: Model) -> Array:
-    """Axial forces (k, rods) in equilibrium without load, the largest of each 1; of large ones at most 20."""
+    """Axial forces (k, rods) in equilibrium without load, the largest of each 1; of large ones at most 20.
+
+    Where members bend, and beside them the moments on all rigid ends, in the order of the rods (k, rods + ends).
+    """
     structure = Structure.of(model, "linear").with_translations()
     compatibility = structure.compatibility(structure.unmoved)
     if structure.size <= FULL:
-        states = _null_space(compatibility.toarray().T)
+        states = _null_space(_scaled(structure).T) * _reaches(structure)[:, None]
     else:  # any forces, less those that balance their unbalanced part
-        count = min(MOST_MODES, len(structure.ends) - _rank(structure))
-        states = pseudo_random(len(structure.ends), count)
-        unit = replace(structure, stiffness=structure.rest_length)
-        factor = regular(unit.initial_tangent, unit.weight)
+        count = min(MOST_MODES, structure.deformations - _rank(structure))
+        states = pseudo_random(structure.deformations, count)
+        factor = regular((compatibility.T @ compatibility).tocsc(), np.ones(structure.size))
         for _ in range(REFINEMENTS):
             states = states - compatibility @ factor.solve(compatibility.T @ states)
     states = _localised(states)
@@ -147,8 +156,24 @@ def _rank(structure: Structure) -> int:
         return structure.size - soft_count(structure.initial_tangent, structure.weight)
     from scipy.linalg import svd
 
-    matrix = structure.compatibility(structure.unmoved).toarray()
+    matrix = _scaled(structure)
     return _count(svd(matrix, compute_uv=False), matrix)
+
+
+def _scaled(structure: Structure) -> Array:
+    """The compatibility matrix in full, of lengths only: slopes × rest lengths, from rotations × a mean length."""
+    matrix: Array = structure.compatibility(structure.unmoved).toarray()
+    if structure.bending is None:
+        return matrix
+    return matrix * _reaches(structure)[:, None] / structure.measure
+
+
+def _reaches(structure: Structure) -> Array:
+    """What deformations are multiplied by, so that they are lengths: 1, slopes by the rest length."""
+    ones = np.ones(len(structure.ends))
+    if structure.bending is None:
+        return ones
+    return np.concatenate([ones, np.repeat(structure.rest_length, structure.bending.rigid.sum(axis=1))])
 
 
 def _count(singular: Array, matrix: Array) -> int:
@@ -181,7 +206,7 @@ def _localised(basis: Array) -> Array:
 
 
 def influence_on_rod(model: Model, rod: int) -> Array:
-    """Axial force in a rod (row) per unit force on each particle along x and y, (n, 2).
+    """Axial force in a rod (row) per unit force on each particle along x and y, (n, 2); where members bend, per moment, too.
 
     Müller-Breslau: the deflection that a unit lack of fit of the rod causes. Raises NoEquilibrium.
     """
@@ -197,10 +222,7 @@ def influence_on_reaction(model: Model, particle: int, axis: int) -> Array:
     if not structure.fixed[particle, axis]:
         raise ValueError(f"{model.particles[particle].name} is not constrained along {'xy'[axis]}.")
     unit = _unit(structure, particle, axis)
-    axes = structure.unmoved.axis
-    lever = (structure.relative(unit) * axes).sum(axis=1)
-    pull = (structure.stiffness / structure.rest_length * lever)[:, None] * axes
-    return _deflection(model, structure, structure.scatter(pull)) - unit
+    return _deflection(model, structure, structure.resistance(unit)) - unit
 
 
 def influence_on_displacement(model: Model, particle: int, axis: int) -> Array:

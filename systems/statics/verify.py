@@ -8,18 +8,26 @@ from functools import cached_property
 
 import numpy as np
 
+from components.diagrams import NAMES
+from components.field import ENDS
 from components.model import Model
 from components.suggestions import missing
+from components.table import flags
 from systems.statics.equations import ROUND_OFF, Array, Flags, largest
 from systems.statics.events import Event, NoEquilibrium
 from systems.statics.explain import capitalised, rod_names
-from systems.statics.settle import Settlement, Start, StaticState, settle
-from systems.statics.theory import Answer, linear
+from systems.statics.settle import Settlement, settle
+from systems.statics.state import Start, StaticState
+from systems.statics.theory import linear
 
 QUANTITIES = {
     "axial_force": ("rods", "kN"),
     "displacement": ("particles", "m"),
     "reaction": ("particles", "kN"),
+    "rotation": ("particles", "rad"),
+    "reaction_moment": ("particles", "kN·m"),
+    "shear": ("rods", "kN"),
+    "bending_moment": ("rods", "kN·m"),
 }
 
 JUMPS = ("snap-through", "bifurcation")
@@ -34,11 +42,26 @@ ROUNDING = 64.0 * ROUND_OFF  # of the largest value of the same unit, or of that
 
 
 @dataclass(frozen=True)
+class Answer:
+    """displacement (n, 2) in m, axial_force (rods,) in kN and reaction (n, 2) in kN, 0 in free directions.
+
+    rotation (n,) in rad and reaction_moment (n,) in kN·m are 0 where nothing bends. diagrams: (rods, 2), by names.
+    """
+
+    displacement: Array
+    axial_force: Array
+    reaction: Array
+    rotation: Array
+    reaction_moment: Array
+    diagrams: Mapping[str, Array]
+
+
+@dataclass(frozen=True)
 class Theories:
     """The answers of theory for a model in a state; linear: None if there is none, for the reason `refusal`."""
 
     start: Start
-    linear: Answer | None
+    linear: StaticState | None
     refusal: NoEquilibrium | None
     settlement: Settlement
 
@@ -67,16 +90,23 @@ def theories(model: Model, start: Start | None = None) -> Theories:
 def observed(model: Model) -> Answer:
     """The present state of a model, as a simulation left it."""
     particles, rods = model.particles, model.rods
-    return Answer(particles.displacement.copy(), rods.axial_force.copy(), particles.reaction.copy())
+    return Answer(
+        displacement=particles.displacement.copy(),
+        axial_force=rods.axial_force.copy(),
+        reaction=particles.reaction.copy(),
+        rotation=particles.rotation.copy(),
+        reaction_moment=particles.reaction_moment.copy(),
+        diagrams={name: rods.column(name).copy() for name in NAMES},
+    )
 
 
 @dataclass(frozen=True)
 class Row:
     """One quantity of one element: its simulated, linear and exact values, None where there is none.
 
-    element: "rod" or "particle". component: "", "x" or "y". Errors are differences from the exact value relative
-    to the largest exact value of the quantity in the model; where this is rounding, to the largest of the same
-    unit; where this is rounding as well, they are absolute.
+    element: "rod" or "particle". component: "", "x" or "y", of rods "start" or "end". Errors are differences from the
+    exact value relative to the largest exact value of the quantity in the model; where this is rounding, to the largest
+    of the same unit; where this is rounding as well, they are absolute.
     """
 
     element: str
@@ -93,7 +123,8 @@ class Row:
     @property
     def title(self) -> str:
         """Quantity and element, such as "displacement y of particle B"."""
-        quantity = f"{self.quantity.replace('_', ' ')} {self.component}".rstrip()
+        where = f"at the {self.component}" if self.component in ENDS else self.component
+        quantity = f"{self.quantity.replace('_', ' ')} {where}".rstrip()
         return f"{quantity} of {self.element} {self.name.removeprefix(self.element + ' ')}"
 
 
@@ -106,19 +137,28 @@ class Comparison:
 
     @property
     def rows(self) -> Iterator[Row]:
-        """Every quantity of every element: displacements of free directions, reactions of constrained ones."""
+        """Every quantity of every element: displacements of free directions, reactions of constrained ones.
+
+        Of members that bend, shears and moments at both ends; of their particles, rotations or the moments of clamps.
+        """
         for quantity in QUANTITIES:
             for place in np.argwhere(self._concerned(quantity)).tolist():
                 yield self.row(quantity, tuple(place))
 
+    def of(self, table: str, row: int) -> Iterator[tuple[str, tuple[int, ...]]]:
+        """The quantities of one element, and the place of each value."""
+        for quantity in (name for name, (of, _) in QUANTITIES.items() if of == table):
+            for place in np.argwhere(self._concerned(quantity)[row]).tolist():
+                yield quantity, (row, *place)
+
     def row(self, quantity: str, place: tuple[int, ...]) -> Row:
-        """One quantity of one element: of a rod (row,), of a particle (row, axis)."""
+        """One quantity of one element: (row,), of a vector (row, axis) and at an end of a rod (row, end)."""
         table, unit = QUANTITIES[quantity]
         found = {way: float(values[place]) for way, values in self._values[quantity].items()}
         errors = {f"{way}_error": float(values[place]) for way, values in self._errors[quantity].items()}
         name, component = (
             str(self.model.tables[table].column("name")[place[0]]),
-            "xy"[place[1]] if place[1:] else "",
+            (ENDS if table == "rods" else "xy")[place[1]] if place[1:] else "",
         )
         return Row(table.removesuffix("s"), name, quantity, component, unit, **found, **errors)
 
@@ -143,15 +183,29 @@ class Comparison:
 
     def _concerned(self, quantity: str) -> Flags:
         """Where a quantity has a meaning, in the shape of its array."""
+        particles, rods = self.model.particles, self.model.rods
+        rigid: Flags = rods.turning_shares > 0.0
         if quantity == "axial_force":
-            return np.ones(self.model.rods.count, dtype=bool)
-        fixed: Flags = self.model.particles.fixed
+            return np.ones(rods.count, dtype=bool)
+        if quantity in ("shear", "bending_moment"):
+            return np.repeat(rigid.any(axis=1, keepdims=True), 2, axis=1)
+        if quantity in ("rotation", "reaction_moment"):
+            turns: Flags = flags(rods.between[rigid], particles.count)
+            clamped = particles.fixed_rotation if quantity == "reaction_moment" else ~particles.fixed_rotation
+            return np.asarray(turns & clamped)
+        fixed: Flags = particles.fixed
         return fixed if quantity == "reaction" else ~fixed
 
     def scale(self, quantity: str) -> float:
         """The largest exact value of the quantity; where it is rounding, of its unit; 0 where that is rounding."""
         rods, unit = self.model.rods, QUANTITIES[quantity][1]
-        of_strain_1 = float((rods.stiffness if unit == "kN" else rods.rest_length).max(initial=0.0))
+        at_strain_1 = {
+            "kN": rods.stiffness,
+            "m": rods.rest_length,
+            "kN·m": rods.end_stiffness,
+            "rad": np.ones(1),
+        }
+        of_strain_1 = float(at_strain_1[unit].max(initial=0.0))
         own = self._largest(quantity)
         alike = max(self._largest(name) for name, (_, other) in QUANTITIES.items() if other == unit)
         scale = own if own > ROUNDING * alike else alike
@@ -165,7 +219,7 @@ class Comparison:
     def _values(self) -> dict[str, dict[str, Array]]:
         """By quantity and way."""
         given = {way: answer for way, answer in self.answers.items() if answer is not None}
-        return {q: {way: getattr(answer, q) for way, answer in given.items()} for q in QUANTITIES}
+        return {q: {way: _value(answer, q) for way, answer in given.items()} for q in QUANTITIES}
 
     @cached_property
     def _errors(self) -> dict[str, dict[str, Array]]:
@@ -178,6 +232,11 @@ class Comparison:
             }
             for quantity, values in self._values.items()
         }
+
+
+def _value(answer: Answer | StaticState, quantity: str) -> Array:
+    value: Array = answer.diagrams[quantity] if quantity in NAMES else getattr(answer, quantity)
+    return value
 
 
 def differs(comparison: Comparison) -> bool:

@@ -10,10 +10,10 @@ from scipy.sparse import csc_matrix, diags
 from scipy.sparse.linalg import LinearOperator, eigsh
 
 from components.model import Model
-from systems.statics.equations import ROUND_OFF, Array, Structure, largest, normalised
+from systems.statics.equations import ROUND_OFF, Array, Response, Structure, largest, normalised
 from systems.statics.external import external_forces
 from systems.statics.factor import Factor, pseudo_random
-from systems.statics.settle import Start, StaticState
+from systems.statics.state import Start, StaticState
 
 FULL = 600  # unknowns up to which all modes are computed
 LOWEST = 10  # modes of larger structures, unless more are asked for
@@ -25,7 +25,7 @@ SHIFT = 1e-9  # below zero, of the highest ω², so that mechanisms (ω = 0) can
 class Vibrations:
     """angular_squared: ω² (rad²/s²), ascending, (k,); negative if the equilibrium is not stable.
 
-    modes: (k, n, 2), the largest motion of each 1.
+    modes: (k, n, 2), where members bend with rotations (n, 3), the largest motion of each 1.
     """
 
     angular_squared: Array
@@ -40,24 +40,33 @@ class Vibrations:
 def rests_under_load(model: Model) -> bool:
     """True if the present state is an equilibrium with forces in the rods."""
     structure = Structure.of(model).with_translations()
-    response = structure.respond(model.particles.displacement, model.rods.plastic_strain)
-    external, pull = external_forces(model).at(1.0), largest(response.axial_force)
+    response = _present(structure, Start.present(model))
+    external, pull = external_forces(model).at(1.0), structure.largest_force(response)
     unbalanced = structure.gather(external - structure.internal(response))
-    return pull > 0.0 and largest(unbalanced) <= BALANCED * max(pull, largest(external))
+    return pull > 0.0 and structure.greatest(unbalanced) <= BALANCED * max(pull, structure.largest(external))
+
+
+def _present(structure: Structure, state: StaticState | Start) -> Response:
+    """The rods in a state under the whole load."""
+    place = structure.field(state.displacement, state.rotation)
+    return structure.respond(place, state.plastic_strain, 1.0)
 
 
 def vibrations(model: Model, state: StaticState | Start | None = None, count: int | None = None) -> Vibrations:
     """The lowest natural modes of small undamped vibrations, K φ = ω² M φ, in which no rod yields.
+
+    Where members bend, so do rotations vibrate, with the inertias of particles.
 
     state: the equilibrium about which the structure vibrates, stiffened or softened by its axial forces; None: the
     original positions, without axial forces and with taut cables. count: number of modes; None: all of a small
     structure, 10 of a large one.
     """
     structure = Structure.of(model).with_translations()
-    root = np.sqrt(structure.gather(np.repeat(model.particles.mass, 2).reshape(-1, 2)) / 1000.0)
+    mass, inertia = model.particles.mass, model.particles.inertia
+    root = np.sqrt(structure.gather(structure.field(np.repeat(mass, 2).reshape(-1, 2), inertia)) / 1000.0)
     stiffness = structure.initial_tangent
     if state is not None:
-        response = structure.respond(state.displacement, state.plastic_strain)
+        response = _present(structure, state)
         stiffness = structure.tangent(response, response.slack)
     if structure.size <= FULL:
         full = stiffness if isinstance(stiffness, np.ndarray) else stiffness.toarray()

@@ -19,7 +19,8 @@ import numpy as np
 from game import Session
 from game.documents import models
 from systems.statics.path import Goal, load_path
-from systems.statics.settle import Settlement, StaticState, settle
+from systems.statics.settle import Settlement, settle
+from systems.statics.state import StaticState
 from tests.reference import statics, transients
 from tests.reference.elements import Document
 from tests.reference.random_models import KINDS, Case, case

@@ -2,9 +2,15 @@
 
 from __future__ import annotations
 
+import json
+from itertools import pairwise
+from pathlib import Path
+
 import pytest
 
+from components.view import drawn_positions
 from game.documents.chronicle import TOLD
+from game.scripts.playing import Recorder, perform
 from game.session import Session
 from systems.statics.stability import is_held
 
@@ -141,11 +147,61 @@ def test_what_leaves_the_picture_is_told() -> None:
     for _ in range(600):
         session.frame(1 / 60)
         said.add(session.view.status.notice)
-    assert "Particle 2 left the picture: Home shows all." in said
-    assert session.view.status.notice == "All that moves has left the picture: Home shows it."
+    shown_by = "Home (right click: fit the view)"
+    assert any(notice.endswith(f"Particle 2 left the picture: {shown_by} shows all.") for notice in said)
+    assert session.view.status.notice == f"All that moves has left the picture: {shown_by} shows it."
     session.press("home")
     session.frame(1 / 60)
     assert session.view.status.notice == ""
+
+
+class Glass:
+    """A window that nobody sees."""
+
+
+@pytest.mark.parametrize("name", ["collision_vi", "isostatic_collapse"])
+def test_a_window_follows_what_moves_and_a_recording_of_it_plays(name: str, tmp_path: Path) -> None:
+    session = Session.open(name)
+    session.window = Glass()  # type: ignore[assignment]
+    script = tmp_path / "recording.jsonl"
+    with script.open("w") as file:
+        Recorder(session, file, name)
+        session.resize(1000, 720)
+        session.press("home")
+        session.press("space")
+        seen = []
+        for _ in range(660):
+            session.frame(1 / 60)
+            assert "left the picture" not in session.view.status.notice
+            seen.append(session.view.camera.scale)
+        moved = [after != before for before, after in pairwise(seen)]
+        assert 1 <= sum(moved) < 20, "in steps, now and then"
+        session.press("space")
+        session.click(*drawn_positions(session.model)[1])
+    again = Session.open(name)
+    for line in script.read_text().splitlines()[1:]:
+        list(perform(again, json.loads(line)))
+    assert again.view.camera == session.view.camera
+    assert again.selected == [again.particles[1]]
+
+
+def test_a_window_follows_nobody_who_looks_elsewhere_and_nothing_too_far() -> None:
+    session = Session.open("collision_vi")
+    session.window = Glass()  # type: ignore[assignment]
+    session.press("home")
+    session.press("wheel up")
+    chosen = session.view.camera.scale
+    session.press("space")
+    for _ in range(600):
+        session.frame(1 / 60)
+    assert session.view.camera.scale == chosen
+    assert "left the picture" in session.view.status.notice
+    session.press("home")
+    first = session.view.camera.scale
+    session.run(time=60.0)
+    session.frame(1 / 60)
+    assert session.view.camera.scale == first, "it would be too small to see"
+    assert "left the picture" in session.view.status.notice
 
 
 def test_many_rods_that_yield_at_once_are_one_event() -> None:
@@ -164,7 +220,24 @@ def test_a_run_that_diverges_says_so() -> None:
     assert kinds(session) == ["diverged"]
 
 
-def test_particles_alone_have_no_events() -> None:
+def test_impacts_are_told_first_one_by_one_then_counted() -> None:
     session = Session.open("collision_vi")
-    session.run(time=0.1)
+    session.run(time=0.05)
     assert session.events == ()
+    session.run(time=0.1)
+    [event] = session.events
+    assert (event.kind, event.elements) == ("impact", ("particle 1", "particle 2"))
+    assert event.message == "Particle 1 and particle 2 collide."
+    assert event.time == session.impacts.time[0]
+    session.restart()
+    assert session.events == ()
+
+    billiards = Session.open("billiards_break")
+    billiards.run(time=0.5)
+    *first, further = billiards.events
+    count = len(billiards.impacts)
+    assert [event.kind for event in first] == 3 * ["impact"]
+    told = int((billiards.impacts.time < first[-1].time * (1.0 + 1e-9)).sum())
+    assert (further.kind, further.message) == ("impacts", f"{count - told} more impacts.")
+    assert further.time == billiards.impacts.time[-1]
+    assert "more impacts" not in billiards.document.chronicle.told(0.0), "it would be told again and again"

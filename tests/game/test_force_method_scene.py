@@ -13,8 +13,9 @@ from game.editor.scenes.force_method import ForceMethod
 from game.force_method import PARTS, words
 from game.force_method.guide import Guide, elastic_copy
 from systems.render.marks import Text
+from systems.render.overlays import MEANINGS as WORDS
 from systems.render.page import draw_page
-from systems.render.picture import compose
+from systems.render.picture import compose_all
 from systems.render.sheet import measure
 from systems.render.theme import load_theme
 from tests.benchmarks.models import lattice
@@ -113,7 +114,7 @@ def test_every_part_is_drawn_at_any_size(size: tuple[int, int]) -> None:
         guide = guide_of(session)
         assert guide.part == part
         session.update_view()
-        texts = [text for model, view in session.stages for text in compose(model, view, theme).texts]
+        texts = [text for picture in compose_all(session.stages, theme) for text in picture.texts]
         assert f"Part {part} of 7" in texts
         if part == 2:
             session.stages  # noqa: B018 - places the views
@@ -411,8 +412,38 @@ def test_a_large_structure_is_worked_on_after_a_picture_that_says_so() -> None:
 
 def said(session: Session) -> list[str]:
     """All texts in the window."""
-    marks = (mark for shown, view in session.stages for mark in compose(shown, view, load_theme("light")).marks)
+    marks = (mark for picture in compose_all(session.stages, load_theme("light")) for mark in picture.marks)
     return [mark.text for mark in marks if isinstance(mark, Text)]
+
+
+@pytest.mark.parametrize("size", [(640, 480), (1024, 640), (480, 800), (1920, 1080)])
+@pytest.mark.parametrize("source", ["hyperstatic", "tower", "pendulum"])
+def test_the_legend_explains_what_the_sets_show_in_every_part(source: str, size: tuple[int, int]) -> None:
+    """All of it and no more, wholly in the window; Tab puts it away and brings it back."""
+    session = Session.open(source)
+    session.resize(*size)
+    session.press("k")
+    theme = load_theme("light")
+    for key in ("", "i", "k", "click", *("k",) * 4):
+        if key == "click":
+            first, last = session.rods[-1].ends
+            session.click(*np.add(np.multiply(first.position, 0.3), np.multiply(last.position, 0.7)))
+        elif key:
+            session.press(key)
+        session.frame(1 / 60)
+        pictures = compose_all(session.stages, theme)
+        head = next(
+            picture for picture, (_, view) in zip(pictures, session.stages, strict=True) if view.explains_all
+        )
+        shown = {meaning for picture in pictures for meaning in picture.meanings}
+        explained = [mark for mark in head.marks if isinstance(mark, Text) and mark.text in WORDS.values()]
+        assert {mark.text for mark in explained} == {WORDS[name] for name in shown}
+        assert all(mark.y + mark.size / 2 < head.viewport.bottom for mark in explained)
+    assert (source == "pendulum") == (session.scenes.active.shown_guide is None)  # type: ignore[attr-defined]
+    explained_last = {text for text in said(session) if text in WORDS.values()}
+    for left in (set(), explained_last):
+        session.press("tab")
+        assert {text for text in said(session) if text in WORDS.values()} == left
 
 
 def test_a_copy_is_elastic_undisplaced_and_at_rest_and_keeps_what_else_was_drawn() -> None:

@@ -385,6 +385,33 @@ def test_the_help_says_everything_in_full_at_640_by_480(scene_keys: tuple[str, .
     assert titles <= set(texts), titles - set(texts)
 
 
+def test_the_pages_of_keys_are_turned_by_wheel_and_click_and_each_says_which_it_is() -> None:
+    session = Session.open("hyperstatic")
+    session.resize(640, 480)
+    session.press("f1")
+    session.update_view()
+    count = session.view.pages
+    assert count > 1
+
+    def page() -> int:
+        session.update_view()
+        toolbar, view = session.stages[-1]
+        [heading] = [
+            text for text in compose(toolbar, view, load_theme("light")).texts if text.startswith("Keys")
+        ]
+        assert heading == f"Keys, page {view.help} of {count}"
+        assert view.keys[0][0] == "", "a purpose stands above"
+        return view.help
+
+    middle = session.view.camera.middle
+    turned = [("wheel up", 1), ("wheel down", 2), ("wheel down", min(3, count)), ("wheel down", count)]
+    for key, there in (*turned, ("wheel up", count - 1), ("click", count)):
+        session.press(key, middle)
+        assert page() == there
+    session.press("click", middle)
+    assert session.view.help == 0
+
+
 @pytest.mark.parametrize(
     ("keys", "scene"),
     [

@@ -19,7 +19,7 @@ from components.view import drawn_positions, magnified
 from game import Session
 from game.documents.library import data_in
 from systems.render.marks import Picture
-from systems.render.picture import compose
+from systems.render.picture import compose_all
 from systems.render.pygame_canvas import Canvas
 from systems.render.theme import load_theme
 
@@ -71,7 +71,7 @@ def composed(session: Session) -> list[Picture]:
     """What a session shows now."""
     session.update_view()
     theme = load_theme(session.view.theme)
-    return [compose(shown, view, theme) for shown, view in session.stages]
+    return compose_all(session.stages, theme)
 
 
 def opened(window: Window, source: object = "isostatic") -> Session:

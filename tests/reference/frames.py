@@ -9,6 +9,7 @@ import math
 from typing import Any
 
 import numpy as np
+from scipy.optimize import minimize
 
 from components.model import Model
 
@@ -123,3 +124,44 @@ def random_frame(
             rods.append(facts)
     rods[0] |= {"bending_stiffness": 10.0, "hinged": [False, False]}
     return {"format": "pinjoint model", "version": 1, "particles": particles, "rods": rods}
+
+
+def least_energy(model: Model) -> tuple[np.ndarray, np.ndarray]:
+    """Displacements (n, 2) and rotations (n,) of least energy near the present state, under all constant forces.
+
+    By a trust region with complex-step gradients and their differences, then Newton's method to rounding. Supports and
+    clamps stay where they are; the structure must be stable there.
+    """
+    free = np.column_stack([~model.particles.fixed, model.particles.turning > 0.0]).ravel()
+    state = np.column_stack([model.particles.displacement, model.particles.rotation])
+
+    def placed(unknowns: Any) -> Any:
+        trial = state.astype(complex)
+        trial.ravel()[free] = unknowns
+        return trial
+
+    def total(unknowns: Any) -> float:
+        trial = placed(unknowns)
+        return float(energy(model, trial[:, :2], trial[:, 2]).real)
+
+    def gradient(unknowns: Any) -> np.ndarray:
+        found = np.empty(len(unknowns))
+        for place in range(len(unknowns)):
+            trial = np.array(unknowns, dtype=complex)
+            trial[place] += 1j * STEP
+            at = placed(trial)
+            found[place] = energy(model, at[:, :2], at[:, 2]).imag / STEP
+        return found
+
+    def hessian(unknowns: Any) -> np.ndarray:
+        steps = 1e-6 * np.eye(len(unknowns))
+        found = np.array([(gradient(unknowns + step) - gradient(unknowns - step)) / 2e-6 for step in steps])
+        return 0.5 * (found + found.T)
+
+    start = state.ravel()[free]
+    found = minimize(total, start, jac=gradient, hess=hessian, method="trust-exact", options={"gtol": 1e-6})
+    least = found.x
+    for _ in range(4):
+        least = least - np.linalg.solve(hessian(least), gradient(least))
+    settled = placed(least).real
+    return settled[:, :2], settled[:, 2]

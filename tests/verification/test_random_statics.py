@@ -15,7 +15,8 @@ from game import Session
 from game.commands.command_line import main
 from game.documents import models
 from systems.statics.path import Goal, load_path
-from systems.statics.settle import StaticState, settle
+from systems.statics.settle import settle
+from systems.statics.state import StaticState
 from tests.reference.elements import Model as Document
 from tests.reference.models import model, particle, random_structure, rod
 from tests.reference.straightening import A_CABLE_TRUSS, A_YIELDING_TRUSS, straightening

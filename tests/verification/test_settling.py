@@ -20,7 +20,8 @@ from game.documents import models
 from systems.statics import loading
 from systems.statics.events import Event
 from systems.statics.follow import Path
-from systems.statics.settle import Settlement, StaticState, apply, settle
+from systems.statics.settle import Settlement, settle
+from systems.statics.state import StaticState, apply
 from tests.reference import closed_forms, statics
 from tests.reference import models as trusses
 from tests.reference.elements import Model as Document

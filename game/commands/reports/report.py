@@ -12,6 +12,7 @@ import numpy as np
 
 from components.mistake import Mistake
 from components.model import Model
+from components.rod import bends
 from components.settings import AUTOMATIC
 from game.commands.output import ResultError
 from game.commands.reports.results import Run, State, state
@@ -28,7 +29,7 @@ from systems.run.watch import watched
 from systems.statics.events import Event, event_record
 
 if TYPE_CHECKING:  # it imports scipy
-    from systems.statics.settle import StaticState
+    from systems.statics.state import StaticState
 
 INTERRUPTED = "interrupted"  # the status of a run that Ctrl+C ended
 MOD_FAILED = "mod failed"
@@ -90,7 +91,7 @@ class Analysis:
             **found,
             "message": " ".join(filter(None, [session.message, unknown])),
             "events": [*happened, *_records(session.model, session.remarks)],
-            "error_estimate": asdict(error) if error is not None else None,
+            "error_estimate": error.record(bent=bends(session.model)) if error is not None else None,
         }
 
 
@@ -153,7 +154,7 @@ def run_static(simulation: Simulation, name: str, factors: Sequence[float]) -> R
     started = time.perf_counter()
     settlement = settle(simulation.model, factors)
     seconds = time.perf_counter() - started
-    states = [_static_state(simulation, found) for found in settlement.states]
+    states = [static_state(simulation.model, found) for found in settlement.states]
     status, note = without_mods(settlement.status, left_out)
     return _run(simulation, name, status, states, moves=False) | {
         "message": " ".join(filter(None, [settlement.message, note])),
@@ -163,7 +164,7 @@ def run_static(simulation: Simulation, name: str, factors: Sequence[float]) -> R
     }
 
 
-def _static_state(simulation: Simulation, found: StaticState) -> State:
+def static_state(model: Model, found: StaticState) -> State:
     """An equilibrium as a state; its work is the energy stored and dissipated on the path of equilibria."""
     energy = dict.fromkeys(ENERGIES, 0.0) | {
         "elastic": found.elastic_energy,
@@ -175,9 +176,13 @@ def _static_state(simulation: Simulation, found: StaticState) -> State:
         "particles.displacement": found.displacement,
         "particles.velocity": np.zeros_like(found.displacement),
         "particles.reaction": found.reaction,
+        "particles.rotation": found.rotation,
+        "particles.angular_velocity": np.zeros_like(found.rotation),
+        "particles.reaction_moment": found.reaction_moment,
         **{f"rods.{name}": getattr(found, name) for name in of_rods},
+        **{f"rods.{name}": values for name, values in found.diagrams.items()},
     }
-    return state(simulation.model, energy, found.load_factor, found.residual, columns)
+    return state(model, energy, found.load_factor, found.residual, columns)
 
 
 def _state(simulation: Simulation) -> State:

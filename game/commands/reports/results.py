@@ -33,9 +33,16 @@ _OWN: Mapping[str, tuple[Field[Any], ...]] = {
 # Further ones of models that bend, or bear distributed forces.
 _OF_BENDING: Mapping[str, tuple[Field[Any], ...]] = {
     "particles": _facts(Particle, "rotation", "angular_velocity", "reaction_moment", "inertia"),
-    "rods": _facts(Rod, "end_axial_force", "shear", "bending_moment", "end_rotation"),
+    "rods": _facts(Rod, "end_axial_force", "shear", "bending_moment", "end_rotation", "largest_moment"),
 }
 _KINDS: Mapping[str, type[Handle]] = {"particles": Particle, "rods": Rod}
+_ERRORS = {
+    "relative": "displacements",
+    "relative_velocity": "velocities",
+    "relative_axial_force": "axial forces",
+    "relative_rotation": "rotations",
+    "relative_bending_moment": "bending moments",
+}
 _IN_TABLES = {Particle.displacement.name: ("mm", 1000.0)}  # else units as in files
 
 
@@ -137,9 +144,9 @@ def run_lines(run: Run) -> Iterator[str]:
         taken = f"time {as_written(run['time'])} s, {run['steps']} steps{step}"
         yield f"{taken}, integrator {run['integrator']}"
     if error := run.get("error_estimate"):
-        shares = (as_written(error[name]) for name in ("relative", "relative_velocity", "relative_axial_force"))
-        yield "error of displacements, velocities, axial forces, measured by finer steps:"
-        yield f"{', '.join(shares)} of the largest"
+        known = {title: as_written(error[key]) for key, title in _ERRORS.items() if key in error}
+        yield f"error of {', '.join(known)}, measured by finer steps:"
+        yield f"{', '.join(known.values())} of the largest"
     yield f"computed in {as_written(run['wall_seconds'])} s, compiled in {as_written(run['compile_seconds'])} s"
     for made in run["states"]:
         yield ""

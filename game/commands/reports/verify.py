@@ -11,8 +11,9 @@ import numpy as np
 from components.model import Model
 from game.commands import output
 from game.commands.output import aligned, as_written
+from game.commands.reports.report import static_state
 from game.session import Session
-from systems.statics.counting import FORMULA, Count, counted
+from systems.statics.counting import Count, counted
 from systems.statics.equations import Array
 from systems.statics.events import NoEquilibrium, event_record
 from systems.statics.explain import describe_motion
@@ -41,6 +42,7 @@ from systems.statics.vibration import vibrations
 
 VERIFIED, DIFFERS = "verified", "differs from static theory"
 THEORY_ONLY, NOT_VERIFIED = "theory only", "not verified"
+DEGREES = ("static", "internal", "external", "mechanisms")
 SHOWN = 6  # mechanisms and frequencies in a table
 NOTHING = 1e-12  # of the largest value beside it: round-off
 _IN_TABLES = {"m": ("mm", 1000.0)}  # else units as in files
@@ -104,14 +106,14 @@ def _by_element(comparison: Comparison | None) -> dict[str, dict[str, Any]]:
 
 
 def _found_by_theory(model: Model, name: str, theory: Theories) -> Found:
-    settlement = theory.settlement
+    settlement, degrees = theory.settlement, indeterminacy(model)
     loaded = vibrations(model, settlement.final).hertz.tolist() if theory.exact is not None else None
     rods, names = model.rods.names, model.particles.names
     return {
         "model": name,
         "status": NOT_VERIFIED,
         "message": "",
-        "indeterminacy": asdict(indeterminacy(model)),
+        "indeterminacy": {name: getattr(degrees, name) for name in DEGREES},
         "count": _count(model),
         "cables": [name for name, cable in zip(rods, model.rods.tension_only, strict=True) if cable],
         "mechanisms": [
@@ -121,7 +123,11 @@ def _found_by_theory(model: Model, name: str, theory: Theories) -> Found:
             }
             for motion in mechanisms(model)
         ],
-        "self_stress": [dict(zip(rods, state.tolist(), strict=True)) for state in self_stress(model)],
+        **_self_stress(model),
+        "states": {
+            way: static_state(model, state) if state is not None else None
+            for way, state in (("linear", theory.linear), ("exact", theory.exact))
+        },
         "frequencies": {"unloaded": vibrations(model).hertz.tolist(), "loaded": loaded},
         "simulation": None,
         "linear": {
@@ -134,6 +140,18 @@ def _found_by_theory(model: Model, name: str, theory: Theories) -> Found:
             "events": [event_record(model, event) for event in settlement.events],
         },
     }
+
+
+def _self_stress(model: Model) -> Found:
+    """The states of self-stress: axial forces by rod, and where members bend the moments on both ends beside them."""
+    states, rods = self_stress(model), model.rods
+    found: Found = {"self_stress": [dict(zip(rods.names, state.tolist(), strict=False)) for state in states]}
+    rigid = rods.turning_shares > 0.0
+    if rigid.any():
+        moments = np.zeros((len(states), rods.count, 2))
+        moments[:, rigid] = states[:, rods.count :] * np.where(np.nonzero(rigid)[1], 1.0, -1.0)
+        found["self_stress_moments"] = [dict(zip(rods.names, of.tolist(), strict=True)) for of in moments]
+    return found
 
 
 def _messages(found: Found) -> Iterator[str]:
@@ -192,6 +210,7 @@ def _influence(model: Model, name: str) -> Found:
 
 
 def _line(model: Model, field: Array) -> dict[str, list[float]]:
+    field = field[:, :2]
     cleared = np.where(np.abs(field) > NOTHING * np.abs(field).max(), field, 0.0)
     return dict(zip(model.particles.names, cleared.tolist(), strict=True))
 
@@ -250,18 +269,19 @@ def _degrees(found: Found) -> str:
 
 
 def _count(model: Model) -> Found:
-    """The numbers of Maxwell's rule, with its degree."""
+    """The numbers of the rule for counting by hand, with its degree."""
     count = counted(model)
-    return {**asdict(count), "degree": count.degree}
+    numbers = {name: number for name, number in asdict(count).items() if number is not None}
+    return {**numbers, "degree": count.degree}
 
 
 def _formula(found: Found) -> str:
-    """Maxwell's rule with its numbers, and what the rank says where there are mechanisms."""
+    """The rule for counting by hand with its numbers, and what the rank says where there are mechanisms."""
     numbers, degrees = dict(found["count"]), found["indeterminacy"]
     del numbers["degree"]
     count = Count(**numbers)
     said = count.by_rank(degrees["static"], degrees["mechanisms"])
-    return f"{FORMULA} = {count.numbers}{f'; by rank: {said}' if said else ''}"
+    return f"{count.formula} = {count.numbers}{f'; by rank: {said}' if said else ''}"
 
 
 def _verify_lines(found: Found) -> Iterator[str]:

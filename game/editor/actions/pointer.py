@@ -108,6 +108,9 @@ def _select_all(context: Context, pixel: Vector) -> None:
 def _toggle_diagrams(context: Context, pixel: Vector) -> None:
     """The diagrams of the selected particles and rods; of all when nothing is selected."""
     model, view = context.model, context.view
+    apart = view.put_together()
+    if apart and (view.all_diagrams or model.any_tagged(DiagramShown)):
+        return
     if not context.has_selected:
         view.all_diagrams = not view.all_diagrams
         model.tag_only([], DiagramShown)

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from components.field import Vector
-from components.slider import Place, under
 from game.editor.context import Action, Context, action
 from game.editor.gestures.sliding import Slide
 from game.editor.scenes.form import FormScene
@@ -21,13 +20,9 @@ from systems.edit import Refusal
 WHEEL = 0.02  # of its length, by which the wheel moves a slider
 
 
-def _under(context: Context, pixel: Vector) -> Place | None:
-    return under(context.focus[1].slider_places, pixel)
-
-
 @action("drag slider")
 def _drag_slider(context: Context, pixel: Vector) -> None:
-    place = _under(context, pixel)
+    place = context.slider_at(pixel)
     if place is not None and not place.button.contains(pixel):
         context.gesture = Slide(context, place, pixel)
 
@@ -35,7 +30,7 @@ def _drag_slider(context: Context, pixel: Vector) -> None:
 @action("click slider")
 def _click_slider(context: Context, pixel: Vector) -> None:
     """Take the knob to a pixel on its line; on the button, remove the slider, or let the scale be automatic."""
-    place = _under(context, pixel)
+    place = context.slider_at(pixel)
     if place is None:
         return
     if not place.button.contains(pixel):
@@ -50,7 +45,7 @@ def _click_slider(context: Context, pixel: Vector) -> None:
 @action("double click slider")
 def _double_click_slider(context: Context, pixel: Vector) -> None:
     """The second click of two lets the displacement scale be automatic; of others it is another click."""
-    place = _under(context, pixel)
+    place = context.slider_at(pixel)
     if place is not None and place.control.key == SCALE and not place.button.contains(pixel):
         scale_to(context, None)
     else:
@@ -66,7 +61,7 @@ def automatic(context: Context) -> None:
 
 def _step(by: float) -> Action:
     def act(context: Context, pixel: Vector) -> None:
-        place = _under(context, pixel)
+        place = context.slider_at(pixel)
         if place is None or place.control.share is None:
             return
         value = slider_of(context, place.control.key).value_at(place.control.share + by)

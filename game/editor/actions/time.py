@@ -118,4 +118,4 @@ def _redo(context: Context, pixel: Vector) -> None:
 def _settle(context: Context, pixel: Vector) -> None:
     """Go to the static equilibrium under the full load."""
     context.settle()
-    context.view.follow(context.model)
+    context.view.follow(context.model, clear=True)

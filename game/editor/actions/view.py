@@ -47,6 +47,8 @@ for _name, _act in _ACTIONS.items():
 @action("next shape", while_drawing=True)
 def _next_shape(context: Context, pixel: Vector) -> None:
     """Show the next mechanism or natural mode; after the last, none."""
+    if context.view.put_together() and context.view.shape is not None:
+        return
     try:
         context.document.shapes.next()
     except NoShape as error:
@@ -60,7 +62,7 @@ def _toggle_utilisation(context: Context, pixel: Vector) -> None:
     view = context.view
     if not view.utilisation and not has_strength(context.model):
         raise Refusal("No rod has a strength: select some and give them a tensile or compressive one (Return).")
-    view.utilisation = not view.utilisation
+    view.utilisation = view.put_together() or not view.utilisation
 
 
 @action("next theme", while_drawing=True)
@@ -77,6 +79,20 @@ def _toggle_help(context: Context, pixel: Vector) -> None:
     """Show the next page of keys; after the last, none."""
     count = len(pages_of_help(context))
     context.view.help = (min(context.view.help, count) + 1) % (count + 1)
+
+
+def _turn(by: int) -> Action:
+    """Another page of the keys, if there is one."""
+
+    def act(context: Context, pixel: Vector) -> None:
+        count = len(pages_of_help(context))
+        context.view.help = min(max(min(context.view.help, count) + by, 1), count)
+
+    return act
+
+
+action("help on", while_drawing=True)(_turn(1))
+action("help back", while_drawing=True)(_turn(-1))
 
 
 @action("toggle full screen", while_drawing=True)

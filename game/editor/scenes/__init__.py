@@ -2,7 +2,7 @@
 
 from collections.abc import Callable
 
-from game.editor.context import PHYSICS, Scene, SceneError, Scenes, Stage
+from game.editor.context import PHYSICS, Scene, SceneError, Scenes
 from game.editor.scenes.files import Pictures
 from game.editor.scenes.force_method import ForceMethod, Sets
 from game.editor.scenes.live import Pause, Simulation
@@ -10,6 +10,7 @@ from game.editor.scenes.load import Load
 from game.editor.scenes.properties import Properties
 from game.editor.scenes.save import Save
 from systems.base import System
+from systems.render.picture import Stage
 
 __all__ = ["PHYSICS", "SCENES", "Scene", "SceneError", "Scenes", "Stage", "all_scenes", "scene_systems"]
 

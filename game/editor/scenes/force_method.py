@@ -33,6 +33,7 @@ LOW = 1.8  # width / height of a place from which a structure stands beside its 
 LEAST_WIDTH, LEAST_HEIGHT, LEAST_LOW = 140.0, 160.0, 90.0  # points of a set; below or beside its caption
 HIGH = 340.0  # points of a set in which a slider has room below supports and reactions
 MOVED = 0.08  # of the size of a structure: about what drawn displacements add to it
+LEAST_EXPLAINED = 300.0  # points of a window; lower ones have no legend
 CAPTION, SCALE, MARGIN = (
     66.0,
     48.0,
@@ -67,7 +68,7 @@ class ForceMethod(Scene):
         self._page, self._page_of, self._first = Page(), -1, 0
         self._blank = Model()
         self._places = [View(page=Page(), legend=False, fitted=True) for _ in range(3)]
-        self._head, self._foot = View(page=Page(), legend=False), View(page=Page(), legend=False)
+        self._head, self._foot = View(page=Page(), explains_all=True), View(page=Page(), legend=False)
 
     @property
     def message(self) -> str:
@@ -154,7 +155,7 @@ class ForceMethod(Scene):
         return self.shown_guide.sets[0].model, self.shown_guide.sets[0].view
 
     def stages(self, context: Context) -> list[tuple[Model, View]]:
-        """The message, the sets, and the working with the status line."""
+        """The message with the legend of all sets, the sets, and the working with the status line."""
         return [(self._blank, self._head), *self._lay_out(context), (self._blank, self._foot)]
 
     def _lay_out(self, context: Context) -> list[tuple[Model, View]]:
@@ -167,7 +168,9 @@ class ForceMethod(Scene):
         hint = f"still moving     {self.hint(context)}" if self._moving() else self.hint(context)
         self._foot.status = Status(time=None, state=part, hint=hint)
         self._foot.page = self._working()
-        head = round(heading_height(self._head.heading, whole.width, ratio))
+        self._head.legend = context.view.legend and whole.height >= LEAST_EXPLAINED * ratio
+        explained = self._explained() if self._head.legend else ()
+        head = round(heading_height(self._head.heading, whole.width, ratio, explained))
         wanted = page_height(self._foot.page, whole.width, ratio)
         foot = min(wanted, round(MOST_OF_HEIGHT * whole.height))
         if foot < wanted:
@@ -176,6 +179,12 @@ class ForceMethod(Scene):
         _place(self._head, Viewport(whole.left, whole.top, whole.width, head), ratio)
         _place(self._foot, Viewport(whole.left, middle.top + middle.height, whole.width, foot), ratio)
         return self._sets(context, middle, ratio)
+
+    def _explained(self) -> list[str]:
+        """All that the legend may have to explain in this part."""
+        there = self.shown_guide.sets if self.shown_guide is not None else self._moving()
+        diagrams = any(one.view.all_diagrams for one in there)
+        return [*["tension", "compression", "reaction"] * diagrams, *["load", "ghost"] * bool(there)]
 
     def _working(self) -> Page:
         """The equations and the table; made once in every part, since a table may be long."""
@@ -207,10 +216,11 @@ class ForceMethod(Scene):
                 _fit(model, view)
             view.caption = captions[index]
             shown.append((model, view))
-        if self.shown_guide is not None and self.shown_guide.mechanism is None:
-            first, control = shown[0][1], scale_control(self.shown_guide.sets[0].model.settings)
-            high = first.camera.viewport.height >= HIGH * ratio
-            first.sliders = SliderStack((control,)) if high else SliderStack()
+        if self.shown_guide is not None:
+            control = scale_control(self.shown_guide.sets[0].model.settings)
+            high = shown[0][1].camera.viewport.height >= HIGH * ratio
+            for number, (_, view) in enumerate(shown):
+                view.sliders = SliderStack((control,)) if high and not number else SliderStack()
         return shown
 
     def scaled(self, context: Context) -> list[Settings]:

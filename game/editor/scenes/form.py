@@ -11,10 +11,11 @@ from components.camera import Camera, Viewport
 from components.field import Vector
 from components.form import Form, Tile
 from components.suggestions import missing
-from game.editor.context import Context, Scene, Stage
+from game.editor.context import Context, Scene
 from systems.forms import typing
 from systems.render.form_layout import FormLayout, lay_out, row_of
 from systems.render.panel import caret_at
+from systems.render.picture import Stage
 
 
 class FormScene(Scene):

@@ -15,10 +15,7 @@ class Pause(Scene):
 
     def hint(self, context: Context) -> str:
         if context.model.particles.count == 0:
-            return (
-                "P new particle under the pointer     L rods, from place to place     Ctrl+R rigid or pinned     C support     F force"
-                "     Right\u00a0click menu     D open a model     F1 all keys"
-            )
+            return "click a tool, then the canvas     right click menu     F1 all keys"
         selected = context.model.rows_tagged(Selected)
         kinds = [context.model.tables[name].kind for name, rows in selected.items() if len(rows)]
         if kinds and all(kind.points for kind in kinds):

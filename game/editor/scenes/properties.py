@@ -8,16 +8,17 @@ from dataclasses import replace
 import numpy as np
 
 from components.camera import Camera, Viewport
-from components.field import Vector
+from components.field import MADE, Vector
 from components.form import Form
 from components.handle import Handle
 from components.model import Model
-from components.view import LEAST_BESIDE, MARGIN, Readout, View, drawn_places, drawn_positions
-from game.editor.context import Context, Stage
+from components.view import LEAST_BESIDE, Readout, View, drawn_positions
+from game.editor.context import Context
 from game.editor.scenes.form import FormScene
 from systems.edit.picking import pick
 from systems.forms import answers, properties, results, typing
 from systems.render.form_layout import FormLayout
+from systems.render.picture import Stage
 
 
 class Properties(FormScene):
@@ -36,6 +37,7 @@ class Properties(FormScene):
         self._looked: tuple[object, ...] = ()  # the camera and the part of the window beside the boxes, and
         self._camera = Camera()  # what shows the model there
         self._read: tuple[object, ...] = ()  # what the readings were made from
+        self._made = 0  # the revision of the model that the boxes show
 
     def enter(self, context: Context) -> None:
         super().enter(context)
@@ -47,7 +49,7 @@ class Properties(FormScene):
         form = Form(properties.heading(model, selected), lambda box: answers.problem(model, box))
         properties.fill(form, model, selected)
         results.fill(form, model, selected, known=context.view.forces_known)
-        self._read = ()
+        self._read, self._made = (), model.newest(*MADE)
         return form
 
     def exit(self, context: Context) -> None:
@@ -143,6 +145,10 @@ class Properties(FormScene):
         if now != self._read:
             self._read = now
             results.fill(self.form, model, context.selected, known=known)
+        made = model.newest(*MADE)
+        if made != self._made:  # as by a slider beside them
+            self._made = made
+            properties.refresh(self.form, model, context.selected)
 
     def focus(self, context: Context) -> tuple[Model, View]:
         """The model where it was, and what is seen of it beside the boxes."""
@@ -160,8 +166,9 @@ class Properties(FormScene):
         if now != self._looked:
             self._looked, self._camera = now, now[0]
             if view.fitted and not view.shows(model):
-                self._camera = replace(view.camera)
-                self._camera.fit(drawn_places(model), MARGIN, view.canvas, view.pixel_ratio)
+                beside = replace(view, camera=replace(view.camera), shares=False)
+                beside.fit(model)
+                self._camera = beside.camera
         return replace(self._camera)
 
     def _readouts(self, view: View, aside: Viewport) -> tuple[Readout, ...]:

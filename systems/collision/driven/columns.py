@@ -9,7 +9,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from systems.collision.columns import NONE, Floats, Group, Integers, Report
+from systems.collision.columns import NONE, Floats, Grid, Group, Integers, Report
 from systems.entries import Account, Control
 
 
@@ -17,9 +17,10 @@ class Order(IntEnum):
     """What a step program is to do next for the particles that meet in its steps."""
 
     GO_ON = 0  # nothing: only between kernels of collisions
-    LEAVE = 1  # return to Python; Whole.NEED says why
-    EVALUATE = 2  # the forces of the present state, if they are not known
-    TAKE = 3  # a step: to Real.END, or a whole one where that is infinite
+    LIST = 1  # pairs anew, within Real.SPAN
+    LEAVE = 2  # return to Python; Whole.NEED says why
+    EVALUATE = 3  # the forces of the present state, if they are not known
+    TAKE = 4  # a step: to Real.END, or a whole one where that is infinite
 
 
 class Phase(IntEnum):
@@ -48,10 +49,8 @@ class Need(IntEnum):
     """Why the program returned to Python."""
 
     NOTHING = 0  # the steps are done, or a StopReason says why not
-    LIST = 1  # pairs are to be listed anew, within Real.SPAN of `before`
-    ROOM = 2  # for contacts, or for impacts to report
-    CROWD = 3  # the next step is one of a crowd
-    WAKE = 4  # something struck what is asleep
+    ROOM = 1  # for pairs, for contacts, or for impacts to report
+    WAKE = 2  # something struck what is asleep
 
 
 class Whole(IntEnum):
@@ -89,6 +88,11 @@ class Whole(IntEnum):
     PUSHED = 29  # 1: contact forces acted in the last step
     EXAMINE = 30  # 1: the next step is one that is looked through, though nothing seems near
     LOOSE = 31  # 1: contacts need to be closed only so far that impacts in the step are found
+    LISTED = 32  # pairs in the list
+    NEAR = 33  # particles in them
+    FOUND = 34  # pairs when they were listed last; NONE: the grid had no room for LAYERS
+    LAYERS = 35  # of the grid, then
+    LISTS = 36  # so far
 
 
 class Real(IntEnum):
@@ -139,9 +143,10 @@ class Driven(NamedTuple):
     Of the document: position, span, weight (inverse mass, 1/kg, 0 where held), shape (n + obstacles, 2); radius, size
     (the radius, ∞ for obstacles), restitution, node (1: of a structure), shape (n + obstacles,); loose: the particles
     that are no nodes; asleep, and pull, acceleration by constant forces (m/s²), shape (n,).
-    Of the list: near: the particles in pairs; pairs, shape (p, 2), and of each pair lasting (1: a persistent contact),
+    Of the list, whose arrays have room for p pairs, of which Whole.LISTED are there: near: the particles in pairs, shape
+    (n,); pairs, rows i < j in ascending order, shape (p, 2), and of each pair lasting (1: a persistent contact),
     forces (N), normal, slow (speed below which it stays in contact, m/s), rate (at which it opens, m/s); listed:
-    displacements when it was made, margin (m): how far each particle may move from there.
+    displacements when it was made, margin (m): how far each particle may move from there, negative: there is no list.
     Of the step: before, velocity: the state it begins with; ahead, ahead_speed: where it leads, as foreseen;
     acceleration, at its start; path_error (m); support: contact forces (kN); kept: control and account at the start.
     Of the search for contact forces: chosen, the pairs in persistent contact; search, with the rows of Tried; start, end:
@@ -204,7 +209,7 @@ class Driven(NamedTuple):
         """Arrays of n particles, of which some are given, with room for so many pairs and persistent contacts."""
         every = len(of_document["radius"])
         shapes: dict[str, tuple[tuple[int, ...], Any]] = {
-            "near": ((0,), np.int64),
+            "near": ((n,), np.int64),
             "pairs": ((pairs, 2), np.int64),
             **dict.fromkeys(("lasting", "touching", "chain"), ((pairs,), np.int64)),
             **dict.fromkeys(("forces", "slow", "rate", "room", "pushes", "impulses"), ((pairs,), np.float64)),
@@ -234,3 +239,15 @@ class Driven(NamedTuple):
             group=Group.empty(max(every, 2 * pairs), pairs),
             report=Report.empty(4 * pairs + 64),
         )
+
+
+class Listing(NamedTuple):
+    """What the pairs of Driven are listed by; see kernels/neighbours.py.
+
+    first, partners: the particles that rods join, as in Constraints. found: work space, pairs, shape (p, 2).
+    """
+
+    first: Integers
+    partners: Integers
+    found: Integers
+    grid: Grid

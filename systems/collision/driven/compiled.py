@@ -9,7 +9,9 @@ import numpy as np
 
 from components.field import Column
 from components.model import Model
-from systems.collision.driven.columns import Driven
+from systems.collision.columns import Grid, partners_of
+from systems.collision.driven.columns import Driven, Listing
+from systems.collision.driven.kernels.neighbours import list_pairs
 from systems.collision.driven.kernels.steps import collide
 from systems.collision.system import normals, persistent_contacts, support_forces
 from systems.program.between import Between
@@ -24,6 +26,7 @@ def _contents() -> tuple[str, dict[str, Callable[..., Any]]]:
     return entries_to(
         {
             "collide": collide,
+            "list_pairs": list_pairs,
             "gaps": pairs.measure_gaps,
             "resolve": joint_impacts.resolve,
             "part": overlap.separate,
@@ -39,7 +42,7 @@ def kernels() -> Any:
     return DRIVEN.form
 
 
-def idle() -> Driven:
+def idle() -> tuple[Driven, Listing]:
     """Arrays of no particles."""
     none, vectors = np.zeros(0), np.zeros((0, 2))
     of_document: dict[str, Any] = dict.fromkeys(("position", "span", "weight"), vectors)
@@ -49,7 +52,8 @@ def idle() -> Driven:
         "loose": np.zeros(0, dtype=np.int64),
         "asleep": np.zeros(0, dtype=bool),
     }
-    return Driven.empty({**of_document, **whole}, 0, 0, 0)
+    driven = Driven.empty({**of_document, **whole}, 0, 0, 0)
+    return driven, Listing(*partners_of(0, ()), driven.pairs, Grid.empty(0, 1))
 
 
 def _support(model: Model) -> Column:
@@ -59,4 +63,4 @@ def _support(model: Model) -> Column:
     return support_forces(normals(model, contacts.pairs), contacts.pairs, contacts.forces, count)
 
 
-BETWEEN = Between(DRIVEN, collide, idle, _support)
+BETWEEN = Between(DRIVEN, (collide, list_pairs), idle, _support)

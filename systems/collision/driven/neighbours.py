@@ -1,4 +1,4 @@
-"""The neighbour list of driven particles: which pairs may collide soon."""
+"""The neighbour list of driven particles: its arrays, and what of it the document and the state of a model say."""
 
 from __future__ import annotations
 
@@ -12,27 +12,30 @@ from components.field import Role
 from components.model import Model
 from components.obstacles import obstacles
 from components.rod import nodes
-from systems.broad_phase import Floats, Rows, near_pairs
-from systems.collision.columns import STEP_SHARE
-from systems.collision.driven.columns import Driven, Phase, Real, Whole
+from systems.collision.columns import NONE, STEP_SHARE, Floats, Grid, Integers, partners_of
+from systems.collision.driven.columns import Driven, Listing, Order, Phase, Real, Whole
 from systems.collision.driven.compiled import kernels
 from systems.collision.system import persistent_contacts
+from systems.entries import Control
 
-LISTED_AROUND = 0.5  # of the radius of a particle: the least margin within which others are listed
-FEWEST_STEPS = 512  # for which the list is to last, at the present speed of a particle,
-FARTHEST = 4.0  # where that is no farther than so many of its radii
-WIDER, MOST_WIDENED = 4.0, 4  # times the margin, as long as nothing is within it
 CONTACTS = 8  # room at first
+MORE, LEAST_ROOM = 1.5, 16  # times the pairs there are, and beyond that: room for those that come near later
+OF_PAIRS = (
+    *("pairs", "lasting", "forces", "normal", "slow", "rate", "room", "pushes", "impulses"),
+    *("touching", "chain", "group", "report"),
+)
+OF_CONTACTS = ("chosen", "search", "start", "end", "slope", "learnt", "matrix", "block", "sides")
 
 
 class NeighbourList:
     """The pairs of one model's particles that are near each other, in the arrays that the kernels share.
 
-    driven: these arrays. pairs: rows i < j in ascending order, without pairs that a rod joins or that cannot move.
-    count: of the particles. The numbers of obstacles follow those of the particles.
+    driven, listing: these arrays; kernels list the pairs (driven/kernels/neighbours.py). count: of the particles. The
+    numbers of obstacles follow those of the particles.
     """
 
     driven: Driven
+    listing: Listing
 
     def __init__(self, model: Model) -> None:
         self.model = model
@@ -48,15 +51,13 @@ class NeighbourList:
         if self._revision == revision:
             return
         self._revision, self._held = revision, None
-        particles, ends = self.model.particles, np.sort(self.model.rods.between.astype(np.int64), axis=1)
-        self.obstacles = others = obstacles(self.model)
+        particles = self.model.particles
+        self.obstacles = obstacles(self.model)
         self.count = particles.count
-        joined = np.sort(ends[:, 0] * (self.count + len(others)) + ends[:, 1])
-        self._joined = np.append(joined, -1)  # the sentinel equals no pair that is looked up
-        self._moves: NDArray[np.bool_] = self.everywhere(np.any(particles.mobility > 0.0, axis=1))
-        self._least: Floats = LISTED_AROUND * particles.radius
         self._document = self._of_document()
         self.driven = Driven.empty(self._document, self.count, 0, CONTACTS)
+        grid = Grid.empty(self.count + len(self.obstacles), 1)
+        self.listing = Listing(*partners_of(self.count, self.model.rods.between), self.driven.pairs, grid)
         self.driven.margin[:] = -1.0  # no pair is listed yet
         whole, real = self.driven.whole, self.driven.real
         whole[Whole.BOUNCY] = (self.driven.restitution < 1.0).any()
@@ -97,69 +98,37 @@ class NeighbourList:
     # --- the list ------------------------------------------------------------------------------------
 
     @property
-    def pairs(self) -> Rows:
-        return self.driven.pairs
+    def pairs(self) -> Integers:
+        """Those listed."""
+        return self.driven.pairs[: self.driven.whole[Whole.LISTED]]
 
     def list_within(self, span: float) -> None:
-        """List the pairs that can meet before any particle has moved by `span` (m) from where the step began, or now."""
-        midst = self.driven.whole[Whole.PHASE] != Phase.BETWEEN
-        taken = midst and not self.driven.whole[Whole.FORESEEN]
-        displacement = self.driven.before if taken else self.displacement
-        radius, speed = self.driven.radius[: self.count], np.hypot(*self.velocity.T)
-        far = np.minimum(FEWEST_STEPS * self.model.clock.step_size * speed, FARTHEST * radius)
-        margin = np.maximum(np.maximum(self._least, far), 2.0 * span)
-        pairs = self._near(displacement, margin)
-        for _ in range(MOST_WIDENED):
-            wider = WIDER * margin
-            if len(pairs) or len(more := self._near(displacement, wider)):
-                break
-            margin, pairs = wider, more  # nothing is near: it will be long until something is
-        self._put(pairs)
-        self.driven.margin[:], self.driven.listed[:] = margin, displacement
-
-    def _near(self, displacement: Floats, margin: Floats) -> Rows:
-        """The pairs that can meet before any particle has moved by its margin (m) from there."""
-        others = self.obstacles
-        place, radius = self.driven.position[: self.count] + displacement, self.driven.radius[: self.count]
-        near = near_pairs(place, radius + margin, others)
-        may = np.logical_or(self._moves[near[:, 0]], self._moves[near[:, 1]])
-        keys = self._keys(near)
-        joined = self._joined[np.searchsorted(self._joined[:-1], keys)] == keys
-        found: Rows = near[np.flatnonzero(may & ~joined)]
-        return found
-
-    def _keys(self, pairs: Rows) -> Rows:
-        keys: Rows = pairs[:, 0] * (self.count + len(self.obstacles)) + pairs[:, 1]
-        return keys
-
-    def _put(self, pairs: Rows) -> None:
-        """Put pairs in place of those listed; what lasts in those that stay goes on."""
-        old = self.driven
-        new = Driven.empty(self._document, self.count, len(pairs), 0)
-        new.pairs[:] = pairs
-        lasting = np.flatnonzero(old.lasting)
-        rows = np.searchsorted(self._keys(pairs), self._keys(old.pairs[lasting]))
-        new.lasting[rows], new.forces[rows] = 1, old.forces[lasting]
-        of_pairs = (
-            *("pairs", "lasting", "forces", "normal", "slow", "rate", "room", "pushes", "impulses"),
-            *("touching", "chain", "group", "report"),
-        )
-        members = np.unique(pairs)
-        near = np.ascontiguousarray(members[members < self.count])
-        self.driven = old._replace(near=near, **{name: getattr(new, name) for name in of_pairs})
-        self.driven.support[:] = 0.0
-        self.driven.whole[Whole.PUSHED] = 1
-        if old.whole[Whole.PHASE] == Phase.HELD:  # else they are chosen anew before they are used
-            chosen = self.driven.chosen[: old.whole[Whole.CHOSEN]]
-            chosen[:] = np.searchsorted(self._keys(pairs), self._keys(old.pairs[chosen]))
+        """List the pairs that can meet before any particle has moved by `span` (m) from where it is."""
+        control, state = np.zeros(len(Control)), (self.displacement, self.velocity)
+        control[Control.STEP_SIZE], self.driven.real[Real.SPAN] = self.model.clock.step_size, span
+        while kernels().list_pairs(self.driven, self.listing, control, *state) == Order.LEAVE:
+            self.make_room()
 
     def make_room(self) -> None:
-        """Make room for twice as many persistent contacts, if there are more than before."""
-        if self.driven.lasting.sum() <= len(self.driven.chosen):
-            return
-        new = Driven.empty(self._document, self.count, 0, 2 * len(self.driven.chosen))
-        of_contacts = ("chosen", "search", "start", "end", "slope", "learnt", "matrix", "block", "sides")
-        self.driven = self.driven._replace(**{name: getattr(new, name) for name in of_contacts})
+        """Make the room that was wanted: for pairs, to find them, or for twice as many persistent contacts."""
+        whole = self.driven.whole
+        if whole[Whole.FOUND] == NONE:
+            grid = Grid.empty(self.count + len(self.obstacles), int(whole[Whole.LAYERS]) + 1)
+            self.listing = self.listing._replace(grid=grid)
+        elif whole[Whole.FOUND] > len(self.driven.pairs):
+            self._make_room_for_pairs(int(whole[Whole.FOUND]))
+        elif self.driven.lasting[: whole[Whole.LISTED]].sum() > len(self.driven.chosen):
+            new = Driven.empty(self._document, self.count, 0, 2 * len(self.driven.chosen))
+            self.driven = self.driven._replace(**{name: getattr(new, name) for name in OF_CONTACTS})
+
+    def _make_room_for_pairs(self, count: int) -> None:
+        """Make room for more than `count` pairs; those listed stay."""
+        old, listed = self.driven, int(self.driven.whole[Whole.LISTED])
+        new = Driven.empty(self._document, self.count, int(MORE * count) + LEAST_ROOM, 0)
+        for name in ("pairs", "lasting", "forces"):
+            getattr(new, name)[:listed] = getattr(old, name)[:listed]
+        self.driven = old._replace(**{name: getattr(new, name) for name in OF_PAIRS})
+        self.listing = self.listing._replace(found=np.empty_like(new.pairs))
 
     # --- persistent contacts ----------------------------------------------------------------------------
 
@@ -175,16 +144,18 @@ class NeighbourList:
         self._held = held
         if held is None:
             return
-        self.list_within(0.0)
-        keys, sought = self._keys(self.pairs), self._keys(held.pairs)
-        rows = np.minimum(np.searchsorted(keys, sought), max(len(keys) - 1, 0))
-        there = keys[rows] == sought if len(keys) else np.zeros(len(sought), dtype=bool)
-        self.driven.lasting[rows[there]], self.driven.forces[rows[there]] = 1, held.forces[there]
+        if len(held.pairs) > len(driven.pairs):
+            self._make_room_for_pairs(len(held.pairs))
+        driven, rows = self.driven, slice(len(held.pairs))
+        order = np.lexsort(held.pairs.T[::-1])
+        driven.pairs[rows], driven.lasting[rows], driven.forces[rows] = held.pairs[order], 1, held.forces[order]
+        driven.whole[Whole.LISTED] = len(held.pairs)
+        self.list_within(0.0)  # of these contacts, those of pairs that may collide go on
 
     def store_contacts(self) -> None:
         """Note the persistent contacts in the state of the model."""
         driven, held = self.driven, self._held
-        rows = np.flatnonzero(driven.lasting)
+        rows = np.flatnonzero(driven.lasting[: driven.whole[Whole.LISTED]])
         longest = float(driven.real[Real.LONGEST])
         if len(rows) or held is not None:
             self._held = (
@@ -205,7 +176,7 @@ class NeighbourList:
         """Of the particles, now (m/s)."""
         return self.model.tables["particles"].storage("velocity")
 
-    def gaps(self, pairs: Rows, displacement: Floats) -> tuple[Floats, Floats]:
+    def gaps(self, pairs: Integers, displacement: Floats) -> tuple[Floats, Floats]:
         """Distance between the rims of pairs, and unit vectors from the first centres to the second."""
         gap, normal, driven = np.empty(len(pairs)), np.empty((len(pairs), 2)), self.driven
         kernels().gaps(pairs, driven.position, displacement, driven.radius, driven.span, gap, normal)

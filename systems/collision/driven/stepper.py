@@ -3,7 +3,7 @@
 The integrator takes its steps. Each is looked through: the paths of the particles in it are taken as parabolas, whose
 first impact is found like that of free particles. The step is taken again to end there, and after the impact forces are
 evaluated anew. All of that happens in the step program and the kernel `collide` that it calls; it returns to Python
-for a list of near pairs, for room, and where something strikes what is asleep.
+for room, and where something strikes what is asleep.
 """
 
 from __future__ import annotations
@@ -75,13 +75,11 @@ class DrivenCollisions:
         while True:
             near.driven.whole[Whole.LANDING] = landing
             try:
-                reason, done = program.drive(near.driven, last - clock.steps, until)
+                reason, done = program.drive((near.driven, near.listing), last - clock.steps, until)
             finally:
                 self._fetch_impacts()
             need = near.driven.whole[Whole.NEED]
-            if need == Need.LIST:
-                near.list_within(float(near.driven.real[Real.SPAN]))
-            elif need == Need.ROOM:
+            if need == Need.ROOM:
                 near.make_room()
             elif need == Need.WAKE:
                 near.store_contacts()
@@ -107,11 +105,12 @@ class DrivenCollisions:
 
 def _warm_up() -> None:
     """Call every compiled function once."""
-    model, arrays = Model(), idle()
+    model, (arrays, _) = Model(), idle()
     model.create(Particle, 2, position=[(0.0, 0.0), (0.09, 0.0)], velocity=[(1.0, 0.0), (0.0, 0.0)])
     part_overlaps(model)
     near = NeighbourList(model)
     near.look_up()
+    near.list_within(0.0)
     near.gaps(near.pairs, near.displacement)
     form = kernels()
     form.resolve(0, 0, SEPARATE, 0.0, arrays.group)

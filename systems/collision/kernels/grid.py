@@ -20,6 +20,7 @@ from systems.collision.kernels.time_of_impact import extent
 CORNERS = 4  # cells of its layer, or of a coarser one, that a box overlaps at most
 FARTHEST_CELL = 2.0**40  # cells from the origin; farther out cells grow, so that they can be told apart
 COARSEST = 63
+SAMPLED_DISCS = 128  # discs that decide the size of the cells
 GOLDEN_SECTION = 0.6180339887498949
 KIND = 0x165667B19  # far from 0 in any number of buckets
 BOX_MARGIN = 1e-13  # of a disc's coordinates, added to its box: more than the noise of a gap
@@ -95,6 +96,62 @@ def layer_of(level, grid, layers):
     while k < layers and grid.levels[k] < level:
         k += 1
     return k
+
+
+@compiled
+def choose_layers(grid, cell, coarsest):
+    """Choose the layers that the boxes need, and one of at least the level `coarsest`; returns how many.
+
+    cell: size of the finest cells. Every disc is given its layer.
+    """
+    count = grid.boxes.shape[0]
+    needed = 1 << min(coarsest, COARSEST)
+    for i in range(count):
+        grid.layer[i] = level_of(i, grid, cell)
+        needed |= 1 << grid.layer[i]
+    layers = 0
+    for level in range(COARSEST + 1):
+        if (needed >> level) & 1:
+            grid.levels[layers] = level
+            grid.inverse[layers] = math.ldexp(1.0 / cell, -level)
+            layers += 1
+    for i in range(count):
+        grid.layer[i] = layer_of(grid.layer[i], grid, layers)
+    return layers
+
+
+@compiled
+def cell_size(grid):
+    """About twice the largest of the boxes, but not more than a few times the small ones (measured).
+
+    Nor so small that no layer is coarse enough for the largest: every box overlaps few cells, however small others are.
+    """
+    if grid.boxes.shape[0] == 0:
+        return 1.0
+    small, large = _quantile(grid, 0.1), _quantile(grid, 0.9)
+    least = 0.0
+    for i in range(grid.boxes.shape[0]):
+        least = max(least, math.ldexp(suitable_size(i, grid), 1 - COARSEST))
+    return max(2.0 * large if large <= 8.0 * small else 4.0 * small, least)
+
+
+@compiled
+def _quantile(grid, share):
+    """The least size of a sampled box that at least a share of the sampled boxes do not exceed."""
+    count = grid.boxes.shape[0]
+    stride = max(count // SAMPLED_DISCS, 1)
+    sampled = (count + stride - 1) // stride
+    best = math.inf
+    for i in range(0, count, stride):
+        size = box_size(i, grid)
+        if size < best:
+            smaller = 0
+            for j in range(0, count, stride):
+                if box_size(j, grid) <= size:
+                    smaller += 1
+            if smaller >= share * sampled:
+                best = size
+    return best
 
 
 @compiled

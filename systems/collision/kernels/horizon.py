@@ -10,8 +10,8 @@ import math
 from systems.collision.columns import NONE, Count, Disc, Number, Reason
 from systems.collision.kernels import compiled
 from systems.collision.kernels.grid import (
-    COARSEST,
-    box_size,
+    cell_size,
+    choose_layers,
     enclose,
     enter,
     has_room,
@@ -19,7 +19,6 @@ from systems.collision.kernels.grid import (
     leave,
     level_of,
     neighbours,
-    suitable_size,
 )
 from systems.collision.kernels.heap import changes, purge, push
 from systems.collision.kernels.persistent_contact import find_persistent, is_held
@@ -41,7 +40,6 @@ BOX_COST = 0.9  # of renewing a disc's box, relative to that of looking at one n
 MOST_NEIGHBOURS = 64  # per disc; with more, a shorter horizon is opened
 MOST_CORRECTIONS = 3  # of a time of impact, each of which squares its error
 LARGEST_CORRECTION = 1e-3  # of the step of persistent contact
-SAMPLED_DISCS = 128  # discs that decide the size of the grid's cells
 
 
 @compiled
@@ -258,21 +256,8 @@ def _spread(discs):
 @compiled
 def set_layers(grid, numbers, counts):
     """Choose the finest cells and the layers that the boxes need, and give every disc its layer."""
-    count = grid.boxes.shape[0]
-    numbers[Number.CELL] = _cell_size(grid)
-    needed = 1 << min(counts[Count.LEVEL], COARSEST)
-    for i in range(count):
-        grid.layer[i] = level_of(i, grid, numbers[Number.CELL])
-        needed |= 1 << grid.layer[i]
-    layers = 0
-    for level in range(COARSEST + 1):
-        if (needed >> level) & 1:
-            grid.levels[layers] = level
-            grid.inverse[layers] = math.ldexp(1.0 / numbers[Number.CELL], -level)
-            layers += 1
-    for i in range(count):
-        grid.layer[i] = layer_of(grid.layer[i], grid, layers)
-    counts[Count.LAYERS] = layers
+    numbers[Number.CELL] = cell_size(grid)
+    counts[Count.LAYERS] = choose_layers(grid, numbers[Number.CELL], counts[Count.LEVEL])
     counts[Count.LEVEL] = 0
 
 
@@ -289,37 +274,3 @@ def enclose_anew(i, discs, grid, numbers, counts):
         return True
     counts[Count.LEVEL] = max(counts[Count.LEVEL], level)
     return False
-
-
-@compiled
-def _cell_size(grid):
-    """About twice the largest of the boxes, but not more than a few times the small ones (measured).
-
-    Nor so small that no layer is coarse enough for the largest: every box overlaps few cells, however small others are.
-    """
-    if grid.boxes.shape[0] == 0:
-        return 1.0
-    small, large = _quantile(grid, 0.1), _quantile(grid, 0.9)
-    least = 0.0
-    for i in range(grid.boxes.shape[0]):
-        least = max(least, math.ldexp(suitable_size(i, grid), 1 - COARSEST))
-    return max(2.0 * large if large <= 8.0 * small else 4.0 * small, least)
-
-
-@compiled
-def _quantile(grid, share):
-    """The least size of a sampled box that at least a share of the sampled boxes do not exceed."""
-    count = grid.boxes.shape[0]
-    stride = max(count // SAMPLED_DISCS, 1)
-    sampled = (count + stride - 1) // stride
-    best = INFINITY
-    for i in range(0, count, stride):
-        size = box_size(i, grid)
-        if size < best:
-            smaller = 0
-            for j in range(0, count, stride):
-                if box_size(j, grid) <= size:
-                    smaller += 1
-            if smaller >= share * sampled:
-                best = size
-    return best

@@ -1,6 +1,7 @@
 """Steps among particles that may meet: between them, and before each is taken for good, `collide` is asked what to do.
 
-`collide` is compiled once for all programs (systems/collision/driven/kernels/steps.py); `driven` holds its arrays.
+`collide` is compiled once for all programs (systems/collision/driven/kernels/steps.py); `driven` holds its arrays. So is
+`list_pairs` (neighbours.py there), with those of `listing`: apart, as each array costs time in every call of `collide`.
 Their rows are those of the model. rows: the model's row of each particle of the program; of none: they are the same.
 place, speed: of the model's particles, other arrays than displacement and velocity only where there are `rows`.
 *kept: copies of what a step that is taken back had changed. Contact forces (`support`, kN) last during a step and are
@@ -21,7 +22,9 @@ def push():
 
 def drive(
     collide,
+    list_pairs,
     driven,
+    listing,
     rows,
     place,
     speed,
@@ -47,6 +50,10 @@ def drive(
     if not alone:
         order = collide(driven, control, account, place, speed)
     while True:
+        while order == Order.LIST.value:
+            order = list_pairs(driven, listing, control, place, speed)
+            if order == Order.GO_ON.value:
+                order = collide(driven, control, account, place, speed)
         for i in range(rows.shape[0]):
             for d in range(2):
                 displacement[i, d] = place[rows[i], d]
@@ -63,8 +70,9 @@ def drive(
             while breaks[coming] <= control[Control.TIME]:
                 coming += 1
             real[Real.BREAK] = breaks[coming]
-            near = driven.near if rows.shape[0] == 0 and driven.near.shape[0] > 0 else every
-            for p in range(near.shape[0]):
+            few = rows.shape[0] == 0 and whole[Whole.NEAR] > 0
+            near = driven.near if few else every
+            for p in range(whole[Whole.NEAR] if few else every.shape[0]):
                 i = near[p]
                 for d in range(2):
                     total = unpushed[i, d] + resisting[i, d] if RATES else unpushed[i, d]

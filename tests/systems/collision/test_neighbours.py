@@ -2,36 +2,37 @@
 
 from __future__ import annotations
 
-from typing import Any
-
 import numpy as np
 import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
 
 from game import Session
 from systems.broad_phase import ALL_PAIRS_DISCS, near_pairs
-from systems.collision.driven import neighbours
-from systems.collision.driven.columns import Whole
+from systems.collision.driven.columns import Phase, Whole
 from systems.collision.driven.neighbours import NeighbourList
+from systems.program.compiler import Compile
 from tests.benchmarks.models import lattice
+from tests.reference.forms import programs
 from tests.systems.collision.test_driven_collisions import truss
 
 
-def test_a_step_looks_up_nothing_and_an_edit_does(monkeypatch: pytest.MonkeyPatch) -> None:
+def listed(session: Session) -> int:
+    """How often pairs were listed since the document changed."""
+    return int(session.simulation._driven_collisions._neighbours.driven.whole[Whole.LISTS])
+
+
+def test_a_step_looks_up_nothing_and_an_edit_does() -> None:
     session = Session(lattice(200, damping=1.0))
     session.step()
-    looked: list[Any] = []
-
-    def looked_up(*where: Any) -> Any:
-        looked.append(where)
-        return near_pairs(*where)
-
-    monkeypatch.setattr(neighbours, "near_pairs", looked_up)
+    near = session.simulation._driven_collisions._neighbours.driven
     for _ in range(5):
         session.step()
-    assert not looked
+    assert listed(session) == 1
     session.particles[3].radius = 0.06
     session.step()
-    assert looked
+    assert listed(session) == 1
+    assert session.simulation._driven_collisions._neighbours.driven is not near
 
 
 @pytest.mark.parametrize("count", [20, ALL_PAIRS_DISCS + 20])
@@ -54,6 +55,126 @@ def test_no_discs_are_near_no_discs() -> None:
     assert near_pairs(np.zeros((0, 2)), np.zeros(0)).shape == (0, 2)
 
 
+# --- the list in machine code, and interpreted, is that of a look at all pairs ---------------------------------
+
+
+def scattered(seed: int, count: int, width: float, spread: float, away: float) -> NeighbourList:
+    """Discs in a square of this width (m), and walls, of which some are so far away (m), by positions or displacements.
+
+    The largest discs are 10^spread times the least; some are held, some joined, a few on one place.
+    """
+    random = np.random.default_rng(seed)
+    place, shift = width * random.random((count, 2)), np.zeros((count, 2))
+    fixed = random.random((count, 2)) < 0.4
+    place[: count // 6] = place[:1]
+    place[count // 3 : count // 2] += away
+    shift[count // 2 : 2 * count // 3] = away, -(away**4)
+    drawn = {(min(pair), max(pair)) for pair in random.integers(0, count, (2 * count, 2)).tolist()}
+    joined = [pair for pair in sorted(drawn) if (place[pair[0]] != place[pair[1]]).all()]
+    ends = width * random.random((6, 2, 2))
+    ends[:2, 1] = ends[:2, 0] + random.random((2, 2)) / 100.0
+    ends[3:, 1] += away
+    session = Session.open(
+        {
+            "format": "pinjoint model",
+            "version": 1,
+            "particles": [
+                {"name": f"p{k}", "position": place[k].tolist(), "fixed": fixed[k].tolist()}
+                for k in range(count)
+            ],
+            "rods": [{"name": f"r{k}", "between": [f"p{i}", f"p{j}"]} for k, (i, j) in enumerate(joined)],
+            "components": {"walls.Wall": [{"start": a, "end": b} for a, b in ends.tolist()]},
+        }
+    )
+    session.particles.radius = 0.02 * 10.0 ** random.uniform(0.0, spread, count)
+    session.model.writable("particles.displacement")[...] = shift
+    velocity = 10.0 ** random.uniform(-3.0, 3.0, (count, 2)) * ~fixed
+    session.model.writable("particles.velocity")[...] = velocity
+    session.model.writable("clock.step_size")[0] = 1e-4
+    near = NeighbourList(session.model)
+    near.look_up()
+    return near
+
+
+def slowly(near: NeighbourList, span: float) -> list[list[int]]:
+    """The pairs to list: by a look at all of them."""
+    n, others = near.count, len(near.obstacles)
+    every = np.array([(i, j) for i in range(n) for j in range(i + 1, n + others)], dtype=np.int64)
+    gap, _ = near.gaps(every, near.displacement)
+    radius, speed = near.driven.radius[:n], np.hypot(*near.velocity.T)
+    step = near.model.clock.step_size
+    margin = np.maximum(np.maximum(0.5 * radius, np.minimum(512 * step * speed, 4.0 * radius)), 2.0 * span)
+    moves = near.everywhere(~near.model.particles.fixed.all(axis=1))
+    joined = {tuple(sorted(pair)) for pair in near.model.rods.between.tolist()}
+    may = moves[every].any(axis=1) & [tuple(pair) not in joined for pair in every.tolist()]
+
+    def within(margin: np.ndarray) -> np.ndarray:
+        return every[may & (gap <= near.everywhere(margin)[every].sum(axis=1))]
+
+    for _ in range(4):
+        if len(within(margin)) or len(within(4.0 * margin)):
+            break
+        margin = 4.0 * margin
+    return within(margin).tolist()
+
+
+@settings(max_examples=60)
+@given(
+    seed=st.integers(0, 2**32),
+    count=st.integers(1, 40),
+    width=st.sampled_from([0.1, 3.0, 100.0]),
+    spread=st.sampled_from([0.0, 1.5, 20.0]),
+    away=st.sampled_from([0.0, 1.0, 30.0, -1e6, 1e25]),
+    span=st.sampled_from([0.0, 1e-3, 0.5, 1e10]),
+)
+def test_the_pairs_listed_are_those_of_a_look_at_all_pairs(
+    seed: int, count: int, width: float, spread: float, away: float, span: float
+) -> None:
+    near = scattered(seed, count, width, spread, away)
+    expected = slowly(near, span)
+    for choice in (Compile.NEVER, Compile.ALWAYS):
+        with programs(choice):
+            near.driven.whole[Whole.LISTED] = 0
+            near.list_within(span)
+            assert near.pairs.tolist() == expected
+
+
+@pytest.mark.parametrize("choice", [Compile.NEVER, Compile.ALWAYS])
+def test_what_lasts_goes_on_in_pairs_that_stay(choice: Compile) -> None:
+    """Also where there is no room for all that comes near: the list is made again then."""
+    near, random = scattered(3, 40, 3.0, 1.0, 0.0), np.random.default_rng(3)
+    with programs(choice):
+        near.list_within(0.0)
+        few, whole = near.pairs.copy(), near.driven.whole
+        lasting = np.sort(random.choice(len(few), 8, replace=False))
+        near.driven.lasting[lasting], near.driven.forces[lasting] = 1, 1.0 + np.arange(8.0)
+        whole[Whole.PHASE], whole[Whole.CHOSEN], near.driven.chosen[:3] = Phase.HELD, 3, lasting[[6, 0, 3]]
+        near.list_within(0.4)
+    pairs, forces = near.pairs.tolist(), near.driven.forces[: len(near.pairs)]
+    assert len(pairs) > len(few)
+    rows = [pairs.index(pair) for pair in few[lasting].tolist()]
+    assert np.flatnonzero(near.driven.lasting[: len(pairs)]).tolist() == rows
+    assert forces[rows].tolist() == list(range(1, 9))
+    assert forces.sum() == 36.0
+    assert near.driven.chosen[:3].tolist() == [rows[6], rows[0], rows[3]]
+    inside = np.unique(near.pairs)
+    assert near.driven.near[: whole[Whole.NEAR]].tolist() == inside[inside < near.count].tolist()
+
+
+@pytest.mark.parametrize("choice", [Compile.NEVER, Compile.ALWAYS])
+@pytest.mark.parametrize("lost", [np.nan, np.inf, -np.inf, 1e200, 1e308])
+def test_what_is_lost_is_near_nothing(lost: float, choice: Compile) -> None:
+    """As a run diverges, between two checks of its state."""
+    near = scattered(7, 40, 3.0, 1.0, 0.0)
+    rows = [3, 20, 39]
+    near.model.writable("particles.displacement")[rows] = lost
+    near.model.writable("particles.velocity")[rows[:2]] = -lost
+    with programs(choice):
+        near.list_within(1e-3)
+    assert near.pairs.tolist() == slowly(near, 1e-3)
+    assert not np.isin(near.pairs, rows).any()
+
+
 def test_a_list_forgets_contacts_that_were_chosen_for_a_step_long_over() -> None:
     session = Session.open(truss({"position": [1.0, 0.6]}))
     near = NeighbourList(session.model)
@@ -64,33 +185,19 @@ def test_a_list_forgets_contacts_that_were_chosen_for_a_step_long_over() -> None
     session.particles["ball"].displacement = (50.0, 0.0)
     for _ in range(2):
         near.list_within(1e-3)
-    assert near.driven.pairs.shape == near.pairs.shape
+    assert len(near.pairs) == 0
 
 
 # --- steps in which nothing can meet ---------------------------------------------------------------------------
 
 
-def test_what_flies_away_from_a_structure_is_not_looked_at_in_every_step(
-    monkeypatch: pytest.MonkeyPatch,
-) -> None:
+def test_what_flies_away_from_a_structure_is_not_looked_at_in_every_step() -> None:
     """A ball slips off a node: of the 10 s in which it falls 450 m, the list is made anew some times, not thousands."""
     session = Session.open(truss({"position": [1.03, 0.65]}, integrator="velocity_verlet"))
-    listed: list[float] = []
-    monkeypatch.setattr(NeighbourList, "list_within", noting(listed, NeighbourList.list_within))
     session.run(time=10.0)
     assert session.particles["ball"].displacement[1] < -300.0
     assert session.model.clock.steps > 10_000
-    assert len(listed) < 500
-
-
-def noting(what: list[Any], method: Any) -> Any:
-    """A method that also notes with what it is called."""
-
-    def noted(self: Any, *given: Any) -> Any:
-        what.append(given)
-        return method(self, *given)
-
-    return noted
+    assert listed(session) < 500
 
 
 @pytest.mark.parametrize("integrator", ["velocity_verlet", "dop853"])

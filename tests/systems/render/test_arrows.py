@@ -126,14 +126,18 @@ def test_an_arrow_at_a_rim_beyond_all_pixels_is_not_drawn() -> None:
     assert len(tips(model)) == 1
 
 
-def test_velocities_are_seen_while_time_stands_still() -> None:
+def test_velocities_of_free_particles_are_seen_and_those_of_nodes_before_the_run() -> None:
     model = triangle()
     model.create(Particle, 1, name=["ball"], position=[(0.0, 2.0)], velocity=[(1.0, 0.0)])
     model.particles["B"].velocity = (0.0, 1.0)
     assert len(tips(model, LIGHT.ink)) == 2
-    assert len(tips(model, LIGHT.ink, status=Status(speed=1.0, state="running"))) == 0
     model.writable("clock.steps")[0] = 5
-    assert len(tips(model, LIGHT.ink)) == 1, "nodes swing to and fro"
+    running = Status(speed=1.0, state="running")
+    for status in (Status(), running):
+        assert len(tips(model, LIGHT.ink, status=status)) == 1, "nodes swing to and fro"
+    model.writable("clock.energy_scale")[0] = 1e4 * model.particles.mass.sum()  # the usual speed is 141 m/s
+    assert len(tips(model, LIGHT.ink)) == 1
+    assert len(tips(model, LIGHT.ink, status=running)) == 0, "it creeps"
 
 
 def test_what_is_at_rest_has_no_velocity_though_rounding_leaves_some() -> None:

@@ -6,9 +6,9 @@ import itertools
 
 import pytest
 
-from components.model import Model
 from components.view import Status, drawn_positions
 from game import Session
+from systems.render.empty_card import Card
 from systems.render.marks import Panel, Rectangles, Stamps, Text
 from systems.render.picture import compose
 from tests.systems.render.pictures import LIGHT, fill, marks_of, picture_of, triangle, view_of
@@ -86,8 +86,39 @@ def test_scale_bar_is_as_long_as_it_says() -> None:
 
 
 def test_an_empty_model_says_how_to_begin() -> None:
-    picture = picture_of(Model(), status=Status(state="paused", hint="P new particle     L rod"))
-    assert {"An empty model", "P", "new particle", "L", "rod"} <= set(picture.texts)
+    """By the names of its first tools; a click on one takes it up as the toolbar does, and the card makes room."""
+    session = Session.open({"format": "pinjoint model", "version": 1})
+    session.resize(1024, 640)
+    session.update_view()
+    texts = compose(session.model, session.view, LIGHT).texts
+    assert {"An empty model", "New particle under the pointer", "P", "Load", "D"} <= set(texts)
+    enabled = [button for button in Card(session.view).buttons if button.tool.enabled]
+    assert [button.tool.action for button in enabled] == ["place", "rod", "load", "toggle help"]
+    place, _, load, _ = enabled
+    session.press("click", (place.left + 40.0, place.top + 5.0))
+    session.update_view()
+    assert session.view.tool == "place"
+    assert "An empty model" not in compose(session.model, session.view, LIGHT).texts
+    session.press("click", (place.left + 40.0, place.top + 5.0))
+    assert session.particles.count == 1
+    session.press("ctrl+z")
+    session.press("escape")
+    session.press("click", (load.left + 40.0, load.top + 5.0))
+    assert session.scene == "load"
+
+
+def test_the_scale_stays_where_it_is_while_that_is_free() -> None:
+    session = Session.open("hyperstatic")
+    session.resize(1280, 800)
+    session.settle()
+    placed: dict[tuple[str, int], int] = {}
+    seen = []
+    for _ in range(30):
+        session.update_view()
+        compose(session.model, session.view, LIGHT, placed)
+        seen.append(placed["scale", 0])
+        session.view.camera.zoom(0.98, (640.0, 300.0))
+    assert len(set(seen)) == 1, seen
 
 
 @pytest.mark.parametrize("size", [(1024, 640), (1280, 800), (1920, 1080)])

@@ -14,6 +14,7 @@ from systems.render.clip import clip_segments
 from systems.render.marks import Panel, Text
 from systems.render.picture import compose
 from systems.render.theme import load_theme
+from tests.reference.boxes import overlap, text_box
 
 LIGHT = load_theme("light")
 
@@ -113,3 +114,32 @@ def test_it_lies_in_the_picture_and_not_over_its_element(model: str, size: tuple
         start, end = session.view.camera.to_pixels(drawn_positions(session.model)[ends])
         assert not len(clip_segments(start[None], end[None], low, high)[2]), title
     assert told_of > 1
+
+
+@pytest.mark.parametrize("size", [(640, 480), (1024, 640)])
+def test_it_covers_no_value_in_the_narrow_sets_of_the_force_method(size: tuple[int, int]) -> None:
+    session = Session.open("hyperstatic")
+    session.resize(*size)
+    for key in ("k", "i"):
+        session.press(key)
+    told_of = 0
+    for name in ("AB", "AC", "CD", "DA"):
+        model, view = session.focus
+        places = drawn_positions(model)[list(model.rods[name].between)]
+        session.view.pointer = session.point(*(0.7 * places[0] + 0.3 * places[1]).tolist())
+        model.tag_only([model.rods[name]], Hovered)
+        session.update_view()
+        model, view = session.focus
+        picture = compose(model, view, LIGHT)
+        title = model.describe(model.rods[name])
+        at = max((i for i, m in enumerate(picture.marks) if isinstance(m, Text) and m.text == title), default=0)
+        if not at:
+            continue
+        told_of += 1
+        panel = picture.marks[at - 1]
+        assert isinstance(panel, Panel)
+        box = panel.left, panel.top, panel.left + panel.width, panel.top + panel.height
+        values = [mark for mark in picture.marks[:at] if isinstance(mark, Text) and mark.text.endswith("kN")]
+        covered = [mark.text for mark in values if overlap(text_box(mark, 0.7 * mark.size), box)]
+        assert not covered, name
+    assert told_of >= 3

@@ -11,10 +11,12 @@ from game import Session
 from game.editor.actions import ACTIONS
 from systems.input.bindings import ADDED_BUTTONS, ADDED_TOOLS, BINDINGS, TOOLBAR
 from systems.render.icons import ADDED, icon, icons
-from systems.render.marks import Stamps
+from systems.render.marks import Panel, Stamps, Text
 from systems.render.menu import menu_of
-from systems.render.picture import compose
+from systems.render.picture import compose, compose_all
 from systems.render.theme import load_theme
+from systems.render.typography import capital_height
+from tests.reference.boxes import overlap, text_box
 
 SIZES = [(1000, 720), (640, 480), (600, 600), (3840, 2160)]
 
@@ -231,3 +233,68 @@ def test_pressed_and_unavailable_tools_look_different() -> None:
     assert inks["toggle diagrams"] == theme.focus
     assert inks["place"] == theme.text
     assert inks["redo"][3] < 128
+
+
+@pytest.mark.parametrize("size", [(640, 480), (1024, 640), (1280, 800)])
+@pytest.mark.parametrize("scene", ["pause", "force method", "refused", "properties"])
+def test_no_tip_covers_what_is_said(scene: str, size: tuple[int, int]) -> None:
+    """The heading, notices, the legend, the slider and values among it, whichever button the pointer rests on."""
+    session = Session.open("hyperstatic")
+    session.resize(*size)
+    session.press("i")
+    for key in {"force method": ("k", "i"), "refused": ("k", "k"), "properties": ("return",)}.get(scene, ()):
+        session.press(key)
+    if scene == "refused":
+        session.press("y")
+    session.update_view()
+    for button in buttons(session).values():
+        session.view.pointer = button.left + 5.0, button.top + 5.0
+        session.update_view()
+        *below, toolbar = compose_all(session.stages, load_theme())
+        tips = [
+            mark for mark in toolbar.marks if isinstance(mark, Panel) and mark.fill == load_theme().background
+        ]
+        assert len(tips) == 1
+        tip = tips[0].left, tips[0].top, tips[0].left + tips[0].width, tips[0].top + tips[0].height
+        assert tip[0] >= session.view.strip.right
+        assert tip[2] <= size[0]
+        texts = [mark for picture in below for mark in picture.marks if isinstance(mark, Text)]
+        covered = [text.text for text in texts if overlap(text_box(text, capital_height(text.size)), tip)]
+        assert not covered, button.tool.action
+
+
+def test_the_tip_goes_after_a_press_and_comes_back_with_the_pointer() -> None:
+    session = opened()
+    session.update_view()
+    button = buttons(session)["force"]
+    there = button.left + 5.0, button.top + 5.0
+    session.view.pointer = there
+    for pointer, press, tips in (
+        (there, False, 1),
+        (there, True, 0),
+        ((400.0, 300.0), False, 0),
+        (there, False, 1),
+    ):
+        session.view.pointer = pointer
+        if press:
+            session.press("click", pointer)
+        session.update_view()
+        toolbar, view = session.stages[-1]
+        assert len(compose(toolbar, view, load_theme()).texts) == 2 * tips
+
+
+@pytest.mark.parametrize("key", ["i", "a", "b"])
+def test_what_free_bodies_do_not_show_is_not_lit_and_puts_them_together(key: str) -> None:
+    session = opened("hyperstatic_yield")
+    shown = {"i": "all_diagrams", "a": "utilisation", "b": "shape"}[key]
+    for keys in ((key, "x", key), ("x", key)):
+        for press in keys:
+            session.press(press)
+        assert not session.view.free_bodies
+        assert getattr(session.view, shown)
+        session.press("x")
+        lit = {button.tool.action for button in buttons(session).values() if button.tool.pressed}
+        assert lit == {"toggle free bodies"}
+        session.press("x")
+        while getattr(session.view, shown):
+            session.press(key)

@@ -44,7 +44,7 @@ def choose_contacts(driven, place):
     They are noted block by block.
     """
     count, number, n = 0, 0, place.shape[0]
-    for k in range(driven.pairs.shape[0]):
+    for k in range(driven.whole[Whole.LISTED]):
         if driven.lasting[k]:
             driven.touching[count] = k
             count += 1
@@ -110,7 +110,7 @@ def resume_search(driven, end):
 def clear_support(driven):
     """Let no contact force act."""
     if driven.whole[Whole.PUSHED]:
-        for p in range(driven.near.shape[0]):
+        for p in range(driven.whole[Whole.NEAR]):
             driven.support[driven.near[p], 0], driven.support[driven.near[p], 1] = 0.0, 0.0
 
 
@@ -145,7 +145,7 @@ def raise_scale(driven, length, control, account):
     mean over all of it counts, since in microseconds a jam pushes a thousand times harder.
     """
     energy = 0.0
-    for p in range(driven.near.shape[0]):
+    for p in range(driven.whole[Whole.NEAR]):
         i = driven.near[p]
         carried = 1000.0 * (abs(driven.support[i, 0]) + abs(driven.support[i, 1]))
         energy += carried * driven.size[i]

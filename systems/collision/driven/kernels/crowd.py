@@ -25,41 +25,50 @@ CROWD_PARTICLES = 8  # particles that are no nodes, below which they are no crow
 DEEPEST_OVERLAP = 1e-12  # of a radius, by which particles may sink into others in a step
 WANTED_OVERLAP = 1e-13  # as long as tries are left: what is at rest would be moved to and fro by more
 ROUND_OFF = 1e-14  # of an energy
+LEAST_SPAN = 1e-300  # m; more than none
 MOST_FORCE_TRIES = 4  # of the forces in a step
 
 
 @compiled
-def is_crowd(driven, control, place, speed):
-    """The Need for a step of a crowd, or for a list of the pairs that it would hold; NOTHING: it is no crowd.
-
-    It is none where nodes of a structure are near, since a structure answers to forces in its own way.
-    """
-    real, pairs = driven.real, driven.pairs
+def crowd_span(driven, control, place, speed):
+    """The margin within which pairs must be listed for a step of a crowd (m), or 0 where the list is complete."""
+    real = driven.real
     if driven.loose.shape[0] < CROWD_PARTICLES:
-        return Need.NOTHING
+        return 0.0
     longest = min(control[Control.STEP_SIZE], real[Real.CROWD_STEP], real[Real.HELD_LIMIT])
     fastest = 0.0
     for p in range(driven.loose.shape[0]):
         i = driven.loose[p]
         fastest = max(fastest, speed[i, 0] * speed[i, 0] + speed[i, 1] * speed[i, 1])
     travel = longest * (2.0 * math.sqrt(fastest) + longest * real[Real.STRONGEST])
+    real[Real.CROWD_LENGTH], real[Real.CROWD_TRAVEL] = longest, travel
     for p in range(driven.loose.shape[0]):
         i = driven.loose[p]
         x, y = place[i, 0] - driven.listed[i, 0], place[i, 1] - driven.listed[i, 1]
         if math.sqrt(x * x + y * y) + 2.0 * travel > driven.margin[i]:
-            real[Real.SPAN] = 2.0 * travel
-            return Need.LIST
-    if pairs.shape[0] < CROWD_CONTACTS:
-        return Need.NOTHING
+            return 2.0 * travel + LEAST_SPAN
+    return 0.0
+
+
+@compiled
+def is_crowd(driven, place, speed):
+    """True if the next step is one of a crowd, once crowd_span() is 0; how long it is to be then.
+
+    It is none where nodes of a structure are near, since a structure answers to forces in its own way.
+    """
+    real, pairs, listed = driven.real, driven.pairs, driven.whole[Whole.LISTED]
+    if driven.loose.shape[0] < CROWD_PARTICLES or listed < CROWD_CONTACTS:
+        return False
+    longest, travel = real[Real.CROWD_LENGTH], real[Real.CROWD_TRAVEL]
     h = longest
-    for k in range(pairs.shape[0]):
+    for k in range(listed):
         i, j = pairs[k, 0], pairs[k, 1]
         gap, nx, ny = gap_of(i, j, driven.position, place, driven.radius, driven.span)
         driven.room[k] = gap
         if gap > 2.0 * travel:
             continue
         if driven.node[i] or (j < place.shape[0] and driven.node[j]):
-            return Need.NOTHING
+            return False
         driven.normal[k, 0], driven.normal[k, 1] = nx, ny
         driven.rate[k] = opening(i, j, nx, ny, speed)
         far = TRAVEL * _size(driven, k)
@@ -67,13 +76,13 @@ def is_crowd(driven, control, place, speed):
             h = min(h, far / -driven.rate[k])
     h = max(h, SHORTEST_SHARE * longest)
     number = 0
-    for k in range(pairs.shape[0]):
+    for k in range(listed):
         close = driven.room[k] <= 2.0 * travel
         number += driven.lasting[k]
         if close and _meets(driven, k, h) and driven.restitution[pairs[k, 1]] < 1.0:
             number += 1
-    real[Real.CROWD_LENGTH], real[Real.CROWD_TRAVEL] = h, travel
-    return Need.CROWD if number >= CROWD_CONTACTS else Need.NOTHING
+    real[Real.CROWD_LENGTH] = h
+    return number >= CROWD_CONTACTS
 
 
 @compiled
@@ -91,7 +100,7 @@ def begin_crowd(driven, account, place, speed):
     """Gather the contacts of a crowd, and carry out its impacts: `speed` is then that after them."""
     whole, group = driven.whole, driven.group
     count, members, least = 0, 0, math.inf
-    for k in range(driven.pairs.shape[0]):
+    for k in range(driven.whole[Whole.LISTED]):
         if driven.room[k] > 2.0 * driven.real[Real.CROWD_TRAVEL]:
             continue
         driven.room[k] = max(driven.room[k], 0.0)
@@ -315,7 +324,7 @@ def _improve(driven, h, place):
 @compiled
 def _keep(driven, account, place):
     """Enter what the forces did, report the impacts, and note which contacts persist."""
-    for k in range(driven.pairs.shape[0]):
+    for k in range(driven.whole[Whole.LISTED]):
         driven.lasting[k] = 0
     total = 0.0
     for c in range(driven.whole[Whole.CHOSEN]):

@@ -10,7 +10,7 @@ def chain_groups(driven, count, n):
     for t in range(count):
         k = driven.touching[t]
         i, j = driven.pairs[k, 0], driven.pairs[k, 1]
-        if j < n and _moves(driven, i) and _moves(driven, j):
+        if j < n and moves(driven, i) and moves(driven, j):
             first, second = _root(driven, i), _root(driven, j)
             if first != second:
                 driven.parent[max(first, second)] = min(first, second)
@@ -34,11 +34,12 @@ def end_groups(driven, count, n):
 def root_of(driven, k, n):
     """The particle by which the group of a pair goes."""
     i, j = driven.pairs[k, 0], driven.pairs[k, 1]
-    return _root(driven, i if j >= n or _moves(driven, i) else j)
+    return _root(driven, i if j >= n or moves(driven, i) else j)
 
 
 @compiled
-def _moves(driven, i):
+def moves(driven, i):
+    """True for a particle that supports do not hold in both directions."""
     return driven.weight[i, 0] > 0.0 or driven.weight[i, 1] > 0.0
 
 

@@ -26,10 +26,10 @@ def set_rest_speeds(driven, h, later, step):
     over in a small part of a step end, too, if they would rise no more than SETTLING_HEIGHT.
     """
     lasting, calmed = 0, driven.whole[Whole.BOUNCY] == 0 and driven.whole[Whole.DAMPED] == 1
-    for k in range(driven.pairs.shape[0]):
+    for k in range(driven.whole[Whole.LISTED]):
         lasting += driven.lasting[k]
     share = SETTLING_HEIGHT if lasting >= SETTLING_CONTACTS else REST_HEIGHT
-    for k in range(driven.pairs.shape[0]):
+    for k in range(driven.whole[Whole.LISTED]):
         i, j = driven.pairs[k, 0], driven.pairs[k, 1]
         height = TOUCHING_GAP * (driven.radius[i] + driven.radius[j])
         if driven.whole[Whole.BOUNCY]:
@@ -60,7 +60,7 @@ def resolve_touching(driven, control, account, place, speed):
     Contacts of pairs that part no faster than at rest begin to persist.
     """
     count, fastest = 0, 0.0
-    for k in range(driven.pairs.shape[0]):
+    for k in range(driven.whole[Whole.LISTED]):
         i, j = driven.pairs[k, 0], driven.pairs[k, 1]
         gap, nx, ny = gap_of(i, j, driven.position, place, driven.radius, driven.span)
         touches = gap <= 4.0 * touching_gap(driven, i, j, place)

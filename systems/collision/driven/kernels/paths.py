@@ -27,7 +27,7 @@ ROUND_OFF_OF_PATHS = 1e-9  # of how far particles move in a step: by as much mor
 def keep_state(driven, control, account, place, speed, near_alone):
     """Keep the state in which a step begins. near_alone: of the particles only those that are near others."""
     if near_alone:
-        for p in range(driven.near.shape[0]):
+        for p in range(driven.whole[Whole.NEAR]):
             i = driven.near[p]
             for d in range(2):
                 driven.before[i, d] = place[i, d]
@@ -78,7 +78,7 @@ def foresee(driven, control):
     push = real[Real.PUSH] * h
     before, velocity, ahead, ahead_speed = driven.before, driven.velocity, driven.ahead, driven.ahead_speed
     acceleration, weight, support = driven.acceleration, driven.weight, driven.support
-    for p in range(driven.near.shape[0]):
+    for p in range(driven.whole[Whole.NEAR]):
         i = driven.near[p]
         for d in range(2):
             a = acceleration[i, d] + 1000.0 * weight[i, d] * support[i, d]
@@ -200,7 +200,7 @@ def first_impact(driven, h, after):
     pair comes so near that this error could hide an impact, and the error exceeds DOUBT of its size.
     """
     earliest = INFINITY
-    for k in range(driven.pairs.shape[0]):
+    for k in range(driven.whole[Whole.LISTED]):
         if driven.lasting[k] == 0:
             earliest = min(earliest, _impact_of(driven, k, h, after))
             if earliest == DOUBTFUL:
@@ -253,7 +253,7 @@ def _impact_of(driven, k, h, after):
 def meeting(driven, after, later):
     """How late (s) the end of the step is for the pair that met first, or is to meet first, and whether it touches."""
     latest, closed = -math.inf, False
-    for k in range(driven.pairs.shape[0]):
+    for k in range(driven.whole[Whole.LISTED]):
         if driven.lasting[k] == 1 or is_left_alone(driven, k):
             continue
         i, j = driven.pairs[k, 0], driven.pairs[k, 1]

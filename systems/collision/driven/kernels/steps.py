@@ -20,7 +20,7 @@ from systems.collision.driven.kernels.contacts import (
     resume_search,
     try_forces,
 )
-from systems.collision.driven.kernels.crowd import begin_crowd, is_crowd, judge_crowd, try_crowd
+from systems.collision.driven.kernels.crowd import begin_crowd, crowd_span, is_crowd, judge_crowd, try_crowd
 from systems.collision.driven.kernels.impacts import resolve_touching, set_rest_speeds
 from systems.collision.driven.kernels.paths import (
     DOUBTFUL,
@@ -78,6 +78,13 @@ def _leave(driven, need, phase):
 
 
 @compiled
+def _list_within(driven, span, phase):
+    driven.real[Real.SPAN] = span
+    driven.whole[Whole.PHASE] = phase
+    return Order.LIST
+
+
+@compiled
 def _go_on(driven, phase):
     driven.whole[Whole.PHASE] = phase
     return Order.GO_ON
@@ -89,10 +96,10 @@ def _open(driven, control, place, speed):
     whole = driven.whole
     if whole[Whole.REASON] != StopReason.DONE or whole[Whole.TOTAL] - whole[Whole.FIRST] >= whole[Whole.WANTED]:
         return _leave(driven, Need.NOTHING, Phase.BETWEEN)
-    need = is_crowd(driven, control, place, speed)
-    if need == Need.LIST:
-        return _leave(driven, need, Phase.BETWEEN)
-    whole[Whole.CROWD] = need == Need.CROWD
+    span = crowd_span(driven, control, place, speed)
+    if span > 0.0:
+        return _list_within(driven, span, Phase.BETWEEN)
+    whole[Whole.CROWD] = is_crowd(driven, place, speed)
     whole[Whole.PHASE] = Phase.READY
     return Order.EVALUATE
 
@@ -105,12 +112,11 @@ def _begin(driven, control, account, place, speed):
     whole[Whole.FORESEEN] = (
         real[Real.PUSH] > 0.0 and real[Real.BREAK] > start + 2.0 * size and not whole[Whole.CROWD]
     )
-    clears = driven.pairs.shape[0] == 0 and not whole[Whole.LANDING] and not whole[Whole.EXAMINE]
+    clears = whole[Whole.LISTED] == 0 and not whole[Whole.LANDING] and not whole[Whole.EXAMINE]
     if whole[Whole.FORESEEN] and not clears:
         span = foreseen_span(driven, size, place, speed)
         if span > 0.0:
-            real[Real.SPAN] = span
-            return _leave(driven, Need.LIST, Phase.BETWEEN)
+            return _list_within(driven, span, Phase.BETWEEN)
     keep_state(driven, control, account, place, speed, whole[Whole.FORESEEN] and not clears)
     real[Real.START] = start
     whole[Whole.CHOSEN], whole[Whole.STEPS] = 0, 1
@@ -148,7 +154,7 @@ def _begin_crowd(driven, control, account, place, speed):
     """Begin a step of a crowd, with its impacts, or leave where it would end after Real.UNTIL."""
     whole, real = driven.whole, driven.real
     start, h = control[Control.TIME], real[Real.CROWD_LENGTH]
-    if whole[Whole.REPORTED] + driven.pairs.shape[0] > driven.report.pairs.shape[0]:
+    if not _has_room(driven):
         return _leave(driven, Need.ROOM, Phase.BETWEEN)
     end = min(start + h, real[Real.UNTIL]) if whole[Whole.LANDING] else start + h
     if end > real[Real.UNTIL]:
@@ -208,8 +214,7 @@ def _look(driven, control, account, place, speed):
     later = driven.ahead_speed if whole[Whole.FORESEEN] else speed
     span = 0.0 if whole[Whole.FORESEEN] else span_to_list(driven, now - start, after, later)
     if span > 0.0:
-        real[Real.SPAN] = span
-        return _leave(driven, Need.LIST, Phase.HELD)
+        return _list_within(driven, span, Phase.HELD)
     after_start = first_impact(driven, now - start, after)
     if after_start == DOUBTFUL:
         return _retry(driven, control, account, place, speed, 0.5 * (start + now))
@@ -285,7 +290,7 @@ def _close(driven, control, account, place, speed):
 @compiled
 def _has_room(driven):
     """True if there is room to report an impact of every pair."""
-    return driven.whole[Whole.REPORTED] + driven.pairs.shape[0] <= driven.report.pairs.shape[0]
+    return driven.whole[Whole.REPORTED] + driven.whole[Whole.LISTED] <= driven.report.pairs.shape[0]
 
 
 @compiled

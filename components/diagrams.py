@@ -1,0 +1,88 @@
+"""Diagrams: axial force, shear and bending moment along rods, by statics."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any
+
+import numpy as np
+
+from components.field import Column
+from components.table import Table
+
+NAMES = ("end_axial_force", "shear", "bending_moment", "end_rotation", "largest_moment")
+
+
+def diagrams(
+    rods: Table[Any],
+    axis: Column,
+    length: Column,
+    chord: Column,
+    rotation: Column,
+    forces: tuple[Column, Column],
+    *,
+    share: float = 1.0,
+    first_order: bool = False,
+) -> Mapping[str, Column]:
+    """The columns NAMES of all rods, (rods, 2), with so much of their distributed forces.
+
+    axis, length, chord: directions (rods, 2), lengths (m) and rotations (rad) of the chords; rotation: of the particles at
+    both ends, (rods, 2). forces: axial (rods,), and moments on both ends, counter-clockwise (rods, 2).
+    first_order: axes count as straight where forces act on them.
+    """
+    axial_force, moment = forces
+    rest, bent = rods.rest_length, 0.0 if first_order else 1.0
+    left = np.stack([-axis[:, 1], axis[:, 0]], axis=1)
+    force = share * rods.distributed_force
+    transverse, tangential = (force * left).sum(axis=1), (force * axis).sum(axis=1)
+    slopes = np.where(rods.turning_shares > 0.0, rotation - chord[:, None], 0.0)
+    couple = -bent * tangential * (rods.load_shares * slopes).sum(axis=1)
+    with np.errstate(divide="ignore", invalid="ignore"):
+        shear = np.where(length > 0.0, (moment.sum(axis=1) + couple) / length, 0.0)
+    ahead = np.array([-0.5, 0.5])
+    slopes = _all_slopes(rods, slopes, transverse)
+    bending_moment = moment * [-1.0, 1.0]
+    return {
+        "end_axial_force": axial_force[:, None] - ahead * (tangential * rest)[:, None],
+        "shear": shear[:, None] + ahead * (transverse * rest)[:, None],
+        "bending_moment": bending_moment,
+        "end_rotation": chord[:, None] + slopes,
+        "largest_moment": _largest_moment(
+            bending_moment, slopes, bent * axial_force * length, transverse * rest * length, length
+        ),
+    }
+
+
+def _all_slopes(rods: Table[Any], slopes: Column, transverse: Column) -> Column:
+    """Slopes of both ends of every rod, those at hinges by M = 0 of its cubic and a transverse force (kN/m)."""
+    length, stiffness = rods.rest_length, rods.bending_stiffness
+    rigid, bent = rods.turning_shares > 0.0, stiffness > 0.0
+    by_force = np.divide(transverse * length**3, 48.0 * stiffness, out=np.zeros(len(length)), where=bent)
+    warped = np.where(bent, 0.5 * rods.thermal_expansion * rods.temperature_gradient * length, 0.0)
+    signs = np.array([1.0, -1.0])
+    free = signs * warped[:, None]
+    loaded = signs * by_force[:, None]
+    beyond = (slopes - free)[:, ::-1]  # of the other end
+    hinged = free + np.where(rigid[:, ::-1], loaded - 0.5 * beyond, 2.0 * loaded)
+    return np.where(rigid, slopes, hinged)
+
+
+def _largest_moment(ends: Column, slopes: Column, thrust: Column, load: Column, length: Column) -> Column:
+    """The bending moment of largest size, and its distance from the start (m), of every rod.
+
+    M(ξ) = M_s (1 − ξ) + M_e ξ − ½ q L₀ L ξ (1 − ξ) + N v(ξ), v/L = φ_s ξ (1 − ξ)² − φ_e ξ² (1 − ξ).
+    thrust: N L; load: q L₀ L.
+    """
+    (start, end), (first, last) = ends.T, slopes.T
+    linear = end - start - 0.5 * load + thrust * first
+    square = 0.5 * load - thrust * (2.0 * first + last)
+    cube = thrust * (first + last)
+    with np.errstate(divide="ignore", invalid="ignore", over="ignore"):
+        root = np.sqrt(np.maximum(square**2 - 3.0 * cube * linear, 0.0))
+        both = -(square + np.copysign(root, square))
+        found = np.stack([np.zeros_like(start), np.ones_like(start), both / (3.0 * cube), linear / both])
+    found = np.where((found > 0.0) & (found <= 1.0), found, 0.0)
+    values = start + found * (linear + found * (square + found * cube))
+    values[1] = end
+    chosen, rows = np.abs(values).argmax(axis=0), np.arange(len(start))
+    return np.stack([values[chosen, rows], found[chosen, rows] * length], axis=1)

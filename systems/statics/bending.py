@@ -1,0 +1,185 @@
+"""Rods that bend: slopes of their ends to the chord, end moments and stiffness, of all rods at once.
+
+Corotational Euler–Bernoulli rods with the bowing of their cubic. Their potential, of the elongation e of the chord and
+the slopes φ, is ½ EA L₀ ε² + ½ (φ − φ⁰)ᵀ K (φ − φ⁰) − q_n A(φ), with ε = e/L₀ + ½ φᵀ B φ and A the area below the axis.
+Hinged ends are columns of zeros. Lengths in m, forces in kN; arrays have one row for each rod, (rods, …).
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from components.model import Model
+
+Array = NDArray[np.float64]
+
+FULL_TURN = 2.0 * np.pi
+
+
+@dataclass(frozen=True)
+class Bent:
+    """The state of bending. slopes: of rigid ends to the chord, 0 at others, (rods, 2). bowed: L₀ B φ (m), by which slopes
+    elongate the axis, (rods, 2). moment: on the ends, counter-clockwise, (rods, 2). shear: across the chord, (rods,).
+
+    along, across: the distributed force along and across the chord (kN/m), (rods,). area: A/1 (m²), (rods,).
+    """
+
+    slopes: Array
+    bowed: Array
+    moment: Array
+    shear: Array
+    along: Array
+    across: Array
+    area: Array
+
+
+@dataclass(frozen=True)
+class Bending:
+    """What the ends of rods feel, as in the columns of the same names.
+
+    end_stiffness, bowing: (rods, 3) for (start start, start end, end end); the others (rods, 2).
+    """
+
+    rest_length: Array
+    end_stiffness: Array
+    bowing: Array
+    turning_shares: Array
+    initial_slopes: Array
+    load_shares: Array
+    distributed_force: Array
+
+    @classmethod
+    def of(cls, model: Model, *, bows: bool) -> Bending:
+        """That of a model; in first-order theory rods do not bow."""
+        rods = model.rods
+        return cls(
+            rest_length=rods.rest_length.copy(),
+            end_stiffness=rods.end_stiffness.copy(),
+            bowing=rods.bowing.copy() if bows else np.zeros_like(rods.bowing),
+            turning_shares=rods.turning_shares.copy(),
+            initial_slopes=rods.initial_slopes.copy(),
+            load_shares=rods.load_shares.copy(),
+            distributed_force=rods.distributed_force.copy(),
+        )
+
+    @property
+    def rigid(self) -> NDArray[np.bool_]:
+        """The ends that are joined rigidly, (rods, 2)."""
+        return self.turning_shares > 0.0
+
+    def with_bars(self, rest_length: Array) -> Bending:
+        """The same with more rods, of these rest lengths, that do not bend."""
+        more = {
+            name: np.concatenate([values, np.zeros((len(rest_length), *values.shape[1:]))])
+            for name, values in vars(self).items()
+        }
+        return replace(self, **more | {"rest_length": np.concatenate([self.rest_length, rest_length])})
+
+    # --- states ------------------------------------------------------------------------------------
+
+    def with_full_turns(self, chord: Array, rotation: Array) -> Array:
+        """Rotations of chords (rods,) with those full turns that bring them nearest to the mean of their rigid ends."""
+        mean = (self.turning_shares * rotation).sum(axis=1)
+        turned: Array = chord + FULL_TURN * np.rint((mean - chord) / FULL_TURN)
+        return turned
+
+    def bow(self, slopes: Array) -> tuple[Array, Array]:
+        """L₀ B φ (rods, 2), and the elongation of the axis by bowing, ½ L₀ φᵀ B φ (rods,)."""
+        bowed = self.rest_length[:, None] * _product(self.bowing, slopes)
+        return bowed, 0.5 * (bowed * slopes).sum(axis=1)
+
+    def bent(
+        self, slopes: Array, axial_force: Array, axis: Array, length: Array, share: float, couples: bool
+    ) -> Bent:
+        """The state with these slopes, while so much of the distributed forces acts.
+
+        couples: on the bent axis these make a couple, unlike in first-order theory.
+        """
+        bowed, _ = self.bow(slopes)
+        force = share * self.distributed_force
+        along = (force * axis).sum(axis=1)
+        across = force[:, 1] * axis[:, 0] - force[:, 0] * axis[:, 1]
+        area = (self.load_shares * slopes).sum(axis=1)
+        moment = _product(self.end_stiffness, slopes - self.initial_slopes) + axial_force[:, None] * bowed
+        moment -= across[:, None] * self.load_shares
+        couple = -along * area if couples else 0.0
+        shear = (moment.sum(axis=1) + couple) / np.where(length > 0.0, length, np.inf)
+        return Bent(slopes, bowed, moment, shear, along, across, area)
+
+    def carried(self, bent: Bent, axis: Array, length: Array, couples: bool) -> tuple[Array, Array]:
+        """What the whole distributed force adds to the moments on the ends (rods, 2) and to the shear (rods,)."""
+        force = self.distributed_force
+        along = (force * axis).sum(axis=1)
+        across = force[:, 1] * axis[:, 0] - force[:, 0] * axis[:, 1]
+        moment = -across[:, None] * self.load_shares
+        couple = -along * bent.area if couples else 0.0
+        return moment, (moment.sum(axis=1) + couple) / np.where(length > 0.0, length, np.inf)
+
+    def energy(self, slopes: Array) -> Array:
+        """½ (φ − φ⁰)ᵀ K (φ − φ⁰) of every rod (kN·m)."""
+        bend = slopes - self.initial_slopes
+        energy: Array = 0.5 * (bend * _product(self.end_stiffness, bend)).sum(axis=1)
+        return energy
+
+    # --- rates ---------------------------------------------------------------------------------------
+
+    def slope_rates(self, change: Array, turns: Array, axis: Array, length: Array) -> Array:
+        """Rates of the slopes of rigid ends (rods, 2); change: of the second end relative to the first (rods, 2)."""
+        aside = axis[:, 0] * change[:, 1] - axis[:, 1] * change[:, 0]
+        chord = aside / np.where(length > 0.0, length, np.inf)
+        return np.where(self.rigid, turns - chord[:, None], 0.0)
+
+    def moments(self, slopes: Array) -> Array:
+        """Moments (rods, 2) by which rods that are straight resist small slopes."""
+        return _product(self.end_stiffness, slopes)
+
+    def stiffness(
+        self, bent: Bent, extensional: Array, axial_force: Array, axis: Array, length: Array, geometric: bool
+    ) -> Array:
+        """d²/d(x, y, θ of both ends)² of the potential, (rods, 6, 6), less what a straight bar has.
+
+        extensional: EA/L₀, 0 of rods that do not resist elongation.
+        """
+        inverse = 1.0 / np.where(length > 0.0, length, np.inf)
+        # In the basis (n · ds, m · ds, dθ_a, dθ_b) of the chord's direction n and left side m.
+        start, end, turned = (np.zeros((len(length), 4)) for _ in range(3))
+        start[:, 1] = end[:, 1] = -inverse
+        start[:, 2] = end[:, 3] = 1.0
+        turned[:, 1] = inverse
+        axial = bent.bowed[:, :1] * start + bent.bowed[:, 1:] * end
+        axial[:, 0] = 1.0
+        block = extensional[:, None, None] * _dyad(axial, axial)
+        block[:, 0, 0] = 0.0
+        by_slopes = self.end_stiffness
+        if geometric:
+            by_slopes = by_slopes + (axial_force * self.rest_length)[:, None] * self.bowing
+        of_start, mixed, of_end = by_slopes.T[:, :, None, None]
+        block += of_start * _dyad(start, start) + of_end * _dyad(end, end)
+        block += mixed * (_dyad(start, end) + _dyad(end, start))
+        if geometric:
+            block[:, 0, 1] += bent.shear * inverse
+            block[:, 1, 0] += bent.shear * inverse
+            below = self.load_shares[:, :1] * start + self.load_shares[:, 1:] * end
+            turning = bent.along[:, None, None] * _dyad(turned, below)
+            block += turning + turning.swapaxes(1, 2)
+            block += (bent.across * bent.area)[:, None, None] * _dyad(turned, turned)
+        way = np.zeros((len(length), 4, 6))
+        way[:, 0, 3:5], way[:, 1, 3], way[:, 1, 4] = axis, -axis[:, 1], axis[:, 0]
+        way[:, :2, :2] = -way[:, :2, 3:5]
+        way[:, 2, 2] = way[:, 3, 5] = 1.0
+        found: Array = way.swapaxes(1, 2) @ block @ way
+        return found
+
+
+def _product(symmetric: Array, vectors: Array) -> Array:
+    """2 × 2 matrices (rods, 3) times vectors (rods, 2)."""
+    first = symmetric[:, 0] * vectors[:, 0] + symmetric[:, 1] * vectors[:, 1]
+    second = symmetric[:, 1] * vectors[:, 0] + symmetric[:, 2] * vectors[:, 1]
+    return np.stack([first, second], axis=1)
+
+
+def _dyad(one: Array, other: Array) -> Array:
+    return one[:, :, None] * other[:, None, :]

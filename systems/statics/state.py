@@ -1,0 +1,132 @@
+"""States of statics: where a structure is in equilibrium, with what acts in its rods and supports."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from components.diagrams import diagrams
+from components.model import Model
+from components.rod import bends
+from systems.statics.equations import Array, Flags, Response, Rows, Structure
+from systems.statics.events import Event
+
+STABLE, NEUTRAL, UNSTABLE = EQUILIBRIA = ("equilibrium", "neutral equilibrium", "unstable equilibrium")
+
+
+@dataclass(frozen=True)
+class StaticState:
+    """The state at one load factor, in m, kN and J: the particles' fields are (n, 2) or (n,), the rods' (rods,).
+
+    reaction: the supports' force in constrained directions, 0 elsewhere; reaction_moment: likewise of clamps. diagrams: by
+    the names of columns, (rods, 2). residual: the largest unbalanced
+    force over the largest force so far. dissipated_plastic: since settling began. status: "equilibrium";
+    "neutral equilibrium" where nothing resists some motion, so that the place is one of many; "unstable equilibrium";
+    "mechanism", "collapse" or "limit reached", with which all values are those of the last equilibrium on the way.
+    events: those on the way from the state before. contacts: rows of the discs that press each other, (k, 2), with
+    contact_force (k,).
+    """
+
+    load_factor: float
+    displacement: Array
+    rotation: Array
+    plastic_strain: Array
+    axial_force: Array
+    strain: Array
+    length: Array
+    yielding: Flags
+    reaction: Array
+    reaction_moment: Array
+    diagrams: Mapping[str, Array]
+    residual: float
+    elastic_energy: float
+    dissipated_plastic: float
+    status: str
+    message: str
+    events: tuple[Event, ...]
+    contacts: Rows
+    contact_force: Array
+
+    @property
+    def balanced(self) -> bool:
+        """True if all forces are in balance, whether or not the state is stable."""
+        return self.status in EQUILIBRIA
+
+
+@dataclass(frozen=True)
+class Start:
+    """The state that settling starts from: displacement (n, 2) in m, plastic strain (rods,), and rotation (n,)."""
+
+    displacement: Array
+    plastic_strain: Array
+    rotation: Array
+
+    @classmethod
+    def present(cls, model: Model) -> Start:
+        """A model's present state."""
+        particles = model.particles
+        return cls(particles.displacement.copy(), model.rods.plastic_strain.copy(), particles.rotation.copy())
+
+
+def state_of(
+    model: Model, structure: Structure, response: Response, displacement: Array, load: Array, **facts: Any
+) -> StaticState:
+    """The state at these displacements (n, …) under a load; facts: the other fields of the state."""
+    rods, count = (
+        slice(model.rods.count),
+        model.particles.count,
+    )  # what follows them are contacts, and obstacles
+    pressing = rods.stop + np.flatnonzero(response.axial_force[rods.stop :] < 0.0)
+    reaction = np.where(structure.fixed, structure.internal(response) - load, 0.0)[:count]
+    elastic = 500.0 * float((response.axial_force**2 * structure.rest_length / structure.stiffness)[rods].sum())
+    if structure.bending is not None and response.bent is not None:
+        elastic += 1000.0 * float(structure.bending.energy(response.bent.slopes).sum())
+    length = response.length
+    if structure.linear:  # response.length is that about which rods turn
+        length = structure.original_length + response.elongation - structure.misfit
+    return StaticState(
+        displacement=displacement[:count, :2],
+        rotation=structure.rotation(displacement)[:count],
+        plastic_strain=response.plastic_strain[rods],
+        axial_force=response.axial_force[rods],
+        strain=response.strain[rods],
+        length=length[rods],
+        yielding=structure.at_limit(response)[rods],
+        reaction=reaction[:, :2],
+        reaction_moment=structure.rotation(reaction),
+        diagrams=_diagrams(model, structure, response, displacement),
+        elastic_energy=elastic,
+        contacts=structure.ends[pressing],
+        contact_force=-response.axial_force[pressing],
+        **facts,
+    )
+
+
+def apply(model: Model, state: StaticState) -> None:
+    """Put a model into a static state: its displacements and plastic strains, without velocity."""
+    model.writable("particles.displacement")[...] = state.displacement
+    model.writable("particles.velocity")[...] = 0.0
+    if bends(model):
+        model.writable("particles.rotation")[...] = state.rotation
+        model.writable("particles.angular_velocity")[...] = 0.0
+    model.writable("rods.plastic_strain")[...] = state.plastic_strain
+
+
+def _diagrams(
+    model: Model, structure: Structure, response: Response, displacement: Array
+) -> Mapping[str, Array]:
+    """The diagrams of a model's rods in this state, (rods, 2) by the names of columns."""
+    rods = slice(model.rods.count)  # what follows them are contacts
+    return diagrams(
+        model.rods,
+        response.axis[rods],
+        response.length[rods],
+        structure.chords(displacement)[rods],
+        structure.rotation(displacement)[structure.ends[rods]],
+        (response.axial_force[rods], structure.end_moments(response)[rods]),
+        share=response.share,
+        first_order=structure.linear,
+    )

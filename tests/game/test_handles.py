@@ -1,0 +1,106 @@
+"""Whatever has a cross or a knob works in every scene in which it is drawn."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+import pytest
+
+from components.camera import Rectangle
+from components.field import Vector
+from components.model import Model
+from game import Session
+from game.documents.library import data_apart
+from game.editor.scenes.form import FormScene
+from systems.render.picture import shown_panels
+from systems.render.theme import load_theme
+from tests.golden.scenes import SCENES, Scene, Window, opened, pressed
+from tests.golden.states import STATES
+
+WIDE = Window(1280, 800)
+LOW = Window(640, 480)
+
+
+def _beside_properties(window: Window) -> Session:
+    session = pressed(window, "m", "j", source="hyperstatic_yield")
+    session.select(session.rods["CD"])
+    for key in ("o", "ctrl+l", "return"):
+        session.press(key)
+    return session
+
+
+def _all_folded(window: Window) -> Session:
+    session = opened(window, "hyperstatic_yield")
+    session.select(session.rods["CD"])
+    for key in ("m", "j", "ctrl+h", "o", "x"):
+        session.press(key)
+    return session
+
+
+def _opened_from_a_run(window: Window) -> Session:
+    session = pressed(window, "m", "j", "space", source="hyperstatic")
+    session.click(0.0, 0.75)
+    session.press("return")
+    return session
+
+
+EVERYWHERE: dict[str, Scene] = SCENES | STATES
+MORE: dict[str, Scene] = {
+    "panels beside properties": _beside_properties,
+    "all folded": _all_folded,
+    "properties opened from a run": _opened_from_a_run,
+}
+
+
+def middle(place: Rectangle) -> Vector:
+    return place.left + place.width / 2, place.top + place.height / 2
+
+
+def handles(session: Session) -> Iterator[tuple[str, Vector]]:
+    """What can be closed or moved in the picture: what it is called, and a pixel to press."""
+    session.update_view()
+    for shown, view in session.stages:
+        if not isinstance(shown, Model) or view.page is not None:
+            continue
+        for panel in shown_panels(shown, view, load_theme(view.theme)):
+            if panel.readout.closes:
+                assert panel.close is not None, panel.readout.title
+                yield f"panel {panel.readout.title} {panel.readout.plot}", middle(panel.close)
+        for place in view.slider_places:
+            left, right, y = place.track
+            yield f"slider {place.control.title}", (0.75 * left + 0.25 * right, y)
+            yield f"button {place.control.title} {place.control.button}", middle(place.button)
+
+
+def state_of(session: Session) -> tuple[object, ...]:
+    """What a handle may change."""
+    panels = [name for name, _ in handles(session) if name.startswith("panel")]
+    sliders = [repr(view.sliders) for _, view in session.stages]
+    return panels, sliders
+
+
+@pytest.mark.parametrize("window", [WIDE, LOW], ids=["wide", "low"])
+@pytest.mark.parametrize("name", [*EVERYWHERE, *MORE])
+def test_every_cross_and_knob_that_is_drawn_works(name: str, window: Window) -> None:
+    with data_apart():
+        session = (EVERYWHERE | MORE)[name](window)
+        if session.view.menu is not None or session.view.help:
+            session.press("escape")  # which take clicks first
+        session.performing = False  # while a lesson is played, clicks are its own
+        done: set[str] = set()
+        while left := [(what, at) for what, at in handles(session) if what not in done]:
+            what, at = left[0]
+            done.add(what)
+            before, scene = state_of(session), session.scene
+            session.press("click", at)
+            session.update_view()
+            assert state_of(session) != before, what
+            assert session.scene == scene, what
+        close_form(session)
+
+
+def close_form(session: Session) -> None:
+    scene = session.scenes.active
+    if isinstance(scene, FormScene):
+        session.press("click", middle(scene.layout(session).close))
+        assert session.scenes.active is not scene

@@ -1,0 +1,150 @@
+"""First-order theory of frames by the textbook: 6 × 6 matrices of members, hinges condensed, loads by fixed-end forces.
+
+Written from textbooks, in local axes, with a hinge as a rotation of its own that is eliminated. Nothing is shared with
+the program: neither its coordinates (elongation and slopes) nor its assembly. Signs of results are the program's.
+"""
+
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+Document = dict[str, Any]
+EXPANSION = 1.2e-5
+
+
+@dataclass(frozen=True)
+class Member:
+    """One rod in local axes: forces on its ends = stiffness × displacements of them + fixed, each (x, y, θ) twice."""
+
+    places: list[int]
+    turned: np.ndarray
+    stiffness: np.ndarray
+    fixed: np.ndarray
+    hinged: list[int]
+    length: float
+    load: tuple[float, float]  # along and across, per present length
+
+
+def member(rod: Document, places: list[int], span: np.ndarray) -> Member:
+    """The matrices of a rod as if it were rigid at both ends; those that are not are in `hinged`."""
+    length = float(np.hypot(*span))
+    cosine, sine = span / length
+    rest = rod.get("rest_length", length)
+    axial, bend = rod["stiffness"] / rest, rod.get("bending_stiffness", 0.0) / rest
+    shear, lever = 12.0 * bend / length**2, 6.0 * bend / length
+    stiffness = np.array(
+        [
+            [axial, 0.0, 0.0, -axial, 0.0, 0.0],
+            [0.0, shear, lever, 0.0, -shear, lever],
+            [0.0, lever, 4.0 * bend, 0.0, -lever, 2.0 * bend],
+            [-axial, 0.0, 0.0, axial, 0.0, 0.0],
+            [0.0, -shear, -lever, 0.0, shear, -lever],
+            [0.0, lever, 2.0 * bend, 0.0, -lever, 4.0 * bend],
+        ]
+    )
+    rotation = np.array([[cosine, sine, 0.0], [-sine, cosine, 0.0], [0.0, 0.0, 1.0]])
+    turned = np.kron(np.eye(2), rotation)
+    along, across = rotation[:2, :2] @ np.array(rod.get("distributed_force", (0.0, 0.0)))
+    expansion = rod.get("thermal_expansion", EXPANSION)
+    longer = rest - length + rest * expansion * rod.get("temperature_change", 0.0)
+    curvature = -expansion * rod.get("temperature_gradient", 0.0)
+    moment = across * rest**2 / 12.0
+    bent = rod.get("bending_stiffness", 0.0) * curvature
+    fixed = np.array(
+        [
+            axial * longer - along * rest / 2.0,
+            -across * rest / 2.0,
+            bent - moment,
+            -axial * longer - along * rest / 2.0,
+            -across * rest / 2.0,
+            moment - bent,
+        ]
+    )
+    bars = bend == 0.0
+    hinged = [2 + 3 * end for end, hinge in enumerate(rod.get("hinged", (False, False))) if hinge or bars]
+    if bars:
+        fixed[[2, 5]] = 0.0
+    return Member(places, turned, stiffness, fixed, hinged, length, (along, across))
+
+
+def condensed(of: Member) -> tuple[np.ndarray, np.ndarray]:
+    """Stiffness and fixed-end forces without the rotations of hinged ends, whose rows and columns are 0."""
+    kept = [i for i in range(6) if i not in of.hinged]
+    stiffness, fixed = np.zeros((6, 6)), np.zeros(6)
+    inner = of.stiffness[np.ix_(of.hinged, of.hinged)]
+    cross = of.stiffness[np.ix_(kept, of.hinged)] @ np.linalg.pinv(inner)
+    stiffness[np.ix_(kept, kept)] = (
+        of.stiffness[np.ix_(kept, kept)] - cross @ of.stiffness[np.ix_(of.hinged, kept)]
+    )
+    fixed[kept] = of.fixed[kept] - cross @ of.fixed[of.hinged]
+    return stiffness, fixed
+
+
+@dataclass(frozen=True)
+class Found:
+    """By names: displacement, rotation, reaction, reaction_moment of particles; (start, end) of what rods have."""
+
+    displacement: dict[str, np.ndarray]
+    rotation: dict[str, float]
+    reaction: dict[str, np.ndarray]
+    reaction_moment: dict[str, float]
+    end_axial_force: dict[str, np.ndarray]
+    shear: dict[str, np.ndarray]
+    bending_moment: dict[str, np.ndarray]
+    end_rotation: dict[str, np.ndarray]
+
+
+def solve(document: Document) -> Found:
+    """The answer of linear theory to a model's document, with settlements of supports and clamps."""
+    particles, rods = document["particles"], document["rods"]
+    row = {particle["name"]: i for i, particle in enumerate(particles)}
+    members = []
+    for rod in rods:
+        first, second = (row[name] for name in rod["between"])
+        span = np.subtract(particles[second]["position"], particles[first]["position"])
+        places = [*range(3 * first, 3 * first + 3), *range(3 * second, 3 * second + 3)]
+        members.append(member(rod, places, span))
+    size = 3 * len(particles)
+    matrix, load = np.zeros((size, size)), np.zeros(size)
+    for of in members:
+        stiffness, fixed = condensed(of)
+        matrix[np.ix_(of.places, of.places)] += of.turned.T @ stiffness @ of.turned
+        load[of.places] -= of.turned.T @ fixed
+    applied = np.array([[*p.get("force", (0.0, 0.0)), p.get("moment", 0.0)] for p in particles]).ravel()
+    held = np.array(
+        [[*p.get("fixed", (False, False)), p.get("fixed_rotation", False)] for p in particles]
+    ).ravel()
+    placed = np.array([[*p.get("displacement", (0.0, 0.0)), p.get("rotation", 0.0)] for p in particles]).ravel()
+    rigid = {place for of in members for end in (2, 5) if end not in of.hinged for place in [of.places[end]]}
+    still = np.array([i % 3 == 2 and i not in rigid for i in range(size)])
+    free = ~held & ~still
+    moved = np.where(held & ~still, placed, 0.0)
+    right = (load + applied - matrix @ moved)[free]
+    moved[free] = np.linalg.solve(matrix[np.ix_(free, free)], right)
+    reaction = np.where(held, matrix @ moved - load - applied, 0.0).reshape(-1, 3)
+    names = list(row)
+    of_rods = {rod["name"]: end_forces(of, moved) for rod, of in zip(rods, members, strict=True)}
+    return Found(
+        displacement={name: moved.reshape(-1, 3)[i, :2] for i, name in enumerate(names)},
+        rotation={name: float(moved[3 * i + 2]) for i, name in enumerate(names)},
+        reaction={name: reaction[i, :2] for i, name in enumerate(names)},
+        reaction_moment={name: float(reaction[i, 2]) for i, name in enumerate(names)},
+        end_axial_force={name: forces[[0, 3]] * [-1.0, 1.0] for name, (forces, _) in of_rods.items()},
+        shear={name: forces[[1, 4]] * [1.0, -1.0] for name, (forces, _) in of_rods.items()},
+        bending_moment={name: forces[[2, 5]] * [-1.0, 1.0] for name, (forces, _) in of_rods.items()},
+        end_rotation={name: turns for name, (_, turns) in of_rods.items()},
+    )
+
+
+def end_forces(of: Member, moved: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Forces of the particles on the ends of a rod in its axes, (6,), and the rotations of its ends, (2,)."""
+    local = of.turned @ moved[of.places]
+    kept = [i for i in range(6) if i not in of.hinged]
+    if of.hinged and of.stiffness[2, 2] > 0.0:
+        inner = of.stiffness[np.ix_(of.hinged, of.hinged)]
+        pushed = of.fixed[of.hinged] + of.stiffness[np.ix_(of.hinged, kept)] @ local[kept]
+        local[of.hinged] = -np.linalg.solve(inner, pushed)
+    elif of.hinged:
+        local[of.hinged] = (local[4] - local[1]) / of.length
+    return of.stiffness @ local + of.fixed, local[[2, 5]]

@@ -1,0 +1,236 @@
+"""First-order answers of frames: an independent solver, and closed forms of textbooks."""
+
+import math
+from typing import Any
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from components.model import Model
+from game.documents.models import parse
+from systems.statics.counting import counted
+from systems.statics.state import StaticState
+from systems.statics.theory import indeterminacy, linear
+from tests.reference import frame_theory
+from tests.reference.models import model
+
+SEEDS = st.integers(0, 2**32 - 1)
+ENDS = ("end_axial_force", "shear", "bending_moment", "end_rotation")
+EI, EA = 4000.0, 8e5
+
+
+def random_frame(seed: int, *, moves: bool = True) -> dict[str, Any]:
+    """A frame of storeys and bays with braces, hinges, warm members, loads everywhere, and moved supports and clamps."""
+    lot = np.random.default_rng(seed)
+    bays, storeys = int(lot.integers(1, 4)), int(lot.integers(1, 4))
+    particles: list[dict[str, Any]] = []
+    for floor in range(storeys + 1):
+        for bay in range(bays + 1):
+            place = np.array([4.0 * bay, 3.0 * floor]) + lot.uniform(-0.5, 0.5, 2)
+            facts: dict[str, Any] = {"name": f"P{floor}{bay}", "position": place.tolist()}
+            if floor == 0:
+                clamped = bool(lot.random() < 0.6) or bay == 0
+                facts |= {"fixed": [True, True], "fixed_rotation": clamped}
+                if moves:
+                    facts["displacement"] = lot.normal(0.0, 0.01, 2).tolist()
+                    facts["rotation"] = float(lot.normal(0.0, 0.002)) if clamped else 0.0
+            facts["force"], facts["moment"] = lot.normal(0.0, 20.0, 2).tolist(), float(lot.normal(0.0, 10.0))
+            particles.append(facts)
+    rods: list[dict[str, Any]] = []
+
+    def join(first: str, second: str, bends: bool) -> None:
+        rod: dict[str, Any] = {"name": f"{first}-{second}", "between": [first, second]}
+        rod["stiffness"] = float(10.0 ** lot.uniform(4.5, 6.5))
+        rod["bending_stiffness"] = float(10.0 ** lot.uniform(2.5, 4.5)) if bends else 0.0
+        rod["hinged"] = [bool(lot.random() < 0.12), bool(lot.random() < 0.12)]
+        rod["distributed_force"] = lot.normal(0.0, 5.0, 2).tolist()
+        rod["temperature_change"], rod["temperature_gradient"] = lot.normal(0.0, 30.0, 2).tolist()
+        rods.append(rod)
+
+    for floor in range(storeys + 1):
+        for bay in range(bays + 1):
+            if floor:
+                join(f"P{floor - 1}{bay}", f"P{floor}{bay}", bends=True)
+            if floor and bay:
+                join(f"P{floor}{bay - 1}", f"P{floor}{bay}", bends=True)
+                join(f"P{floor - 1}{bay - 1}", f"P{floor}{bay}", bends=False)
+    return model(particles, rods)
+
+
+def agrees(document: dict[str, Any], found: StaticState, made: Model, *, within: float = 1e-9) -> None:
+    """Every quantity, relative to the largest of its kind, at least 1e-3."""
+    wanted = frame_theory.solve(document)
+    names, rods = made.particles.names, made.rods.names
+    columns: dict[str, Any] = {"displacement": found.displacement, "reaction": found.reaction}
+    columns |= {"rotation": found.rotation, "reaction_moment": found.reaction_moment}
+    pairs = [(values, [getattr(wanted, key)[name] for name in names], key) for key, values in columns.items()]
+    pairs += [(found.diagrams[key], [getattr(wanted, key)[name] for name in rods], key) for key in ENDS]
+    for values, expected, key in pairs:
+        size = max(float(np.abs(expected).max()), 1e-3)
+        assert np.abs(values - np.array(expected)).max() <= within * size, key
+
+
+@settings(max_examples=60, deadline=None)
+@given(seed=SEEDS)
+def test_random_frames_agree_with_an_independent_solver(seed: int) -> None:
+    document = random_frame(seed)
+    made = parse(document)
+    degrees, count = indeterminacy(made), counted(made)
+    assert count.degree == degrees.static - degrees.mechanisms
+    if not degrees.mechanisms:
+        agrees(document, linear(made), made)
+
+
+def held(name: str, x: float, y: float = 0.0, **facts: Any) -> dict[str, Any]:
+    """A support: pinned, unless facts say otherwise."""
+    return {"name": name, "position": [x, y], "fixed": [True, True], **facts}
+
+
+def free(name: str, x: float, y: float = 0.0, **facts: Any) -> dict[str, Any]:
+    return {"name": name, "position": [x, y], **facts}
+
+
+def beam(name: str, **facts: Any) -> dict[str, Any]:
+    """A rod AB between A and B that bends."""
+    rod = {"stiffness": EA, "bending_stiffness": EI}
+    return {"name": name, "between": list(name), **rod, **facts}
+
+
+def answered(particles: list[dict[str, Any]], rods: list[dict[str, Any]]) -> tuple[Model, StaticState]:
+    """A model and its linear answer, which agrees with the independent solver."""
+    document = model(particles, rods)
+    made = parse(document)
+    found = linear(made)
+    agrees(document, found, made)
+    return made, found
+
+
+def test_a_cantilever_under_a_tip_load() -> None:
+    length, force = 3.0, -12.0
+    clamp = held("A", 0.0, fixed_rotation=True)
+    _, found = answered([clamp, free("B", length, force=[0.0, force])], [beam("AB")])
+    assert found.displacement[1, 1] == pytest.approx(force * length**3 / (3.0 * EI), rel=1e-12)
+    assert found.rotation[1] == pytest.approx(force * length**2 / (2.0 * EI), rel=1e-12)
+    assert found.reaction_moment[0] == pytest.approx(-force * length, rel=1e-12)
+    assert found.diagrams["bending_moment"][0] == pytest.approx([force * length, 0.0], abs=1e-10)
+    assert found.diagrams["largest_moment"][0] == pytest.approx([force * length, 0.0], abs=1e-10)
+
+
+def test_a_propped_cantilever_under_its_weight() -> None:
+    """M = qL²/8 at the clamp, 3qL/8 on the prop, largest in the span 9qL²/128 at 3L/8 from the prop."""
+    length, load = 4.0, 7.0
+    particles = [held("A", 0.0, fixed_rotation=True), held("B", length, fixed=[False, True])]
+    _, found = answered(particles, [beam("AB", distributed_force=[0.0, -load])])
+    assert found.diagrams["bending_moment"][0] == pytest.approx([-load * length**2 / 8.0, 0.0], abs=1e-10)
+    assert found.reaction[1] == pytest.approx([0.0, 3.0 * load * length / 8.0], abs=1e-10)
+    assert found.rotation[1] == pytest.approx(load * length**3 / (48.0 * EI), rel=1e-12)
+    assert found.diagrams["largest_moment"][0] == pytest.approx([-load * length**2 / 8.0, 0.0], abs=1e-10)
+
+
+def test_a_simply_supported_beam_with_a_moment_in_the_span() -> None:
+    """qL²/8 at the middle, found inside one rod."""
+    length, load = 4.0, 7.0
+    particles = [held("A", 0.0), held("B", length, fixed=[False, True])]
+    _, found = answered(particles, [beam("AB", distributed_force=[0.0, -load])])
+    assert found.diagrams["largest_moment"][0] == pytest.approx(
+        [load * length**2 / 8.0, length / 2.0], rel=1e-12
+    )
+    assert found.diagrams["end_rotation"][0] == pytest.approx(
+        np.array([-1.0, 1.0]) * load * length**3 / (24.0 * EI), rel=1e-12
+    )
+
+
+def test_a_portal_clamped_at_its_feet() -> None:
+    """Kleinlogel's formulas with k = I_b h/(I_c l) = 1, for stiff axes: a horizontal force P at the top gives
+    ±Ph (3k + 1)/(2 (6k + 1)) at the feet and ±Ph 3k/(2 (6k + 1)) at the corners."""
+    side, force = 4.0, 30.0
+    feet = [held("A", 0.0, fixed_rotation=True), held("D", side, fixed_rotation=True)]
+    top = [free("B", 0.0, side, force=[force, 0.0]), free("C", side, side)]
+    rods = [beam(name, stiffness=1e9) for name in ("AB", "BC", "CD")]
+    made, found = answered([*feet, *top], rods)
+    of_foot, of_corner = 4.0 / 14.0 * force * side, 3.0 / 14.0 * force * side
+    assert np.abs(found.diagrams["bending_moment"]) == pytest.approx(
+        np.array([[of_foot, of_corner], [of_corner, of_corner], [of_corner, of_foot]]), rel=1e-5
+    )
+    assert made.particles.names[1] == "D"
+    assert found.reaction[:2, 0] == pytest.approx([-force / 2.0] * 2, rel=1e-5)
+
+
+def test_a_gerber_beam() -> None:
+    """Clamped, with a hinge: q on the part beyond, its reaction hangs on the cantilever."""
+    load, inner, outer = 6.0, 3.0, 4.0
+    particles = [
+        held("A", 0.0, fixed_rotation=True),
+        free("B", inner),
+        held("C", inner + outer, fixed=[False, True]),
+    ]
+    rods = [beam("AB"), beam("BC", hinged=[True, False], distributed_force=[0.0, -load])]
+    made, found = answered(particles, rods)
+    half = load * outer / 2.0
+    assert indeterminacy(made).static == 0
+    assert counted(made).numbers == "3·2 + 4 − 3·3 − 1 = 0"
+    assert found.reaction[:, 1] == pytest.approx([half, 0.0, half], abs=1e-10)
+    assert found.diagrams["bending_moment"] == pytest.approx(
+        np.array([[-half * inner, 0.0], [0.0, 0.0]]), abs=1e-9
+    )
+    assert found.diagrams["largest_moment"][1] == pytest.approx([load * outer**2 / 8.0, outer / 2.0], rel=1e-10)
+    left, right = found.diagrams["end_rotation"][:, [1, 0]].diagonal(), found.rotation[1]
+    assert left[0] == pytest.approx(right, rel=1e-12)
+    dropped = -half * inner**3 / (3.0 * EI)
+    assert left[1] == pytest.approx(-dropped / outer - load * outer**3 / (24.0 * EI), rel=1e-9)
+
+
+def test_a_three_hinged_arch() -> None:
+    """H = ql²/(8f) under the same load on every metre of the ground, and no moment anywhere if it is a parabola."""
+    span, rise, load, parts = 20.0, 5.0, 8.0, 16
+    x = np.linspace(0.0, span, parts + 1)
+    y = 4.0 * rise * x * (span - x) / span**2
+    particles = [free(f"P{i}", *at) for i, at in enumerate(zip(x.tolist(), y.tolist(), strict=True))]
+    for foot in (particles[0], particles[-1]):
+        foot["fixed"] = [True, True]
+    rods = []
+    for i in range(parts):
+        way = math.hypot(x[i + 1] - x[i], y[i + 1] - y[i])
+        facts = {"distributed_force": [0.0, -load * (x[i + 1] - x[i]) / way]}
+        rods.append(
+            {
+                **beam("AB", **facts),
+                "name": f"R{i}",
+                "between": [f"P{i}", f"P{i + 1}"],
+                "hinged": [i == parts // 2, False],
+            }
+        )
+    made, found = answered(particles, rods)
+    assert indeterminacy(made).static == 0
+    thrust = load * span**2 / (8.0 * rise)
+    assert found.reaction[[0, -1], 0] == pytest.approx([thrust, -thrust], rel=1e-9)
+    assert found.diagrams["bending_moment"] == pytest.approx(0.0, abs=1e-7 * thrust)
+
+
+def test_a_clamp_that_turns_and_a_support_that_sinks() -> None:
+    """4EI/L θ and 2EI/L θ; 6EI/L² w."""
+    length, turn, drop = 5.0, 1e-3, 2e-3
+    particles = [
+        held("A", 0.0, fixed_rotation=True, rotation=turn),
+        held("B", length, fixed_rotation=True, displacement=[0.0, -drop]),
+    ]
+    _, found = answered(particles, [beam("AB")])
+    sunk = 6.0 * EI * drop / length**2
+    assert found.reaction_moment == pytest.approx(
+        [4.0 * EI * turn / length + sunk, 2.0 * EI * turn / length + sunk]
+    )
+
+
+def test_a_warm_side_bends_what_is_free_and_stresses_what_is_held() -> None:
+    """κ = −α ΔT/h; the free tip moves by κL²/2 without a moment, the clamped beam bears −EI κ."""
+    length, gradient = 4.0, 50.0
+    curvature = -1.2e-5 * gradient
+    clamp = held("A", 0.0, fixed_rotation=True)
+    _, found = answered([clamp, free("B", length)], [beam("AB", temperature_gradient=gradient)])
+    assert found.displacement[1, 1] == pytest.approx(curvature * length**2 / 2.0, rel=1e-12)
+    assert found.diagrams["bending_moment"] == pytest.approx(0.0, abs=1e-12)
+    other = held("B", length, fixed_rotation=True)
+    _, found = answered([clamp, other], [beam("AB", temperature_gradient=gradient)])
+    assert found.diagrams["bending_moment"][0] == pytest.approx([-EI * curvature] * 2, rel=1e-12)
