@@ -408,6 +408,22 @@ def turning(world: World) -> NDArray[np.bool_]:
     return flags(rods.between[rods.turning_shares > 0.0], world.tables["particles"].count)
 
 
+def idle_moment(world: World) -> str:
+    """The sentence about a moment on a particle without rigid rod ends, which turns nothing; "" if there is none."""
+    particles, loads = world.tables["particles"], world.tables["loads"]
+    moment = np.abs(particles.moment)
+    np.maximum.at(moment, loads.on, np.abs(loads.moment))
+    if not moment.any():
+        return ""
+    for row in np.flatnonzero((moment > 0.0) & ~turning(world))[:1].tolist():
+        named = world.describe(particles[row])
+        return (
+            f"{named[:1].upper()}{named[1:]}: a moment of {moment[row]:g} kN·m acts on it, but there are no rigid rod"
+            " ends that it could turn; make one rigid or take the moment away."
+        )
+    return ""
+
+
 def is_curved(world: World) -> bool:
     """True if some rod that bends is warmer on one side."""
     return bool(world.tables["rods"].initial_slopes.any())
