@@ -230,6 +230,11 @@ class Field(Generic[T]):
             for v, axis in zip(values, self.axes, strict=True)
         )
 
+    def unit_of(self, axis: str) -> str:
+        """The unit of the part called so, "" being the whole; where parts have several, they stand in order: "kN·m, m"."""
+        units = self.unit.split(", ")
+        return units[self.axes.index(axis)] if axis and len(units) > 1 else self.unit
+
     def _check_number(self, value: Any, where: str, title: str) -> Any:
         if isinstance(value, bool | np.bool_) or not isinstance(value, int | float | np.integer | np.floating):
             what = "the row of an element, as its .row tells" if self.dtype == "reference" else "a number"

@@ -40,7 +40,7 @@ class Particle(Handle):
     fixed_rotation: Field[bool] = Field(
         dtype=bool, title="rotation constrained", doc="Clamped: its rigid rod ends keep their rotation."
     )
-    force: Field[Vector] = Field("kN", shape=(2,), title="applied force", doc="Constant force on it.")
+    force: Field[Vector] = Field("kN", shape=(2,), title="load", doc="Constant force on it.")
     moment: Field[float] = Field(
         "kN·m", title="applied moment", doc="Constant moment on its rigid rod ends, counter-clockwise."
     )
@@ -96,7 +96,7 @@ class Particle(Handle):
         "kN·m", doc="All external moment that time does not change: own and of loads."
     )
     applied_force: Field[Vector] = derived(
-        "kN", shape=(2,), title="external force", doc="All external force now, without reactions."
+        "kN", shape=(2,), title="sum of loads", doc="All loads and weights now, without reactions."
     )
     reaction: Field[Vector] = derived(
         "kN", shape=(2,), doc="The support's force on it in constrained directions, 0 elsewhere."

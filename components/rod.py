@@ -265,10 +265,10 @@ class Rod(Handle):
         "rad", shape=(2,), axes=ENDS, doc="Of its ends, counter-clockwise, also where they are hinged."
     )
     largest_moment: Field[Vector] = derived(
-        "kN·m",
+        "kN·m, m",
         shape=(2,),
         axes=("value", "distance"),
-        doc="The bending moment of largest size, and how far from the start (m).",
+        doc="The bending moment of largest size, and how far from the start.",
     )
     yielding: Field[bool] = derived(dtype=bool, doc="Axial force is at a strength.")
 

@@ -6,6 +6,7 @@
 """
 
 from components import (
+    CM,
     Assign,
     Command,
     Component,
@@ -87,6 +88,7 @@ from systems.render.theme import Colour, Theme, faded
 __all__ = [
     "ACCOUNTS",
     "ANSWERED",
+    "CM",
     "EVENT_INTERVAL",
     "FAULTS",
     "NOT_ANSWERED",

@@ -289,6 +289,7 @@ def _numbers(table: Table[Any]) -> Mapping[str, Field[Any]]:
 def _of_element(path: str, target: Target) -> Quantity:
     handle, field = target.handles[0], target.field
     unit, factor = field.shown
+    unit = field.unit_of(target.axis) if unit == field.unit else unit
     of = handle.world.describe(handle)
     name = f"{field.title}{f' {target.axis}' if target.axis else ''} of {of}"
 

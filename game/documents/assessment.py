@@ -34,7 +34,7 @@ class Assessment:
         self._model = model
         self._simulation = simulation
         self._beginning: Snapshot | None = None
-        self._disturbed_at = math.inf  # the first step with an edit or a pull
+        self._disturbed_at, self._how = math.inf, ""  # the first step with an edit or a pull, and what it was
         self._theories: tuple[int, Theories] | None = None
         self._remarks: tuple[Moment, tuple[Event, ...]] | None = None
         self._degrees: tuple[tuple[int, ...], Indeterminacy] | None = None
@@ -45,14 +45,19 @@ class Assessment:
         self._beginning, self._disturbed_at = beginning, math.inf
         self._theories = self._remarks = self._error = None
 
-    def disturb(self) -> None:
-        """Note that the run is edited or pulled at the present step."""
-        self._disturbed_at = min(self._disturbed_at, self._model.clock.steps)
+    def disturb(self, how: str = "edited") -> None:
+        """Note that the run is edited, pulled or settled at the present step; how: what a person calls it."""
+        self._disturbed_at, self._how = min(self._disturbed_at, self._model.clock.steps), how
 
     @property
     def undisturbed(self) -> bool:
         """True if nobody has edited the model or pulled a particle since the run began; undo may go back to then."""
         return bool(self._model.clock.steps < self._disturbed_at)
+
+    @property
+    def disturbed(self) -> str:
+        """What was done last to the run but to let time pass: "edited", "pulled" or "settled"; "" if nothing."""
+        return "" if self.undisturbed else self._how
 
     @property
     def theories(self) -> Theories:

@@ -14,11 +14,11 @@ from components.obstacles import obstacles
 from components.rod import can_yield, has_cables
 from systems.base import StopReason
 from systems.run.simulation import Simulation
-from systems.statics.stability import LARGEST, is_held
 
 COLLAPSED = (
     4.0  # plastic strain over that at which a rod yields, beyond which one that nothing resists is no overshoot
 )
+LARGEST = 100  # rods up to which stability is looked at: a fraction of a millisecond
 MOST_NAMED = 3  # elements in a sentence
 FIRST_IMPACTS, LOOKED_THROUGH = 3, 64  # instants of impacts that are told one by one, among so many impacts
 TOLD, MOST_TOLD = 5.0, 2  # s for which a person is told of something, and of how much at a time
@@ -201,6 +201,8 @@ class Chronicle:
 
     def _look_at_stability(self) -> None:
         """A structure that is held no more collapses if rods yield on and on; else it snaps through."""
+        from systems.statics.stability import is_held  # not at the start of the program
+
         model, rods = self._model, self._model.rods
         edited = model.newest(Role.DOCUMENT)
         if self._stands[0] != edited:

@@ -99,7 +99,7 @@ def _with_yielding(model: Model, elastic: Displacement) -> Displacement | None:
     Of larger structures the elastic one, unless they have no rod to spare.
     """
     if model.rods.count > LARGEST_YIELDING:
-        return elastic if model.rods.count > (model.particles.mobility > 0.0).sum() else None
+        return elastic if _spare(model) > 0 else None
     from systems.statics.settle import settle  # scipy
     from systems.statics.state import Start
 
@@ -109,11 +109,18 @@ def _with_yielding(model: Model, elastic: Displacement) -> Displacement | None:
     return final.displacement if final.balanced else None
 
 
+def _spare(model: Model) -> int:
+    """Rods, and their rigid ends, less free directions and rotations: below 0, a mechanism by its count."""
+    particles, rods = model.particles, model.rods
+    held = rods.count + np.count_nonzero(rods.turning_shares > 0.0)
+    return int(held - np.count_nonzero(particles.mobility > 0.0) - np.count_nonzero(particles.turning > 0.0))
+
+
 def _moves_far(model: Model) -> bool:
     """True if anything moves freely: a mechanism by its count of rods, a loose particle, one that meets an obstacle."""
     particles, rods = model.particles, model.rods
     free = particles.mobility > 0.0
-    if rods.count < max(int(free.sum()), 1) or (model.settings.collisions and len(obstacles(model))):
+    if not rods.count or _spare(model) < 0 or (model.settings.collisions and len(obstacles(model))):
         return True
     jointed = np.zeros(particles.count, dtype=bool)
     jointed[rods.between.ravel()] = True

@@ -192,6 +192,7 @@ class OpenDocument:
                 clock.collision_state = PersistentContacts(
                     found.final.contacts, 1000.0 * found.final.contact_force
                 )
+        self.assessment.disturb("settled")
         account, yielded = [found.account], np.flatnonzero(found.final.plastic_strain != strain)
         if len(yielded) and not found.events:  # at once: what it began from is beyond the strengths
             rod = model.describe(model.rods[yielded[0]])

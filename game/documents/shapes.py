@@ -7,6 +7,7 @@ from collections.abc import Callable, Sequence
 import numpy as np
 from numpy.typing import NDArray
 
+from components import written
 from components.field import Role
 from components.mistake import Mistake
 from components.model import Model
@@ -102,7 +103,7 @@ def mode_shapes(model: Model, most: int | None = None) -> list[Shape]:
     modes = list(zip(found.hertz[still:].tolist(), found.modes[still:], strict=True))
     under, places = ("", None) if about is None else (" under load", about.displacement)
     return [
-        _shape(model, f"Mode {number} of {unknowns - still}{under}: {hertz:.4g} Hz", motion, places)
+        _shape(model, f"Mode {number} of {unknowns - still}{under}: {written.number(hertz)} Hz", motion, places)
         for number, (hertz, motion) in enumerate(modes[:wanted], start=1)
     ]
 

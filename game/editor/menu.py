@@ -35,7 +35,7 @@ _RESULTS = (
 _SUPPORTS = ("free", "pin", "hold y", "hold x")
 _CLAMPS = ("clamp", "guide y", "guide x", "hold rotation")
 _FROM_HERE = (
-    ("force", "force: click its end"),
+    ("force", "load: click its end"),
     ("moment", "moment: click left or right"),
     ("velocity", "velocity: click its end"),
     ("rod", "rod from here"),
@@ -87,7 +87,7 @@ def _of_selection(context: Context, pixel: Vector) -> Groups:
         else [("rigid", "rigid at both ends")]
         if rods
         else (),
-        (("force", "distributed force: click its end"), "weight along") if rods and alone else (),
+        (("force", "distributed load: click its end"), "weight along") if rods and alone else (),
         (_DIVISIONS if alone else _DIVISIONS[1:]) if bent else (),
         (_OF_RODS if alone else _OF_RODS[:1]) if rods else (),
         _PARTS,

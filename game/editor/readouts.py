@@ -23,25 +23,26 @@ from systems.base import StopReason
 from systems.statics.counting import counted
 
 if TYPE_CHECKING:  # it imports scipy
-    from systems.statics.verify import Comparison, Row, Theories
+    from systems.statics.verify import Comparison, Theories
 
 MOST_ELEMENTS = 3  # selected elements with a readout of their own
 SUM = 34  # characters of a line of a sum
 MOST_JOINTS = 6  # whose sums are shown while none is selected
 MOST_EVENTS = 10  # of a run, that are listed
 NOTHING = 1e-12  # of the largest exact value of its kind: round-off, shown as 0
+UNSEEN = 1e-5  # of the largest energy: less is shown as 0 beside it
 
 _BEFORE_SIGNS = re.compile("([+−=]) ")  # where a sum may be broken
 _SHOWN = {
-    "axial_force": ("N", "kN", 1.0),
-    "reaction": ("R", "kN", 1.0),
-    "displacement": ("u", *CM),
-    "rotation": ("θ", "rad", 1.0),
-    "reaction_moment": ("M", "kN·m", 1.0),
-    "shear": ("V", "kN", 1.0),
-    "bending_moment": ("M", "kN·m", 1.0),
+    "axial_force": ("kN", 1.0),
+    "reaction": ("kN", 1.0),
+    "displacement": CM,
+    "rotation": ("rad", 1.0),
+    "reaction_moment": ("kN·m", 1.0),
+    "shear": ("kN", 1.0),
+    "bending_moment": ("kN·m", 1.0),
 }
-_WAYS = {"simulation": "run", "linear": "linear theory", "exact": "exact theory"}
+_WAYS = {"simulation": "the run", "linear": "linear theory", "exact": "exact theory"}
 
 
 def own_readouts(context: Context) -> Iterator[Readout]:
@@ -67,9 +68,9 @@ def _events(context: Context) -> Iterator[Readout]:
 
 def _energy(context: Context) -> Iterator[Readout]:
     energies = context.energy.as_dict()
-    nothing = written.ROUNDING * max(map(abs, energies.values()))
+    nothing = UNSEEN * max(map(abs, energies.values()))
     rows = [
-        (name.replace("_", " "), f"{written.given(value if abs(value) > nothing else 0.0, 5)} J")
+        (name.replace("_", " "), f"{written.number(value, nothing=nothing)} J")
         for name, value in energies.items()
     ]
     error = None if context.busy else context.document.assessment.error()  # which takes a run of its own
@@ -152,19 +153,20 @@ def _overview(context: Context, theory: Theories, comparison: Comparison) -> Ite
     if theory.refusal is not None:
         yield "linear theory", "a mechanism" if theory.refusal.status == "mechanism" else "not with cables"
     if theory.exact is None:
-        yield "exact theory", f"{settlement.status} at {settlement.final.load_factor:.4g} of the load"
+        yield (
+            "exact theory",
+            f"{settlement.status} at {written.share(settlement.final.load_factor)} of the load",
+        )
     for event in settlement.events:
         if event.kind in ("snap-through", "bifurcation"):
-            yield event.kind, f"at {event.load_factor:.4g} of the load"
+            yield event.kind, f"at {written.share(event.load_factor)} of the load"
     for way in ("simulation", "linear"):
         worst = comparison.worst(way)
         if worst is not None:
-            yield (
-                f"largest error, {_WAYS[way].split()[0]}",
-                _error(getattr(worst, f"{way}_error"), f" ({_symbol(worst)})"),
-            )
-    if not context.document.assessment.undisturbed and not context.at_beginning:
-        yield "edited during the run", "theory is without that"
+            yield f"largest error of {_WAYS[way]}", _error(getattr(worst, f"{way}_error"), f" ({worst.title})")
+    disturbed = context.document.assessment.disturbed
+    if disturbed and not context.at_beginning:
+        yield f"{disturbed} during the run", "theory is without that"
 
 
 def _indeterminacy(context: Context) -> Iterator[tuple[str, str]]:
@@ -188,11 +190,6 @@ def _verdict(context: Context, comparison: Comparison) -> Iterator[tuple[str, st
         yield "at rest", "where static theory says"
 
 
-def _symbol(row: Row) -> str:
-    """The symbol of a quantity, such as "N of AB" or "u y of B"."""
-    return f"{_SHOWN[row.quantity][0]} {row.component}".rstrip() + f" of {row.name}"
-
-
 def _of_element(handle: Handle, comparison: Comparison) -> Iterator[Readout]:
     """Readouts of all quantities of an element that theory computes."""
     if isinstance(handle, Rod | Particle):
@@ -203,11 +200,11 @@ def _of_element(handle: Handle, comparison: Comparison) -> Iterator[Readout]:
 def _beside(comparison: Comparison, quantity: str, place: tuple[int, ...]) -> Readout:
     """One quantity of one element in the run and by both theories, with errors."""
     row, nothing = comparison.row(quantity, place), NOTHING * comparison.scale(quantity)
-    _, unit, factor = _SHOWN[row.quantity]
+    unit, factor = _SHOWN[row.quantity]
     rows = []
     for way, title in _WAYS.items():
         value, error = getattr(row, way), getattr(row, f"{way}_error", None)
         clear = 0.0 if value is not None and abs(value) <= nothing else value
-        shown = "—" if clear is None else f"{written.given(factor * clear, 7)} {unit}"
+        shown = "—" if clear is None else f"{written.number(factor * clear)} {unit}"
         rows.append((title if error is None else f"{title}, error {_error(error)}", shown))
     return Readout(row.title[:1].upper() + row.title[1:], tuple(rows))

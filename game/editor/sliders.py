@@ -203,7 +203,7 @@ def _limited(slider: Slider, field: Field[Any]) -> Slider:
 
 
 def add_usual_slider(context: Context) -> None:
-    """A slider for what is moved most of the selected elements: their force, their stiffness. Raises Refusal."""
+    """A slider for what is moved most of the selected elements: their load, their stiffness. Raises Refusal."""
     chosen = context.selected
     for kind in (Load, Particle, Rod):
         elements = [handle for handle in chosen if isinstance(handle, kind)]
@@ -211,7 +211,7 @@ def add_usual_slider(context: Context) -> None:
             add_slider(context, *_usual(context.model, elements))
             return
     raise Refusal(
-        "Select the particle or the rod whose force or stiffness a slider is to move, then press this again."
+        "Select the particle or the rod whose load or stiffness a slider is to move, then press this again."
     )
 
 

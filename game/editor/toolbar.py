@@ -68,7 +68,7 @@ def _are_rigid(context: Context) -> bool:
 
 
 def _shows_diagrams(context: Context) -> bool:
-    if context.has_selected:
+    if context.has_selected and not context.view.all_diagrams:
         shown = {handle.entity for handle in context.model.tagged(DiagramShown)}
         return {handle.entity for handle in context.selected_of(Particle, Rod)} <= shown
     return context.view.all_diagrams or context.model.any_tagged(DiagramShown)

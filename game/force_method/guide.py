@@ -183,7 +183,7 @@ class Guide:
         for running in self.running:
             running.settle()
         if self.part == 2:
-            self.refusal = "Pick the rod or the constraint first."
+            self.refusal = "First click the rod or the support to release, in set 1."
             return True
         self.part += 1
         if self.part == 5 and self.solution is not None:
@@ -196,7 +196,7 @@ class Guide:
 
     @property
     def can_release_another(self) -> bool:
-        """True if the base structure is still hyperstatic and the unknowns so far are solved."""
+        """True if the primary structure is still hyperstatic and the unknowns so far are solved."""
         return self.part == PARTS and len(self.released) < self.degree
 
     def release_another(self) -> None:
@@ -216,7 +216,7 @@ class Guide:
         particle = self.model.particles[hit.name]
         held = [axis for axis in (0, 1) if particle.fixed[axis]]
         if not held:
-            self.refusal = f"{particle.name} has no constraint; pick a rod or a support."
+            self.refusal = f"{particle.name} has no support; click a rod or a support."
         elif len(held) == 1:
             self._take(Unknown(particle, held[0]))
         else:

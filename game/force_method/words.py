@@ -16,7 +16,7 @@ if TYPE_CHECKING:  # they import scipy
 
 Caption = tuple[str, ...]
 
-NAMES = ("Set 1: real structure", "Set 2: base structure", "Set 3: base structure")
+NAMES = ("Set 1: real structure", "Set 2: released, under load", "Set 3: the unknown alone")
 TO_COME = ("", "follows in part 3", "follows in part 5")
 
 
@@ -28,12 +28,14 @@ def message(guide: Guide) -> str:
     if guide.refusal:
         return guide.refusal
     if guide.part == 2:
-        return "Select constraint direction" if guide.axis_wanted else "Select the discontinuity element"
+        return (
+            "Which direction of the support?" if guide.axis_wanted else "Choose a rod or a support to release"
+        )
     return {
         1: "Real structure under the real load",
-        3: f"Base structure: {_released(guide)} {'are' if len(guide.released) > 1 else 'is'} released",
+        3: f"Primary structure: {_released(guide)} {'are' if len(guide.released) > 1 else 'is'} released",
         4: "How far the released place moved",
-        5: f"Base structure under {_unit_words(guide.unknown)} alone",
+        5: f"Primary structure under {_unit_words(guide.unknown)} alone",
         6: "How far the unit force moves it",
         7: "Set 2 + set 3 = set 1",
     }[guide.part]
@@ -77,11 +79,11 @@ def captions(guide: Guide) -> list[Caption]:
     third = f"{_unit_words(guide.unknown)} at {guide.released[-1].name}"
     if guide.part == PARTS:
         several = len(guide.released) > 1
-        third = "the forces p below" if several else f"p = {signed(solution.force[0])} kN"
+        third = "the forces p below" if several else f"p = {written.force(solution.force[0])}"
     for i, load in enumerate(("the real load", "the real load", third)[:there]):
         shown[i] = (*shown[i], load)
     if guide.part >= 4:
-        shown[0] = (*shown[0], *_each(guide, "_real", solution.delta_real))
+        shown[0] = (*shown[0], *_each(guide, "", solution.delta_real))
         shown[1] = (*shown[1], *_each(guide, "₀", solution.delta_base))
     if guide.part == 6 or (guide.part == PARTS and len(guide.released) == 1):
         shown[2] = (*shown[2], *_each(guide, "₁", solution.delta_unit[:, -1], " per kN"))
@@ -115,8 +117,7 @@ def working(guide: Guide) -> tuple[str, ...]:
     lines = _one_equation(solution) if len(solution.unknowns) == 1 else _equations(solution)
     if guide.exact is None:
         return lines
-    exact = [signed(force) for force in guide.exact]
-    return (*lines, f"Exact geometry gives {', '.join(exact)} kN.")
+    return (*lines, f"Exact geometry gives {', '.join(map(written.force, guide.exact))}.")
 
 
 def _degree(degree: int) -> str:
@@ -128,25 +129,25 @@ def _degree(degree: int) -> str:
 def _one_equation(solution: Solution) -> tuple[str, ...]:
     real, base, unit = solution.delta_real[0], solution.delta_base[0], solution.delta_unit[0, 0]
     return (
-        f"p = (Δ_real − Δ₀) / Δ₁ = ({_cm(real)} − {_cm(base, bracket=True)}) cm / ({_cm(unit)} cm/kN)"
-        f" = {signed(solution.force[0])} kN",
+        f"p = (Δ − Δ₀) / Δ₁ = ({_cm(real)} − {_cm(base, bracket=True)}) cm / ({_cm(unit)} cm/kN)"
+        f" = {written.force(solution.force[0])}",
     )
 
 
 def _equations(solution: Solution) -> tuple[str, ...]:
-    """Δ_real = Δ₀ + Σ Δ₁ p, a line for every unknown, and the solution p."""
+    """Δ = Δ₀ + Σ Δ₁ p, a line for every unknown, and the solution p."""
     names = [unknown.name for unknown in solution.unknowns]
     lines = []
     for row, name in enumerate(names):
         terms = (
-            f" + {_cm(unit, bracket=True)} p_{other}"
+            f" + {_cm(unit, bracket=True)} p({other})"
             for unit, other in zip(solution.delta_unit[row], names, strict=True)
         )
         lines.append(
-            f"{name}: Δ_real = Δ₀ + Σ Δ₁ p:  {_cm(solution.delta_real[row])} ="
+            f"{name}: Δ = Δ₀ + Σ Δ₁ p:  {_cm(solution.delta_real[row])} ="
             f" {_cm(solution.delta_base[row])}{''.join(terms)}  (cm, kN)"
         )
-    forces = (f"p_{name} = {signed(p)} kN" for name, p in zip(names, solution.force.tolist(), strict=True))
+    forces = (f"p({name}) = {written.force(p)}" for name, p in zip(names, solution.force.tolist(), strict=True))
     return (*lines, ",  ".join(forces))
 
 
@@ -180,7 +181,7 @@ class Superposition(Sequence[tuple[str, ...]]):
         if place == 0:
             return ("kN", "set 1", "= set 2", "+ set 3", "residual")
         rod = place - 1
-        forces = (signed(column[rod]) for column in self._forces)
+        forces = (written.number(float(column[rod]), nothing=self._rounding) for column in self._forces)
         return (
             self._names[rod],
             *forces,
@@ -189,11 +190,6 @@ class Superposition(Sequence[tuple[str, ...]]):
 
 
 def _cm(metres: float, *, bracket: bool = False) -> str:
-    """Metres as centimetres to four digits; a negative number in brackets, if it stands behind a sign."""
-    text = written.given(CM[1] * metres, 4)
+    """Metres as centimetres; a negative number in brackets, if it stands behind a sign."""
+    text = written.number(CM[1] * metres)
     return f"({text})" if bracket and text.startswith("−") else text
-
-
-def signed(number: float) -> str:
-    """Two decimals, with a real minus sign and no negative zero."""
-    return f"{round(float(number), 2) + 0.0:.2f}".replace("-", "−")

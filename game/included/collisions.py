@@ -8,7 +8,7 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import NDArray
 
-from components import Model, Plot, Readout, Vector
+from components import Model, Plot, Readout, Vector, written
 from components.rod import nodes
 from game.editor.context import Context
 from game.mods import App
@@ -89,7 +89,10 @@ def _speeds(speed: Array, mean_square: float, revision: int) -> Readout:
         ("Rayleigh", smooth, rayleigh(smooth, mean_square)),
     )
     expected = np.sqrt(np.pi * mean_square) / 2
-    rows = (("mean", f"{speed.mean():.4g} m/s"), ("mean by Rayleigh", f"{expected:.4g} m/s"))
+    rows = (
+        ("mean", f"{written.number(speed.mean())} m/s"),
+        ("mean by Rayleigh", f"{written.number(expected)} m/s"),
+    )
     return Readout(
         "Speeds",
         rows,

@@ -6,6 +6,7 @@ import sys
 from collections.abc import Iterator
 from contextlib import contextmanager
 
+from components import written
 from game.mods.loading import MODS
 from game.mods.mod import Mod, ModError
 from systems.run.simulation import Simulation
@@ -20,7 +21,7 @@ def check_mods(known: list[Mod] | None = None, time: float | None = None) -> Non
     """Raise ModError if a mod failed, besides those that are known to. time: where a run stopped therefore (s)."""
     for mod in switched_off():
         if mod not in (known or []):
-            stopped = "" if time is None else f" The run stopped at t = {time:.6g} s."
+            stopped = "" if time is None else f" The run stopped at t = {written.time(time)}."
             raise ModError(f"The mod '{mod.name}' was switched off: {mod.problem}{stopped}")
 
 

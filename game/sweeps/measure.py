@@ -78,7 +78,7 @@ def _read(model: Model, path: str) -> list[Measure]:
             column=f"{section}.{element}.{target.key}" + (f".{axis}" if axis else ""),
             keys=(section, element, target.field.name, *([target.field.axes.index(axis)] if axis else [])),
             title=" ".join([target.field.title, *([axis] if axis else []), "of", element]),
-            unit=target.field.unit,
+            unit=target.field.unit_of(axis),
         )
         for element in elements
         for axis in ([target.axis] if target.axis or not target.field.shape else target.field.axes)

@@ -400,6 +400,7 @@ class Number(IntEnum):
     STEP_END = 9  # end of the present step, s
     WORK_SINCE = 10  # time since which Count.WORK is counted, s
     LOSS = 11  # energy that impacts and piles have taken so far, the present step of a pile in full, J
+    STOP = 12  # at which forces change: a step of a pile ends there, s; ∞ if they do not
 
 
 class Count(IntEnum):

@@ -171,7 +171,7 @@ def _of_particles(columns: _Columns, rows: NDArray[np.intp]) -> Iterator[Result]
             moment = columns("particles.reaction_moment")
             yield _result("reaction moment", _number(moment[row], moment, "kN·m"), Particle.reaction_moment)
         force = columns("particles.applied_force")
-        yield _vector("external force", force[row], force, "kN", Particle.applied_force)
+        yield _vector("sum of loads", force[row], force, "kN", Particle.applied_force)
         speed = np.hypot(*particles.velocity.T)
         yield _result("speed", _number(speed[row], speed, "m/s"), Particle.velocity)
         return

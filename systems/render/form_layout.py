@@ -34,7 +34,7 @@ HEADING = 104.0  # points, where a low viewport has the box beside the heading
 CLOSE, ACCEPT = 24.0, 64.0  # points, side of the button that leaves; width of that which does what Return does
 NARROW, NARROWEST = 140.0, 120.0  # points, a box less wide does not share its row; one of a vector
 TILE, TILE_GAP, CAPTION, PROPORTION = 172.0, 16.0, 38.0, 0.6
-PILL, PILL_WIDTH, PILL_GAP = 40.0, 186.0, 10.0  # points: tiles of a section without pictures
+PILL, PILL_WIDTH, PILL_GAP = 40.0, 184.0, 10.0  # points: tiles of a section without pictures
 BESIDE, SEARCH = (
     985.0,
     340.0,
@@ -324,7 +324,7 @@ def _placed(
             yield Place(left + column * (each + gap), top + TITLE * u, each, BOX * u, box)
     elif _are_pills(row):
         gap = PILL_GAP * u
-        each = min((width - (columns - 1) * gap) / columns, 1.6 * PILL_WIDTH * u)
+        each = min((width - (columns - 1) * gap) / columns, 2.0 * PILL_WIDTH * u)
         for column, tile in enumerate(row):
             yield Place(left + column * (each + gap), top, each, height - gap, tile)
     else:

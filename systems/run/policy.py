@@ -12,6 +12,7 @@ from typing import Any
 
 import numpy as np
 
+from components import written
 from components.field import Column
 from systems.base import Integrator, StopReason
 from systems.entries import SMALLEST_ENERGY, Measure
@@ -171,7 +172,7 @@ def energy_warning(imbalance: float, scale: float) -> str:
     if not energy_is_off(imbalance, scale):
         return ""
     share = abs(imbalance) / max(scale, SMALLEST_ENERGY)
-    amount = f"{100.0 * share:.3g} % of" if share < 10.0 else f"{share:.3g} times"
+    amount = f"{written.share(share)} of" if share < 10.0 else f"{written.number(share, 3)} times"
     did = "lost" if imbalance > 0.0 else "created"
     return f"The steps {did} {amount} the energy that was supplied: the results may be as wrong."
 
@@ -188,4 +189,4 @@ def residual(measures: Column) -> Column:
 
 def at_rest_since(time: float) -> str:
     """The message of a model that came to rest at this time (s)."""
-    return f"At rest since t = {time:.6g} s."
+    return f"At rest since t = {written.time(time)}."

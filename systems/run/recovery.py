@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from components import written
 from components.field import same
 from components.model import Model
 from components.snapshot import Snapshot
@@ -69,8 +70,8 @@ class Recovery:
         assert self.safe is not None
         self._programs.return_to(self.safe)
         return (
-            f"The simulation diverged near t = {failed:.6g} s: {why}. {self._step_size.remedy(size)}"
-            f" The last good state, at t = {self._model.clock.time:.6g} s, was kept.{self._acting_mods()}"
+            f"The simulation diverged near t = {written.time(failed)}: {why}. {self._step_size.remedy(size)}"
+            f" The last good state, at t = {written.time(self._model.clock.time)}, was kept.{self._acting_mods()}"
         )
 
     def _acting_mods(self) -> str:

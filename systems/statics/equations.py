@@ -120,7 +120,7 @@ class Structure:
     own_weight: stiffness added to that of its rods in the `weight` of a particle (kN/m), (n,).
     flat: rods whose axis keeps its direction, such as contacts with a straight side.
     linear: first-order theory: elongations and equilibrium about the original positions.
-    bending: of the rods; None where none bends.
+    bending: of the rods; None where none bends. sparse: matrices are, above DENSE unknowns.
     """
 
     position: Array
@@ -140,6 +140,7 @@ class Structure:
     flat: Flags
     linear: bool
     bending: Bending | None = None
+    sparse: bool = True
 
     @classmethod
     def of(cls, model: Model, geometry: str = "exact") -> Structure:
@@ -184,7 +185,7 @@ class Structure:
     def index(self) -> Rows:
         """Indices of the unknowns in a flattened field, (N,), in an order that keeps factors sparse."""
         index = np.flatnonzero(self.unknown.ravel())
-        if len(index) <= DENSE:
+        if not self.sparse or len(index) <= DENSE:
             return index
         from scipy.sparse import csc_matrix, identity
         from scipy.sparse.linalg import splu
@@ -327,6 +328,23 @@ class Structure:
             of_ends = self.bending.end_stiffness[:, ::2].ravel()
             weight = np.column_stack([weight, np.bincount(self.ends.ravel(), of_ends, len(weight))])
         return self.gather(weight)
+
+    def effort(self, vector: Array, response: Response) -> float:
+        """The energy (kN·m) beside which that of a motion is round-off: of rods that resist it with all they have.
+
+        Where members bend, moving across their axes takes far less than along them, and the more so the more rods divide
+        them: then of its parts along both axes, without regard to their signs.
+        """
+        if self.bending is None:
+            return float(vector @ (self.weight * vector))
+        field, axis = self.spread(vector), np.abs(response.axis)
+        change, turns = np.abs(self.relative(field)), np.abs(self.turns(field))
+        along = (axis * change).sum(axis=1)
+        leaning = (axis * change[:, ::-1]).sum(axis=1) / np.where(
+            response.length > 0.0, response.length, np.inf
+        )
+        bent = self.bending.end_stiffness[:, ::2] * (turns + leaning[:, None]) ** 2
+        return float((self.stiffness / self.rest_length) @ along**2 + bent.sum())
 
     # --- forces --------------------------------------------------------------------------------------
 
@@ -527,7 +545,7 @@ class Structure:
 
     def _assembled(self, parts: Array) -> Matrix:
         """Sum of the rods' matrices (rods, 2 ends × width, 2 ends × width), flattened."""
-        if self.size <= DENSE:
+        if not self.sparse or self.size <= DENSE:
             kept, place = self._dense_pattern
             full = np.bincount(place, parts[kept], self.size**2).astype(np.float64)
             return full.reshape(self.size, self.size)

@@ -6,6 +6,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
+from components import written
 from components.model import Model
 from components.wording import cut
 from systems.statics.equations import TURNS_ONLY, Array, Flags, Rows, largest
@@ -50,6 +51,18 @@ def slack_named(model: Model, slack: Flags) -> str:
         return ""
     verb, them = ("is", "it") if len(rows) == 1 else ("are", "them")
     return f" {capitalised(rod_names(model, rows))} {verb} slack; tension {them} if that is not meant."
+
+
+def divide_named(model: Model, rows: Rows, parts: Rows) -> str:
+    """A sentence about rods that bend within themselves, and into how many to divide each; parts: of all rods."""
+    names = model.rods.column("name")
+    into = [f"{cut(str(names[row]))} into {parts[row]}" for row in rows.tolist()]
+    more = f" and {len(into) - NAMED} more" if len(into) > NAMED else ""
+    what = f"{capitalised(rod_names(model, rows))} {'bends within itself' if len(rows) == 1 else 'bend within themselves'}"
+    return (
+        f"{what}: compression bends a rod more than one can tell. For an error below 1 % divide"
+        f" {', '.join(into[:NAMED])}{more}."
+    )
 
 
 def describe_motion(model: Model, modes: Array) -> str:
@@ -109,9 +122,8 @@ def moved(model: Model, before: Array, after: Array) -> str:
     before, after = before[:, :2], after[:, :2]
     change = after - before
     row = int(np.hypot(change[:, 0], change[:, 1]).argmax())
-    return f"{names[row]} by {_pair(change[row])} m, to the displacement {_pair(after[row])} m"
+    return f"{names[row]} by {_pair(change[row])}, to the displacement {_pair(after[row])}"
 
 
 def _pair(vector: Array) -> str:
-    shown = np.where(np.abs(vector) < 1e-9 * np.abs(vector).max(), 0.0, vector)
-    return f"({shown[0]:.5g}, {shown[1]:.5g})"
+    return written.place(np.where(np.abs(vector) < 1e-9 * np.abs(vector).max(), 0.0, vector), written.DIGITS)

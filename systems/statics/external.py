@@ -6,6 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from components import written
 from components.load import static_factor
 from components.model import Model
 from components.rod import bends
@@ -87,7 +88,7 @@ def loose_event(model: Model, body: LooseBody, factor: float) -> Event:
     names = model.particles.column("name")
     who, along = listed([str(names[row]) for row in body.particles]), "xy"[body.axis]
     if body.pull:
-        what = f", where {body.pull:.6g} kN pull {'it' if len(body.particles) == 1 else 'them'}"
+        what = f", where {written.force(body.pull)} pull {'it' if len(body.particles) == 1 else 'them'}"
     else:
         what = ", but in all no force acts there"
     message = f"Free body: nothing holds {who} along {along}{what}. Constrain one of them in {along}."

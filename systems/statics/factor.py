@@ -122,6 +122,14 @@ def soft_modes(matrix: Matrix, weight: Array, factor: Factor | None = None, most
     return modes
 
 
+def unresisted(structure: Structure, response: Response, matrix: Matrix, modes: Array) -> Array:
+    """Those of some soft modes (N, k) that round-off alone resists: not the bending of what many rods divide."""
+    if structure.bending is None:
+        return modes
+    kept = [float(m @ (matrix @ m)) < SOFT * structure.effort(m, response) for m in modes.T]
+    return modes[:, kept]
+
+
 def soft_count(matrix: Matrix, weight: Array) -> int:
     """How many modes K resists by less than a share SOFT of W."""
     return regular(matrix, weight, -SOFT).negative

@@ -1,7 +1,7 @@
 """Force method: hyperstatic forces from three displacements, by first-order theory about original positions.
 
-Set 1 is the real structure under the real load, set 2 the base structure (without the static unknown) under
-the real load, set 3 the base structure under a unit force alone. Superposition is exact in first-order theory.
+Set 1 is the real structure under the real load, set 2 the primary structure (without the static unknown) under
+the real load, set 3 the primary structure under a unit force alone. Superposition is exact in first-order theory.
 """
 
 from __future__ import annotations
@@ -112,8 +112,10 @@ def find_unknown(model: Model, name: str) -> Unknown:
     supports = [f"{p.name}.{a}" for p in model.particles for a, held in zip("xy", p.fixed, strict=True) if held]
     choices = [*model.rods.names, *supports]
     if name in model.particles:
-        raise ForceMethodError(f"'{name}' is a particle; say which constraint, such as {name}.x or {name}.y.")
-    raise ForceMethodError(missing("rods and constraints", name, choices))
+        raise ForceMethodError(
+            f"'{name}' is a particle; say which of its supports, such as {name}.x or {name}.y."
+        )
+    raise ForceMethodError(missing("rods and supports", name, choices))
 
 
 class _Linear:
@@ -147,7 +149,7 @@ class _Linear:
             if released:
                 message = (
                     f"Without {names} the structure is a mechanism: {moves} can move."
-                    " It is not a static unknown; choose a redundant rod or constraint."
+                    " It is not a static unknown; choose a redundant rod or support."
                 )
             raise ForceMethodError(message, normalised(motions[0]))
 
@@ -168,7 +170,7 @@ def solve(model: Model, unknowns: Sequence[Unknown]) -> Solution:
     tension. Support: Δ and p along +x or +y, p is the force on the structure.
 
     Several unknowns are solved with the known part of Δ_real: the displacement of a moved support; for a rod,
-    p L₀/EA less its lack of fit. So they are unique even where the base structure has fewer rods than there are
+    p L₀/EA less its lack of fit. So they are unique even where the primary structure has fewer rods than there are
     unknowns, and Δ₁ alone is singular.
     """
     problem = incomputable(model)
@@ -184,7 +186,7 @@ def solve(model: Model, unknowns: Sequence[Unknown]) -> Solution:
         if unknown.axis is not None and not (model.rods.between == unknown.element.row).any():
             raise ForceMethodError(
                 f"{unknown.name} is not a static unknown: no rod ends at {unknown.element.name}, so its reaction"
-                " only balances what acts on it there. Choose a rod, or a constraint of the structure."
+                " only balances what acts on it there. Choose a rod, or a support of the structure."
             )
     load = external_forces(model).at(1.0)
     whole = _Linear(model)

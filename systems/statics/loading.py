@@ -6,11 +6,12 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
+from components import written
 from components.model import Model
 from systems.statics.equations import Array, Flags, largest, normalised
 from systems.statics.events import Event, NoEquilibrium
 from systems.statics.explain import capitalised, describe_motion, moved, rod_names, slack_named
-from systems.statics.factor import SOFT, is_stable, regular, soft_modes, softest
+from systems.statics.factor import SOFT, is_stable, regular, soft_modes, softest, unresisted
 from systems.statics.follow import Path, Point, Tangent
 from systems.statics.relax import RUNAWAY, STEPS, relax
 
@@ -73,6 +74,7 @@ class Loading:
         if self.unstressed:
             matrix = structure.tangent(before.response, tangent.soft)
             modes = soft_modes(matrix, structure.weight, tangent.factor)
+            modes = unresisted(structure, before.response, matrix, modes)
         self.mechanism = modes.shape[1] > 0
         if not path.push(before.response).any():  # improve the equilibrium, or leave it if it is not stable
             found = path.correct(self.point, self.point.displacement, 1.0, None)
@@ -93,7 +95,7 @@ class Loading:
     def _unresisted(self, tangent: Tangent) -> bool:
         """True if the load moves the structure against no more stiffness than round-off."""
         rate, push = tangent.rate, self.path.push(self.point.response)
-        return float(rate @ push) < SOFT * float(rate @ (self.path.structure.weight * rate))
+        return float(rate @ push) < SOFT * self.path.structure.effort(rate, self.point.response)
 
     # --- on the way ----------------------------------------------------------------------------------
 
@@ -274,7 +276,7 @@ class Loading:
 
     def _lost(self, point: Point | None = None) -> NoEquilibrium:
         message = (
-            f"The equilibrium could not be followed beyond the load factor {self.factor(self.point.t):.6g};"
+            f"The equilibrium could not be followed beyond the load factor {written.number(self.factor(self.point.t))};"
             " the last one is kept. Run the model through time, or apply the load in other steps."
         ) + (slack_named(self.model, point.response.slack) if point is not None else "")
         return NoEquilibrium("limit reached", message)
@@ -288,8 +290,8 @@ class Loading:
 
     def _at(self, t: float) -> str:
         factor = self.factor(t)
-        load = f" ({abs(factor) * self.total:.6g} kN in all)" if self.total > 0.0 else ""
-        return f"at the load factor {factor:.6g}{load}"
+        load = f" ({written.force(abs(factor) * self.total)} in all)" if self.total > 0.0 else ""
+        return f"at the load factor {written.number(factor)}{load}"
 
     def _tell(
         self, kind: str, t: float, message: str, rods: Flags | None = None, motion: Array | None = None

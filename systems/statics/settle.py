@@ -16,10 +16,11 @@ from components.field import LARGEST, FieldError
 from components.model import Model
 from components.numeric_range import incomputable
 from components.wording import quoted
+from systems.statics.bending import needed_parts
 from systems.statics.contacts import Discs, Sinking
 from systems.statics.equations import ROUND_OFF, Array, Structure, largest, normalised
 from systems.statics.events import Event, NoEquilibrium
-from systems.statics.explain import describe_motion, describe_way, slack_named
+from systems.statics.explain import describe_motion, describe_way, divide_named, slack_named
 from systems.statics.external import external_forces, loose_bodies, loose_event
 from systems.statics.factor import SOFT, soft_modes, softest
 from systems.statics.follow import Path, Point
@@ -144,6 +145,7 @@ class _Settling:
         self.external = external_forces(model)
         self.events = [Event("note", 0.0, note) for note in self.external.notes]
         self.looked_for_bodies = self.soft = False
+        self.slender = np.zeros(model.rods.count, dtype=bool)
         at_rest = Path(self.structure, self._nothing, self._nothing)
         self.point = at_rest.start(
             self.structure.field(start.displacement, start.rotation), start.plastic_strain
@@ -199,6 +201,7 @@ class _Settling:
             self._change(target, factor, factor)
             status = self._stability(factor)
             self._check_balance(factor)
+            self._note_slender(factor)
         except NoEquilibrium as end:
             status, message = end.status, str(end)
         return self._state(status, message)
@@ -229,7 +232,8 @@ class _Settling:
         structure = self.structure
         if structure.size == 0:
             return STABLE
-        share, mode = softest(structure, self.point.response)
+        energy, mode = softest(structure, self.point.response)
+        share = energy if structure.bending is None else energy / structure.effort(mode, self.point.response)
         kind = NEUTRAL if share < SOFT else STABLE
         known = any(event.kind in ("mechanism", "plastic mechanism") for event in self.events)
         if share < NEARLY_SOFT and not (known or self.soft):
@@ -255,9 +259,14 @@ class _Settling:
         residual = self._residual()
         if residual <= ROUGH:
             return
-        springs = self.structure.stiffness / self.structure.rest_length
+        springs, called = self.structure.stiffness / self.structure.rest_length, "EA/L₀"
+        if self.structure.bending is not None:
+            rods, called = self.model.rods, "EA/L₀ or 12 EI/L₀³"
+            bent = rods.turning_shares.any(axis=1)
+            across = 12.0 * rods.bending_stiffness / rods.rest_length**3
+            springs = np.concatenate([springs, across[bent]])
         message = (
-            f"Rounding leaves {residual:.1g} of the largest force unbalanced, because stiffnesses EA/L₀ from"
+            f"Rounding leaves {residual:.1g} of the largest force unbalanced, because stiffnesses {called} from"
             f" {springs.min():.3g} to {springs.max():.3g} kN/m act together. Make them less unequal."
         )
         if residual > UNBALANCED:
@@ -271,6 +280,14 @@ class _Settling:
         self.largest = max(self.largest, structure.largest(self.load), structure.largest_force(response))
         unbalanced = np.where(structure.fixed, 0.0, structure.internal(response) - self.load)
         return structure.largest(unbalanced) / self.largest if self.largest > 0.0 else 0.0
+
+    def _note_slender(self, factor: float) -> None:
+        """Report, once, the rods in which compression bends the axis more than one cubic follows."""
+        parts = needed_parts(self.model, self.point.response.axial_force[: self.model.rods.count])
+        rows = np.flatnonzero((parts > 1) & ~self.slender)
+        if len(rows):
+            self.slender[rows] = True
+            self.events.append(Event("note", factor, divide_named(self.model, rows, parts)))
 
     def _check_bodies(self, target: Array, factor: float) -> None:
         """Report bodies that nothing holds along an axis. Raises NoEquilibrium if one is pulled along it."""
@@ -364,6 +381,14 @@ class _SettlingWithDiscs(_Settling):
             fields = bare.fields(modes)[:, : self.model.particles.count]
             slack, places = start.response.slack, map(self._particles, (start.displacement, found.displacement))
             self.events.append(first_order_mechanism(self.model, self.factor, fields, slack, *places))
+
+    def _note_slender(self, factor: float) -> None:
+        """Report, once, the rods in which compression bends the axis more than one cubic follows."""
+        parts = needed_parts(self.model, self.point.response.axial_force[: self.model.rods.count])
+        rows = np.flatnonzero((parts > 1) & ~self.slender)
+        if len(rows):
+            self.slender[rows] = True
+            self.events.append(Event("note", factor, divide_named(self.model, rows, parts)))
 
     def _check_bodies(self, target: Array, factor: float) -> None:
         """None: loose bodies move until something is in their way."""

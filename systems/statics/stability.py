@@ -2,43 +2,32 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 
 from components.model import Model
-from components.rod import nodes
+from systems.statics.equations import Structure
 
-LARGEST = 100  # rods up to which it is found: a fraction of a millisecond
+RESISTED = 1e-9  # of the largest stiffness: a motion that is resisted less counts as not resisted
+RESISTED_BY_BENDING = 1e-12  # the same where members bend, which long ones do a million times more easily
 
 
 def is_held(model: Model, *, at_first: bool = False) -> bool:
     """True if every small displacement of the nodes is resisted: the tangent stiffness is positive definite.
 
     at_first: as if no rod bore any force yet, so that mechanisms are not held, whatever tension keeps them in shape.
-
-    K = Σ EA/L₀ d dᵀ + N/L (1 − d dᵀ) over the rods, d being their directions; yielding rods and slack cables have no EA.
+    Yielding rods and slack cables do not resist elongation.
     """
     particles, rods = model.particles, model.rods
-    ends = rods.between.astype(np.intp)
-    along = rods.difference + particles.displacement[ends[:, 1]] - particles.displacement[ends[:, 0]]
-    length = np.maximum(np.hypot(*along.T), 1e-300)
-    axial, across = rods.stiffness / rods.rest_length, np.zeros(rods.count)
-    if not at_first:
-        force = rods.axial_force
-        axial = axial * ~(rods.yielding | (rods.tension_only & (force <= 0.0)))
-        across = force / length
-    directions = along / length[:, None]
-    dyads = directions[:, :, None] * directions[:, None, :]
-    block = axial[:, None, None] * dyads + across[:, None, None] * (np.eye(2) - dyads)
-    size = 2 * particles.count
-    full, of = np.zeros(size * size), 2 * ends[:, :, None] + np.arange(2)  # (m, 2 ends, 2 axes)
-    for first, second, sign in ((0, 0, 1.0), (1, 1, 1.0), (0, 1, -1.0), (1, 0, -1.0)):
-        places = of[:, first, :, None] * size + of[:, second, None, :]
-        full += np.bincount(places.ravel(), sign * block.ravel(), size * size)
-    joined = np.repeat(nodes(model), 2)
-    free = np.flatnonzero(joined & ~particles.fixed.ravel())
-    tangent = full.reshape(size, size)[np.ix_(free, free)]
+    structure = replace(Structure.of(model).with_translations(), sparse=False)
+    place = structure.field(particles.displacement, particles.rotation)
+    response = structure.respond(place, rods.plastic_strain, 1.0)
+    soft = rods.yielding | (rods.tension_only & (rods.axial_force <= 0.0))
+    tangent = structure.tangent(response, soft & (not at_first), geometric=not at_first)
+    share = RESISTED if structure.bending is None else RESISTED_BY_BENDING
     try:
-        np.linalg.cholesky(tangent - 1e-9 * np.eye(len(tangent)) * np.abs(tangent).max(initial=0.0))
+        np.linalg.cholesky(tangent - share * np.eye(structure.size) * np.abs(tangent).max(initial=0.0))
     except np.linalg.LinAlgError:
         return False
-    return bool(len(tangent))
+    return structure.size > 0

@@ -8,14 +8,15 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from components.model import Model
-from systems.statics.equations import ROUND_OFF, Array, Response, Structure, normalised
+from systems.statics.equations import ROUND_OFF, Array, Response, Structure, largest, normalised
 from systems.statics.events import NoEquilibrium
 from systems.statics.explain import cables_named, describe_motion
 from systems.statics.external import external_forces, loose_bodies, loose_event
-from systems.statics.factor import SOFT, pseudo_random, regular, soft_count, soft_modes
+from systems.statics.factor import SOFT, pseudo_random, regular, soft_count, soft_modes, unresisted
 from systems.statics.state import STABLE, Start, StaticState, state_of
 
 REFINEMENTS = 4  # of a linear solution
+REFINEMENTS_OF_BENDING = 40  # at most; few unless hundreds of rods divide a long member
 FULL = 600  # unknowns up to which singular values are computed
 MOST_MODES = 20  # mechanisms or states of self-stress of larger structures
 
@@ -73,9 +74,15 @@ def _deflection(model: Model, structure: Structure, load: Array) -> Array:
     matrix, right = structure.initial_tangent, structure.gather(load)
     factor = regular(matrix, structure.weight)
     solution = factor.solve(right)
-    for _ in range(REFINEMENTS):
-        solution = solution + factor.solve(right - matrix @ solution)
-    if float(right @ solution) < SOFT * float(solution @ (structure.weight * solution)):
+    for _ in range(REFINEMENTS if structure.bending is None else REFINEMENTS_OF_BENDING):
+        held = matrix @ solution
+        if structure.bending is not None:  # relative motions of the ends lose fewer digits than the matrix
+            held = structure.gather(structure.resistance(structure.spread(solution)))
+        step = factor.solve(right - held)
+        solution = solution + step
+        if structure.bending is not None and largest(step) <= ROUND_OFF * largest(solution):
+            break
+    if float(right @ solution) < SOFT * structure.effort(solution, structure.unmoved):
         what = describe_motion(model, structure.spread(solution)[None])
         message = (
             f"Mechanism: the load moves {what}, which nothing resists by more than {SOFT:g} of the rods'"
@@ -83,6 +90,7 @@ def _deflection(model: Model, structure: Structure, load: Array) -> Array:
         )
         raise NoEquilibrium("mechanism", message)
     modes = soft_modes(matrix, structure.weight, factor, most=soft_count(matrix, structure.weight))
+    modes = unresisted(structure, structure.unmoved, matrix, modes)
     return structure.spread(solution - modes @ (modes.T @ (structure.weight * solution)))
 
 
@@ -123,6 +131,7 @@ def mechanisms(model: Model) -> Array:
     if structure.size <= FULL:
         modes = _null_space(_scaled(structure)) / structure.measure[:, None]
     else:
+        structure = _rigid(structure)
         matrix = structure.initial_tangent
         modes = soft_modes(matrix, structure.weight, most=min(MOST_MODES, soft_count(matrix, structure.weight)))
     fields = structure.fields(_localised(modes))
@@ -153,11 +162,23 @@ def _rank(structure: Structure) -> int:
     if structure.size == 0 or len(structure.ends) == 0:
         return 0
     if structure.size > FULL:
+        structure = _rigid(structure)
         return structure.size - soft_count(structure.initial_tangent, structure.weight)
     from scipy.linalg import svd
 
     matrix = _scaled(structure)
     return _count(svd(matrix, compute_uv=False), matrix)
+
+
+def _rigid(structure: Structure) -> Structure:
+    """The same structure, so stiff in bending that only mechanisms are soft, however many rods divide its members."""
+    if structure.bending is None:
+        return structure
+    per_slope = structure.bending.end_stiffness
+    most = per_slope.max(axis=1, keepdims=True)
+    wanted = (structure.stiffness / structure.rest_length)[:, None] * structure.extent**2
+    stiff = np.divide(wanted * per_slope, most, out=np.zeros_like(per_slope), where=most > 0.0)
+    return replace(structure, bending=replace(structure.bending, end_stiffness=stiff))
 
 
 def _scaled(structure: Structure) -> Array:

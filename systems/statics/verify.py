@@ -8,6 +8,7 @@ from functools import cached_property
 
 import numpy as np
 
+from components import written
 from components.diagrams import NAMES
 from components.field import ENDS
 from components.model import Model
@@ -273,7 +274,7 @@ def _elsewhere(worst: Row) -> Event:
     distance = abs((worst.simulation or 0.0) - (worst.exact or 0.0))
     message = (
         f"At rest in another equilibrium than the one that a slowly growing load leads to: the {worst.title}"
-        f" differs by {distance:.4g} m. The sudden load carried the structure past an unstable position."
+        f" differs by {written.displacement(distance)}. The sudden load carried the structure past an unstable position."
     )
     return Event("other equilibrium", 1.0, message)
 
@@ -290,14 +291,15 @@ def overshoots(model: Model, theory: Theories) -> list[Event]:
     for row in np.flatnonzero(np.isfinite(limit) & further).tolist():
         who = rod_names(model, np.array([row]))
         if static[row] == 0.0:
+            force = written.given(abs(final.axial_force[row]), written.DIGITS)
             what = (
-                f"{who} yielded only in the overshoot: static force {abs(final.axial_force[row]):.4g} kN"
-                f" < strength {limit[row]:.4g} kN"
+                f"{who} yielded only in the overshoot: static force {force} kN"
+                f" < strength {written.given(limit[row])} kN"
             )
         else:
             what = (
-                f"{who} yielded further in the overshoot: plastic strain {present[row]:.4g}, under a slowly"
-                f" growing load {final.plastic_strain[row]:.4g}"
+                f"{who} yielded further in the overshoot: plastic strain {written.strain(present[row])}, under a slowly"
+                f" growing load {written.strain(final.plastic_strain[row])}"
             )
         message = f"{capitalised(what)}. Load it more slowly, or raise the damping."
         found.append(Event("overshoot", 1.0, message, (str(names[row]),)))

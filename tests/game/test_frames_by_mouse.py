@@ -80,7 +80,7 @@ def test_a_portal_is_drawn_and_loaded_with_the_toolbar() -> None:
     push(session, "force")
     drag_by(session, (0.0, 3.0), (0.0, -50.0))
     assert session.rods[1].distributed_force[1] < 0.0
-    assert session.notice.startswith("Rod 2: distributed force (0, −")
+    assert session.notice.startswith("Rod 2: distributed load (0, −")
     drag_by(session, session.particles[1].position, (60.0, 0.0))
     assert session.particles[1].force[0] > 0.0
     session.run(time=0.05)

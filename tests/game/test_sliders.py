@@ -240,7 +240,7 @@ def test_a_box_of_properties_makes_one_for_its_number() -> None:
     session.press("return")
     session.press("ctrl+l")
     assert "Click the box" in session.notice
-    for box in ("name", "applied force y", "radius"):
+    for box in ("name", "load y", "radius"):
         session.click_box(box)
         session.press("ctrl+l")
     session.press("escape")

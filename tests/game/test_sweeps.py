@@ -365,7 +365,7 @@ VARY = {
     "rods.CA.stiffness=0:5:3:log": "equal ratios do not reach or cross 0",
     "rods.CA.stiffness=1:2:200000000": "'200000000' is no count",
     "particles.B.force=1,2": "vary one component, force.x or force.y",
-    "particles.B.force.z=1,2": "applied force has no part 'z'; write force.x or force.y",
+    "particles.B.force.z=1,2": "load has no part 'z'; write force.x or force.y",
     "rods.CA.stiffness~normal(1)": "'normal(1)' is no distribution; write one of normal, lognormal, uniform",
     "rods.CA.stiffness~weibull(1,2)": "'weibull(1,2)' is no distribution",
     "rods.CA.stiffness~normal(1,-2)": "the deviation must be at least 0",

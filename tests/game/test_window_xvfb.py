@@ -264,7 +264,7 @@ def test_a_triangle_from_drawing_to_closing_the_window(person: Person) -> None:
 
     person.click(person.follower.point(*b))
     person.press("return")
-    person.click_box("applied force y")
+    person.click_box("load y")
     person.type("-160")
     person.press("return", "escape")
 

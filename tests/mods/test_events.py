@@ -91,7 +91,7 @@ def test_a_handler_that_fails_switches_its_mod_off_and_leaves_the_model_as_it_wa
     mods.load([mod])
     session = Session.open(pulled())
     with pytest.raises(
-        mods.ModError, match=r"no luck \(breaking/__init__.py, line 16\). The run stopped at t = 0.026"
+        mods.ModError, match=r"no luck \(breaking/__init__.py, line 16\). The run stopped at t = 26.18 ms"
     ):
         session.run(time=0.2)
     assert session.rods.count == 1

@@ -49,7 +49,7 @@ def rod_energy(model: Model, row: int, shift: Any, turns: Any) -> Any:
     length = cmath.sqrt(x * x + y * y)
     rest, original = rod.rest_length, rod.original_length
     elongation = ((dx + x) * shift[0] + (dy + y) * shift[1]) / (length + original) + original - rest
-    elongation -= rest * rod.thermal_expansion * rod.temperature_change
+    elongation -= rest * (rod.thermal_expansion * rod.temperature_change + rod.plastic_strain)
     stiffness, bowing, area, rigid = stiffness_of(rod.hinged, rod.bending_stiffness > 0.0)
     chord = angle(dx * shift[1] - dy * shift[0], dx * x + dy * y)
     mean = sum(turns[end].real for end in rigid) / len(rigid) if rigid else 0.0
@@ -58,7 +58,8 @@ def rod_energy(model: Model, row: int, shift: Any, turns: Any) -> Any:
     curvature = -rod.thermal_expansion * rod.temperature_gradient
     bent = slopes - np.array([-0.5, 0.5]) * curvature * rest
     strain = elongation / rest + 0.5 * slopes @ bowing @ slopes
-    stored = 0.5 * rod.stiffness * rest * strain**2
+    slack = rod.tension_only and strain.real < 0.0
+    stored = 0.0 if slack else 0.5 * rod.stiffness * rest * strain**2
     stored += 0.5 * rod.bending_stiffness / rest * (bent @ stiffness @ bent)
     across = (-rod.distributed_force[0] * y + rod.distributed_force[1] * x) / length
     return stored - across * rest**2 * (area @ slopes)

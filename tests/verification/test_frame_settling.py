@@ -14,6 +14,7 @@ from components.model import Model
 from game.documents.models import parse
 from systems.statics.settle import settle
 from systems.statics.state import StaticState, apply
+from systems.statics.theory import indeterminacy, linear
 from tests.reference import frames
 from tests.reference.models import model
 from tests.verification.test_frame_theory import random_frame
@@ -126,3 +127,107 @@ def test_a_cantilever_bends_like_the_elastica(parts: int, error: float) -> None:
     found = settle(bent).final
     assert found.status == "equilibrium"
     assert math.dist(found.displacement[-1] / LENGTH, elastica(5.0)) < 1.1 * error
+
+
+@settings(max_examples=12, deadline=None)
+@given(seed=st.integers(0, 2**32 - 1))
+def test_braces_that_yield_or_go_slack_beside_members_that_bend(seed: int) -> None:
+    """Under the load and after unloading to a fifth of it, by the slow reference; no force beyond a strength."""
+    lot, document = np.random.default_rng(seed), random_frame(seed)
+    document["settings"] = {"collisions": False}
+    for rod in document["rods"]:
+        if rod["bending_stiffness"] == 0.0:
+            rod["tension_only"] = bool(lot.random() < 0.5)
+        rod["tensile_strength"] = float(lot.uniform(15.0, 60.0))
+        if not rod.get("tension_only"):
+            rod["compressive_strength"] = float(lot.uniform(15.0, 60.0))
+    loaded = parse(document)
+    found = settle(loaded, (0.5, 0.1)).final
+    if not found.balanced:
+        return
+    assert (found.axial_force <= loaded.rods.tension_limit * (1.0 + 1e-9)).all()
+    assert (found.axial_force >= -loaded.rods.compression_limit * (1.0 + 1e-9)).all()
+    for particle in loaded.particles:
+        particle.force, particle.moment = tuple(0.1 * f for f in particle.force), 0.1 * particle.moment
+    for rod in loaded.rods:
+        rod.distributed_force = tuple(0.1 * q for q in rod.distributed_force)
+    held_by_reference(loaded, found, 1e-10)
+
+
+def test_a_settled_frame_stays_where_it_is() -> None:
+    """Settling it again, through half the load, and to nothing and back: the state depends on the load alone."""
+    document = random_frame(5)
+    document["settings"] = {"collisions": False}
+    loaded = parse(document)
+    first = settle(loaded).final
+    apply(loaded, first)
+    for factors in ((1.0,), (0.5, 1.0), (0.0, 1.0)):
+        again = settle(loaded, factors).final
+        assert again.status == "equilibrium"
+        assert again.load_factor == 1.0
+        assert again.displacement == pytest.approx(first.displacement, rel=1e-9, abs=1e-12)
+        assert again.rotation == pytest.approx(first.rotation, rel=1e-9, abs=1e-12)
+        assert not again.events
+
+
+def column(parts: int, force: float, **top: Any) -> Model:
+    """A column 4 m high, clamped at its foot, under a force down."""
+    particles: list[dict[str, Any]] = [
+        {"name": f"P{i}", "position": [0.0, 4.0 * i / parts], "radius": 1e-3} for i in range(parts + 1)
+    ]
+    particles[0] |= {"fixed": [True, True], "fixed_rotation": True}
+    particles[-1] |= {"force": [0.0, -force], **top}
+    rods = [
+        {"name": f"R{i}", "between": [f"P{i}", f"P{i + 1}"], "stiffness": 1e6, "bending_stiffness": EI}
+        for i in range(parts)
+    ]
+    return parse(model(particles, rods))
+
+
+@pytest.mark.parametrize(("parts", "error"), [(1, 0.0076), (2, 5.2e-4), (4, 4e-5)])
+def test_a_column_sways_at_eulers_load(parts: int, error: float) -> None:
+    """π²EI/4L², but for the shortening of its axis by 1.5e-4; then it stands bent to one side."""
+    found = settle(column(parts, 170.0)).final
+    (bifurcation,) = (event for event in found.events if event.kind == "bifurcation")
+    euler = math.pi**2 * EI / 64.0
+    assert bifurcation.load_factor * 170.0 == pytest.approx(euler * (1.0 + error), rel=2e-4)
+    assert found.status == "equilibrium"
+    assert abs(found.displacement[-1, 0]) > 1.9
+
+
+def test_a_rod_that_bends_within_itself_is_to_be_divided() -> None:
+    """Into ⌈√(ν/2.5)⌉, ν = −N L₀²/EI: 22.4 of the whole column, propped at its top, 1.4 of each quarter."""
+    found = settle(column(1, 1400.0, fixed=[True, False])).final
+    assert found.status == "equilibrium"
+    assert "Rod R0 bends within itself" in found.message
+    assert "R0 into 3." in found.message
+    assert "within itself" not in settle(column(4, 1200.0, fixed=[True, False])).message
+
+
+def test_two_discs_at_the_ends_of_cantilevers_carry_a_ball() -> None:
+    """Under half the weight each and under their distributed forces; the moments are those of statics."""
+    clamp = {"fixed": [True, True], "fixed_rotation": True}
+    particles: list[dict[str, Any]] = [
+        {"name": "A", "position": [-2.3, 0.0], **clamp},
+        {"name": "P", "position": [-0.3, 0.0]},
+        {"name": "Q", "position": [0.3, 0.0]},
+        {"name": "B", "position": [2.3, 0.0], **clamp},
+        {"name": "ball", "position": [0.0, 0.6], "force": [0.0, -5.0], "radius": 0.35},
+    ]
+    load = {"bending_stiffness": 3000.0, "stiffness": 1e6, "distributed_force": [0.0, -2.0]}
+    rods: list[dict[str, Any]] = [{"name": name, "between": list(name), **load} for name in ("AP", "QB")]
+    found = settle(parse(model(particles, rods))).final
+    assert found.status == "equilibrium"
+    assert len(found.contacts) == 2
+    assert found.reaction[:, 1].sum() == pytest.approx(5.0 + 8.0, rel=1e-9)
+    assert found.reaction_moment[0] == pytest.approx(2.5 * 2.0 + 2.0 * 2.0**2 / 2.0, rel=5e-3)
+    assert found.reaction_moment[3] == pytest.approx(-found.reaction_moment[0], rel=1e-9)
+
+
+@pytest.mark.parametrize("parts", [1, 16, 400])
+@pytest.mark.parametrize("slenderness", [1e4, 1e8])
+def test_a_long_member_is_no_mechanism(parts: int, slenderness: float) -> None:
+    """However many rods divide it, and however stiff its axis is beside bending: PL³/3EI to the last digits."""
+    bent = cantilever(parts, {"force": [0.0, -EI / LENGTH**2]}, slenderness)
+    assert indeterminacy(bent).mechanisms == indeterminacy(bent).static == 0
+    assert linear(bent).displacement[-1, 1] == pytest.approx(-LENGTH / 3.0, rel=1e-13)

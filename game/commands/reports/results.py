@@ -123,7 +123,7 @@ def _quantities(made: State) -> Iterator[tuple[Any, ...]]:
                 field = fields[fact]
                 if field.shape:
                     for axis, part in zip(field.axes, value, strict=True):
-                        yield kind.noun, name, f"{fact}_{axis}", part, field.unit
+                        yield kind.noun, name, f"{fact}_{axis}", part, field.unit_of(axis)
                 else:
                     yield kind.noun, name, field.name, value, field.unit
     for name, value in made["energy"].items():
@@ -172,7 +172,11 @@ def _element_rows(group: str, elements: Mapping[str, Mapping[str, Any]]) -> list
     """Two rows of headings, then one row per element."""
     fields = {field.name: field for field in fields_of(_KINDS[group])}
     columns = [
-        (field, axis, *_IN_TABLES.get(field.name, (field.unit, 1.0)))
+        (
+            field,
+            axis,
+            *_IN_TABLES.get(field.name, (field.unit_of("" if axis is None else field.axes[axis]), 1.0)),
+        )
         for field in map(fields.__getitem__, next(iter(elements.values())))
         for axis in (range(2) if field.shape else (None,))
     ]

@@ -29,7 +29,7 @@ def _place(context: Context, pixel: Vector) -> None:
         context.take_up("place")
         return
     particle = place(context.model, context.view, pixel)
-    context.notice = f"{context.name(particle)}: {written.place(particle.position)}"
+    context.notice = f"{context.name(particle)}: {written.place(particle.position, written.DIGITS)}"
 
 
 @action("delete")
@@ -75,7 +75,7 @@ def nudge(context: Context, direction: Vector, *, far: bool) -> bool:
     with context.history.as_one(("nudge", *(handle.entity for handle in moved))):
         chosen.place(positions)
     named = all_of(context, chosen.particles) if not chosen.others else heading(model, moved)
-    context.notice = f"{named[:1].upper()}{named[1:]}: {written.place(positions[0])}"
+    context.notice = f"{named[:1].upper()}{named[1:]}: {written.place(positions[0], written.DIGITS)}"
     return True
 
 

@@ -43,6 +43,8 @@ def _next_part(context: Context, pixel: Vector) -> None:
 @action("pick unknown")
 def _pick_unknown(context: Context, pixel: Vector) -> None:
     guide = _guide(context)
+    if guide is not None and guide.part == 1:
+        raise Refusal("Press K first: part 2 asks which rod or support to release.")
     if guide is not None and guide.part == 2:
         model, view = context.focus
         hit = pick(model, view, pixel) if view.camera.viewport.contains(pixel) else None

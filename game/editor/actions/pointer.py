@@ -106,12 +106,12 @@ def _select_all(context: Context, pixel: Vector) -> None:
 
 @action("toggle diagrams", while_drawing=True)
 def _toggle_diagrams(context: Context, pixel: Vector) -> None:
-    """The diagrams of the selected particles and rods; of all when nothing is selected."""
+    """The diagrams of the selected particles and rods; of all when nothing is selected, or all are shown."""
     model, view = context.model, context.view
     apart = view.put_together()
     if apart and (view.all_diagrams or model.any_tagged(DiagramShown)):
         return
-    if not context.has_selected:
+    if view.all_diagrams or not context.has_selected:
         view.all_diagrams = not view.all_diagrams
         model.tag_only([], DiagramShown)
         return

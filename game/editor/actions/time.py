@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 
+from components import written
 from components.field import Vector
 from game.editor.actions.editing import nudge
 from game.editor.context import Action, Context, action
@@ -78,7 +79,7 @@ def _step(context: Context, steps: int) -> None:
         ) from None
     finally:
         impacts.most_awaited = math.inf
-    context.notice = f"Step {clock.steps}, t = {clock.time:.6g} s"
+    context.notice = f"Step {clock.steps}, t = {written.time(clock.time)}"
     if not done and steps < 0:
         context.notice += ": as far back as steps go. Ctrl+Z takes back what was done here, R restarts."
     elif not done:

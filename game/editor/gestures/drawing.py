@@ -141,7 +141,7 @@ class DrawRod(Drawing):
         made = model.particles.count - before
         new = f", with {made} new particle{'s' * (made > 1)}" if made else ""
         made_of = f", {rod.section or 'rigid'}" if view.rigid else ""
-        context.notice = f"{context.name(rod)}: {written.length(rod.rest_length)}{made_of}{new}"
+        context.notice = f"{context.name(rod)}: {written.length(rod.rest_length, written.DIGITS)}{made_of}{new}"
 
     def finish(self, context: Context, pixel: Vector) -> None:
         """End at a pixel; a click where a chain of rods has come to ends the chain."""
@@ -170,7 +170,7 @@ class DrawRod(Drawing):
             return Preview("rod", start, end, written.length(math.dist(start, end), 3))
         try:
             check_ends(context.model, self._begin, other)
-            label = written.length(distance(self._begin, other))
+            label = written.length(distance(self._begin, other), written.DIGITS)
         except Refusal:
             label = "joined already"
         return Preview("rod", start, drawn_at(context, other), label)
@@ -186,7 +186,7 @@ class DrawArrow(DrawFromParticle):
     def __init__(self, context: Context, particle: Particle) -> None:
         super().__init__(context, particle)
         key = self.tool[0].upper()
-        self.hint = f"{self.tool} of {particle.name}: {key} or click where its arrow ends     Esc cancel"
+        self.hint = f"{self.title.lower()} {particle.name}: {key} or click where its arrow ends     Esc cancel"
 
     def value(self, context: Context, pixel: Vector) -> Vector:
         """The vector that the arrow to a pixel stands for."""
@@ -194,7 +194,7 @@ class DrawArrow(DrawFromParticle):
 
     def shown(self, value: Vector) -> str:
         """The text of a vector."""
-        return f"{written.vector(value)} {self.unit}"
+        return f"{written.vector(value, written.DIGITS)} {self.unit}"
 
     def drop(self, context: Context, pixel: Vector) -> None:
         value = self.value(context, pixel)
@@ -210,7 +210,7 @@ class DrawArrow(DrawFromParticle):
 class DrawForce(DrawArrow):
     """The constant force on a particle; beside one, the distributed force on a rod."""
 
-    tool, title, unit, usual = "force", "Force on", "kN", staticmethod(usual_force)
+    tool, title, unit, usual = "force", "Load on", "kN", staticmethod(usual_force)
 
     @classmethod
     def begin(cls, context: Context, pixel: Vector) -> Drawing | None:
@@ -230,7 +230,7 @@ class DrawDistributedForce(Drawing):
         self._rods = rods if rod in rods else [rod]
         self._from = context.view.camera.to_model(pixel)
         named = rod.name if len(self._rods) == 1 else f"{len(self._rods)} rods"
-        self.hint = f"distributed force on {named}: F or click where its arrow ends     Esc cancel"
+        self.hint = f"distributed load on {named}: F or click where its arrow ends     Esc cancel"
 
     def _value(self, context: Context, pixel: Vector) -> Vector:
         return arrow_value(context.view, self._from, pixel, usual_distributed_force(context.model))
@@ -240,7 +240,7 @@ class DrawDistributedForce(Drawing):
         if rods:
             context.model.assign(rods, "distributed_force", [value] * len(rods))
             named = context.name(rods[0]) if len(rods) == 1 else f"{len(rods)} rods"
-            context.notice = f"{named}: distributed force {written.vector(value)} kN/m"
+            context.notice = f"{named}: distributed load {written.vector(value)} kN/m"
 
     def preview(self, context: Context, pixel: Vector) -> Preview | None:
         value, usual = self._value(context, pixel), usual_distributed_force(context.model)
@@ -332,7 +332,7 @@ class DrawElement(Drawing):
 
 def _length_and_angle(start: Vector, end: Vector) -> str:
     angle = math.degrees(math.atan2(end[1] - start[1], end[0] - start[0])) + 0.0
-    return f"{written.length(math.dist(start, end))}, {written.given(angle, 4)}°"
+    return f"{written.length(math.dist(start, end), written.DIGITS)}, {written.given(angle, 4)}°"
 
 
 def drawing_of(kind: type[Handle], tool: str, key: str) -> type[DrawElement]:
@@ -435,7 +435,7 @@ TOOL_HINTS = {
     "support": "supports: drag from a particle to its ground, or click for the next kind     Esc done",
     "rod": "rods: click from place to place, or drag     double click ends a chain     Esc done",
     HINGES: "click near a rod's end: hinged or rigid     at a joint: all rods there     Esc done",
-    "force": "forces: drag an arrow from a particle; from a rod, a distributed force     F or Esc done",
+    "force": "loads: drag an arrow from a particle; from a rod, a distributed load     F or Esc done",
     "moment": "moments: drag from a particle, to the left counter-clockwise     Esc done",
     "velocity": "velocities: drag an arrow from a particle     V or Esc done",
 }

@@ -72,7 +72,7 @@ class Move(Placing):
         particles, count = self._movable.particles, len(self._movable)
         leader = particles[self._leader] if self._leader < len(particles) else self._movable.others[0]
         others = f" and {count - 1} more" if count > 1 else ""
-        return f"{leader.name}{others}: {written.place(target)}"  # type: ignore[attr-defined]
+        return f"{leader.name}{others}: {written.place(target, written.DIGITS)}"  # type: ignore[attr-defined]
 
 
 class MovePoint(Placing):
@@ -91,7 +91,7 @@ class MovePoint(Placing):
         except FieldError as error:
             context.notice = str(error)
         else:
-            context.notice = f"{context.name(element)}, {point}: {written.place(target)}"
+            context.notice = f"{context.name(element)}, {point}: {written.place(target, written.DIGITS)}"
 
 
 class PullParticle(Gesture):
@@ -104,7 +104,7 @@ class PullParticle(Gesture):
             raise Refusal("Displacements are drawn at scale 0, so nothing can be pulled; set it above 0.")
         self._particle = particle
         context.simulation.advance(0)
-        context.document.assessment.disturb()
+        context.document.assessment.disturb("pulled")
         context.timeline.hold(hand_on(context.model, context.view, particle, lambda: context.pace))
 
     def move(self, context: Context, pixel: Vector) -> None:

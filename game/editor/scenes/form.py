@@ -17,6 +17,18 @@ from systems.render.form_layout import FormLayout, lay_out, row_of
 from systems.render.panel import caret_at
 from systems.render.picture import Stage
 
+# By titles that boxes once had, and scripts still name them by, those of today.
+FORMER = {f"applied force {axis}": f"load {axis}" for axis in "xy"}
+
+
+class Texts(dict[str, str]):
+    """The texts of boxes by their titles, former ones among them."""
+
+    def __missing__(self, title: str) -> str:
+        if title in FORMER:
+            return self[FORMER[title]]
+        raise KeyError(title)
+
 
 class FormScene(Scene):
     """A mode with a form, which is made on entering and dropped on leaving."""
@@ -156,11 +168,12 @@ class FormScene(Scene):
 
     @property
     def boxes(self) -> dict[str, str]:
-        return {box.title: box.text for box in self.form.boxes}
+        return Texts((box.title, box.text) for box in self.form.boxes)
 
     def click_box(self, context: Context, title: str) -> None:
         """Select the box with that title, as a click on it does. Raises LookupError."""
         wanted = title.strip().lower()
+        wanted = FORMER.get(wanted, wanted)
         for box in self.form.boxes:
             if box.title.lower() == wanted:
                 self.reveal(context, box)

@@ -30,7 +30,7 @@ class Load(FileScene):
     """
 
     name = "load"
-    heading = "Load"
+    heading = "Open"
 
     def __init__(self) -> None:
         super().__init__()
@@ -45,7 +45,7 @@ class Load(FileScene):
         if yours:
             lessons.append(Offer(LESSONS, "All lessons", "to watch", "", ALL, symbol="»", rest=True))
         offers = [*yours, *lessons, *_examples()]
-        form = self.new_form(WELCOME if self.welcome else "Load", "", offers, "Open")
+        form = self.new_form(WELCOME if self.welcome else "Open a model", "", offers, "Open")
         form.boxes[0].note = "type to search, or click a picture"
         return form
 

@@ -120,6 +120,7 @@ class Discs:
         self.numbers[Number.STEP_LENGTH] = PILE_STEP_SHARE * self._fall_time()
         self.numbers[Number.WORK_SINCE] = time
         self.numbers[Number.LOSS] = lost
+        self.numbers[Number.STOP] = np.inf
         self.queue = Queue.empty(2 * n + 64)
         self.grid = Grid.empty(n, 2)
         self.group = Group.empty(n, 4 * n + 64)

@@ -18,7 +18,7 @@ from components.load import loads_end
 from components.model import Model
 from components.obstacles import obstacles
 from systems.base import REVIEW_INTERVAL, Event, StopReason
-from systems.collision.columns import FLIGHT, PILE_COUNTS, PILE_NUMBERS, Disc, Reason
+from systems.collision.columns import FLIGHT, PILE_COUNTS, PILE_NUMBERS, Disc, Number, Reason
 from systems.collision.free.discs import EVENTS, HORIZONS, Discs, ImpactColumns, state_on
 from systems.collision.impacts import MOST_KEPT, Impacts, TooManyImpacts
 from systems.entries import Measure
@@ -209,6 +209,8 @@ class Flight:
         if self._fresh and self.discs.now > target:  # that step went further before it was left
             self.bind()
         discs, found, reason = self.discs, self._found, Reason.BUSY
+        if self._pull is not None:
+            discs.numbers[Number.STOP] = target
         while reason is Reason.BUSY:
             reason, some = discs.advance(target, EVENTS_AT_ONCE)
             found.append(some)

@@ -113,7 +113,7 @@ def take_steps(until, most_steps, discs, grid, constraints, pile, report, number
     """Let a pile take its steps, at most `most_steps`, until it is at rest or dissolved. Returns a Reason."""
     last, reason = counts[Count.EVENTS] + most_steps, Reason.GO_ON
     while counts[Count.STEPPING] and reason == Reason.GO_ON:
-        if numbers[Number.STEP_END] > until:
+        if numbers[Number.STEP_END] > until or numbers[Number.STEP_END] >= numbers[Number.STOP]:
             numbers[Number.NOW] = max(numbers[Number.NOW], until)
             reason = Reason.DONE
         elif counts[Count.EVENTS] >= last:

@@ -102,6 +102,12 @@ def step(discs, grid, constraints, pile, report, numbers, counts):
     if reason != Reason.DONE:
         return reason
     h, fastest = choose_length(discs, pile, numbers, counts)
+    end = numbers[Number.NOW] + h
+    if (
+        end > numbers[Number.STOP]
+    ):  # the pull of the whole step acts from its start on: none may be left half-way
+        end = numbers[Number.STOP]
+        h = end - numbers[Number.NOW]
     allow_more_shift(h, fastest, discs, pile)
     while True:
         reason = find_pairs(h, True, discs, grid, constraints, pile, numbers, counts)
@@ -120,7 +126,7 @@ def step(discs, grid, constraints, pile, report, numbers, counts):
             continue
         if stays_within_reach(h, discs, pile):
             break
-    numbers[Number.STEP_END] = numbers[Number.NOW] + h
+    numbers[Number.STEP_END] = end
     _report_impacts(active, h, discs, pile, report, numbers, counts)
     pushing = _keep_forces(active, h, pile, counts)
     _mark_near(active, h, discs, pile)

@@ -489,6 +489,18 @@ def test_forces_of_a_very_short_step_are_not_taken_for_energy_from_nowhere(integ
     assert session.model.clock.energy_scale < 20.0  # of round-off a larger one would make motion
 
 
+@pytest.mark.parametrize("count", [12, 30, 6])
+def test_the_largest_imbalance_is_one_of_the_whole_account(count: int) -> None:
+    """Steps are checked before what their contact forces do is entered, some 1e-4 of the energy, which is not lost."""
+    places = [(-0.2 + 0.13 * (k % 4) + 0.003 * k, 0.06 + 0.13 * (k // 4)) for k in range(count)]
+    discs = [{"position": list(place)} for place in places]
+    session = Session.open(box(discs, environment=GRAVITY | {"drag": 0.5}, settings={"restitution": 0.3}))
+    session.run(time=0.5)
+    clock = session.model.clock
+    assert abs(session.energy.imbalance) <= 1e-12 * clock.energy_scale
+    assert abs(clock.largest_imbalance) <= 1e-12 * clock.energy_scale
+
+
 def test_a_state_that_is_returned_to_is_under_its_own_contact_forces() -> None:
     """Those of the discarded state once counted in the energy that the steps from there on are compared with."""
     disc = {"position": [0.0, 0.1], "velocity": [0.05, 0.0]}

@@ -85,7 +85,7 @@ def test_a_force_is_drawn_as_an_arrow_to_a_round_scale(triangle: Session) -> Non
     assert preview(triangle).label == "(60, −80) kN"  # 1 kN a pixel: 0.001 EA is 164.64 kN
     triangle.click(1.6, 0.2)
     assert triangle.particles["B"].force == (60.0, -80.0)
-    assert triangle.notice == "Force on B: (60, −80) kN"
+    assert triangle.notice == "Load on B: (60, −80) kN"
 
 
 def test_a_force_along_an_axis_snaps_to_it_and_a_drop_on_the_particle_takes_it_away(

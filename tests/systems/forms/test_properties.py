@@ -88,10 +88,10 @@ def test_a_rod_has_the_boxes_that_the_thesis_names(session: Session) -> None:
 
 def test_a_particle_has_the_boxes_that_the_thesis_names(session: Session) -> None:
     open_of(session, "B")
-    for title in ("displacement", "original position", "applied force", "applied acceleration", "velocity"):
+    for title in ("displacement", "original position", "load", "applied acceleration", "velocity"):
         assert {f"{title} x", f"{title} y"} <= session.boxes.keys()
     assert session.boxes["original position x"] == "100"
-    assert session.boxes["applied force y"] == "-160"
+    assert session.boxes["load y"] == "-160"
     assert session.boxes["constrained x"] == "no"
     assert session.boxes["radius"] == "5"
     together = {"displacement scale": "100", "coefficient of restitution": "1", "time step": "automatic"}
@@ -319,7 +319,7 @@ def test_return_accepts_and_deselects_and_the_value_acts_at_once(session: Sessio
 @pytest.mark.parametrize("accept", ["return", "tab", "shift+tab", "down"])
 def test_every_way_to_accept_a_box_applies_it(session: Session, accept: str) -> None:
     open_of(session, "B")
-    session.click_box("applied force x")
+    session.click_box("load x")
     session.type("7")
     session.press(accept)
     assert session.particles["B"].force == (7.0, -160.0)
@@ -328,7 +328,7 @@ def test_every_way_to_accept_a_box_applies_it(session: Session, accept: str) -> 
 def test_a_click_into_another_box_or_beside_applies_the_first(session: Session) -> None:
     session.resize(1000, 720)
     open_of(session, "B")
-    session.click_box("applied force x")
+    session.click_box("load x")
     session.type("7")
     place = layout_of(session).place_of(box_of(session, "radius"))
     assert place is not None
@@ -415,7 +415,7 @@ def test_what_was_not_typed_keeps_its_bits() -> None:
         ("constrained x", "1", "fixed", (True, False)),
         ("constrained y", "yes", "fixed", (False, True)),
         ("mass", "2.5", "mass", 2.5),
-        ("applied force x", "-1.5e2", "force", (-150.0, -160.0)),
+        ("load x", "-1.5e2", "force", (-150.0, -160.0)),
     ],
 )
 def test_a_number_is_taken_in_the_unit_shown(
@@ -619,11 +619,11 @@ def test_freeing_a_direction_and_moving_in_it_go_together(session: Session) -> N
 def test_several_elements_are_edited_together(session: Session) -> None:
     scene = open_of(session, "A", "B", "C")
     assert scene.form.heading.text == "3 particles"
-    assert session.boxes["applied force x"] == ""
-    assert box_of(session, "applied force x").note == "mixed"
+    assert session.boxes["load x"] == ""
+    assert box_of(session, "load x").note == "mixed"
     assert session.boxes["displacement x"] == "0"
     assert "name" not in session.boxes
-    entered(session, "applied force x", "5")
+    entered(session, "load x", "5")
     session.press("escape")
     assert [p.force for p in session.particles] == [(5.0, 0.0), (5.0, -160.0), (5.0, 0.0)]
 

@@ -16,7 +16,7 @@ from game.app import SELDOM, App
 from game.documents import models
 from systems.edit.picking import pick
 from systems.input import pygame_input
-from systems.render import pygame_render
+from systems.render import picture
 from systems.render.picture import compose
 
 
@@ -96,12 +96,12 @@ def test_labels_are_told_where_they_stood_until_one_looks_from_elsewhere(
 ) -> None:
     known: list[bool] = []
 
-    def composed(shown: Any, view: Any, theme: Any, placed: Any) -> Any:
+    def composed(shown: Any, view: Any, theme: Any, placed: Any, others: Any) -> Any:
         if shown is app.session.model:
             known.append(bool(placed))
-        return compose(shown, view, theme, placed)
+        return compose(shown, view, theme, placed, others)
 
-    monkeypatch.setattr(pygame_render, "compose", composed)
+    monkeypatch.setattr(picture, "compose", composed)
     app.session.view.camera.pan((3.0, 0.0))
     frames(app, 1)
     app.session.particles["B"].force = (1.0, 2.0)

@@ -5,6 +5,7 @@ from __future__ import annotations
 import pytest
 
 from components.camera import Viewport
+from components.tags import DiagramShown
 from components.toolbar import Button, Tool
 from components.view import drawn_positions
 from game import Session
@@ -298,3 +299,16 @@ def test_what_free_bodies_do_not_show_is_not_lit_and_puts_them_together(key: str
         session.press("x")
         while getattr(session.view, shown):
             session.press(key)
+
+
+def test_the_button_of_diagrams_is_lit_and_puts_them_out_whatever_is_selected() -> None:
+    session = opened("hyperstatic")
+    push(session, "toggle diagrams")
+    session.select(session.rods["AC"])
+    session.update_view()
+    assert tool(session, "toggle diagrams").pressed
+    push(session, "toggle diagrams")
+    assert not session.view.all_diagrams
+    push(session, "toggle diagrams")
+    assert session.model.any_tagged(DiagramShown)
+    assert not session.view.all_diagrams

@@ -301,7 +301,7 @@ def keep_contacts(driven, h, control, account, place, speed):
     that are foreseen they act on the motion at its mean velocity.
     """
     whole, real = driven.whole, driven.real
-    number, lasts = whole[Whole.CHOSEN], driven.search[Tried.FORCES]
+    number, lasts, work = whole[Whole.CHOSEN], driven.search[Tried.FORCES], 0.0
     if whole[Whole.TURN] == 0:
         _refine(driven, h)
         lasts = driven.search[Tried.FOUND]
@@ -314,16 +314,29 @@ def keep_contacts(driven, h, control, account, place, speed):
         force = driven.search[Tried.FORCES, c]
         for d in range(2):
             apart = _moved(driven, j, d, h, place, speed) - _moved(driven, i, d, h, place, speed)
-            account[Account.WORK] += force * driven.start[c, d] * apart
+            work += force * driven.start[c, d] * apart
         persists = force > 0.0 or gap <= CLOSED_GAP * size
         if number >= SETTLING_CONTACTS:
             later = gap + h * opening(i, j, nx, ny, speed)
             persists = persists or max(gap, later) <= SETTLING_HEIGHT * size
         driven.lasting[k] = 1 if persists else 0
         driven.forces[k] = lasts[c] if persists else 0.0
+    enter_work(driven, work, control, account)
     real[Real.LONGEST] = (
         real[Real.CUT] if number > 0 and real[Real.CUT] < control[Control.STEP_SIZE] else math.inf
     )
+
+
+@compiled
+def enter_work(driven, work, control, account):
+    """Enter what contact forces did in a step (J), also where the step was checked, which found it missing."""
+    account[Account.WORK] += work
+    before, found = (
+        driven.kept[control.shape[0] + Account.LARGEST_IMBALANCE],
+        account[Account.LARGEST_IMBALANCE],
+    )
+    if found != before:
+        account[Account.LARGEST_IMBALANCE] = found + work if abs(found + work) > abs(before) else before
 
 
 @compiled

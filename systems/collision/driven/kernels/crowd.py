@@ -11,7 +11,7 @@ import math
 from systems.base import StopReason
 from systems.collision.columns import NONE, SHORTEST_SHARE, TRAVEL, Contact
 from systems.collision.driven.columns import Need, Order, Phase, Real, Whole
-from systems.collision.driven.kernels.contacts import SETTLING_HEIGHT, clear_support, raise_scale
+from systems.collision.driven.kernels.contacts import SETTLING_HEIGHT, clear_support, enter_work, raise_scale
 from systems.collision.driven.kernels.impacts import report_impact
 from systems.collision.driven.kernels.joint_impacts import separate_motion
 from systems.collision.driven.kernels.paths import opening, take_back
@@ -251,7 +251,7 @@ def judge_crowd(driven, control, account, place, speed):
         take_back(driven, control, account, place, speed)
         whole[Whole.PHASE] = Phase.CROWD_TRYING
         return Order.GO_ON
-    _keep(driven, account, place)
+    _keep(driven, control, account, place)
     whole[Whole.CROWDS] += 1
     whole[Whole.PHASE] = Phase.BETWEEN
     return Order.GO_ON
@@ -322,20 +322,21 @@ def _improve(driven, h, place):
 
 
 @compiled
-def _keep(driven, account, place):
+def _keep(driven, control, account, place):
     """Enter what the forces did, report the impacts, and note which contacts persist."""
     for k in range(driven.whole[Whole.LISTED]):
         driven.lasting[k] = 0
-    total = 0.0
+    total, work = 0.0, 0.0
     for c in range(driven.whole[Whole.CHOSEN]):
         k = driven.touching[c]
         i, j, force = driven.pairs[k, 0], driven.pairs[k, 1], driven.pushes[k]
-        account[Account.WORK] += force * (_closed(driven, k, place) - driven.room[k])
+        work += force * (_closed(driven, k, place) - driven.room[k])
         gap, _, _ = gap_of(i, j, driven.position, place, driven.radius, driven.span)
         persists = force > 0.0 or gap <= SETTLING_HEIGHT * _size(driven, k)
         driven.lasting[k] = 1 if persists else 0
         driven.forces[k] = force if persists else 0.0
         total += driven.impulses[k]
+    enter_work(driven, work, control, account)
     driven.real[Real.LONGEST] = math.inf
     for c in range(driven.whole[Whole.CHOSEN]):
         k = driven.touching[c]
