@@ -40,7 +40,7 @@ def diagrams(
     with np.errstate(divide="ignore", invalid="ignore"):
         shear = np.where(length > 0.0, (moment.sum(axis=1) + couple) / length, 0.0)
     ahead = np.array([-0.5, 0.5])
-    slopes = _all_slopes(rods, slopes, transverse)
+    slopes = all_slopes(rods, slopes, transverse)
     bending_moment = moment * [-1.0, 1.0]
     return {
         "end_axial_force": axial_force[:, None] - ahead * (tangential * rest)[:, None],
@@ -53,7 +53,7 @@ def diagrams(
     }
 
 
-def _all_slopes(rods: Table[Any], slopes: Column, transverse: Column) -> Column:
+def all_slopes(rods: Table[Any], slopes: Column, transverse: Column) -> Column:
     """Slopes of both ends of every rod, those at hinges by M = 0 of its cubic and a transverse force (kN/m)."""
     length, stiffness = rods.rest_length, rods.bending_stiffness
     rigid, bent = rods.turning_shares > 0.0, stiffness > 0.0

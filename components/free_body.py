@@ -1,7 +1,8 @@
 """Free bodies: joints and rods taken apart, with all forces on each, which are in equilibrium.
 
-By d'Alembert's principle: what forces leave over accelerates a joint, m a = Σ F, and counts as the force −m a of inertia.
-Rods have no mass, which is lumped to the joints: their ends pull at them with forces N that are equal and opposite.
+By d'Alembert's principle: what forces leave over accelerates a joint, m a = Σ F, and counts as the force −m a of inertia;
+moments about it likewise, −J α. Rods have no mass, which is lumped to the joints: their ends pull at them with forces N that
+are equal and opposite, and those that bend with shears V and moments M, too, which forces distributed along them balance.
 """
 
 from __future__ import annotations
@@ -11,17 +12,22 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from components.bent import distributed_shares, is_frame
+from components.derived import chord_rotation
 from components.load import factor_at
 from components.model import Model
+from components.rod import rigid_joints
 from components.written import ROUNDING
 
 Vectors = NDArray[np.float64]
 
 
 class Force(NamedTuple):
-    """A force (kN) on a body. name: what exerts it, such as "rod AB". kind: "rod", "load", "reaction" or "inertia".
+    """A force (kN) and a moment (kN·m) on a body. name: what exerts it, such as "rod AB". kind: "rod", "load", "reaction"
+    or "inertia".
 
-    load: the row of the load that it is, or −1.
+    load: the row of the load that it is, or −1. lever: what the force adds to its moment about the start of the rod that is
+    its body (kN·m); 0 on joints.
     """
 
     name: str
@@ -29,24 +35,36 @@ class Force(NamedTuple):
     x: float
     y: float
     load: int = -1
+    moment: float = 0.0
+    lever: float = 0.0
 
 
 class Apart(NamedTuple):
-    """A model taken apart. pull: the force in every rod, its damper's included (kN), tension positive, (m,).
+    """A model taken apart.
 
-    along: its direction from end to end (m, 2). left_over: the sum of all forces on every joint (kN), mass ×
-    acceleration, 0 where it is rounding only, (n, 2).
+    pull: the force in every rod, its damper's included (kN), tension positive, (m,). along: its direction from end to end
+    (m, 2). on_ends: what joints exert on both ends of every rod: force x, y (kN), moment (kN·m), (m, 2, 3). left_over: the
+    sum of all forces on every joint (kN), mass × acceleration, 0 where it is rounding only, (n, 2). left_over_moment:
+    likewise (kN·m), inertia × angular acceleration, (n,).
     """
 
     pull: Vectors
     along: Vectors
+    on_ends: Vectors
     left_over: Vectors
+    left_over_moment: Vectors
 
 
 def apart(model: Model) -> Apart:
     """A model taken apart as it is now."""
     pull, along = _pulls(model)
-    return Apart(pull, along, _left_over(model, pull, along))
+    on_ends = np.zeros((len(pull), 2, 3))
+    on_ends[:, 1, :2] = pull[:, None] * along
+    on_ends[:, 0, :2] = -on_ends[:, 1, :2]
+    if is_frame(model) or model.rods.distributed_force.any():
+        on_ends += _of_bending(model, along)
+    rest = _left_over(model, on_ends)
+    return Apart(pull, along, on_ends, rest[:, :2], rest[:, 2])
 
 
 def _pulls(model: Model) -> tuple[Vectors, Vectors]:
@@ -64,61 +82,109 @@ def _pulls(model: Model) -> tuple[Vectors, Vectors]:
     return total, along
 
 
-def _left_over(model: Model, force: Vectors, along: Vectors) -> Vectors:
+def _of_bending(model: Model, along: Vectors) -> Vectors:
+    """What bending and distributed forces add on the ends of every rod, dampers included, (m, 2, 3)."""
+    rods, particles = model.rods, model.particles
+    first, last = rods.between.astype(np.intp).T
+    left = np.stack([-along[:, 1], along[:, 0]], axis=1)
+    length = np.maximum(rods.length, 1e-300)
+    turning = ((particles.velocity[last] - particles.velocity[first]) * left).sum(axis=1) / length
+    rate = np.where(rods.turning_shares > 0.0, particles.angular_velocity[rods.between] - turning[:, None], 0.0)
+    start, mixed, end = rods.end_damping.T
+    damper = np.stack([start * rate[:, 0] + mixed * rate[:, 1], mixed * rate[:, 0] + end * rate[:, 1]], axis=1)
+    shear = rods.shear + (damper.sum(axis=1) / length)[:, None]
+    lengthwise = rods.end_axial_force - rods.axial_force[:, None]
+    found = np.zeros((len(along), 2, 3))
+    for place, sign in ((0, -1.0), (1, 1.0)):
+        found[:, place, :2] = sign * (lengthwise[:, place, None] * along - shear[:, place, None] * left)
+        found[:, place, 2] = sign * rods.bending_moment[:, place] + damper[:, place]
+    return found
+
+
+def _left_over(model: Model, on_ends: Vectors) -> Vectors:
+    """Of forces x, y and moments, (n, 3)."""
     particles = model.particles
-    rest = particles.applied_force + particles.reaction
-    for end, sign in ((0, 1.0), (1, -1.0)):
-        for axis in (0, 1):
-            rest[:, axis] += sign * np.bincount(
-                model.rods.between[:, end], force * along[:, axis], particles.count
-            )
-    largest = max(
-        float(np.abs(values).max(initial=0.0))
-        for values in (particles.applied_force, particles.reaction, force)
-    )
-    found: Vectors = np.where(np.abs(rest) > ROUNDING * largest, rest, 0.0)
+    acting = np.column_stack([particles.applied_force - distributed_shares(model), particles.applied_moment])
+    answering = np.column_stack([particles.reaction, particles.reaction_moment])
+    rest = acting + answering
+    for end in (0, 1):
+        for part in range(3):
+            rest[:, part] -= np.bincount(model.rods.between[:, end], on_ends[:, end, part], particles.count)
+    found: Vectors = np.zeros_like(rest)
+    for parts in (slice(0, 2), slice(2, 3)):
+        largest = max(
+            float(np.abs(values[..., parts]).max(initial=0.0)) for values in (acting, answering, on_ends)
+        )
+        found[:, parts] = np.where(np.abs(rest[:, parts]) > ROUNDING * largest, rest[:, parts], 0.0)
+    found[:, 2] *= rigid_joints(model)
     return found
 
 
 def on_joint(model: Model, row: int, known: Apart | None = None) -> list[Force]:
-    """All forces on a joint: of its rods, its loads, its weight, its support, and of inertia.
+    """All forces and moments on a joint: of its rods, its loads, its weight, its support, and of inertia.
 
     known: the model taken apart, if there are several joints to ask for.
     """
     particles, rods, environment = model.particles, model.rods, model.environment
-    force, along, left_over = known or apart(model)
+    known = known or apart(model)
     found = []
-    for rod in np.flatnonzero((rods.between == row).any(axis=1)).tolist():
-        pull = force[rod] * along[rod] * (1.0 if rods.between[rod, 0] == row else -1.0)
-        found.append(Force(model.describe(rods[rod]), "rod", *pull.tolist()))
-    loads, time, rest = model.loads, model.clock.time, particles.applied_force[row].copy()
+    for rod, end in np.argwhere(rods.between == row).tolist():
+        x, y, turn = (-known.on_ends[rod, end]).tolist()
+        found.append(Force(model.describe(rods[rod]), "rod", x, y, moment=turn))
+    applied = np.append(
+        particles.applied_force[row] - distributed_shares(model)[row], particles.applied_moment[row]
+    )
+    loads, time, rest = model.loads, model.clock.time, applied.copy()
+    turns = bool(rigid_joints(model)[row])
     for k in np.flatnonzero(loads.on == row).tolist():
-        x, y = (factor_at(loads.history[k], time) * loads.force[k]).tolist()
-        rest -= (x, y)
-        found.append(Force(model.describe(loads[k]), "load", x, y, k))
+        now = factor_at(loads.history[k], time) * np.append(loads.force[k], loads.moment[k])
+        rest -= now
+        x, y, turn = now.tolist()
+        found.append(Force(model.describe(loads[k]), "load", x, y, k, turn * turns))
     weight = particles.mass[row] * (particles.acceleration[row] + environment.acceleration) / 1000.0
-    for name, own in (("force", particles.force[row] + environment.force), ("weight", weight)):
-        rest -= own
-        if own.any():
-            found.append(Force(name, "load", *own.tolist()))
-    if np.abs(rest).max() > ROUNDING * np.abs(particles.applied_force[row]).max():
-        found.append(Force("other", "load", *rest.tolist()))  # drag, laws of mods, a hand
+    own = np.append(particles.force[row] + environment.force, particles.moment[row])
+    for name, part in (("force", own), ("weight", np.append(weight, 0.0))):
+        rest -= part
+        if (part * [1.0, 1.0, turns]).any():
+            x, y, turn = part.tolist()
+            found.append(Force(name, "load", x, y, moment=turn * turns))
+    rest[2] *= turns
+    if (np.abs(rest) > ROUNDING * np.array([*[np.abs(applied[:2]).max()] * 2, abs(applied[2])])).any():
+        x, y, turn = rest.tolist()
+        found.append(Force("other", "load", x, y, moment=turn))  # drag, laws of mods, a hand
     for part, name in ((np.array([1.0, 0.0]), "reaction x"), (np.array([0.0, 1.0]), "reaction y")):
         if (reaction := particles.reaction[row] * part).any():
             found.append(Force(name, "reaction", *reaction.tolist()))
-    inertia = -left_over[row]
+    if moment := float(particles.reaction_moment[row]):
+        found.append(Force("reaction moment", "reaction", 0.0, 0.0, moment=moment))
+    inertia, turning = -known.left_over[row], -float(known.left_over_moment[row])
     if inertia.any():
         found.append(Force("inertia −m a", "inertia", *inertia.tolist()))
+    if turning:
+        found.append(Force("inertia −J α", "inertia", 0.0, 0.0, moment=turning))
     return found
 
 
 def on_rod(model: Model, row: int) -> list[Force]:
-    """The forces of its two joints on a rod."""
-    force, along = _pulls(model)
-    first, last = model.rods.between[row].tolist()
-    pull = (force[row] * along[row]).tolist()
-    names = model.particles.names
-    return [
-        Force(f"at {names[first]}", "rod", -pull[0], -pull[1]),
-        Force(f"at {names[last]}", "rod", *pull),
+    """The forces and moments of its two joints on a rod, and the force distributed along it."""
+    known, rods = apart(model), model.rods
+    on_ends, along = known.on_ends[row].tolist(), known.along[row]
+    names, length = model.particles.names, float(rods.length[row])
+    first, last = rods.between[row].tolist()
+    (x, y, turn), (far_x, far_y, far_turn) = on_ends
+    pressed = rods.distributed_force[row] * rods.rest_length[row]
+    lever = length * float(along[0] * far_y - along[1] * far_x)
+    lever *= is_frame(model) or bool(pressed.any())  # of a bar's it is rounding only
+    found = [
+        Force(f"at {names[first]}", "rod", x, y, moment=turn),
+        Force(f"at {names[last]}", "rod", far_x, far_y, moment=far_turn, lever=lever),
     ]
+    if pressed.any():
+        rigid = rods.turning_shares[row] > 0.0
+        slopes = np.where(rigid, model.particles.rotation[rods.between[row]] - chord_rotation(model)[row], 0.0)
+        bow = float(rods.load_shares[row] @ slopes) / rods.rest_length[row]  # mean deflection
+        place = 0.5 * length * along + bow * np.array([-along[1], along[0]])
+        lever = float(place[0] * pressed[1] - place[1] * pressed[0])
+        x, y = pressed.tolist()
+        found.append(Force("distributed force", "load", x, y, lever=lever))
+    return found

@@ -402,7 +402,7 @@ def bends(world: World) -> bool:
     return bool(rods.turning_shares.any())
 
 
-def turning(world: World) -> NDArray[np.bool_]:
+def rigid_joints(world: World) -> NDArray[np.bool_]:
     """Which particles have rigid ends of rods that bend, shape (particles,)."""
     rods = world.tables["rods"]
     return flags(rods.between[rods.turning_shares > 0.0], world.tables["particles"].count)
@@ -415,7 +415,7 @@ def idle_moment(world: World) -> str:
     np.maximum.at(moment, loads.on, np.abs(loads.moment))
     if not moment.any():
         return ""
-    for row in np.flatnonzero((moment > 0.0) & ~turning(world))[:1].tolist():
+    for row in np.flatnonzero((moment > 0.0) & ~rigid_joints(world))[:1].tolist():
         named = world.describe(particles[row])
         return (
             f"{named[:1].upper()}{named[1:]}: a moment of {moment[row]:g} kN·m acts on it, but there are no rigid rod"

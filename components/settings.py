@@ -53,7 +53,16 @@ class Settings(Handle):
         overrides="displacement_scale",
     )
     diagram_scale: Field[float] = look(
-        "px/kN", default=1.0, minimum=0.0, title="force diagram scale", doc="Size of the force diagrams."
+        "px/kN",
+        default=1.0,
+        minimum=0.0,
+        title="force diagram scale",
+        doc="Size of the force diagrams; where rods bend, relative to what fits.",
+    )
+    original_diagrams: Field[bool] = look(
+        dtype=bool,
+        title="undeformed diagrams",
+        doc="Force diagrams of rods that bend stand on these as they were originally, not as they are.",
     )
     automatic_displacement_scale: Field[float] = derived(default=1.0, doc="The one that suits the model.")
     displacement_scale: Field[float] = derived(

@@ -8,6 +8,7 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 from numpy.typing import NDArray
 
+from components.bent import AXIAL, middles
 from components.camera import LEAST_MARGIN, Camera, Viewport
 from components.field import Vector
 from components.kind import all_points
@@ -123,12 +124,14 @@ class Shape:
     """A mechanism or a mode of vibration, to be drawn over the model.
 
     title: such as "Mode 1 of 5: 9.276 Hz". displacement: (m), as drawn, (n, 2). about: the displacement (m) of the
-    equilibrium that it leads away from, (n, 2); None: it leads away from the original positions.
+    equilibrium that it leads away from, (n, 2); None: it leads away from the original positions. rotation: (rad), on the
+    scale of the displacement, (n,); None: nothing turns.
     """
 
     title: str
     displacement: NDArray[np.float64] = field(compare=False, repr=False)
     about: NDArray[np.float64] | None = field(default=None, compare=False, repr=False)
+    rotation: NDArray[np.float64] | None = field(default=None, compare=False, repr=False)
 
 
 @dataclass
@@ -136,7 +139,8 @@ class View:
     """How one model is shown in one viewport.
 
     rigid: rods are drawn with rigid ends.
-    heading: the word top left ("Pause"), or "". all_diagrams: force diagrams of all elements.
+    heading: the word top left ("Pause"), or "". all_diagrams: force diagrams of all elements. quantity: which force
+    diagrams show where rods bend, "N", "M" or "V".
     legend: show the meaning of colours. explains_all: of those of the pictures beside this one, too.
     help: the page of keys that is shown, from 1; 0: none. keys: its lines (key, meaning). pages: how many there are.
     pointer: the pixel under the mouse, or None outside. pixel_ratio: device pixels per point (HiDPI).
@@ -165,6 +169,7 @@ class View:
     heading: str = ""
     all_diagrams: bool = False
     rigid: bool = False
+    quantity: str = AXIAL
     forces_known: bool = True
     legend: bool = True
     explains_all: bool = False
@@ -324,5 +329,5 @@ def drawn_positions(model: Model) -> NDArray[np.float64]:
 
 
 def drawn_places(model: Model) -> NDArray[np.float64]:
-    """All that a picture of a model is to show (m): drawn positions, and points of other elements, shape (n, 2)."""
-    return np.concatenate([drawn_positions(model), all_points(model)])
+    """All that a picture of a model is to show (m), (n, 2): drawn positions, bent rods, and points of other elements."""
+    return np.concatenate([drawn_positions(model), middles(model), all_points(model)])

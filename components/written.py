@@ -45,6 +45,11 @@ def force(kilonewtons: float, *, nothing: float = 0.0) -> str:
     return f"{number(kilonewtons, nothing=nothing)} kN"
 
 
+def moment(kilonewton_metres: float, *, nothing: float = 0.0) -> str:
+    """A moment that was computed."""
+    return f"{number(kilonewton_metres, nothing=nothing)} kN·m"
+
+
 def displacement(metres: float, *, nothing: float = 0.0) -> str:
     """A displacement or an elongation."""
     return f"{number(_PER_METRE * metres, nothing=_PER_METRE * nothing)} {_LENGTH}"
@@ -79,7 +84,11 @@ def total(terms: Iterable[float]) -> str:
     shown = [term for term in known if abs(term) >= least]
     first, *others = (f"{abs(term):.{decimals}f}" for term in shown)
     signed = [f"{'−' if term < 0.0 else '+'} {text}" for term, text in zip(shown[1:], others, strict=True)]
-    result = "0" if abs(found) <= ROUNDING * largest else f"{found:.{decimals}f}".replace("-", "−")
+    result = (
+        "0"
+        if abs(found) <= ROUNDING * largest
+        else f"{round(found, decimals) + 0.0:.{decimals}f}".replace("-", "−")
+    )
     return " ".join([f"{'−' * (shown[0] < 0.0)}{first}", *signed, "=", result])
 
 

@@ -52,6 +52,7 @@ from systems.run.watch import watched
 from systems.schedule import Plan, Schedule
 
 if TYPE_CHECKING:  # they import scipy
+    from systems.statics.buckling import Buckling
     from systems.statics.path import Curve
     from systems.statics.verify import Comparison
 
@@ -251,6 +252,19 @@ class Session(Context):
         if points < 2:
             raise ValueError(f"points is {points}; a curve has at least 2.")
         return load_path(self.model, goal_of(self.model, factor, until), points=points)
+
+    def buckling(self, modes: int = 5) -> Buckling:
+        """Critical load factors by linear buckling, ascending, with their modes; changes nothing.
+
+        Its arrays are factors (k,), modes (k, particles, 2), where members bend with rotations (k, particles, 3), and
+        effective_length (rods,) in m, NaN of rods that are not compressed; message: why there is none. Raises
+        ValueError, and NoEquilibrium without a state that could lose its stability.
+        """
+        from systems.statics.buckling import buckling
+
+        if modes < 1:
+            raise ValueError(f"modes is {modes}; ask for at least 1.")
+        return buckling(self.model, modes)
 
     # --- editing -----------------------------------------------------------------------------------
 

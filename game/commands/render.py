@@ -7,6 +7,7 @@ import re
 from collections.abc import Sequence
 from pathlib import Path
 
+from components.bent import QUANTITIES
 from game import pictures
 from game.commands.arguments import Parser, UsageError, positive
 from game.commands.options import ANSWERED, NOT_ANSWERED, add_model, session_of
@@ -37,6 +38,11 @@ def command(words: Sequence[str]) -> int:
     parser.add_argument("--at", type=positive, metavar="T", help="run to this time (s) first")
     parser.add_argument("--diagrams", action="store_true", help="show all force diagrams")
     parser.add_argument(
+        "--diagrams-of",
+        choices=QUANTITIES,
+        help="show all diagrams, where rods bend of the axial force N, the bending moment M or the shear V",
+    )
+    parser.add_argument(
         "--utilisation", action="store_true", help="colour rods by the share of their strength that they bear"
     )
     shape = parser.add_mutually_exclusive_group()
@@ -61,7 +67,8 @@ def command(words: Sequence[str]) -> int:
         raise UsageError(f"--output {options.output}: write a file that ends with {' or '.join(_PICTURES)}.")
     _check_background(options)
     session = session_of(options)
-    session.view.all_diagrams = options.diagrams
+    session.view.all_diagrams = options.diagrams or options.diagrams_of is not None
+    session.view.quantity = options.diagrams_of or session.view.quantity
     session.view.utilisation = options.utilisation
     draw = _animate if options.output.lower().endswith(".gif") else _draw
     with writing(options.output, "--output"):

@@ -7,6 +7,7 @@ import math
 import numpy as np
 from numpy.typing import NDArray
 
+from components.bent import largest_sag
 from components.field import Role
 from components.model import Model
 from components.numeric_range import incomputable
@@ -135,7 +136,7 @@ def _amplitude(model: Model) -> float:
         mode = loaded_mode(model)
         if mode is not None:
             displacement = np.hypot(displacement, velocity / mode[0])
-    return float(np.abs(displacement).max(initial=0.0))
+    return max(float(np.abs(displacement).max(initial=0.0)), largest_sag(model))
 
 
 def _gap(model: Model) -> float:

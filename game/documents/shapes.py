@@ -125,4 +125,5 @@ def numbered(model: Model, kind: str, number: int) -> Shape:
 def _shape(
     model: Model, title: str, motion: NDArray[np.float64], about: NDArray[np.float64] | None = None
 ) -> Shape:
-    return Shape(title, DRAWN_SHARE * extent(model) * motion[:, :2], about)
+    drawn = DRAWN_SHARE * extent(model) * motion
+    return Shape(title, drawn[:, :2], about, drawn[:, 2] if drawn.shape[1] > 2 else None)

@@ -7,7 +7,7 @@ from collections.abc import Sequence
 from components.field import Vector
 from components.menu import Menu
 from components.particle import Particle
-from components.rod import Rod, turning
+from components.rod import Rod, rigid_joints
 from game.editor.context import Context
 from game.editor.toolbar import tool
 from systems.edit.dividing import DIVISIONS
@@ -75,7 +75,11 @@ def _of_selection(context: Context, pixel: Vector) -> Groups:
     """What the elements have in common comes first."""
     selected, particles, rods = context.selected, context.selected_of(Particle), context.selected_of(Rod)
     alone = len(selected) == 1
-    turns = bool(turning(context.model)[[particle.row for particle in particles]].any()) if particles else False
+    turns = (
+        bool(rigid_joints(context.model)[[particle.row for particle in particles]].any())
+        if particles
+        else False
+    )
     from_here = [entry for entry in _FROM_HERE if turns or entry[0] != "moment"]
     bent = any(rod.bending_stiffness > 0.0 for rod in rods)
     return [

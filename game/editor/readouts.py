@@ -29,6 +29,7 @@ MOST_ELEMENTS = 3  # selected elements with a readout of their own
 SUM = 34  # characters of a line of a sum
 MOST_JOINTS = 6  # whose sums are shown while none is selected
 MOST_EVENTS = 10  # of a run, that are listed
+UNSEEN = 1e-7  # of the largest force on a body: left out of sums
 NOTHING = 1e-12  # of the largest exact value of its kind: round-off, shown as 0
 UNSEEN = 1e-5  # of the largest energy: less is shown as 0 beside it
 
@@ -110,7 +111,11 @@ def _parts(force: Force, forces: Sequence[Force]) -> str:
     """Both parts of a force; 0 where one is nothing beside the largest force on its body."""
     nothing = written.ROUNDING * max(max(abs(other.x), abs(other.y)) for other in forces)
     x, y = (written.number(part, nothing=nothing) for part in (force.x, force.y))
-    return f"x {x}   y {y} kN"
+    turns = written.ROUNDING * max(abs(other.moment) for other in forces)
+    if abs(force.moment) <= turns:
+        return f"x {x}   y {y} kN"
+    moment = written.moment(force.moment)
+    return f"x {x}   y {y} kN   M {moment}" if max(abs(force.x), abs(force.y)) > nothing else f"M {moment}"
 
 
 def _sums_of(model: Model, particle: Particle) -> Iterator[tuple[str, str]]:
@@ -119,12 +124,18 @@ def _sums_of(model: Model, particle: Particle) -> Iterator[tuple[str, str]]:
 
 
 def _sums(forces: Sequence[Force]) -> Iterator[tuple[str, str]]:
-    """The sums of both parts with their numbers."""
-    for axis in ("x", "y"):
-        total = written.total(getattr(force, axis) for force in forces)
-        lines = wrap(_BEFORE_SIGNS.sub("\\1\xa0", total), SUM)
+    """The sums of both parts, and where there are moments theirs, with their numbers."""
+    parts = {"ΣFx": [force.x for force in forces], "ΣFy": [force.y for force in forces]}
+    if any(force.moment or force.lever for force in forces):
+        about_start = any(force.lever for force in forces)
+        each = [part for force in forces for part in (force.moment, force.lever)]
+        parts["ΣM about its start" if about_start else "ΣM"] = each
+    largest = max((max(map(abs, terms)) for terms in parts.values() if terms), default=0.0)
+    for title, terms in parts.items():
+        terms = [term if abs(term) > UNSEEN * largest else 0.0 for term in terms]
+        lines = wrap(_BEFORE_SIGNS.sub("\\1\xa0", written.total(terms)), SUM)
         for number, line in enumerate(lines):
-            yield "" if number else f"ΣF{axis}", line.replace("\xa0", " ")
+            yield "" if number else title, line.replace("\xa0", " ")
 
 
 # --- theory ----------------------------------------------------------------------------------------------

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import Any
 
+from components.bent import is_frame
 from components.particle import Particle
 from components.rod import Rod
 from components.tags import DiagramShown
@@ -15,6 +16,7 @@ from systems.edit.dividing import DIVISIONS
 from systems.edit.rods import is_rigid
 from systems.edit.supports import SUPPORTS, Held, held
 from systems.input.bindings import Binding, offers, toolbar
+from systems.render.bending_diagrams import NAMES
 
 Condition = Callable[[Context], bool]
 
@@ -38,6 +40,11 @@ def tool(context: Context, binding: Binding, title: str = "") -> Tool:
         action not in _NEEDS or _NEEDS[action](context)
     )
     icon = "pause" if action == "toggle run" and pressed else action
+    if action == "toggle diagrams" and pressed and is_frame(context.model):
+        icon, title = (
+            f"diagram {context.view.quantity}",
+            title or f"diagrams, now: {NAMES[context.view.quantity]}",
+        )
     return Tool(action, title or binding.title, binding.key, icon, pressed, enabled)
 
 

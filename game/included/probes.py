@@ -14,6 +14,7 @@ from typing import Any
 import numpy as np
 
 from components import Model, Particle, Plot, Readout, Rod, Vector
+from components.field import ENDS
 from game.documents.models import replace
 from game.editor.context import Context
 from game.mods import App
@@ -27,6 +28,7 @@ MOST = 20_000  # samples; beyond, every second one is dropped
 FEW = 3  # plots at a time
 ENERGIES = ("energy.kinetic", "energy.elastic", "energy.dissipated_damping", "energy.dissipated_plastic")
 OF_ROD = (("axial_force", TIME), ("axial_force", "strain"))
+OF_BENDING_ROD = (*((f"bending_moment.{end}", TIME) for end in ENDS), ("shear.start", TIME))
 OF_PARTICLE = (
     ("displacement.x", TIME),
     ("displacement.y", TIME),
@@ -146,6 +148,10 @@ def choices(session: Context) -> list[tuple[tuple[str, ...], str]]:
     found: list[tuple[tuple[str, ...], str]] = []
     for handle in session.selected[-1:]:
         pairs = OF_ROD if isinstance(handle, Rod) else OF_PARTICLE if isinstance(handle, Particle) else ()
+        if isinstance(handle, Rod) and handle.bending_stiffness:
+            pairs = (*OF_BENDING_ROD, *pairs)
+        if isinstance(handle, Particle) and handle.inertia:
+            pairs = (*pairs, ("rotation", TIME))
         start = f"{handle.table}.{getattr(handle, 'name', '')}."
         found = [((start + y,), x if x == TIME else start + x) for y, x in pairs]
     return found or [(ENERGIES, TIME)]

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from components.bent import FLAT, curved_lines
 from components.field import Vector
 from components.grid import Grid
 from components.handle import Handle
@@ -93,12 +94,16 @@ def pick_particle(model: Model, view: View, pixel: Vector) -> Particle | None:
 
 
 def pick_rod(model: Model, view: View, pixel: Vector) -> Rod | None:
-    """The nearest rod within reach of a pixel."""
+    """The nearest rod within reach of a pixel, bent ones along their curves."""
     if model.rods.count == 0:
         return None
     x, y = (view.camera.to_pixels(drawn_positions(model)) - pixel).T
     first, last = model.rods.between.astype(np.intp).T
     distance = _squared_distance(x[first], y[first], x[last], y[last])
+    if (curved := curved_lines(model, FLAT / view.camera.scale)) is not None:
+        ends = (view.camera.to_pixels(points) - pixel for points in (curved.start, curved.end))
+        distance[curved.rods] = np.inf
+        np.minimum.at(distance, curved.rods, _squared_distance(*(part for end in ends for part in end.T)))
     nearest = int(np.argmin(distance))
     return model.rods[nearest] if distance[nearest] <= (ROD_REACH * view.pixel_ratio) ** 2 else None
 

@@ -8,7 +8,7 @@ from collections.abc import Sequence
 from components.field import Vector
 from components.model import Model
 from components.particle import Particle
-from components.rod import turning
+from components.rod import rigid_joints
 
 Held = tuple[bool, bool, bool]  # in x, in y, and the rotation
 
@@ -44,7 +44,7 @@ def held(particle: Particle) -> Held:
 
 def next_support(model: Model, particles: Sequence[Particle]) -> str:
     """Give particles the support after that of the first one; returns its name."""
-    turns, now = turning(model)[particles[0].row], held(particles[0])
+    turns, now = rigid_joints(model)[particles[0].row], held(particles[0])
     cycle = [kind for kind in NAMES if turns or not kind[2] or kind == now]
     return support(model, particles, cycle[(cycle.index(now) + 1) % len(cycle)])
 

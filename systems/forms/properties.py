@@ -11,6 +11,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from components.bent import is_frame
 from components.box import NAME, NUMBER, TEXT, WORD, Box
 from components.field import SAVED, Field
 from components.form import Form
@@ -18,14 +19,19 @@ from components.handle import Handle
 from components.load import HISTORIES, Load
 from components.model import Model
 from components.particle import Particle
-from components.rod import Rod, turning
+from components.rod import Rod, rigid_joints
 from components.settings import Settings
 from systems.forms.typing import YES_NO, select
 
 MIXED = "mixed"
 KIND = "kind"  # the part of a history that is its kind
 EXACT, DIGITS = 12, 9  # significant digits: numbers with so few are shown in full, others rounded
-_OF_RODS = ("diagram_scale", "plasticity", "sleeping")  # settings that concern rods; the others particles
+_OF_RODS = (
+    "diagram_scale",
+    "original_diagrams",
+    "plasticity",
+    "sleeping",
+)  # settings that concern rods; the others particles
 _DECIDED = (Particle.asleep, Rod.yielded_at)  # by the run
 # Fields of one kind with a heading of their own, in the order in which these follow.
 _APART: Mapping[str, tuple[Field[Any], ...]] = {
@@ -86,6 +92,8 @@ def subjects(model: Model, selected: Sequence[Handle]) -> list[Subject]:
         if not selected or kind in kinds:
             fields = model.tables[Settings.table].fields_in(*SAVED)
             chosen = tuple(field for field in fields if (field.name in _OF_RODS) is of_rods)
+            if not is_frame(model):
+                chosen = tuple(field for field in chosen if field is not Settings.original_diagrams)
             found.append(Subject(section, (model.settings,), np.zeros(1, dtype=np.intp), chosen))
     return found
 
@@ -105,10 +113,10 @@ def _turn(model: Model, subject: Subject) -> bool:
     if kind is Rod:
         return bool((model.rods.bending_stiffness[rows] > 0.0).any())
     if kind is Load:
-        return bool(turning(model)[model.loads.on[rows]].any() or model.loads.moment[rows].any())
+        return bool(rigid_joints(model)[model.loads.on[rows]].any() or model.loads.moment[rows].any())
     particles = model.particles
     given = particles.fixed_rotation | (particles.moment != 0.0) | ~np.isnan(particles.prescribed_inertia)
-    return kind is Particle and bool((turning(model) | given)[rows].any())
+    return kind is Particle and bool((rigid_joints(model) | given)[rows].any())
 
 
 def _loads_on(model: Model, selected: Sequence[Handle]) -> list[Load]:

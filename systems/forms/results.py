@@ -16,7 +16,7 @@ from components.handle import Handle
 from components.load import CONSTANT, Load, factor_at
 from components.model import Model
 from components.particle import Particle
-from components.rod import Rod, turning, utilisation
+from components.rod import Rod, rigid_joints, utilisation
 
 SECTION = "Results"
 RESIDUAL = 1e-12  # of a length (m), force (kN) or speed (m/s): nothing, where all of them are as small
@@ -117,6 +117,17 @@ def _of_rods(columns: _Columns, rows: NDArray[np.intp]) -> Iterator[Result]:
         if rods.plastic_strain[row]:
             plastic = 1000.0 * rods.plastic_strain
             yield _result("plastic strain", _number(plastic[row], plastic, "‰"), Rod.plastic_strain)
+    if len(rows) == 1 and rods.bending_stiffness[rows[0]]:
+        yield _largest_moment(columns, int(rows[0]))
+
+
+def _largest_moment(columns: _Columns, row: int) -> Result:
+    """The largest moment along a rod and where it is."""
+    moments = columns("rods.largest_moment")
+    value, distance = moments[row]
+    text = _number(value, moments[:, 0], "kN·m")
+    at = "" if math.isnan(distance) else f" at {written.length(distance, written.DIGITS)}"
+    return _result("largest moment", f"{text}{at}", Rod.largest_moment)
 
 
 def _at_ends(columns: _Columns, row: np.intp) -> Iterator[Result]:
@@ -160,7 +171,7 @@ def _of_particles(columns: _Columns, rows: NDArray[np.intp]) -> Iterator[Result]
     if len(rows) == 1:
         (row,) = rows
         yield _vector("displacement", moved[row], moved, CM[0], Particle.displacement)
-        turns = turning(columns.model)[row]
+        turns = rigid_joints(columns.model)[row]
         if turns:
             angle = MRAD[1] * particles.rotation
             yield _result("rotation", _number(angle[row], angle, MRAD[0]), Particle.rotation)

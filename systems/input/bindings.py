@@ -105,7 +105,7 @@ _BY_PURPOSE: dict[str, tuple[Binding, ...]] = {
         Binding("ctrl+d", "duplicate", LIVE, "duplicate the selection"),
     ),
     "Results": (
-        Binding("i", "toggle diagrams", LIVE, "force diagrams on / off"),
+        Binding("i", "toggle diagrams", LIVE, "force diagrams on / off; in frames N, M, V"),
         Binding("x", "toggle free bodies", LIVE, "free bodies: rods and joints apart, on / off"),
         Binding("a", "toggle utilisation", LIVE, "share of the strength in colours, on / off"),
         Binding("m", "toggle theory", LIVE, "theory beside the run, on / off"),

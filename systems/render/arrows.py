@@ -62,12 +62,17 @@ def lengths(sheet: Sheet, key: tuple[str, int], sizes: Values, largest: float) -
 
     Scales come in steps, and stay while they fit, so that an arrow grows and shrinks with its own size only.
     """
+    found: Values = np.clip(LONGEST * sizes / steady(sheet, key, largest), SHORTEST, LONGEST) * sheet.unit
+    return found
+
+
+def steady(sheet: Sheet, key: tuple[str, int], largest: float) -> float:
+    """A value of at least `largest`, in steps, which is that of the last picture while it fits."""
     needed = math.ceil(_STEPS * math.log10(largest) - 1e-9)
     step = sheet.placed.get(key, needed)
     step = step if needed <= step <= needed + _KEPT else needed
     sheet.scales[key] = step
-    found: Values = np.clip(LONGEST * sizes / 10.0 ** (step / _STEPS), SHORTEST, LONGEST) * sheet.unit
-    return found
+    return float(10.0 ** (step / _STEPS))
 
 
 def draw_loads(sheet: Sheet) -> Iterator[Mark]:
@@ -150,10 +155,11 @@ def arrows(
     length: Values,
     colour: Colour,
     part: Owners,
+    width: float = 2.0,
 ) -> list[Mark]:
     """Arrows of elements from `tail` (n, 2) along unit vectors (n, 2), of so many pixels (n,).
 
-    part: the key of each among the parts of the picture.
+    part: the key of each among the parts of the picture. width: points, of their shafts.
     """
     u, (kind, which) = sheet.unit, part
     tip, across = tail + length[:, None] * along, along[:, ::-1] * [-1.0, 1.0]
@@ -172,7 +178,7 @@ def arrows(
         chosen = np.array([of[index][0] == table for index in seen.tolist()])
         rows = table, np.array([of[index][1] for index in seen.tolist()])[chosen]
         marks += [
-            Strokes(tail[chosen], neck[chosen], 2.0 * u, colour, rows),
+            Strokes(tail[chosen], neck[chosen], width * u, colour, rows),
             Fills(points[chosen], colour, rows),
         ]
     return marks

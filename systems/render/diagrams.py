@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from components import written
+from components.bent import distributed_shares
 from components.load import CONSTANT
 from components.model import Model
 from components.tags import DiagramShown, Selected
@@ -26,11 +27,11 @@ from systems.render.symbols import SUPPORT_DEPTH
 from systems.render.theme import Colour, faded
 
 SMALLEST_FORCE = 1e-4  # kN; smaller forces are drawn as none
-_FEW_VALUES = 24  # up to which each carries its unit and keeps clear of rods
+FEW_VALUES = 24  # up to which each carries its unit and keeps clear of rods
 _STEPS = (8.0, 6.0, 5.0, 4.0, 3.0, 2.0, 1.5, 1.0)
 _TOO_FLAT, _ENLARGED = 0.05, 0.3  # of the room: loads (one point per kN) below which, up to which, to enlarge
-_SHORTEST_WITH_DIAGRAM = 6.0  # points
-_SHORTEST_WITH_VALUE = 24.0  # points; the values of shorter rods would only hide the structure
+SHORTEST_WITH_DIAGRAM = 6.0  # points
+SHORTEST_WITH_VALUE = 24.0  # points; the values of shorter rods would only hide the structure
 _MANY_ARROWS = 200  # of a kind, up to which all are drawn, though they may lie over each other
 _SQUARE = 20.0  # points, the side of squares of which each shows one of more arrows
 _TOLD = 1.5  # factor by which a new value must be larger to replace one of the last picture
@@ -38,8 +39,8 @@ _ROD_VALUE = "rods.axial_force"  # keys by which labels keep places
 _ARROW_VALUES = {"load": "particles.applied_force", "reaction": "particles.reaction"}
 _MOST_COVERED = 0.15  # of a picture, by values
 _SLIDES = np.array([0.0, 0.3, -0.3, 0.6, -0.6, 0.9, -0.9])  # of how far a label can go along a rod
-_GAP = 1.0  # points between a rod or an arrow and a value beside it
-_BACKING = 0.86  # opacity behind a value
+GAP = 1.0  # points between a rod or an arrow and a value beside it
+BACKING = 0.86  # opacity behind a value
 
 
 def scale_step(largest: float, scale: float, room: float) -> float:
@@ -75,12 +76,12 @@ def draw_rod_diagrams(sheet: Sheet) -> None:
     force, rows, start, end = _shown_rods(sheet)
     if not len(rows):
         return
-    if typical_length(start, end) < _SHORTEST_WITH_DIAGRAM * sheet.unit:
+    if typical_length(start, end) < SHORTEST_WITH_DIAGRAM * sheet.unit:
         sheet.pulled = rows[force[rows] > SMALLEST_FORCE]
         sheet.pushed = rows[force[rows] < -SMALLEST_FORCE]
         sheet.notes.append("zoom in to see force diagrams")
         return
-    room = _room(sheet, start, end) / sheet.unit
+    room = room_for(sheet, start, end) / sheet.unit
     largest = float(np.abs(force).max())
     factor = diagram_factor(largest, _loads(sheet.model), sheet.model.settings.diagram_scale, room)
     if factor != 1.0:
@@ -114,7 +115,7 @@ def _loads(model: Model) -> float:
     return float(np.hypot(*constant.T).sum() + np.hypot(*loads.force[varying].T).sum())
 
 
-def _room(sheet: Sheet, start: Points, end: Points) -> float:
+def room_for(sheet: Sheet, start: Points, end: Points) -> float:
     """The greatest height (pixels) of a diagram that leaves the structure readable."""
     window = min(sheet.viewport.width, sheet.viewport.height)
     return max(min(0.15 * window, 0.6 * typical_length(start, end)), 10.0 * sheet.unit)
@@ -172,11 +173,11 @@ def _label_rods(
     rows, values, normal, height = rows[seen], values[seen], normal[seen], height[seen]
     sheet.values[_ROD_VALUE] = len(rows)
     selected = sheet.chosen(sheet.tagged(Selected, "rods"), rows)
-    is_short = sheet.rod_length < _SHORTEST_WITH_VALUE * sheet.unit
+    is_short = sheet.rod_length < SHORTEST_WITH_VALUE * sheet.unit
     candidates = np.flatnonzero(selected) if is_short else np.arange(len(rows))
-    worth = _worth(sheet, _ROD_VALUE, rows, values) + 1e6 * selected
-    shown = _most_important(sheet, worth, candidates)
-    few = len(values) <= _FEW_VALUES
+    worth = worth_of(sheet, _ROD_VALUE, rows, values) + 1e6 * selected
+    shown = most_important(sheet, worth, candidates)
+    few = len(values) <= FEW_VALUES
     numbers = values[shown].tolist()
     texts, size, half = _value_texts(sheet, numbers, few)
     places = _places_by_rods(start[shown], end[shown], normal[shown], height[shown], half, sheet.unit)
@@ -188,10 +189,10 @@ def _label_rods(
     anchors = edge[:, None] + ANCHORS[:, None] * (end - start)[shown, None]
     ranks = (-worth[shown]).tolist()
     values_of = zip(texts, places, colours, ranks, keys, of, of, anchors, normal[shown], strict=True)
-    _add_values(sheet, values_of, size, "spare" if few else "cover")
+    add_values(sheet, values_of, size, "spare" if few else "cover")
 
 
-def _worth(sheet: Sheet, field: str, rows: Rows, values: NDArray[np.float64]) -> NDArray[np.float64]:
+def worth_of(sheet: Sheet, field: str, rows: Rows, values: NDArray[np.float64]) -> NDArray[np.float64]:
     """The importance of each value: its size to two digits, so that tiny changes do not reorder labels.
 
     Values of the last picture count more, so that labels do not come and go while forces vibrate.
@@ -203,7 +204,7 @@ def _worth(sheet: Sheet, field: str, rows: Rows, values: NDArray[np.float64]) ->
     return worth * np.where(sheet.chosen(told, rows), _TOLD, 1.0)
 
 
-def _most_important(sheet: Sheet, worth: NDArray[np.float64], candidates: Rows) -> Rows:
+def most_important(sheet: Sheet, worth: NDArray[np.float64], candidates: Rows) -> Rows:
     """Of the candidates those worth most, as many as there may be room for beside them."""
     area = sheet.viewport.width * sheet.viewport.height / sheet.unit**2
     most = int(_MOST_COVERED * area / (46.0 * 18.0))
@@ -219,14 +220,14 @@ def _value_texts(sheet: Sheet, forces: Iterable[float], few: bool) -> tuple[list
     return texts, size, np.array(half).reshape(-1, 2)
 
 
-def _add_values(
+def add_values(
     sheet: Sheet,
     values: Iterable[tuple[str, Points, Colour, float, Key, Owner, Owner, Points, Points]],
     size: int,
     lines: Literal["spare", "cover"],
 ) -> None:
     """Labels of values: text, places, colour, rank, key, owner, own part, anchors and direction of each."""
-    backing = faded(sheet.theme.background, _BACKING)
+    backing = faded(sheet.theme.background, BACKING)
     sheet.labels += [
         Label(text, places, size, colour, rank, "semibold", backing, lines, key, of, own, anchors, out)
         for text, places, colour, rank, key, of, own, anchors, out in values
@@ -242,7 +243,7 @@ def _places_by_rods(
     """
     normal_x, normal_y = np.abs(normal).T
     reach, extent = normal_x * half[:, 0] + normal_y * half[:, 1], normal_y * half[:, 0] + normal_x * half[:, 1]
-    beside, fits = reach + _GAP * u, height > 2.0 * reach
+    beside, fits = reach + GAP * u, height > 2.0 * reach
     beyond, nothing = height + beside, np.zeros(len(height))
     across = [np.where(fits, 0.5 * height, beyond), beyond, np.where(fits, beside, -beside), -beside, nothing]
     slide = np.maximum(np.hypot(*(end - start).T) / 2 - extent, 0.0)[:, None] * _SLIDES
@@ -263,7 +264,10 @@ def draw_particle_diagrams(sheet: Sheet, sides: NDArray[np.int64]) -> None:
     particles = sheet.model.particles
     largest = max(largest_force(sheet.model, sheet.view), sheet.view.largest_force)
     taken = np.full((len(sheet.centres), 2), NO_SUPPORT)  # by reactions: a side of each particle, by axis
-    for name, force in (("reaction", particles.reaction[shown]), ("load", particles.applied_force[shown])):
+    applied = (particles.applied_force - distributed_shares(sheet.model))[
+        shown
+    ]  # rows of arrows show the others
+    for name, force in (("reaction", particles.reaction[shown]), ("load", applied)):
         index, axis = _thinned(sheet, shown, force, *np.nonzero(np.abs(force) > SMALLEST_FORCE))
         if len(index):
             _draw_forces(sheet, name, shown[index], axis, force[index, axis], largest, sides, taken)
@@ -366,11 +370,11 @@ def _label_arrows(
     pulls: NDArray[np.bool_],
 ) -> None:
     """The size of the force at each arrow; which: twice the particle's row, one more if it is vertical."""
-    few, field = len(value) <= _FEW_VALUES, _ARROW_VALUES[name]
-    worth = _worth(sheet, field, which, value)
+    few, field = len(value) <= FEW_VALUES, _ARROW_VALUES[name]
+    worth = worth_of(sheet, field, which, value)
     seen = np.flatnonzero(sheet.sees(middle))
     sheet.values[field] = len(seen)
-    shown = _most_important(sheet, worth, seen)
+    shown = most_important(sheet, worth, seen)
     sizes = np.abs(value[shown]).tolist()
     texts, font, half = _value_texts(sheet, sizes, few)
     outward = DIRECTIONS[side[shown]]
@@ -381,7 +385,7 @@ def _label_arrows(
     of = _of(sheet, name, which[shown] // 2)
     anchors = (middle[shown] + outward * length[shown, None] / 2)[:, None]
     values_of = zip(texts, places, colours, ranks, keys, of, keys, anchors, outward, strict=True)
-    _add_values(sheet, values_of, font, "spare")
+    add_values(sheet, values_of, font, "spare")
 
 
 def _places_by_arrows(
@@ -399,7 +403,7 @@ def _places_by_arrows(
     level = outward[:, 0] != 0.0
     deep, width = np.where(level, half.T, half.T[::-1])
     outer, nothing, wing = length / 2, np.zeros(len(middle)), head_length(length, u) / 2
-    beyond, beside = outer + deep + _GAP * u, wing + width + _GAP * u
+    beyond, beside = outer + deep + GAP * u, wing + width + GAP * u
     along, across = [beyond], [nothing]
     for place in ((outer - 2.0 * wing) * np.where(pulls, 1.0, -1.0), nothing, deep - outer, outer, beyond):
         along += [place, place]

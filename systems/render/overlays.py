@@ -236,6 +236,8 @@ _ABOVE, _PAD, _BETWEEN = 10.0, 9.0, 14.0  # points: to the edges, inside a row, 
 MEANINGS = {
     "tension": "tension (kN)",
     "compression": "compression (kN)",
+    "moment": "M on the tension side (kN·m)",
+    "shear": "shear V (kN)",
     "yielding": "yielding",
     "utilisation": "0 to 100 % of the strength",
     "first": "first at its strength",
@@ -244,6 +246,7 @@ MEANINGS = {
     "reaction": "reaction (kN)",
     "inertia": "inertia −m a (kN)",
     "velocity": "velocity",
+    "hinge": "hinge",
     "ghost": "undeformed",
 }
 
@@ -326,9 +329,19 @@ def _swatch(sheet: Sheet, name: str, x: float, y: float, width: float) -> list[M
     u, theme = sheet.unit, sheet.theme
     if name == "utilisation":
         return scale_bar(theme, x, y, width, u)
-    role = {"slack": "ink", "velocity": "ink", "inertia": "ink", "first": "yielding"}.get(name, name)
+    role = {
+        "slack": "ink",
+        "hinge": "ink",
+        "moment": "ink",
+        "shear": "ink",
+        "velocity": "ink",
+        "inertia": "ink",
+        "first": "yielding",
+    }.get(name, name)
     colour = getattr(theme, role)
     ends = np.array([[x, y]]), np.array([[x + width, y]])
+    if name == "hinge":
+        return [Stamps("ring", ends[0] + [width / 2, 0.0], 4.0 * u, u, theme.ink, theme.hollow)]
     if name in ("load", "reaction", "inertia", "velocity"):
         return [Stamps("arrow", ends[0], width, u, colour, colour)]
     if name == "first":

@@ -10,11 +10,13 @@ from components.model import Model
 from components.toolbar import Toolbar
 from components.view import View
 from systems.render.arrows import draw_loads, draw_velocities
-from systems.render.diagrams import draw_particle_diagrams, draw_rod_diagrams
+from systems.render.bending_diagrams import draw_diagrams
+from systems.render.diagrams import draw_particle_diagrams
 from systems.render.empty_card import draw_card, shows_card
 from systems.render.free_bodies import draw_free_bodies
 from systems.render.labels import Placed, place_labels
 from systems.render.marks import Picture
+from systems.render.members import draw_distributed_forces, draw_hinges, draw_moments
 from systems.render.overlays import BAR, draw_notice, draw_overlays, draw_scale, place_scale
 from systems.render.page import draw_page
 from systems.render.panel import compose_form
@@ -103,7 +105,7 @@ def shown_panels(model: Model, view: View, theme: Theme) -> list[ShownPanel]:
 
 def _draw_structure(sheet: Sheet) -> None:
     """Rods, supports and particles, with diagrams, loads and velocities."""
-    draw_rod_diagrams(sheet)
+    draw_diagrams(sheet)
     draw_ghost(sheet)
     draw_halos(sheet)
     sides = support_sides(sheet)
@@ -111,7 +113,11 @@ def _draw_structure(sheet: Sheet) -> None:
     shade_rods(sheet)
     draw_rods(sheet)
     draw_particles(sheet)
+    draw_hinges(sheet)
+    sheet.marks += sheet.above
+    draw_distributed_forces(sheet)
     sheet.marks += [*draw_loads(sheet), *draw_velocities(sheet)]
+    draw_moments(sheet)
     draw_shape(sheet)
     draw_particle_diagrams(sheet, sides)
 
@@ -125,6 +131,7 @@ def _composed(sheet: Sheet) -> tuple[Picture, list[ShownPanel]]:
     if sheet.view.free_bodies and sheet.view.forces_known:
         draw_halos(sheet)
         draw_free_bodies(sheet)
+        draw_distributed_forces(sheet)
         draw_particles(sheet)
     else:
         _draw_structure(sheet)

@@ -118,8 +118,7 @@ def _outline(sheet: Sheet, handle: Handle) -> tuple[Points, Points, float]:
         at = sheet.centres[[handle.row]]
         return at, at, float(sheet.radii[handle.row]) + (SUPPORT_DEPTH * u if any(handle.fixed) else 2.0 * u)
     if isinstance(handle, Rod):
-        first, last = sheet.ends[handle.row]
-        return sheet.centres[[first]], sheet.centres[[last]], 4.0 * u
+        return *sheet.lines(sheet.rods == handle.row)[:2], 4.0 * u
     table = sheet.model.tables[handle.table]
     points = [getattr(table, point)[handle.row] for point in handle.points]
     places = sheet.view.camera.to_pixels(np.array(points))

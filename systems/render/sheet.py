@@ -10,8 +10,10 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
+from components.bent import FLAT, Lines, curved_lines, is_frame, largest_sag
 from components.camera import Viewport
 from components.model import Model
+from components.rod import rigid_joints
 from components.tags import Hovered
 from components.view import View, drawn_positions
 from systems.render.clip import bounds, clip_rods, clip_segments
@@ -29,6 +31,8 @@ MANY = 2000  # rods, above which details of single elements are left out
 # Directions by quarter turns clockwise, in pixels: right, down, left, up.
 DIRECTIONS = np.array([[1.0, 0.0], [0.0, 1.0], [-1.0, 0.0], [0.0, -1.0]])
 
+_JOINT = 0.7  # radius of small rigid joints, of the usual one
+
 
 @dataclass
 class Sheet:
@@ -36,9 +40,10 @@ class Sheet:
 
     unit: pixels per point. centres: particles in pixels, shape (n, 2). radii: drawn radii in pixels (n,).
     ends: rows of the particles at the rods' ends (m, 2). rods: rows of the rods that can be seen; start,
-    end: their visible parts in pixels, aligned with `rods`. particles: rows of those that can be seen.
+    end: their visible parts in pixels, aligned with `rods`. is_frame: some rod bends. curved: visible pieces in
+    pixels of those that look bent, by their place among `rods`; None: none does. particles: rows of those that can be seen.
     pulled, pushed: rows of the rods that are coloured by their axial force, since they have no room for more.
-    shades: rows of rods and the colours that show a quantity of theirs.
+    shades: rows of rods and the colours that show a quantity of theirs. above: marks to be drawn over rods and particles.
     placed: where labels were in the last picture. legend: names of the colours that occur and mean something.
     notes: scales to be shown. scales: those of arrows and the place of the scale, to be kept in `placed`. values: how many
     there are to show, by field, if there were room for all.
@@ -57,9 +62,12 @@ class Sheet:
     particles: Rows
     occupancy: Occupancy
     placed: Placed
+    is_frame: bool = False
+    curved: Lines | None = None
     pulled: Rows = field(default_factory=lambda: np.empty(0, dtype=np.intp))
     pushed: Rows = field(default_factory=lambda: np.empty(0, dtype=np.intp))
     marks: list[Mark] = field(default_factory=list)
+    above: list[Mark] = field(default_factory=list)
     labels: list[Label] = field(default_factory=list)
     legend: list[str] = field(default_factory=list)
     notes: list[str] = field(default_factory=list)
@@ -75,6 +83,30 @@ class Sheet:
     @property
     def viewport(self) -> Viewport:
         return self.occupancy.viewport
+
+    def lines(self, some: NDArray[np.bool_] | slice = slice(None)) -> tuple[Points, Points, Rows]:
+        """Straight lines along some of the visible rods, bent ones in pieces: from, to, and the row of each."""
+        if self.curved is None:
+            return self.start[some], self.end[some], self.rods[some]
+        wanted = np.zeros(len(self.rods), dtype=bool)
+        wanted[some] = True
+        pieces = wanted[self.curved.rods]
+        wanted[self.curved.rods] = False
+        straight, bent = np.flatnonzero(wanted), self.curved.rods[pieces]
+        start = np.concatenate([self.start[straight], self.curved.start[pieces]])
+        end = np.concatenate([self.end[straight], self.curved.end[pieces]])
+        return start, end, self.rods[np.concatenate([straight, bent])]
+
+    def line_at(self, index: int, share: float) -> tuple[Points, Points]:
+        """A point on a visible rod in pixels at a share of its length, and its unit direction there, (2,) each."""
+        start, end = self.start[index], self.end[index]
+        pieces = np.empty(0) if self.curved is None else np.flatnonzero(self.curved.rods == index)
+        if self.curved is not None and len(pieces):
+            number = min(int(share * len(pieces)), len(pieces) - 1)
+            piece, share = pieces[number], share * len(pieces) - number
+            start, end = self.curved.start[piece], self.curved.end[piece]
+        way = end - start
+        return start + share * way, way / max(float(np.hypot(*way)), 1e-9)
 
     def font(self, points: float) -> int:
         """A font size in whole pixels."""
@@ -130,14 +162,39 @@ def measure(model: Model, view: View, theme: Theme, placed: Placed | None = None
     viewport = view.canvas
     low, high = bounds(viewport)
     margin = 150.0 * unit  # so that the ends of a rod that leaves the viewport, and their labels, are not seen
-    start, end, rods = clip_rods(centres, ends, low - margin, high + margin)
-    radii = np.maximum(model.particles.radius * camera.scale, _smallest_radius(start, end, unit))
-    reach, seen = radii + 40.0 * unit, np.ones(len(centres), dtype=bool)
+    frame, reach, lines = is_frame(model), margin, None
+    if frame:
+        sag = largest_sag(model) * model.settings.displacement_scale * camera.scale
+        reach += min(2.0 * sag, float((high - low).max()))
+    start, end, rods = clip_rods(centres, ends, low - reach, high + reach)
+    if frame:
+        lines = curved_lines(model, FLAT / camera.scale, rods)
+    curved = _visible(lines, rods, view, (low - margin, high + margin)) if lines is not None else None
+    smallest = _smallest_radius(start, end, unit)
+    radii: NDArray[np.float64] = np.maximum(model.particles.radius * camera.scale, smallest)
+    if frame:
+        radii[rigid_joints(model) & (radii == smallest)] = _JOINT * smallest
+    around, seen = radii + 40.0 * unit, np.ones(len(centres), dtype=bool)
     for axis in (0, 1):
-        seen &= (centres[:, axis] > low[axis] - reach) & (centres[:, axis] < high[axis] + reach)
+        seen &= (centres[:, axis] > low[axis] - around) & (centres[:, axis] < high[axis] + around)
     particles, occupancy = np.flatnonzero(seen), Occupancy(viewport, unit)
     placed = {} if placed is None else placed
-    return Sheet(model, view, theme, unit, centres, radii, ends, rods, start, end, particles, occupancy, placed)
+    seen_of = rods, start, end, particles
+    return Sheet(model, view, theme, unit, centres, radii, ends, *seen_of, occupancy, placed, frame, curved)
+
+
+def _visible(lines: Lines, rods: Rows, view: View, within: tuple[Points, Points]) -> Lines:
+    """The pieces of rods that can be seen, in pixels, by the place of their rod among `rods`, which are in order."""
+    start, end = view.camera.to_pixels(lines.start), view.camera.to_pixels(lines.end)
+    of, (low, high) = np.searchsorted(rods, lines.rods), within
+    if (start < low).any() or (start > high).any() or (end < low).any() or (end > high).any():
+        start, end, kept = clip_segments(start, end, low, high)
+        of = of[kept]
+    way = end - start
+    overlap = (
+        0.5 * way / np.maximum(np.hypot(way[:, 0], way[:, 1]), 1e-9)[:, None]
+    )  # pixel, so that pieces close
+    return Lines(start - overlap, end + overlap, of)
 
 
 def typical_length(start: Points, end: Points) -> float:

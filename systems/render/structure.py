@@ -7,6 +7,8 @@ import math
 import numpy as np
 from numpy.typing import NDArray
 
+from components.bent import FLAT, moved_axes, pieces
+from components.rod import rigid_joints
 from components.round_numbers import round_up
 from components.tags import Hovered, Selected
 from systems.render.clip import bounds, clip_segments
@@ -25,6 +27,8 @@ _SHAPE_WIDTH, _SHAPE_RADIUS, _SHAPE_FROM = 1.5, 2.5, 0.5  # points; drawn from s
 _SHAPE_OPACITY = 0.75
 HALO_OPACITY = 0.4
 _SHADED = 2.0  # width of rods whose colour shows a quantity, of the usual one
+_THINNEST, _THICKEST, _DEPTHS = 0.5, 1.3, 8.0  # widths of rods by their bending stiffness, in steps of 1/8
+_DOT = 4.0  # points, radius of the dot of a rigid joint
 _HALO = 0.12  # of the length of rods, by which halos stand out, within limits
 _LARGEST_FILLED = 10_000.0  # pixels, well within the 16 bits of filled polygons
 
@@ -68,6 +72,7 @@ def draw_ghost(sheet: Sheet) -> None:
     original = sheet.view.camera.to_pixels(sheet.model.particles.position)
     moved = np.hypot(*(sheet.centres - original).T)
     far = (moved[sheet.ends] > _GHOST_FROM * sheet.unit).any(axis=1)
+    far[_sagging(sheet)] = True
     rows = np.flatnonzero(far)
     first, last = sheet.ends[rows].T
     start, end, seen = clip_segments(original[first], original[last], *bounds(sheet.viewport))
@@ -78,6 +83,18 @@ def draw_ghost(sheet: Sheet) -> None:
         sheet.marks.append(Strokes(start, end, sheet.unit, sheet.theme.ghost, ("rods", rows[seen][of])))
 
 
+def _sagging(sheet: Sheet) -> Rows:
+    """Rows of visible rods whose axes have visibly left the straight lines between their ends."""
+    if sheet.curved is None:
+        return sheet.rods[:0]
+    start = sheet.start[sheet.curved.rods]
+    along = sheet.end[sheet.curved.rods] - start
+    away, length = sheet.curved.start - start, np.maximum(np.hypot(*along.T), 1e-9)
+    aside = np.abs(along[:, 0] * away[:, 1] - along[:, 1] * away[:, 0]) / length
+    found: Rows = sheet.rods[sheet.curved.rods[aside > _GHOST_FROM * sheet.unit]]
+    return found
+
+
 def draw_halos(sheet: Sheet) -> None:
     """Neutral halos around selected elements and, lighter, the one that a click would hit; forces keep their colours."""
     theme, u = sheet.theme, sheet.unit
@@ -86,8 +103,8 @@ def draw_halos(sheet: Sheet) -> None:
         glow = faded(colour, HALO_OPACITY)
         rods = sheet.chosen(sheet.tagged(tag, "rods"), sheet.rods)
         if rods.any():
-            width, of = 2.0 * around + _rod_width(sheet), ("rods", sheet.rods[rods])
-            sheet.marks.append(Strokes(sheet.start[rods], sheet.end[rods], width, glow, of))
+            start, end, of = sheet.lines(rods)
+            sheet.marks.append(Strokes(start, end, 2.0 * around + _rod_width(sheet), glow, ("rods", of)))
         chosen = sheet.chosen(sheet.tagged(tag, "particles"), sheet.particles)
         _draw_circles(sheet, sheet.particles[chosen], glow, glow, 0.0, around)
 
@@ -110,10 +127,10 @@ def draw_rods(sheet: Sheet) -> None:
         _draw_lines(sheet, mask, width * wider, colour)
     named = {**by_force, "yielding": yielding}
     for name, wanted in named.items():
-        shown = sheet.chosen(wanted, sheet.rods)
-        sheet.explain(name, sheet.start[shown], sheet.end[shown])
-    sheet.occupancy.line(sheet.start, sheet.end, STRONG, ("rods", sheet.rods))
-    sheet.occupancy.parts.lines(("rods", sheet.rods), sheet.start, sheet.end, width / 2)
+        sheet.explain(name, *sheet.lines(sheet.chosen(wanted, sheet.rods))[:2])
+    start, end, rows = sheet.lines()
+    sheet.occupancy.line(start, end, STRONG, ("rods", rows))
+    sheet.occupancy.parts.lines(("rods", rows), start, end, width / 2)
 
 
 def _rod_width(sheet: Sheet) -> float:
@@ -122,11 +139,13 @@ def _rod_width(sheet: Sheet) -> float:
 
 
 def _draw_lines(sheet: Sheet, mask: NDArray[np.bool_] | slice, width: float, colour: Colour) -> None:
-    """The lines of some rods, of one colour."""
-    rods, rows, start, end = sheet.model.rods, sheet.rods[mask], sheet.start[mask], sheet.end[mask]
+    """The lines of some rods, of one colour; where some bend, those that bend less are thicker."""
+    rods, (start, end, rows) = sheet.model.rods, sheet.lines(mask)
     cables = rods.tension_only[rows]
     if not cables.any():
-        sheet.marks.append(Strokes(start, end, width, colour, ("rods", rows)))
+        for factor, which in _depths(sheet, rows):
+            some = ("rods", rows[which])
+            sheet.marks.append(Strokes(start[which], end[which], factor * width, colour, some))
         return
     thin, slack = _CABLE * width, np.zeros_like(cables)
     if sheet.view.forces_known:
@@ -140,13 +159,37 @@ def _draw_lines(sheet: Sheet, mask: NDArray[np.bool_] | slice, width: float, col
             sheet.marks.append(Strokes(start[kind], end[kind], thick, colour, ("rods", rows[kind])))
 
 
+def _depths(sheet: Sheet, rows: Rows) -> list[tuple[float, NDArray[np.bool_] | slice]]:
+    """Widths of the lines of rods, as the depths of sections with their bending stiffness, in steps; which have each."""
+    if not sheet.is_frame:
+        return [(1.0, slice(None))]
+    stiffness = sheet.model.rods.bending_stiffness
+    largest = float(stiffness.max())
+    depth = np.maximum((stiffness[rows] / largest) ** 0.25, _THINNEST)
+    level = np.round(_THICKEST * depth * _DEPTHS) / _DEPTHS
+    return [(factor, level == factor) for factor in np.unique(level).tolist()]
+
+
 def draw_particles(sheet: Sheet) -> None:
-    """Open circles of their own radius. Very small ones are filled."""
+    """Open circles of their own radius, hinges of all that they join. Very small ones and rigid joints are filled."""
     theme, rows = sheet.theme, sheet.particles
     small = sheet.radii[rows] < 3.0 * sheet.unit
-    for chosen, rim in ((rows[small], 0.0), (rows[~small], RIM * sheet.unit)):
+    dots = rows[:0]
+    if sheet.is_frame:
+        rigid = rigid_joints(sheet.model)[rows]
+        small |= rigid & (sheet.radii[rows] <= _DOT * sheet.unit)
+        dots = rows[rigid & ~small]
+    open_ones = np.setdiff1d(rows[~small], dots)
+    for chosen, ink, rim in (
+        (rows[small], theme.ink, 0.0),
+        (open_ones, theme.ink, RIM * sheet.unit),
+        (dots, theme.ghost, sheet.unit),
+    ):
         if len(chosen):
-            _draw_circles(sheet, chosen, theme.ink, theme.hollow, rim, 0.0)
+            _draw_circles(sheet, chosen, ink, theme.hollow, rim, 0.0)
+    if len(dots):  # the circles around them are the bodies that collide
+        size = np.full(len(dots), _DOT * sheet.unit)
+        sheet.marks.append(Discs(sheet.centres[dots], size, theme.ink, theme.ink, 0.0, ("particles", dots)))
     at, radii = sheet.centres[rows], sheet.radii[rows]
     sheet.occupancy.parts.symbols(("particles", rows), at, at, radii)
     if len(sheet.particles) <= MANY:
@@ -197,8 +240,19 @@ def draw_shape(sheet: Sheet) -> None:
     colour = faded(sheet.theme.sketch, _SHAPE_OPACITY)
     pixels = np.hypot(*shape.displacement.T) * sheet.view.camera.scale
     moving = pixels > _SHAPE_FROM * sheet.unit
-    ends = sheet.ends[moving[sheet.ends].any(axis=1)]
-    start, end, _ = clip_segments(places[ends[:, 0]], places[ends[:, 1]], *bounds(sheet.viewport))
+    if shape.rotation is not None:
+        moving |= shape.rotation != 0.0
+    rows = np.flatnonzero(moving[sheet.ends].any(axis=1))
+    ends = sheet.ends[rows]
+    start, end = places[ends[:, 0]], places[ends[:, 1]]
+    if shape.rotation is not None:
+        bent = moved_axes(sheet.model, rows, position + shape.displacement, shape.displacement, shape.rotation)
+        if (lines := pieces(bent, rows, FLAT / sheet.view.camera.scale)) is not None:
+            straight = ~sheet.chosen(lines.rods, rows)
+            to_pixels = sheet.view.camera.to_pixels
+            start = np.concatenate([start[straight], to_pixels(lines.start)])
+            end = np.concatenate([end[straight], to_pixels(lines.end)])
+    start, end, _ = clip_segments(start, end, *bounds(sheet.viewport))
     if len(start):
         sheet.occupancy.line(start, end, FAINT)
         sheet.marks.append(Strokes(start, end, _SHAPE_WIDTH * sheet.unit, colour))
@@ -245,13 +299,10 @@ def _beside_particle(sheet: Sheet, row: int, half: tuple[float, float]) -> list[
 
 def beside_rod(sheet: Sheet, index: int, half: tuple[float, float]) -> list[tuple[float, float]]:
     """Beside its middle, on either side, then further along and further away."""
-    (x, y), (far_x, far_y) = sheet.start[index].tolist(), sheet.end[index].tolist()
-    dx, dy = far_x - x, far_y - y
-    length = max(math.hypot(dx, dy), 1e-9)
-    nx, ny = dy / length, -dx / length
-    reach = abs(nx) * half[0] + abs(ny) * half[1] + 1.0 * sheet.unit
-    return [
-        (x + share * dx + side * reach * nx, y + share * dy + side * reach * ny)
-        for share in (0.5, 0.35, 0.65)
-        for side in (-1.0, 1.0, -1.8, 1.8)
-    ]
+    places = []
+    for share in (0.5, 0.35, 0.65):
+        (x, y), (along_x, along_y) = (part.tolist() for part in sheet.line_at(index, share))
+        nx, ny = along_y, -along_x
+        reach = abs(nx) * half[0] + abs(ny) * half[1] + 1.0 * sheet.unit
+        places += [(x + side * reach * nx, y + side * reach * ny) for side in (-1.0, 1.0, -1.8, 1.8)]
+    return places

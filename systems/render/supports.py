@@ -5,12 +5,15 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from systems.render.marks import Stamps
+from components.model import Model
+from components.rod import rigid_joints
+from systems.render.marks import Points, Stamps
 from systems.render.sheet import DIRECTIONS, MANY, Rows, Sheet
 from systems.render.symbols import SUPPORT_DEPTH
 
 RIGHT, DOWN, LEFT, UP = range(4)
 NO_SUPPORT = -1
+_RELUCTANCE = np.array([0.5, 0.0, 0.45, 0.8])  # by side, to have a support there
 
 
 def crowding(sheet: Sheet, rows: Rows) -> NDArray[np.float64]:
@@ -36,7 +39,18 @@ def crowding(sheet: Sheet, rows: Rows) -> NDArray[np.float64]:
 def support_sides(sheet: Sheet) -> NDArray[np.int64]:
     """The side of each particle on which its support stands, shape (n,); NO_SUPPORT where it has none."""
     fixed = sheet.model.particles.fixed
-    return freest_sides(fixed, crowding(sheet, np.flatnonzero(fixed[:, 0] | fixed[:, 1])))
+    crowd = crowding(sheet, np.flatnonzero(fixed[:, 0] | fixed[:, 1]))
+    sides = freest_sides(fixed, crowd)
+    clamped = np.flatnonzero(fixed.all(axis=1) & clamps(sheet.model))
+    opposite = np.roll(crowd[clamped], 2, axis=1)
+    sides[clamped] = np.argmin(crowd[clamped] - opposite + _RELUCTANCE / 10.0, axis=1)
+    return sides
+
+
+def clamps(model: Model) -> NDArray[np.bool_]:
+    """Which particles hold rigid rod ends so that these cannot turn, (particles,)."""
+    held: NDArray[np.bool_] = model.particles.fixed_rotation
+    return held & rigid_joints(model) if held.any() else held
 
 
 def freest_sides(fixed: NDArray[np.bool_], crowd: NDArray[np.float64]) -> NDArray[np.int64]:
@@ -49,27 +63,41 @@ def freest_sides(fixed: NDArray[np.bool_], crowd: NDArray[np.float64]) -> NDArra
     x, y = fixed[:, 0], fixed[:, 1]
     vertical = np.where(crowd[:, UP] < crowd[:, DOWN] - 0.3, UP, DOWN)
     horizontal = np.where(crowd[:, RIGHT] < crowd[:, LEFT] - 0.3, RIGHT, LEFT)
-    reluctance = np.zeros(4)
-    reluctance[[RIGHT, DOWN, LEFT, UP]] = 0.5, 0.0, 0.45, 0.8
     sides[y & ~x] = vertical[y & ~x]
     sides[x & ~y] = horizontal[x & ~y]
-    sides[x & y] = np.argmin(crowd[x & y] + reluctance, axis=1)
+    sides[x & y] = np.argmin(crowd[x & y] + _RELUCTANCE, axis=1)
     return sides
 
 
 def draw_supports(sheet: Sheet, sides: NDArray[np.int64]) -> None:
-    """Triangles on a line (one direction) or on a plate (both), touching the particles from outside."""
-    supported = sheet.particles[sides[sheet.particles] != NO_SUPPORT]
-    fixed = sheet.model.particles.fixed[supported].all(axis=1)
+    """Triangles on a line (one direction) or on a plate (both), touching the particles from outside.
+
+    What cannot turn either stands on hatched ground (clamped) or on a plate that rolls (guided).
+    """
+    rows = sheet.particles
+    supported, held = rows[sides[rows] != NO_SUPPORT], clamps(sheet.model)
+    kinds = 2 * held[supported] + sheet.model.particles.fixed[supported].all(axis=1)
+    size = SUPPORT_DEPTH * sheet.unit
     for side in range(4):
-        for symbol, both in (("roller", False), ("pinned", True)):
-            rows = supported[(sides[supported] == side) & (fixed == both)]
-            if not len(rows):
+        for kind, symbol in enumerate(("roller", "pinned", "guided", "clamped")):
+            of = supported[(sides[supported] == side) & (kinds == kind)]
+            if not len(of):
                 continue
-            apex = sheet.centres[rows] + DIRECTIONS[side] * (sheet.radii[rows] - sheet.unit)[:, None]
-            size = SUPPORT_DEPTH * sheet.unit
-            colours, of = (sheet.theme.ink, sheet.theme.hollow), ("particles", rows)
-            sheet.marks.append(Stamps(symbol, apex, size, sheet.unit, *colours, side, of))
+            apex = sheet.centres[of] + DIRECTIONS[side] * (sheet.radii[of] - sheet.unit)[:, None]
+            _stamp(sheet, symbol, apex, side, of)
             middle = apex + DIRECTIONS[side] * size / 2
-            sheet.occupancy.parts.symbols(of, middle, middle, size / 2)
+            sheet.occupancy.parts.symbols(("particles", of), middle, middle, size / 2)
             sheet.occupancy.block_squares(middle[:MANY], np.full(len(middle[:MANY]), size / 2))
+    if len(turning := rows[held[rows] & (sides[rows] == NO_SUPPORT)]):
+        _stamp(sheet, "unturned", sheet.centres[turning], 0, turning)
+        half = np.full(len(turning), 10.0 * sheet.unit)
+        sheet.occupancy.parts.symbols(
+            ("particles", turning), sheet.centres[turning], sheet.centres[turning], half
+        )
+        sheet.occupancy.block_squares(sheet.centres[turning], half)
+
+
+def _stamp(sheet: Sheet, symbol: str, at: Points, side: int, rows: Rows) -> None:
+    """The symbol of supports."""
+    size, theme = SUPPORT_DEPTH * sheet.unit, sheet.theme
+    sheet.marks.append(Stamps(symbol, at, size, sheet.unit, theme.ink, theme.hollow, side, ("particles", rows)))

@@ -22,6 +22,7 @@ RIM = 1.75  # points
 LARGEST_STAMP = 64.0  # points, greatest radius of a circle drawn as a stamp
 _HALF_WIDTH, _HEIGHT = 9.5, 16.0  # points, of a support's triangle
 _GROUND = 13.0  # points, half the length of the ground under it
+_SQUARE = 9.5  # points, half the side of a square around a joint that cannot turn
 
 
 def symbol_parts(symbol: str, size: float, unit: float) -> Parts:
@@ -126,13 +127,33 @@ def _roller(size: float, unit: float) -> Parts:
 
 def _pinned(size: float, unit: float) -> Parts:
     """Support in both directions: a triangle on a filled plate with hatched ground."""
-    plate = _bar(_HEIGHT - 0.5, -_GROUND, _HEIGHT + 3.0, _GROUND)
-    top, bottom, slant, thick = _HEIGHT + 2.5, _HEIGHT + 9.0, 5.0, 1.4
+    return [*_triangle(unit), *_ground(_HEIGHT - 0.5, unit)]
+
+
+def _ground(at: float, unit: float) -> Parts:
+    """A filled plate with hatched ground behind it, so many points from the origin."""
+    plate = _bar(at, -_GROUND, at + 3.5, _GROUND)
+    top, bottom, slant, thick = at + 3.0, at + 9.5, 5.0, 1.4
     hatch = [
         np.array([[top, y], [top, y + thick], [bottom, y + thick - slant], [bottom, y - slant]])
         for y in np.arange(-_GROUND + slant, _GROUND - thick + 0.1, 5.15)
     ]
-    return [*_triangle(unit), *(("ink", part * unit) for part in [plate, *hatch])]
+    return [("ink", part * unit) for part in [plate, *hatch]]
+
+
+def _guided(size: float, unit: float) -> Parts:
+    """Support in one direction and in rotation: a plate that rolls along hatched ground without turning."""
+    plate, radius = _bar(0.0, -_GROUND, 2.5, _GROUND), 3.2
+    rolls = [circle(radius * unit) + np.array([2.5 + radius, y]) * unit for y in (-7.0, 7.0)]
+    inner = [circle((radius - RIM) * unit) + np.array([2.5 + radius, y]) * unit for y in (-7.0, 7.0)]
+    between = [("ink", roll) for roll in rolls] + [("hollow", roll) for roll in inner]
+    return [("ink", plate * unit), *between, *_ground(2.5 + 2.0 * radius, unit)]
+
+
+def _unturned(size: float, unit: float) -> Parts:
+    """Support in rotation only: an open square around a joint that slides in both directions."""
+    outer, inner = (_bar(-half, -half, half, half) * unit for half in (_SQUARE, _SQUARE - RIM))
+    return [("ink", outer), ("hollow", inner)]
 
 
 SYMBOLS: dict[str, Callable[[float, float], Parts]] = {
@@ -141,6 +162,9 @@ SYMBOLS: dict[str, Callable[[float, float], Parts]] = {
     "arrow": _arrow,
     "roller": _roller,
     "pinned": _pinned,
+    "clamped": lambda size, unit: _ground(0.0, unit),
+    "guided": _guided,
+    "unturned": _unturned,
 }
 
 

@@ -8,12 +8,14 @@ from functools import lru_cache
 
 import numpy as np
 
+from components.bent import MOMENT
 from components.camera import Camera, Viewport
 from components.model import Model
 from components.view import View, drawn_places
 from systems.render.arrows import draw_loads, draw_velocities
-from systems.render.diagrams import draw_rod_diagrams
+from systems.render.bending_diagrams import draw_diagrams
 from systems.render.marks import Bars, Discs, Fills, Mark, Points, Rectangles, Stamps, Strokes
+from systems.render.members import draw_distributed_forces, draw_hinges, draw_moments
 from systems.render.sheet import BELOW, measure
 from systems.render.structure import draw_particles, draw_rods
 from systems.render.supports import draw_supports, support_sides
@@ -99,12 +101,12 @@ def _finite(points: Points) -> Points:
 def _marks(model: Model, camera: Camera, unit: float, theme: Theme) -> tuple[Mark, ...]:
     shown = replace(theme, hollow=_tinted(theme))
     smaller = _SMALLER * min(camera.viewport.height / (_USUAL * unit), 1.0)
-    view = View(camera=replace(camera), pixel_ratio=smaller * unit, all_diagrams=True)
+    view = View(camera=replace(camera), pixel_ratio=smaller * unit, all_diagrams=True, quantity=MOMENT)
     sheet = measure(model, view, shown)
     for layer in BELOW:
         sheet.marks += layer(sheet)
     below = len(sheet.marks)
-    draw_rod_diagrams(sheet)
+    draw_diagrams(sheet)
     sheet.marks[below:] = [
         replace(mark, colour=faded(mark.colour, _DENSE)) if isinstance(mark, Bars) else mark
         for mark in sheet.marks[below:]
@@ -112,7 +114,10 @@ def _marks(model: Model, camera: Camera, unit: float, theme: Theme) -> tuple[Mar
     draw_supports(sheet, support_sides(sheet))
     draw_rods(sheet)
     draw_particles(sheet)
+    draw_hinges(sheet)
+    draw_distributed_forces(sheet)
     sheet.view.all_diagrams = False  # arrows of one length; the values of diagrams are left out
+    draw_moments(sheet)
     return (*sheet.marks, *draw_loads(sheet), *draw_velocities(sheet))
 
 

@@ -160,8 +160,8 @@ _KINDS: dict[str, Drawn] = {
     "velocity": lambda sheet, start, end: _arrow(sheet, start, end, sheet.theme.ink),
     "roller": partial(_support, "roller"),
     "pinned": partial(_support, "pinned"),
-    "guided": partial(_support, "roller"),
-    "clamped": partial(_support, "pinned"),
+    "guided": partial(_support, "guided"),
+    "clamped": partial(_support, "clamped"),
     "pull": _pull,
     "box": _box,
 }

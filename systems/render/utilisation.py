@@ -61,10 +61,9 @@ def _mark_first(sheet: Sheet, share: Values) -> None:
         return
     here = sheet.rods == first_at_limit(sheet.model, share)
     colour = faded(sheet.theme.yielding, HALO_OPACITY)
-    sheet.marks.append(
-        Strokes(sheet.start[here], sheet.end[here], _HALO * sheet.unit, colour, ("rods", sheet.rods[here]))
-    )
-    sheet.explain("first", sheet.start[here], sheet.end[here])
+    start, end, rows = sheet.lines(here)
+    sheet.marks.append(Strokes(start, end, _HALO * sheet.unit, colour, ("rods", rows)))
+    sheet.explain("first", start, end)
 
 
 def _label(sheet: Sheet, share: Values) -> None:

@@ -11,6 +11,7 @@ from typing import Any
 
 import numpy as np
 
+from components.rod import bends
 from game import Session
 from game.documents import models
 
@@ -39,7 +40,7 @@ MOMENTS = {
 
 
 def preview_of(name: str) -> dict[str, Any]:
-    """Displacements, velocities and axial forces of an example at its moment."""
+    """Displacements, velocities and forces in the rods of an example at its moment."""
     session = Session.open(name)
     if name not in MOMENTS:
         assert session.settle() in ("equilibrium", "neutral equilibrium"), name
@@ -47,7 +48,9 @@ def preview_of(name: str) -> dict[str, Any]:
         session.run(time=MOMENTS[name])
     velocity = session.model.writable("particles.velocity")
     velocity[np.abs(velocity) < STILL * np.abs(velocity).max(initial=0.0)] = 0.0
-    columns = "particles.displacement", "particles.velocity", "rods.axial_force"
+    columns: tuple[str, ...] = ("particles.displacement", "particles.velocity", "rods.axial_force")
+    if bends(session.model):
+        columns = *columns, "particles.rotation", "rods.end_moment"
     session.get_ready()
     state = {column: _rounded(session.model.column(column)) for column in columns}
     return {column: values for column, values in state.items() if np.any(values)}

@@ -22,6 +22,7 @@ from systems.render.marks import Picture
 from systems.render.picture import compose_all
 from systems.render.pygame_canvas import Canvas
 from systems.render.theme import load_theme
+from tests.systems.render.frame_models import all_supports, portal_at_rest
 
 FOLDER = Path(__file__).parent
 NOWHERE = Path("nowhere")  # in place of the person's saved models; there is no such folder
@@ -215,6 +216,32 @@ def _pointed(window: Window) -> Session:
     return session
 
 
+def _moments(window: Window) -> Session:
+    """A portal at rest with its bending moments."""
+    session = opened(window, portal_at_rest())
+    session.settings.displacement_scale = 20.0
+    session.get_ready()
+    session.press("i")
+    session.press("i")
+    return session
+
+
+def _shears(window: Window) -> Session:
+    """Every kind of support, in the last theme but one, with shears."""
+    session = pressed(window, "i", "i", "i", source=all_supports(), theme="colour-blind")
+    session.run(time=0.004)
+    return session
+
+
+def _members_apart(window: Window) -> Session:
+    """Members and joints of a portal at rest, apart, with the equilibrium of its beam."""
+    session = opened(window, portal_at_rest())
+    session.get_ready()
+    session.press("x")
+    session.select(session.rods["BC"])
+    return session
+
+
 PICKED = ("k", "click")
 SCENES: dict[str, Scene] = {
     "empty": lambda window: pressed(window, source=EMPTY),
@@ -231,6 +258,9 @@ SCENES: dict[str, Scene] = {
     "notice": _notice,
     "free-bodies": _free_bodies,
     "pointed": _pointed,
+    "frame-moments": _moments,
+    "frame-shears": _shears,
+    "frame-free-bodies": _members_apart,
     "properties": _properties,
     "properties-of-all": _all_properties,
     "save": _save,
@@ -248,6 +278,8 @@ SCENES: dict[str, Scene] = {
     "menu-of-canvas": _menu_of_canvas,
 }
 ALONE_IN_LAYOUT = {
+    "frame-shears",
+    "frame-free-bodies",
     "notice",
     "properties-of-all",
     "menu-of-canvas",
@@ -257,6 +289,8 @@ IN_OTHER_SIZES = (
     ("usual", "force-method-4"),
     ("usual", "drawing-a-wall"),
     ("usual", "free-bodies"),
+    ("usual", "frame-free-bodies"),
+    ("usual", "frame-shears"),
     ("large", "simulation-at-rest"),
     ("large", "properties"),
     ("large", "force-method"),

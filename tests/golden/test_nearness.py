@@ -7,8 +7,9 @@ from collections.abc import Callable, Iterator
 import numpy as np
 import pytest
 
+from components.bent import QUANTITIES, distributed_shares
 from components.model import Model
-from components.written import number
+from components.written import DIGITS, given, number
 from game import Session
 from game.documents import models
 from systems.render.labels import LEADER_OPACITY
@@ -17,6 +18,7 @@ from systems.render.picture import compose
 from systems.render.theme import faded, load_theme
 from tests.reference.boxes import Box, text_box
 from tests.reference.nearness import Part, distance, near, parts_of
+from tests.systems.render.frame_models import FRAMES
 
 LIGHT = load_theme("light")
 SIZES = [
@@ -66,7 +68,11 @@ def misplaced(picture: Picture, model: Model) -> Iterator[str]:
         table, row = text.of  # type: ignore[misc]
         box, own = text_box(text, text.size), [part for part in parts if part.owner == text.of]
         line = leader(text, picture)
-        if table != "rods":
+        if text.text.endswith("kN·m") and table == "particles":
+            own = _arc(text, own)
+            if not _turns(text, model, row):
+                yield f"{text.text} of {model.tables[table].names[row]} stands at another moment"
+        elif table != "rods":
             own = _arrow(text_box(text, text.size) if line is None else (*line[1], *line[1]), text, own)
             if not _says(text, own[0], model, row if table == "particles" else int(model.loads.on[row])):
                 yield f"{text.text} of {model.tables[table].names[row]} stands at another arrow"
@@ -124,10 +130,32 @@ def _arrow(box: Box, text: Text, parts: list[Part]) -> list[Part]:
     return min(arrows, key=lambda arrow: min(distance(box, part) for part in arrow))
 
 
+def _arc(text: Text, parts: list[Part]) -> list[Part]:
+    """The curved arrow of the text's colour: what is as far from the middle of the joint at both ends, and its head."""
+    (middle,) = next(part.points for part in parts if part.kind == "disc")
+    found = []
+    for part in parts:
+        away = np.hypot(*(part.points - middle).T)
+        if part.colour == text.colour and part.kind == "shaft" and abs(away[0] - away[1]) < 1e-6:
+            found.append(part)
+    ends = {tuple(np.round(part.points[1], 6)) for part in found}
+    heads = [part for part in parts if part.kind == "head" and part.colour == text.colour]
+    return found + [h for h in heads if tuple(np.round(h.points[1:].mean(axis=0), 6)) in ends]
+
+
+def _turns(text: Text, model: Model, row: int) -> bool:
+    """Whether a text is the size of the moment of its colour on a joint."""
+    particles = model.particles
+    moment = particles.applied_moment if text.colour == LIGHT.load else particles.reaction_moment
+    size = abs(float(moment[row]))
+    return text.text.removesuffix(" kN·m") in (given(size, DIGITS), number(size))
+
+
 def _says(text: Text, shaft: Part, model: Model, row: int) -> bool:
     """Whether a text is the size of the force that an arrow shows."""
     particles = model.particles
-    force = (particles.applied_force if text.colour == LIGHT.load else particles.reaction)[row]
+    applied = particles.applied_force - distributed_shares(model)
+    force = (applied if text.colour == LIGHT.load else particles.reaction)[row]
     step = np.abs(shaft.points[1] - shaft.points[0])
     size = abs(float(force[int(step[1] > step[0])]))
     return text.text.removesuffix(" kN") == number(size)
@@ -145,3 +173,19 @@ def test_values_stand_nearest_to_what_they_are_of(name: str, moment: Callable[[S
         for model, view in session.stages:
             if isinstance(model, Model):
                 assert list(misplaced(compose(model, view, LIGHT), model)) == [], (width, height)
+
+
+@pytest.mark.parametrize("name", FRAMES)
+def test_values_of_frames_stand_nearest_to_what_they_are_of(name: str) -> None:
+    session = Session.open(FRAMES[name]())
+    session.run(time=0.05)
+    session.view.all_diagrams = True
+    for width, height, ratio in SIZES:
+        session.resize(width, height, ratio)
+        session.view.fit(session.model)
+        session.update_view()
+        for session.view.quantity in QUANTITIES:
+            (model, view), *_ = session.stages
+            assert isinstance(model, Model)
+            found = list(misplaced(compose(model, view, LIGHT), model))
+            assert found == [], (width, height, session.view.quantity)

@@ -38,6 +38,15 @@ def _parts(mark: object, theme: Theme) -> Iterator[Part]:
             kind = "line" if table == "rods" else "shaft"
             for owner, *ends in zip(owners, mark.start, mark.end, strict=True):
                 yield Part(owner, kind, np.array(ends), mark.colour)
+        case Fills() if (
+            table == "rods" and mark.corners.shape[1] > 4
+        ):  # an area along a rod, from its start and back
+            count = mark.corners.shape[1] // 2
+            for owner, corners in zip(owners, mark.corners, strict=True):
+                back = corners[::-1]
+                for k in range(count - 1):
+                    piece = np.array([corners[k], corners[k + 1], back[k + 1], back[k]])
+                    yield Part(owner, "diagram", piece, mark.colour)
         case Bars() | Fills():
             kind = "diagram" if table == "rods" else "head" if mark.corners.shape[1] == 3 else "disc"
             for owner, corners in zip(owners, mark.corners, strict=True):

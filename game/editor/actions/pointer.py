@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from components.bent import AXIAL, QUANTITIES, is_frame
 from components.field import Vector
 from components.particle import Particle
 from components.rod import Rod
@@ -11,6 +12,7 @@ from game.editor.gestures.drawing import TOOLS, Drawing, DrawSupport
 from game.editor.gestures.moving import BoxSelect, Move, MovePoint, PullParticle
 from systems.edit import Refusal
 from systems.edit.picking import everything, pick, pick_grid, pick_line, pick_particle, pick_point
+from systems.render.bending_diagrams import NAMES
 
 
 @action("drag", while_drawing=True)
@@ -106,17 +108,32 @@ def _select_all(context: Context, pixel: Vector) -> None:
 
 @action("toggle diagrams", while_drawing=True)
 def _toggle_diagrams(context: Context, pixel: Vector) -> None:
-    """The diagrams of the selected particles and rods; of all when nothing is selected, or all are shown."""
+    """The diagrams of the selected particles and rods; of all when nothing is selected, or all are shown.
+
+    Where rods bend, those of N, M and V follow one another before there are none.
+    """
     model, view = context.model, context.view
     apart = view.put_together()
     if apart and (view.all_diagrams or model.any_tagged(DiagramShown)):
         return
     if view.all_diagrams or not context.has_selected:
-        view.all_diagrams = not view.all_diagrams
+        view.all_diagrams = _following(context, view.all_diagrams)
         model.tag_only([], DiagramShown)
         return
     chosen = {handle.entity: handle for handle in context.selected if isinstance(handle, Particle | Rod)}
     shown = {handle.entity: handle for handle in model.tagged(DiagramShown)}
-    hide = chosen.keys() <= shown.keys()
+    shows = _following(context, chosen.keys() <= shown.keys())
     others = [shown[entity] for entity in shown.keys() - chosen.keys()]
-    model.tag_only(others if hide else [*others, *chosen.values()], DiagramShown)
+    model.tag_only([*others, *chosen.values()] if shows else others, DiagramShown)
+
+
+def _following(context: Context, shown: bool) -> bool:
+    """Whether diagrams are shown after this, of the next quantity where rods bend."""
+    view, last = context.view, QUANTITIES[-1]
+    if not is_frame(context.model):
+        return not shown
+    if shown and view.quantity == last:
+        return False
+    view.quantity = QUANTITIES[QUANTITIES.index(view.quantity) + 1] if shown else AXIAL
+    context.notice = f"Diagrams: {NAMES[view.quantity]}; I: the next."
+    return True

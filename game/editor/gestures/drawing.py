@@ -10,7 +10,7 @@ from components.field import Vector
 from components.handle import Handle
 from components.model import Model
 from components.particle import Particle
-from components.rod import Rod, turning
+from components.rod import Rod, rigid_joints
 from components.view import Preview, drawn_positions
 from game.editor.context import Context, Gesture
 from systems.edit import Refusal
@@ -257,7 +257,7 @@ class DrawMoment(DrawFromParticle):
     tool = "moment"
 
     def __init__(self, context: Context, particle: Particle) -> None:
-        if not turning(context.model)[particle.row]:
+        if not rigid_joints(context.model)[particle.row]:
             raise Refusal(
                 f"{particle.name} has no rigid rod ends that a moment could turn; Ctrl+J makes a rod's end rigid."
             )
@@ -358,7 +358,7 @@ class DrawSupport(DrawFromParticle):
         super().__init__(context, particle)
         selected = [handle for handle in context.selected if isinstance(handle, Particle)]
         self._particles = selected if particle in selected else [particle]
-        self._turns = bool(turning(context.model)[particle.row])
+        self._turns = bool(rigid_joints(context.model)[particle.row])
         farther = "farther: cannot turn either     " if self._turns else ""
         self.hint = (
             f"ground below or above: held in y     at a side: in x     between: both     {farther}Esc cancel"

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import pytest
 
+from components.bent import QUANTITIES
 from components.camera import Viewport
 from components.tags import DiagramShown
 from components.toolbar import Button, Tool
@@ -56,7 +57,13 @@ def test_every_tool_is_an_action_with_a_key_and_an_icon() -> None:
         assert icon(action)
         assert any(binding.action == action and binding.title for binding in BINDINGS)
     added = [binding.action for binding in ADDED_BUTTONS]
-    assert {*icons(), *ADDED} == {*offered, *added, "pause", "more tools"}
+    assert {*icons(), *ADDED} == {
+        *offered,
+        *added,
+        "pause",
+        "more tools",
+        *(f"diagram {quantity}" for quantity in QUANTITIES),
+    }
 
 
 @pytest.mark.parametrize("size", SIZES)

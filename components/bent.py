@@ -1,0 +1,250 @@
+"""Bent rods: where their axes are between their ends, and the forces in them there, by statics in the present state.
+
+Shares ξ count from 0 at the start of a rod to 1 at its end. Polynomials in ξ are rows of coefficients, the lowest first.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from components.derived import chord_rotation
+from components.diagrams import all_slopes
+from components.model import Model
+
+Array = NDArray[np.float64]
+Rows = NDArray[np.intp]
+
+AXIAL, MOMENT, SHEAR = QUANTITIES = ("N", "M", "V")  # in the order in which their diagrams follow one another
+FLAT = 0.25  # pixels by which a curve may differ from the lines that are drawn of it
+MOST_PIECES = 32  # of a drawn rod
+_LARGEST = 1e6  # pieces that a rod would have to be cut into; such are left out
+_SAMPLES = 33  # between which a zero of a polynomial is looked for
+
+
+@dataclass(frozen=True)
+class Axes:
+    """The axes of some rods as drawn (m): chords, unit vectors to their left, and by how much they bend away there.
+
+    start, end, left: (n, 2). bow: polynomials (n, 5), the present deflection × displacement scale.
+    """
+
+    start: Array
+    end: Array
+    left: Array
+    bow: Array
+
+    def some(self, which: Rows | NDArray[np.bool_]) -> Axes:
+        """Those of some of the rods."""
+        return Axes(self.start[which], self.end[which], self.left[which], self.bow[which])
+
+    def points(self, shares: Array) -> Array:
+        """Points at shares (k,) or (n, k), shape (n, k, 2)."""
+        along = np.broadcast_to(shares, (len(self.start), np.shape(shares)[-1]))[..., None]
+        chord = self.start[:, None] * (1.0 - along) + self.end[:, None] * along
+        found: Array = chord + values(self.bow, shares)[..., None] * self.left[:, None]
+        return found
+
+    def tangents(self, shares: Array) -> Array:
+        """Their directions at shares (k,) or (n, k), not of unit length, shape (n, k, 2)."""
+        rise = values(derivative(self.bow), shares)
+        found: Array = (self.end - self.start)[:, None] + rise[..., None] * self.left[:, None]
+        return found
+
+    @property
+    def curvature(self) -> Array:
+        """Into how many pieces each would have to be cut to be straight within a metre, (n,); a root of a length."""
+        second = derivative(derivative(self.bow))
+        most: Array = np.sqrt(np.abs(second).sum(axis=1) / 8.0)
+        return most
+
+
+def is_frame(model: Model) -> bool:
+    """True if some rod bends, if only by what acts along it between hinges."""
+    return bool(model.rods.bending_stiffness.any())
+
+
+def axes(model: Model, rows: Rows) -> Axes:
+    """The axes of some rods, as they are drawn.
+
+    Cubics by the slopes of their ends, and what a distributed force adds between: q ξ²(1 − ξ)² L₀⁴/24EI across. In small
+    displacements both together are exact.
+    """
+    rods, state = model.rods, _state(model, rows)
+    particles, scale = model.particles, float(model.settings.displacement_scale)
+    ends = rods.between[rows].astype(np.intp)
+    drawn = particles.position[ends] + particles.displacement[ends] * scale
+    return Axes(drawn[:, 0], drawn[:, 1], state.left, scale * (state.cubic + state.sag))
+
+
+def moved_axes(model: Model, rows: Rows, places: Array, displacement: Array, rotation: Array) -> Axes:
+    """The axes of some rods by small displacements (particles, 2) and rotations (particles,) that lead to places.
+
+    Their ends, at places (particles, 2), are all that is drawn of what was before.
+    """
+    rods = model.rods
+    ends = rods.between[rows].astype(np.intp)
+    difference, length = rods.difference[rows], rods.original_length[rows]
+    left = np.stack([-difference[:, 1], difference[:, 0]], axis=1) / np.maximum(length, 1e-300)[:, None]
+    chord = ((displacement[ends[:, 1]] - displacement[ends[:, 0]]) * left).sum(axis=1)
+    rigid = rods.turning_shares[rows] > 0.0
+    slopes = np.where(rigid, length[:, None] * rotation[ends] - chord[:, None], 0.0)
+    slopes = np.where(rigid, slopes, np.where(rigid[:, ::-1], -0.5 * slopes[:, ::-1], 0.0))
+    return Axes(places[ends[:, 0]], places[ends[:, 1]], left, _cubic(*slopes.T))
+
+
+def _cubic(start: Array, end: Array) -> Array:
+    """The deflection (n, 5) between ends with slopes × length (n,)."""
+    zero = np.zeros(len(start))
+    return np.stack([zero, start, -2.0 * start - end, start + end, zero], axis=1)
+
+
+class _State(NamedTuple):
+    """Of some rods: length, unit vector to the left, force across, deflections (n, 5): by slopes, and by that force."""
+
+    length: Array
+    left: Array
+    across: Array
+    cubic: Array
+    sag: Array
+
+
+def _state(model: Model, rows: Rows) -> _State:
+    rods, particles = model.rods, model.particles
+    first, second = rods.between.astype(np.intp).T
+    present = rods.difference + particles.displacement[second] - particles.displacement[first]
+    length = np.hypot(present[:, 0], present[:, 1])
+    along = present / np.where(length > 0.0, length, 1.0)[:, None]
+    left = np.stack([-along[:, 1], along[:, 0]], axis=1)
+    force = rods.distributed_force
+    across = (force * left).sum(axis=1)
+    rigid = np.where(
+        rods.turning_shares > 0.0, particles.rotation[rods.between] - chord_rotation(model)[:, None], 0.0
+    )
+    start, end = (length[:, None] * all_slopes(rods, rigid, across))[rows].T
+    bent = rods.bending_stiffness > 0.0
+    sag = np.divide(
+        across * rods.rest_length**4, 24.0 * rods.bending_stiffness, out=np.zeros(len(bent)), where=bent
+    )[rows]
+    zero = np.zeros(len(sag))
+    cubic = _cubic(start, end)
+    cubic[~bent[rows]] = 0.0
+    sags = np.stack([zero, zero, sag, -2.0 * sag, sag], axis=1)
+    return _State(length[rows], left[rows], across[rows], cubic, sags)
+
+
+def inner_forces(model: Model, rows: Rows, quantity: str) -> Array:
+    """N, V (kN) or M (kN·m) along some rods as polynomials; at their ends the computed columns.
+
+    M(ξ) = M_s (1 − ξ) + M_e ξ − ½ q L₀ L ξ (1 − ξ) + N v(ξ), with the force q across and the cubic deflection v.
+    """
+    rods, state = model.rods, _state(model, rows)
+    name = {AXIAL: "end_axial_force", SHEAR: "shear", MOMENT: "bending_moment"}[quantity]
+    start, end = getattr(rods, name)[rows].T
+    if quantity != MOMENT:
+        return np.stack([start, end - start], axis=1)
+    sag = 0.5 * state.across * rods.rest_length[rows] * state.length
+    found: Array = rods.axial_force[rows, None] * state.cubic[:, :4]
+    found[:, :3] += np.stack([start, end - start - sag, sag], axis=1)
+    return found
+
+
+def zeros(polynomials: Array) -> tuple[Rows, Array]:
+    """Where polynomials (n, d) change sign between 0 and 1: which one, and at which share, in order."""
+    samples = np.linspace(0.0, 1.0, _SAMPLES)
+    signs = np.sign(values(polynomials, samples))
+    which, place = np.nonzero(signs[:, :-1] * signs[:, 1:] < 0.0)
+    low, high = samples[place], samples[place + 1]
+    before = signs[which, place]
+    for _ in range(50):  # halves the interval down to rounding
+        middle = 0.5 * (low + high)
+        same = values(polynomials[which], middle[:, None])[:, 0] * before > 0.0
+        low, high = np.where(same, middle, low), np.where(same, high, middle)
+    touching, at = np.nonzero(signs[:, 1:-1] == 0.0)  # a sample that is a zero itself
+    touching, at = (part[signs[touching, at] * signs[touching, at + 2] < 0.0] for part in (touching, at))
+    which, shares = np.concatenate([which, touching]), np.concatenate([0.5 * (low + high), samples[at + 1]])
+    order = np.lexsort((shares, which))
+    return which[order], shares[order]
+
+
+def values(polynomials: Array, shares: Array) -> Array:
+    """Values of polynomials (n, d) at shares (k,) or (n, k), shape (n, k)."""
+    found = np.zeros((len(polynomials), np.shape(shares)[-1]))
+    for coefficient in polynomials.T[::-1]:
+        found = found * shares + coefficient[:, None]
+    return found
+
+
+def derivative(polynomials: Array) -> Array:
+    """Of polynomials (n, d), by ξ, (n, d − 1)."""
+    found: Array = polynomials[:, 1:] * np.arange(1.0, polynomials.shape[1])
+    return found
+
+
+def largest_sag(model: Model) -> float:
+    """The largest deflection of a rod from the straight line between its ends (m), about."""
+    if not is_frame(model):
+        return 0.0
+    state = _state(model, np.flatnonzero(model.rods.bending_stiffness > 0.0))
+    middle = values(state.cubic + state.sag, np.array([0.5]))
+    return float(np.abs(middle[np.isfinite(middle)]).max(initial=0.0))
+
+
+def middles(model: Model) -> Array:
+    """Some points between the ends of the rods that bend, as drawn (m), (n, 2)."""
+    if not is_frame(model):
+        return np.empty((0, 2))
+    rows = np.flatnonzero(model.rods.bending_stiffness > 0.0)
+    return axes(model, rows).points(np.array([0.25, 0.5, 0.75])).reshape(-1, 2)
+
+
+class Lines(NamedTuple):
+    """Straight pieces along rods, as drawn (m): from, to (p, 2), and whose row each is (p,)."""
+
+    start: Array
+    end: Array
+    rods: Rows
+
+
+def curved_lines(model: Model, fineness: float, rows: Rows | None = None) -> Lines | None:
+    """Pieces along the rods that do not look straight, flat within `fineness` (m); None where all do.
+
+    rows: of the rods among which to look, in order, without them all.
+    """
+    if not is_frame(model):
+        return None
+    stiff = model.rods.bending_stiffness > 0.0
+    rows = np.flatnonzero(stiff) if rows is None else rows[stiff[rows]]
+    return pieces(axes(model, rows), rows, fineness)
+
+
+def pieces(found: Axes, rows: Rows, fineness: float) -> Lines | None:
+    """Axes of the rods in `rows` cut into pieces that are flat within `fineness` (m); None where all look straight."""
+    wanted = found.curvature / np.sqrt(fineness)
+    curved = np.flatnonzero((wanted > 1.0) & (wanted < _LARGEST))
+    if not len(curved):
+        return None
+    least = np.array([2, 4, 8, 16, MOST_PIECES])
+    count = least[np.minimum(np.searchsorted(least, wanted[curved]), len(least) - 1)]
+    starts, ends, of = [], [], []
+    for number in np.unique(count).tolist():
+        some = curved[count == number]
+        points = found.some(some).points(np.linspace(0.0, 1.0, number + 1))
+        starts.append(points[:, :-1].reshape(-1, 2))
+        ends.append(points[:, 1:].reshape(-1, 2))
+        of.append(np.repeat(rows[some], number))
+    row = np.concatenate(of)
+    order = np.argsort(row, kind="stable")
+    return Lines(np.concatenate(starts)[order], np.concatenate(ends)[order], row[order])
+
+
+def distributed_shares(model: Model) -> Array:
+    """What of the force (kN) on each particle is its share of forces distributed along rods, (particles, 2)."""
+    rods, found = model.rods, np.zeros((model.particles.count, 2))
+    if rods.distributed_force.any():
+        half = 0.5 * rods.distributed_force * rods.rest_length[:, None]
+        np.add.at(found, rods.between.ravel(), np.repeat(half, 2, axis=0))
+    return found

@@ -1,0 +1,254 @@
+"""Members that bend: hinges at their ends, distributed forces along them, and moments at their joints."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from components import written
+from components.bent import axes
+from components.model import Model
+from components.rod import rigid_joints
+from components.tags import DiagramShown
+from systems.render.arrows import MOST, arrows, head_length
+from systems.render.labels import Label, half_size
+from systems.render.marks import Discs, Fills, Mark, Owners, Points, Strokes
+from systems.render.occupancy import STRONG
+from systems.render.sheet import Rows, Sheet
+from systems.render.symbols import RIM
+from systems.render.theme import Colour, faded
+
+_HINGE = 3.5  # points, radius of a hinge beside a joint
+_SHORTEST = 5.0  # times its radius: the shortest rod at which a hinge is drawn
+_ROW = (11.0, 22.0)  # points, lengths of the arrows of the smallest and the largest distributed force
+_APART = 15.0  # points between them
+_MOST_ARROWS = 40  # of a rod
+_FAR = 1e6  # pixels; what is beyond is left out
+_BESIDE = 5.0  # points between a rod and arrows along it
+_WIDEST_GAP, _GAP_SHARE = 84.0, 0.36  # between a joint and its rod drawn apart: points, and of the rod
+_ARC = {"load": 15.0, "reaction": 21.0}  # points, radii of the arrows of moments
+_SWEEP = np.radians(250.0)  # of these arrows
+_PIECES = 20
+SMALLEST_MOMENT = 1e-4  # kN·m; smaller ones are drawn as none
+
+Values = NDArray[np.float64]
+
+
+def draw_hinges(sheet: Sheet) -> None:
+    """Open circles at the ends of rods that turn freely at joints of others that do not, beside these joints."""
+    model = sheet.model
+    if not sheet.is_frame or not len(sheet.rods):
+        return
+    rigid, u = rigid_joints(model), sheet.unit
+    free = (model.rods.turning_shares[sheet.rods] == 0.0) & rigid[sheet.ends[sheet.rods]]
+    length = np.hypot(*(sheet.end - sheet.start).T)
+    free &= (length > 2.0 * _SHORTEST * _HINGE * u)[:, None]
+    which, end = np.nonzero(free)
+    if not len(which):
+        return
+    rows = sheet.rods[which]
+    tangent = axes(model, rows).tangents(np.array([0.0, 1.0])) * np.array([1.0, -1.0])  # y down
+    out = tangent[np.arange(len(rows)), end] * np.where(end == 0, 1.0, -1.0)[:, None]
+    out /= np.maximum(np.hypot(*out.T), 1e-300)[:, None]
+    joint = sheet.ends[rows, end]
+    at = sheet.centres[joint] + (sheet.radii[joint] + (_HINGE + 0.5) * u)[:, None] * out
+    radius = np.full(len(at), _HINGE * u)
+    sheet.marks.append(Discs(at, radius, sheet.theme.ink, sheet.theme.hollow, RIM * u, ("rods", rows)))
+    sheet.occupancy.parts.symbols(("rods", rows), at, at, radius)
+    sheet.occupancy.block_squares(at, radius)
+    sheet.explain("hinge", at, at)
+
+
+def gaps(lengths: Values, unit: float) -> Values:
+    """What is left free between joints and rods of these lengths where they are drawn apart, in pixels."""
+    found: Values = np.minimum(_GAP_SHARE * lengths, _WIDEST_GAP * unit)
+    return found
+
+
+# --- distributed forces ------------------------------------------------------------------------------
+
+
+def draw_distributed_forces(sheet: Sheet) -> None:
+    """A row of arrows along each rod with a distributed force, on the side from which it pushes, and its value."""
+    force = sheet.model.rods.distributed_force
+    loaded = np.flatnonzero(force[sheet.rods].any(axis=1))
+    if not 0 < len(loaded) <= MOST:
+        return
+    size, u, colour = np.hypot(*force[sheet.rods].T), sheet.unit, sheet.theme.load
+    least, most = _ROW
+    height = (least + (most - least) * size / np.hypot(*force.T).max()) * u
+    if sheet.view.all_diagrams and sheet.view.forces_known:
+        height = np.full(len(size), least * u)  # diagrams have the room
+    told = _told(sheet, loaded)
+    for index in loaded.tolist():
+        row = int(sheet.rods[index])
+        along = force[row] * [1.0, -1.0] / size[index]
+        tips, shifted = _tips(sheet, index, along)
+        if not len(tips) or not (np.abs(tips) < _FAR).all():
+            continue
+        level = np.full(len(tips), height[index] if not shifted else _APART * u)
+        tails = tips - level[:, None] * along
+        of, owners = ("rods", np.full(len(tips), row)), [("rods", row)] * len(tips)
+        if not shifted:  # a line through the tails
+            sheet.marks.append(Strokes(tails[:-1], tails[1:], 1.25 * u, colour, (of[0], of[1][1:])))
+            sheet.occupancy.line(tails[:-1], tails[1:], STRONG, (of[0], of[1][1:]))
+        sheet.marks += arrows(sheet, owners, tails, np.tile(along, (len(tips), 1)), level, colour, of, 1.25)
+        sheet.explain("load", tails, tips)
+        if index in told:
+            _label_row(sheet, row, tails, along, float(size[index]), shifted)
+
+
+def _told(sheet: Sheet, loaded: Rows) -> set[int]:
+    """The rods whose value is told: of those with the same force that follow one another, the one in the middle."""
+    chains: list[tuple[set[tuple[float, ...]], list[int]]] = []  # joints of each, and rods
+    force = sheet.model.rods.distributed_force
+    for index in loaded.tolist():
+        row = sheet.rods[index]
+        joints, rods = {(*force[row].tolist(), joint) for joint in sheet.ends[row].tolist()}, [index]
+        for chain in [chain for chain in chains if chain[0] & joints]:
+            chains.remove(chain)
+            joints, rods = joints | chain[0], chain[1] + rods
+        chains.append((joints, rods))
+    return {rods[len(rods) // 2] for _, rods in chains}
+
+
+def _tips(sheet: Sheet, index: int, along: Points) -> tuple[Points, bool]:
+    """Where the arrows of a distributed force end on a rod; or, where it acts along the rod, beside it."""
+    u, row = sheet.unit, int(sheet.rods[index])
+    start, end = sheet.centres[sheet.ends[row]]
+    way = end - start
+    length = float(np.hypot(*way))
+    if length < 2.0 * _APART * u:
+        return np.empty((0, 2)), False
+    shifted = bool(abs(along @ way) > 0.97 * length)
+    apart = float(gaps(np.array(length), u)) / length if sheet.view.free_bodies else 0.0
+    seen = 1.0 - 2.0 * apart
+    count = int(np.clip(round(seen * length / (_APART * u)), 2, _MOST_ARROWS))
+    shares = np.linspace(0.0, 1.0, count + 1) if not shifted else (np.arange(count) + 1.0) / count
+    shares = apart + shares * seen
+    points = sheet.view.camera.to_pixels(axes(sheet.model, np.array([row])).points(shares)[0])
+    across = np.array([way[1], -way[0]]) / length
+    if shifted:
+        return points + _BESIDE * u * across * (1.0 if across[1] <= 0.0 else -1.0), True
+    return points - 1.5 * u * along, False
+
+
+def _label_row(sheet: Sheet, row: int, tails: Points, along: Points, size: float, shifted: bool) -> None:
+    text, font, key = (
+        f"{written.given(size, written.DIGITS)} kN/m",
+        sheet.font(12.0),
+        ("rods.distributed_force", row),
+    )
+    half = half_size(text, font, "semibold", sheet.unit)
+    way = tails[-1] - tails[0]
+    out = -along
+    if shifted:
+        out = np.array([way[1], -way[0]]) / max(float(np.hypot(*way)), 1e-9)
+        out = out if out[1] <= 0.0 else -out
+    reach = abs(out[0]) * half[0] + abs(out[1]) * half[1] + 2.0 * sheet.unit
+    shares = np.array([0.5, 0.35, 0.65, 0.2, 0.8])
+    base = tails[0] + shares[:, None] * way
+    places = np.concatenate([base + out * reach, base + out * (reach + 12.0 * sheet.unit)])
+    backing, of = faded(sheet.theme.background, 0.86), ("rods", row)
+    label = Label(text, places, font, sheet.theme.load, -1e9 - size, "semibold", backing, "spare", key, of, of)
+    sheet.labels.append(label._replace(anchors=base, outward=out))
+    sheet.values["rods.distributed_force"] += 1
+
+
+# --- moments -----------------------------------------------------------------------------------------
+
+
+def full_moment(model: Model) -> Values:
+    """The moment (kN·m) on each particle, its loads at full size included, (n,)."""
+    moment: Values = model.particles.moment + np.bincount(
+        model.loads.on, model.loads.moment, model.particles.count
+    )
+    return moment
+
+
+def draw_moments(sheet: Sheet) -> None:
+    """Curved arrows of the moments on joints that can bear them: of loads, and in diagrams of reactions."""
+    model = sheet.model
+    if not sheet.is_frame:
+        return
+    shown = np.zeros(model.particles.count, dtype=bool)
+    if sheet.view.forces_known:
+        shown[sheet.tagged(DiagramShown, "particles")] = True
+        shown |= sheet.view.all_diagrams
+    applied = full_moment(model)
+    if shown.any():
+        applied = np.where(shown, model.particles.applied_moment, applied)
+        _draw_arcs(sheet, "reaction", np.where(shown, model.particles.reaction_moment, 0.0))
+    _draw_arcs(sheet, "load", np.where(rigid_joints(model), applied, 0.0))
+
+
+def _draw_arcs(sheet: Sheet, name: str, moment: Values) -> None:
+    """Arrows of moments (n,) around their particles, and their values; of many the largest."""
+    rows = sheet.particles[
+        (np.abs(moment[sheet.particles]) > SMALLEST_MOMENT) & np.isfinite(moment[sheet.particles])
+    ]
+    rows = np.sort(rows[np.argsort(-np.abs(moment[rows]), kind="stable")][:MOST])
+    if not len(rows):
+        return
+    radius = sheet.radii[rows] + (_ARC[name] - 4.0) * sheet.unit
+    key = "particles.applied_moment" if name == "load" else "particles.reaction_moment"
+    colour, of = getattr(sheet.theme, name), ("particles", rows)
+    sheet.marks += arc_marks(sheet, of, sheet.centres[rows], radius, moment[rows], colour, key)
+    sheet.explain(name, sheet.centres[rows], sheet.centres[rows])
+    for at, size, row, value in zip(
+        sheet.centres[rows], radius.tolist(), rows.tolist(), moment[rows].tolist(), strict=True
+    ):
+        text = written.moment(abs(value)) if name == "reaction" else ""
+        label_moment(sheet, at, size, value, colour, (key, row), text)
+
+
+def arc_marks(
+    sheet: Sheet, of: Owners, at: Points, radius: Values, moment: Values, colour: Colour, key: str
+) -> list[Mark]:
+    """Curved arrows about points (n, 2), of radii (n,), that turn as moments (n,) do, counter-clockwise if positive.
+
+    They are open below. key: of these parts of the picture, beside the rows of their elements.
+    """
+    if not len(at):
+        return []
+    table, rows = of
+    u, turn = sheet.unit, np.where(moment > 0.0, 1.0, -1.0)
+    head = head_length(radius, u)
+    angle = np.linspace(-0.5, 0.5, _PIECES + 1) * _SWEEP
+    angle = np.pi / 2.0 + turn[:, None] * angle  # from the right, over the top
+    points = at[:, None] + radius[:, None, None] * np.stack([np.cos(angle), -np.sin(angle)], axis=2)
+    first, last = points[:, :-1].reshape(-1, 2), points[:, 1:].reshape(-1, 2)
+    every = np.repeat(rows, _PIECES)
+    forward = points[:, -1] - points[:, -2]
+    forward /= np.hypot(*forward.T)[:, None]
+    neck, across = points[:, -1], forward[:, ::-1] * [-1.0, 1.0]
+    tip, barb = neck + head[:, None] * forward, 0.5 * head[:, None] * across
+    sheet.occupancy.line(first, last, STRONG, (key, every))
+    for parts in ((first, last, every), (neck - barb, neck + barb, rows), (neck, tip, rows)):
+        sheet.occupancy.parts.symbols((key, parts[2]), *parts[:2], u)
+    return [
+        Strokes(first, last, 1.75 * u, colour, (table, every)),
+        Fills(np.stack([tip, neck + barb, neck - barb], axis=1), colour, (table, rows)),
+    ]
+
+
+def label_moment(
+    sheet: Sheet,
+    at: Points,
+    radius: float,
+    moment: float,
+    colour: Colour,
+    key: tuple[str, int],
+    said: str = "",
+) -> None:
+    """The size of a moment outside its arrow; said: in other words than what a person gave."""
+    text, font = said or f"{written.given(abs(moment), written.DIGITS)} kN·m", sheet.font(12.0)
+    half = half_size(text, font, "semibold", sheet.unit)
+    angle = np.radians([90.0, 52.5, 127.5, 15.0, 165.0, 0.0, 180.0, -40.0, 220.0])  # first corners of the arrow
+    out = np.stack([np.cos(angle), -np.sin(angle)], axis=1)
+    reach = radius + 2.0 * sheet.unit + np.abs(out) @ np.array(half)
+    places = np.concatenate([at + out * reach[:, None], at + out * (reach + 8.0 * sheet.unit)[:, None]])
+    backing, of = faded(sheet.theme.background, 0.86), ("particles", key[1])
+    label = Label(text, places, font, colour, -1e9 - abs(moment), "semibold", backing, "spare", key, of, key)
+    sheet.labels.append(label._replace(anchors=at + radius * out[:5], outward=out[0]))
+    sheet.values[key[0]] += 1

@@ -1,0 +1,200 @@
+"""Diagrams of N, M and V along members that bend."""
+
+from typing import Any
+
+import numpy as np
+import pytest
+
+from components.bent import AXIAL, MOMENT, QUANTITIES, SHEAR
+from components.tags import DiagramShown
+from components.view import View
+from game import Session
+from systems.render.marks import Bars, Discs, Fills, Picture, Strokes
+from systems.render.picture import compose
+from systems.render.theme import faded
+from tests.systems.render.frame_models import CLAMPED, EI, PINNED, ROLLER, frame, gerber_at_rest, portal_at_rest
+from tests.systems.render.pictures import LIGHT
+
+INK = faded(LIGHT.ink, 0.9)  # of outlines
+
+
+def shown(
+    source: dict[str, Any], quantity: str, width: int = 1000, height: int = 720, **settings: Any
+) -> tuple[Picture, Session]:
+    session = Session.open(source)
+    for name, value in settings.items():
+        setattr(session.settings, name, value)
+    session.resize(width, height)
+    session.view.fit(session.model)
+    session.get_ready()
+    session.view.all_diagrams, session.view.quantity = True, quantity
+    return compose(session.model, session.view, LIGHT), session
+
+
+def areas(picture: Picture, session: Session, name: str) -> np.ndarray:
+    """The corners of the area along a rod: its baseline, and back along the edge."""
+    row = session.model.rods[name].row
+    found = [
+        mark.corners[mark.of[1] == row]
+        for mark in picture.marks
+        if isinstance(mark, Fills)
+        and mark.of is not None
+        and mark.of[0] == "rods"
+        and mark.corners.shape[1] > 4
+    ]
+    (corners,) = [corners[0] for corners in found if len(corners)]
+    return corners
+
+
+def cantilever(force: float) -> dict[str, Any]:
+    """Two metres to the right of a clamp, a force at the tip, at rest."""
+    source = frame({"A": (0.0, 0.0, CLAMPED), "B": (2.0, 0.0, {"force": [0.0, force]})}, {"A B": {}})
+    source["particles"][1] |= {"displacement": [0.0, force * 8.0 / 3.0 / EI], "rotation": force * 2.0 / EI}
+    return source
+
+
+@pytest.mark.parametrize("force", [-5.0, 5.0])
+@pytest.mark.parametrize("turned", [False, True])
+def test_moments_stand_on_the_side_in_tension(force: float, turned: bool) -> None:
+    source = cantilever(force)
+    if turned:
+        source["rods"][0]["between"] = ["B", "A"]
+    picture, session = shown(source, MOMENT)
+    corners = areas(picture, session, "AB")
+    count = len(corners) // 2
+    rise = corners[::-1][:count] - corners[:count]
+    at_clamp = rise[-1 if turned else 0]
+    assert np.sign(at_clamp[1]) == np.sign(force), (
+        "pushed down, the upper side is in tension; y is down in pixels"
+    )
+    assert abs(at_clamp[0]) < 0.05 * abs(at_clamp[1])
+    assert np.hypot(*rise[0 if turned else -1]) < 1e-3 * abs(at_clamp[1])
+    assert "10.00 kN·m" in picture.texts
+
+
+def test_shear_is_signed_and_hatched() -> None:
+    picture, session = shown(cantilever(-5.0), SHEAR)
+    corners = areas(picture, session, "AB")
+    count = len(corners) // 2
+    rise = (corners[::-1][:count] - corners[:count])[:, 1]
+    assert (rise < 0.0).all(), "positive: above a rod to the right"
+    assert "+5.000 kN" in picture.texts
+    hatch = [m for m in picture.marks if isinstance(m, Strokes) and m.colour == faded(LIGHT.ink, 0.4)]
+    assert len(hatch[0].start) > 10
+    assert not [
+        m
+        for m in shown(cantilever(-5.0), MOMENT)[0].marks
+        if isinstance(m, Strokes) and m.colour == faded(LIGHT.ink, 0.4)
+    ]
+
+
+def test_values_extremes_and_zero_points_of_a_portal() -> None:
+    picture, session = shown(portal_at_rest(), MOMENT)
+    texts = picture.texts
+    assert {"28.12 kN·m", "35.55 kN·m", "38.53 kN·m"} <= set(texts)
+    assert texts.count("35.55 kN·m") == 1, "both members at a corner have it"
+    zeros = [m for m in picture.marks if isinstance(m, Discs) and m.ink == INK]
+    assert len(zeros[0].at) == 2
+    model, place = session.model, session.view.camera.to_model(zeros[0].at[1])
+    assert 4.5 < place[0] < 6.0, "right of the middle of the beam"
+    assert place[1] == pytest.approx(4.0, abs=0.1)
+    assert model.rods["BC"].bending_moment == pytest.approx((1.359, -35.55), rel=1e-3)
+
+
+def test_axial_forces_have_their_colours_and_no_noise() -> None:
+    picture, _session = shown(portal_at_rest(), AXIAL)
+    assert "compression (kN)" in picture.texts
+    assert {"−8.738 kN", "−29.82 kN"} <= set(picture.texts)
+    assert not [mark for mark in picture.marks if isinstance(mark, Bars)]
+    beam, _ = shown(gerber_at_rest(), AXIAL)
+    areas_of = [m for m in beam.marks if isinstance(m, Fills) and m.corners.shape[1] > 4]
+    for mark in areas_of:
+        count = mark.corners.shape[1] // 2
+        rise = np.abs(mark.corners[:, ::-1][:, :count] - mark.corners[:, :count]).max()
+        assert rise < 12.0, "small beside the shears"
+
+
+def test_a_moment_that_passes_a_joint_is_told_where_it_is_largest() -> None:
+    picture, _ = shown(gerber_at_rest(), MOMENT)
+    told = [text for text in picture.texts if text.endswith("kN·m")]
+    assert len(told) == len(set(told)) == 3, "under the force, above C, within DE"
+
+
+def test_on_the_original_shape_if_wanted() -> None:
+    scale = {"displacement_scale": 60.0}
+    picture, session = shown(portal_at_rest(), MOMENT, **scale)
+    original, _ = shown(portal_at_rest(), MOMENT, original_diagrams=True, **scale)
+    columns = [areas(p, session, "CD") for p in (picture, original)]
+    count = len(columns[0]) // 2
+    camera, positions = session.view.camera, session.model.particles.position
+    assert columns[1][0] == pytest.approx(camera.to_pixels(positions[2]), abs=1.0)
+    assert np.ptp(columns[1][:count, 0]) < 1e-6, "a straight column"
+    assert np.ptp(columns[0][:count, 0]) > 10.0
+
+
+def test_one_scale_for_all_which_is_steady() -> None:
+    session = Session.open(portal_at_rest())
+    session.resize(1000, 720)
+    session.view.fit(session.model)
+    session.get_ready()
+    session.view.all_diagrams, session.view.quantity = True, MOMENT
+    placed: dict[tuple[str, int], int] = {}
+    before = areas(compose(session.model, session.view, LIGHT, placed), session, "BC")
+    rotation = session.model.writable("particles.rotation")
+    rotation *= 0.9
+    displacement = session.model.writable("particles.displacement")
+    displacement *= 0.9
+    after = areas(compose(session.model, session.view, LIGHT, placed), session, "CD")
+    assert before.shape == after.shape
+    assert ("diagrams.M", 0) in placed
+
+
+def test_only_tagged_rods_if_only_these_are_wanted() -> None:
+    _, session = shown(portal_at_rest(), MOMENT)
+    session.view.all_diagrams = False
+    session.model.tag(session.model.rods["BC"], DiagramShown)
+    picture = compose(session.model, session.view, LIGHT)
+    found = {
+        int(row)
+        for mark in picture.marks
+        if isinstance(mark, Fills)
+        and mark.of is not None
+        and mark.of[0] == "rods"
+        and mark.corners.shape[1] > 4
+        for row in mark.of[1]
+    }
+    assert found == {session.model.rods["BC"].row}
+
+
+def test_unknown_forces_are_not_drawn() -> None:
+    session = Session.open(portal_at_rest())
+    session.view.all_diagrams, session.view.forces_known = True, False
+    picture = compose(session.model, session.view, LIGHT)
+    assert not [m for m in picture.marks if isinstance(m, Fills) and m.corners.shape[1] > 4]
+
+
+@pytest.mark.parametrize("quantity", QUANTITIES)
+def test_a_truss_shows_axial_forces_whatever_is_chosen(quantity: str) -> None:
+    session = Session.open("isostatic")
+    session.get_ready()
+    session.view.all_diagrams = True
+    expected = compose(session.model, session.view, LIGHT)
+    session.view.quantity = quantity
+    found = compose(session.model, session.view, LIGHT)
+    assert found.texts == expected.texts
+    assert [type(mark) for mark in found.marks] == [type(mark) for mark in expected.marks]
+
+
+def test_many_members_are_drawn_without_single_values() -> None:
+    count = 200
+    particles = {
+        f"P{i}": (0.1 * i, 0.02 * (i % 2), PINNED if i == 0 else ROLLER if i == count else {})
+        for i in range(count + 1)
+    }
+    source = frame(particles, {f"P{i} P{i + 1}": {"distributed_force": [0.0, -1.0]} for i in range(count)})
+    picture, _ = shown(source, MOMENT, 1900, 300)
+    assert picture.marks
+
+
+def test_the_view_remembers_the_quantity() -> None:
+    assert View().quantity == AXIAL
