@@ -14,7 +14,6 @@ from numpy.typing import NDArray
 from components.derived import chord_rotation
 from components.diagrams import all_slopes
 from components.model import Model
-from components.table import flags
 
 Array = NDArray[np.float64]
 Rows = NDArray[np.intp]
@@ -267,12 +266,6 @@ def pieces(found: Axes, rows: Rows, fineness: float) -> Lines | None:
     row = np.concatenate(of)
     order = np.argsort(row, kind="stable")
     return Lines(np.concatenate(starts)[order], np.concatenate(ends)[order], row[order])
-
-
-def rigid_joints(model: Model) -> NDArray[np.bool_]:
-    """Which particles have rigid rod ends, (particles,)."""
-    rods = model.rods
-    return flags(rods.between[rods.turning_shares > 0.0], model.particles.count)
 
 
 def distributed_shares(model: Model) -> Array:

@@ -61,6 +61,7 @@ COMMANDS |= {
     "run": Command(_of("run"), "compute a model without a window, and print the result"),
     "verify": Command(_of("verify"), "simulation beside linear and exact theory; influence lines"),
     "curve": Command(_of("curve"), "load–displacement curve, through limit points"),
+    "buckling": Command(_of("buckling"), "critical load factors, modes and effective lengths"),
     "force-method": Command(_of("force_method"), "hyperstatic forces by the force method"),
     "sweep": Command(_of("sweep"), "compute many variants of a model"),
     "plan": Command(_of("plan"), "which systems run in a scene with a model, and why others do not"),

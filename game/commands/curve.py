@@ -7,7 +7,9 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from components.field import ENDS
 from components.model import Model
+from components.rod import bends
 from game.commands.arguments import Parser, UsageError, count, finite
 from game.commands.options import ANSWERED, NOT_ANSWERED, add_model, session_of
 from game.commands.output import Row, add_output, write_result
@@ -15,6 +17,9 @@ from game.streams import tell
 
 if TYPE_CHECKING:  # it imports scipy
     from systems.statics.path import Curve
+
+
+_UNITS = {"displacement": "m", "rotation": "rad", "axial_force": "kN", "bending_moment": "kN·m"}
 
 
 def command(words: Sequence[str]) -> int:
@@ -76,20 +81,35 @@ def _why_nothing_follows(model: Model) -> str:
 def _data(model: Model, curve: Curve) -> dict[str, Any]:
     """A curve as plain data, each list with one entry for every equilibrium.
 
-    displacement (m): by free direction, such as "B.y"; axial_force (kN): by rod.
+    displacement (m): by free direction, such as "B.y"; axial_force (kN): by rod. Where members bend: rotation (rad), by
+    particle that turns; bending_moment (kN·m), by rigid end, such as "AB.start".
     """
     names = model.particles.names
     free = np.argwhere(~model.particles.fixed).tolist()
+    bent = {}
+    if bends(model):
+        turns = np.flatnonzero(model.particles.turning > 0.0).tolist()
+        rigid = np.argwhere(model.rods.turning_shares > 0.0).tolist()
+        rods = model.rods.names
+        bent["rotation"] = {names[row]: curve.rotation[:, row] for row in turns}
+        bent["bending_moment"] = {
+            f"{rods[row]}.{ENDS[end]}": curve.bending_moment[:, row, end] for row, end in rigid
+        }
     return {
         "load_factor": curve.load_factor,
         "stable": curve.stable,
         "displacement": {f"{names[row]}.{'xy'[axis]}": curve.displacement[:, row, axis] for row, axis in free},
         "axial_force": dict(zip(model.rods.names, curve.axial_force.T, strict=True)),
+        **bent,
     }
 
 
 def _rows(found: Mapping[str, Any]) -> Iterator[Row]:
     """The data of a curve as rows, one for every equilibrium, headings first."""
-    moved, forces = found["displacement"], found["axial_force"]
-    yield "load factor", "stable", *(f"{name} (m)" for name in moved), *(f"{name} (kN)" for name in forces)
-    yield from zip(found["load_factor"], found["stable"], *moved.values(), *forces.values(), strict=True)
+    columns = {
+        f"{name} ({unit})": values
+        for quantity, unit in _UNITS.items()
+        for name, values in found.get(quantity, {}).items()
+    }
+    yield "load factor", "stable", *columns
+    yield from zip(found["load_factor"], found["stable"], *columns.values(), strict=True)

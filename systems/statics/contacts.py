@@ -17,7 +17,7 @@ from systems.broad_phase import near_pairs, nearest
 from systems.statics.equations import Array, Flags, Rows, Structure, largest
 from systems.statics.factor import is_stable
 from systems.statics.follow import Path, Point
-from systems.statics.relax import BALANCED, RUNAWAY, creep
+from systems.statics.relax import BALANCED, creep, has_run_away
 
 CONTACT_STRAIN = 1e-3  # of a contact under the largest load, before it is lengthened
 SHORTEST_MOVE = 0.25  # of its radius: the travel of a disc in a step, whatever is near
@@ -186,7 +186,7 @@ class Sinking:
 
         Returns "equilibrium", "unstable" (a balance that the least push ends), "falls" or "gave up".
         """
-        penalty, worst = 0.0, np.inf
+        penalty, worst, begun = 0.0, np.inf, self.point.displacement
         for _ in range(MOST_STEPS):
             moves = self.discs.moves(self.point.displacement)
             self._look_around(moves)
@@ -207,7 +207,7 @@ class Sinking:
             if crept is None:
                 break
             penalty = crept
-            if largest(self.point.displacement[:, :2]) > RUNAWAY * self.bare.extent:
+            if has_run_away(self.bare, self.point.displacement, begun):
                 return "falls"
         return "gave up"
 

@@ -24,6 +24,7 @@ NUDGE = 1e-3  # of a rod's length: how far to push off an unstable equilibrium
 BALANCED = 1e-9  # of the largest force: an equilibrium, though an unstable one
 LARGEST_PLASTIC_STRAIN = 0.2  # gained on the way; structural metal tears before
 RUNAWAY = 100.0  # times the structure's extent: a displacement without end
+ROUND_AND_ROUND = 30.0  # rad: a rotation without end
 
 
 def relax(path: Path, start: Point, nudge: Array | None = None, steps: int = STEPS) -> tuple[Point, str]:
@@ -53,9 +54,15 @@ def relax(path: Path, start: Point, nudge: Array | None = None, steps: int = STE
         point, penalty = crept
         if largest(point.plastic_strain - start.plastic_strain) > LARGEST_PLASTIC_STRAIN:
             return point, "strained apart"
-        if largest(point.displacement[:, :2]) > RUNAWAY * structure.extent:
+        if has_run_away(structure, point.displacement, start.displacement):
             return point, "ran away"
     return point, "gave up"
+
+
+def has_run_away(structure: Structure, displacement: Array, start: Array) -> bool:
+    """True if a motion to these displacements has no end, be it that it goes far or round and round."""
+    far = largest(displacement[:, :2]) > RUNAWAY * structure.extent
+    return far or largest((displacement - start)[:, 2:]) > ROUND_AND_ROUND
 
 
 def _travel(structure: Structure, point: Point, displacement: Array) -> float:

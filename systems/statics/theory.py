@@ -24,22 +24,22 @@ MOST_MODES = 20  # mechanisms or states of self-stress of larger structures
 # --- linear theory -----------------------------------------------------------------------------------
 
 
-def linear(model: Model, start: Start | None = None) -> StaticState:
+def linear(model: Model, start: Start | None = None, factor: float = 1.0) -> StaticState:
     """The direct stiffness method: K u = f about the original positions, all rods elastic.
 
     start: a state (None: the present one) of which plastic strain acts as initial forces, like lack of fit, and
-    displacements of constrained directions as moved supports. Raises NoEquilibrium, naming the particles, for a
-    mechanism or a free body that the load moves.
+    displacements of constrained directions as moved supports. factor: of forces and loads; all else acts in full.
+    Raises NoEquilibrium, naming the particles, for a mechanism or a free body that the load moves.
     """
     structure, start = Structure.of(model, "linear"), start or Start.present(model)
-    load = external_forces(model).at(1.0)
+    load = external_forces(model).at(factor)
     for body in loose_bodies(structure, load):
         if body.pull:
-            raise NoEquilibrium("mechanism", loose_event(model, body, 1.0).message)
+            raise NoEquilibrium("mechanism", loose_event(model, body, factor).message)
     supports = np.where(structure.fixed, structure.field(start.displacement, start.rotation), 0.0)
-    initial = structure.respond(supports, start.plastic_strain, 1.0)
+    initial = structure.respond(supports, start.plastic_strain, factor)
     moved = supports + _deflection(model, structure, load - _internal(structure, initial))
-    final = structure.respond(moved, start.plastic_strain, 1.0)
+    final = structure.respond(moved, start.plastic_strain, factor)
     elastic = replace(final, axial_force=final.elastic_force, plastic_strain=start.plastic_strain)
     unbalanced = np.where(structure.fixed, 0.0, structure.internal(elastic) - load)
     forces = max(structure.largest(load), structure.largest_force(elastic))
@@ -49,7 +49,7 @@ def linear(model: Model, start: Start | None = None) -> StaticState:
         elastic,
         moved,
         load,
-        load_factor=1.0,
+        load_factor=factor,
         dissipated_plastic=0.0,
         residual=structure.largest(unbalanced) / forces if forces > 0.0 else 0.0,
         status=STABLE,

@@ -212,7 +212,7 @@ def test_the_last_good_state_is_not_the_first() -> None:
     changed = bits.different(bits.columns(session.model, Role.STATE), good)
     assert all(name.startswith("clock.") for name in changed)
     assert session.model.clock.steps == 20_000
-    assert "The last good state, at t = 20 s" in session.message
+    assert "The last good state, at t = 20.00 s" in session.message
 
 
 def test_an_automatic_step_that_proves_too_long_is_halved() -> None:

@@ -231,3 +231,21 @@ def test_a_long_member_is_no_mechanism(parts: int, slenderness: float) -> None:
     bent = cantilever(parts, {"force": [0.0, -EI / LENGTH**2]}, slenderness)
     assert indeterminacy(bent).mechanisms == indeterminacy(bent).static == 0
     assert linear(bent).displacement[-1, 1] == pytest.approx(-LENGTH / 3.0, rel=1e-13)
+
+
+def test_a_lever_that_a_moment_turns_round_and_round_is_a_mechanism() -> None:
+    """Pinned at one end; its weight balances less than the moment, wherever it is."""
+    particles: list[dict[str, Any]] = [
+        {"name": "A", "position": [0.0, 0.0], "fixed": [True, True]},
+        {"name": "B", "position": [2.0, 0.0], "force": [0.0, -10.0], "moment": 30.0},
+    ]
+    lever = {"name": "AB", "between": ["A", "B"], "stiffness": 1e5, "bending_stiffness": 200.0}
+    found = settle(parse(model(particles, [lever])))
+    assert found.status == "mechanism"
+    assert "B" in found.message
+    particles[1]["moment"] = 5.0
+    hanging = settle(parse(model(particles, [lever]))).final
+    assert hanging.status == "equilibrium"
+    x, y = np.array([2.0, 0.0]) + hanging.displacement[1]
+    assert 10.0 * x == pytest.approx(5.0, rel=1e-9)
+    assert y < 0.0

@@ -91,7 +91,7 @@ def test_an_empty_model_says_how_to_begin() -> None:
     session.resize(1024, 640)
     session.update_view()
     texts = compose(session.model, session.view, LIGHT).texts
-    assert {"An empty model", "New particle under the pointer", "P", "Load", "D"} <= set(texts)
+    assert {"An empty model", "New particle under the pointer", "P", "Open a model", "D"} <= set(texts)
     enabled = [button for button in Card(session.view).buttons if button.tool.enabled]
     assert [button.tool.action for button in enabled] == ["place", "rod", "load", "toggle help"]
     place, _, load, _ = enabled

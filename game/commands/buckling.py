@@ -1,0 +1,107 @@
+"""`pinjoint buckling`: critical load factors, the modes in which a structure gives way, and effective lengths."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+from functools import partial
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from components.model import Model
+from game.commands.arguments import Parser, UsageError, count
+from game.commands.options import ANSWERED, NOT_ANSWERED, add_model, session_of
+from game.commands.output import Row, add_output, aligned, as_written, write_result
+from game.streams import tell
+
+if TYPE_CHECKING:  # it imports scipy
+    from systems.statics.buckling import Buckling
+
+
+def command(words: Sequence[str]) -> int:
+    """Do what the words after the command ask for; returns the exit status."""
+    parser = Parser(
+        prog="pinjoint buckling",
+        description="Linear buckling: the factors of forces and loads at which the structure gives way, and how.",
+    )
+    add_model(parser)
+    parser.add_argument(
+        "--modes", type=partial(count, least=1), default=5, metavar="N", help="at most so many; default 5"
+    )
+    add_output(parser)
+    options = parser.parse_args(words)
+    session = session_of(options)
+    from systems.statics.events import NoEquilibrium
+
+    try:
+        found = session.buckling(options.modes)
+    except NoEquilibrium as error:
+        raise UsageError(str(error), NOT_ANSWERED) from None
+    laws = session.schedule.left_out_of_statics(session.model)
+    write_result(options, _data(session.model, found) | {"left_out": laws}, _rows, _lines)
+    if laws:
+        tell(f"Buckling leaves out the laws of mods: {', '.join(laws)}.")
+    if options.format != "table":
+        tell(" ".join(filter(None, [found.message, *found.notes])))
+    return ANSWERED if len(found.factors) and not laws else NOT_ANSWERED
+
+
+def _data(model: Model, found: Buckling) -> dict[str, Any]:
+    """Linear buckling as plain data.
+
+    modes: {particle: [x, y, rotation]} of each factor. effective_length: {rod: m} of compressed rods that can bend, and
+    effective_length_factor over their own lengths. axial_force: {rod: {"steady": kN, "factor 1": kN, "critical": kN}}.
+    """
+    names, rods = model.particles.names, model.rods.names
+    modes = np.zeros((len(found.modes), model.particles.count, 3))
+    modes[:, :, : found.modes.shape[-1]] = found.modes
+    lowest = found.factors[0] if len(found.factors) else 1.0
+    forces = zip(found.dead.tolist(), found.live.tolist(), strict=True)
+    lengths = {
+        name: length for name, length in zip(rods, found.effective_length, strict=True) if length == length
+    }
+    own = dict(zip(rods, model.rods.rest_length, strict=True))
+    return {
+        "factors": found.factors,
+        "modes": [dict(zip(names, mode.tolist(), strict=True)) for mode in modes],
+        "effective_length": lengths,
+        "effective_length_factor": {name: length / own[name] for name, length in lengths.items()},
+        "axial_force": {
+            name: {"steady": dead, "factor 1": live, "critical": dead + lowest * live}
+            for name, (dead, live) in zip(rods, forces, strict=True)
+        },
+        "message": found.message,
+        "notes": found.notes,
+    }
+
+
+def _rows(found: Mapping[str, Any]) -> Iterator[Row]:
+    """The modes as rows, one for every particle of each, headings first."""
+    yield "mode", "factor", "particle", "x", "y", "rotation"
+    for number, (factor, mode) in enumerate(zip(found["factors"], found["modes"], strict=True), start=1):
+        yield from ((number, factor, name, *motion) for name, motion in mode.items())
+
+
+def _lines(found: Mapping[str, Any]) -> Iterator[str]:
+    """Factors, with who moves most, and the compressed members at the lowest, to read."""
+    if not found["factors"]:
+        yield found["message"]
+        return
+    rows = [["critical load", "factor", "of the lowest", "moves most"]]
+    for number, (factor, mode) in enumerate(zip(found["factors"], found["modes"], strict=True), start=1):
+        most = max(mode, key=lambda name: max(map(abs, mode[name])))
+        rows.append([f"mode {number}", as_written(factor), as_written(factor / found["factors"][0]), most])
+    yield from aligned(rows)
+    pressed = {name: of for name, of in found["axial_force"].items() if of["critical"] < 0.0}
+    if pressed:
+        yield ""
+        table = [
+            ["compressed, kN", "at factor 1", "at the lowest", "effective length, m", "over its own length"]
+        ]
+        for name, of in pressed.items():
+            lengths = [found[key].get(name) for key in ("effective_length", "effective_length_factor")]
+            table.append([name, *map(as_written, [of["steady"] + of["factor 1"], of["critical"], *lengths])])
+        yield from aligned(table)
+    for note in found["notes"]:
+        yield ""
+        yield note

@@ -1,0 +1,217 @@
+"""Linear buckling: at which factors of the load a structure gives way, and in which shapes.
+
+K₀ φ = −λ K_G φ: K₀ is the stiffness with the forces that act in full (weight, lack of fit, warmth, moved supports), K_G
+that of the first-order axial forces of the forces and loads at the factor 1. Nothing moves before it gives way.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from components.model import Model
+from systems.statics.bending import needed_parts
+from systems.statics.equations import Array, Matrix, Structure, normalised
+from systems.statics.events import NoEquilibrium
+from systems.statics.explain import describe_motion, divide_named, rod_names
+from systems.statics.factor import NO_STIFFNESS, SOFT, Factor, pseudo_random, regular, soft_modes, unresisted
+from systems.statics.state import Start
+from systems.statics.theory import linear
+
+FULL = 600  # unknowns up to which all eigenvalues are computed
+MODES = 5
+NOTHING = 1e-10  # of the largest axial force, or of the largest eigenvalue: round-off
+STIFFENED = (
+    1e-6,
+    1e-8,
+    1e-10,
+)  # of the rods' stiffness: by what tension is to hold a mechanism before it gives way
+STRAINED = 0.1  # strain at a critical factor above which no material is still elastic
+
+
+@dataclass(frozen=True)
+class Buckling:
+    """factors: critical load factors λ > 0, ascending, (k,). modes: (k, n, 2), where members bend with rotations (n, 3),
+    the largest motion of each 1.
+
+    dead, live: first-order axial forces (kN) of what acts in full, and of forces and loads at the factor 1, (rods,).
+    effective_length: π √(EI/−N) of compressed rods with a bending stiffness at the lowest factor (m), else NaN, (rods,).
+    notes: sentences about what the factors leave out. message: why there is none; "" if there are some.
+    """
+
+    factors: Array
+    modes: Array
+    dead: Array
+    live: Array
+    effective_length: Array
+    notes: tuple[str, ...] = ()
+    message: str = ""
+
+
+def buckling(model: Model, count: int = MODES, start: Start | None = None) -> Buckling:
+    """The lowest critical load factors of a model, its rods elastic, and the modes in which it gives way.
+
+    start: as in first-order theory. Raises NoEquilibrium where that has no answer, where what acts in full is too much
+    already, or where nothing but its stiffness under no load resists a motion.
+    """
+    dead, whole = (linear(model, start, factor).axial_force for factor in (0.0, 1.0))
+    live = whole - dead
+    live[np.abs(live) <= NOTHING * np.abs(whole).max(initial=0.0)] = 0.0
+    structure = Structure.of(model)
+    stiffness = structure.initial_tangent + _geometric(structure, dead, 0.0)
+    softening = _geometric(structure, live, 1.0)
+    held = _resisting(model, structure, stiffness, softening)
+    vectors = _modes(structure, held, softening, count)
+    factors = _factors(structure, vectors, _geometric(structure, dead, 0.0), softening)
+    fields = structure.fields(vectors)
+    modes = np.array([_upright(normalised(field)) for field in fields]).reshape(fields.shape)
+    lowest = dead + factors[0] * live if len(factors) else np.zeros(len(dead))
+    return Buckling(
+        factors,
+        modes,
+        dead,
+        live,
+        _effective_length(model, lowest),
+        tuple(_notes(model, factors, lowest)),
+        "" if len(factors) else _why_none(model, live),
+    )
+
+
+def _geometric(structure: Structure, axial_force: Array, share: float) -> Matrix:
+    """The stiffness of straight rods by these axial forces alone, and by what a share of the distributed forces turns."""
+    bending, bent = structure.bending, structure.unmoved.bent
+    if bending is not None and bent is not None:
+        still = {name: np.zeros_like(values) for name, values in vars(bent).items()}
+        along = share * (bending.distributed_force * structure.unmoved.axis).sum(axis=1)
+        bent = replace(bent, **still | {"along": along})
+        bending = replace(bending, end_stiffness=np.zeros_like(bending.end_stiffness))
+    rods = replace(structure.unmoved, axial_force=axial_force, bent=bent)
+    return replace(structure, bending=bending).tangent(rods, np.ones(len(axial_force), dtype=bool))
+
+
+def _resisting(model: Model, structure: Structure, stiffness: Matrix, softening: Matrix) -> Matrix:
+    """The stiffness at a load so small that every motion is resisted: none, but where tension holds mechanisms."""
+    weight = structure.weight
+    if regular(stiffness, weight, -SOFT).definite:
+        return stiffness
+    if not regular(stiffness, weight, NO_STIFFNESS).definite:
+        message = (
+            "What acts in full (weight, lack of fit, warmth, moved supports) makes the structure give way by itself, so"
+            " that there is no factor of the other loads. Stiffen it, or let the weight act as forces on particles."
+        )
+        raise NoEquilibrium("collapse", message)
+    modes = soft_modes(stiffness, weight)
+    modes = unresisted(structure, structure.unmoved, stiffness, modes)
+    if not modes.shape[1]:
+        return stiffness
+    size = float(abs(softening.diagonal()).max(initial=0.0))
+    for share in STIFFENED if size > 0.0 else ():
+        held = stiffness + share * float(weight.max()) / size * softening
+        if regular(held, weight, -SOFT * share).definite:
+            return held
+    message = (
+        "A mechanism has no critical load: nothing resists moving"
+        f" {describe_motion(model, structure.fields(modes))}, and compression pushes it away at once. Add rods or supports"
+        " there, or join rods rigidly."
+    )
+    raise NoEquilibrium("mechanism", message)
+
+
+def _modes(structure: Structure, stiffness: Matrix, softening: Matrix, count: int) -> Array:
+    """The φ (N, k) of the lowest positive λ of (K + λ K_G) φ = 0, by the largest 1/λ."""
+    size = structure.size
+    if size == 0 or abs(softening).max() == 0.0:
+        return np.zeros((size, 0))
+    count = min(count, size)
+    if size <= FULL:
+        from scipy.linalg import eigh
+
+        root = np.sqrt(structure.weight)
+        both = [m if isinstance(m, np.ndarray) else m.toarray() for m in (softening, stiffness)]
+        soft, stiff = (m / root[:, None] / root for m in both)
+        values, vectors = eigh(-soft, stiff)
+        vectors = vectors / root[:, None]
+    else:
+        from scipy.sparse.linalg import LinearOperator, eigsh
+
+        inverse = LinearOperator(stiffness.shape, matvec=Factor(stiffness).solve, dtype=np.float64)
+        first = pseudo_random(size, 1)[:, 0]
+        values, vectors = eigsh(-softening, count, M=stiffness, Minv=inverse, which="LA", v0=first)
+    order = np.argsort(-values)[:count]
+    found: Array = vectors[:, order[values[order] > NOTHING * np.abs(values).max()]]
+    return found
+
+
+def _factors(structure: Structure, vectors: Array, steady: Matrix, softening: Matrix) -> Array:
+    """λ of each mode by Rayleigh's quotient, with the energy of its deformations.
+
+    In these nothing cancels, unlike in matrices of many short rods, so that the quotient has the more digits.
+    """
+    found = []
+    for vector in vectors.T:
+        stretched = structure.elongation_rate(vector, structure.unmoved)
+        energy = float((structure.stiffness / structure.rest_length) @ stretched**2)
+        if structure.bending is not None:
+            slopes = structure.slope_rates(structure.spread(vector), structure.unmoved)
+            energy += float((slopes * structure.bending.moments(slopes)).sum())
+        energy += float(vector @ (steady @ vector))
+        found.append(-energy / float(vector @ (softening @ vector)))
+    return np.array(found)
+
+
+def _upright(mode: Array) -> Array:
+    """A mode or its opposite: that of which the largest part is positive, of displacements if there are any."""
+    part = np.abs(mode) * ([1.0, 1.0, 0.0][: mode.shape[1]] if np.abs(mode[:, :2]).max() > 0.5 else 1.0)
+    most = np.unravel_index(part.argmax(), mode.shape)
+    turned: Array = mode if mode[most] > 0.0 else -mode
+    return turned
+
+
+def _effective_length(model: Model, axial_force: Array) -> Array:
+    """π √(EI/−N) of rods that are compressed and have a bending stiffness; else NaN."""
+    pressed = (axial_force < 0.0) & (model.rods.bending_stiffness > 0.0)
+    ratio = np.divide(
+        model.rods.bending_stiffness, -axial_force, out=np.full(len(axial_force), np.nan), where=pressed
+    )
+    found: Array = np.pi * np.sqrt(ratio)
+    return found
+
+
+def _why_none(model: Model, live: Array) -> str:
+    """Why no factor makes a structure give way."""
+    if not live.any():
+        return "No force or load acts on the rods; apply one that a factor can multiply."
+    pressed = np.flatnonzero(live < 0.0)
+    if not len(pressed):
+        return "Nothing is compressed by the forces and loads, so that no factor of them makes the structure give way."
+    return (
+        f"No factor makes the structure give way: what is compressed ({rod_names(model, pressed)}) cannot move aside at its"
+        " ends. Divide a rod that bends to see it buckle within itself."
+    )
+
+
+def _notes(model: Model, factors: Array, lowest: Array) -> list[str]:
+    """What the lowest factor leaves out: strains that are not elastic, struts, and rods that one cubic is too coarse for."""
+    if not len(factors):
+        return []
+    rods, notes = model.rods, []
+    strain = -lowest / rods.stiffness
+    if len(strain) and strain.max() > STRAINED:
+        row = int(strain.argmax())
+        notes.append(
+            f"At the factor {factors[0]:.4g} {model.describe(rods[row])} is shortened by {strain[row]:.0%} of its length:"
+            " what it is made of gives way long before."
+        )
+    pinned = (rods.bending_stiffness > 0.0) & ~(rods.turning_shares > 0.0).any(axis=1)
+    struts = pinned & (-lowest * rods.rest_length**2 > np.pi**2 * rods.bending_stiffness)
+    if struts.any():
+        rows = np.flatnonzero(struts)
+        notes.append(
+            f"Before, {rod_names(model, rows)} would buckle between {'its' if len(rows) == 1 else 'their'} hinges, at"
+            " π² EI/L². Divide what is to bend between hinges."
+        )
+    parts = needed_parts(model, lowest)
+    if (parts > 1).any():
+        notes.append(divide_named(model, np.flatnonzero(parts > 1), parts))
+    return notes

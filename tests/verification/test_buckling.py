@@ -1,0 +1,325 @@
+"""Linear buckling: Euler's four loads, portals, columns under their own weight, and textbook matrices, assembled slowly."""
+
+import itertools
+import json
+import math
+from typing import Any
+
+import numpy as np
+import pytest
+from scipy.linalg import eigh
+from scipy.optimize import brentq
+
+from components.model import Model
+from game import Session
+from game.commands.command_line import main
+from game.documents.models import parse
+from systems.statics.buckling import buckling
+from systems.statics.events import NoEquilibrium
+from systems.statics.theory import linear
+from tests.reference.models import model
+
+EI, LENGTH = 1000.0, 10.0
+CLAMPED: dict[str, Any] = {"fixed": [True, True], "fixed_rotation": True}
+PINNED: dict[str, Any] = {"fixed": [True, True]}
+HEADS: dict[str, dict[str, Any]] = {
+    "free": {},
+    "pinned": {"fixed": [True, False]},
+    "clamped": {"fixed": [True, False], "fixed_rotation": True},
+}
+
+
+def column(parts: int, foot: dict[str, Any], head: dict[str, Any], **rod: Any) -> dict[str, Any]:
+    """An upright column of equal rods; what its head has besides."""
+    particles: list[dict[str, Any]] = [
+        {"name": f"P{i}", "position": [0.0, LENGTH * i / parts]} for i in range(parts + 1)
+    ]
+    particles[0] |= foot
+    particles[-1] |= {"force": [0.0, -1.0], **head}
+    stiff = {"stiffness": 1e8, "bending_stiffness": EI, "density": 0.0, **rod}
+    rods = [{"name": f"R{i}", "between": [f"P{i}", f"P{i + 1}"], **stiff} for i in range(parts)]
+    return model(particles, rods)
+
+
+# tan u = u of the column that is clamped and pinned
+CASES = [
+    (CLAMPED, "free", math.pi / 2, {1: 7.52e-3, 2: 5.12e-4, 4: 3.28e-5, 8: 2.06e-6, 16: 1.29e-7}),
+    (PINNED, "pinned", math.pi, {1: 0.2159, 2: 7.52e-3, 4: 5.12e-4, 8: 3.28e-5, 16: 2.06e-6}),
+    (CLAMPED, "pinned", 4.493409457909064, {1: 0.4858, 2: 2.57e-2, 4: 2.05e-3, 8: 1.36e-4, 16: 8.60e-6}),
+    (CLAMPED, "clamped", 2 * math.pi, {2: 1.32e-2, 4: 7.52e-3, 8: 5.12e-4, 16: 3.28e-5}),
+]
+
+
+@pytest.mark.parametrize(("foot", "head", "root", "errors"), CASES)
+def test_eulers_four_loads(foot: dict[str, Any], head: str, root: float, errors: dict[int, float]) -> None:
+    """P = u² EI/L²: the error of so many rods, of fourth order; the mode and the effective length π L/u."""
+    for parts, error in errors.items():
+        found = buckling(parse(column(parts, foot, HEADS[head])))
+        critical = root**2 * EI / LENGTH**2
+        assert found.factors[0] / critical - 1.0 == pytest.approx(error, rel=0.01)
+        assert found.effective_length == pytest.approx(math.pi * LENGTH / root / math.sqrt(1 + error), rel=1e-4)
+        assert found.live == pytest.approx(-1.0, rel=1e-12)
+
+
+def test_the_mode_of_a_pinned_column_is_a_sine() -> None:
+    mode = buckling(parse(column(8, PINNED, HEADS["pinned"]))).modes[0]
+    along = math.pi * np.arange(9) / 8
+    assert mode[:, 0] == pytest.approx(np.sin(along), abs=1e-5)
+    assert mode[:, 2] == pytest.approx(-math.pi / LENGTH * np.cos(along), abs=1e-4)
+
+
+@pytest.mark.parametrize("parts", [250])
+def test_many_rods_are_solved_sparsely(parts: int) -> None:
+    found = buckling(parse(column(parts, CLAMPED, HEADS["free"], stiffness=1e5)), count=3)
+    expected = [((2 * k + 1) * math.pi / 2 / LENGTH) ** 2 * EI for k in range(3)]
+    assert found.factors == pytest.approx(expected, rel=1e-7)
+
+
+def test_a_column_under_its_own_distributed_weight() -> None:
+    """(q L)cr = 7.8373 EI/L²."""
+    errors = []
+    for parts in (2, 4, 8):
+        own = column(parts, CLAMPED, {"force": [0.0, 0.0]}, distributed_force=[0.0, -1.0])
+        errors.append(buckling(parse(own)).factors[0] * LENGTH**3 / EI / 7.837347438943446 - 1.0)
+    assert errors[0] < 0.02
+    assert abs(errors[2]) < 5e-5
+    assert errors[0] / errors[1] == pytest.approx(16.0, rel=0.2)
+
+
+def test_weight_acts_in_full_and_does_not_grow() -> None:
+    """Half the critical load weighs on the column: so the force may be the other half."""
+    light = column(4, CLAMPED, HEADS["free"])
+    critical = buckling(parse(light)).factors[0]
+    heavy = column(4, CLAMPED, HEADS["free"])
+    for particle in heavy["particles"]:
+        particle["mass"] = 1000.0 if particle["name"] == "P4" else 1e-9
+    heavy["environment"] = {"acceleration": [0.0, -0.5 * critical]}
+    found = buckling(parse(heavy))
+    assert found.factors[0] == pytest.approx(0.5 * critical, rel=1e-9)
+    assert found.dead == pytest.approx(-0.5 * critical, rel=1e-9)
+    heavy["environment"] = {"acceleration": [0.0, -1.1 * critical]}
+    with pytest.raises(NoEquilibrium, match="makes the structure give way by itself"):
+        buckling(parse(heavy))
+
+
+def portal(parts: int, foot: dict[str, Any], beam: float) -> dict[str, Any]:
+    """Columns 4 m high and a beam 6 m long, each of so many rods; both columns loaded by 1 kN."""
+    corners = {"A": (0.0, 0.0), "B": (0.0, 4.0), "C": (6.0, 4.0), "D": (6.0, 0.0)}
+    particles: list[dict[str, Any]] = [
+        {"name": name, "position": list(at), **(foot if name in "AD" else {"force": [0.0, -1.0]})}
+        for name, at in corners.items()
+    ]
+    rods = []
+    for first, last, stiffness in (("A", "B", EI), ("B", "C", beam), ("D", "C", EI)):
+        chain = [first, *(f"{first}{last}{i}" for i in range(1, parts)), last]
+        start, end = np.array(corners[first]), np.array(corners[last])
+        particles += [
+            {"name": name, "position": (start + (end - start) * i / parts).tolist()}
+            for i, name in enumerate(chain[1:-1], start=1)
+        ]
+        rods += [
+            {"name": f"{a}-{b}", "between": [a, b], "stiffness": 1e9, "bending_stiffness": stiffness}
+            for a, b in itertools.pairwise(chain)
+        ]
+    return model(particles, rods)
+
+
+@pytest.mark.parametrize("beam", [300.0, 3000.0, 30000.0])
+@pytest.mark.parametrize("foot", [CLAMPED, PINNED])
+def test_portals_sway(foot: dict[str, Any], beam: float) -> None:
+    """Feet clamped: u cot u = −6 β; pinned: u tan u = 6 β; β = (EI_b/l)/(EI_c/h)."""
+    ratio = 6.0 * (beam / 6.0) / (EI / 4.0)
+    if foot is CLAMPED:
+        root = brentq(lambda u: u * math.cos(u) + ratio * math.sin(u), math.pi / 2, math.pi)
+    else:
+        root = brentq(lambda u: u * math.sin(u) - ratio * math.cos(u), 0.0, math.pi / 2)
+    critical = root**2 * EI / 16.0
+    errors = [buckling(parse(portal(parts, foot, beam))).factors[0] / critical - 1.0 for parts in (1, 4)]
+    assert 0.0 < errors[0] < (0.008 if foot is PINNED else 0.03)
+    assert 0.0 < errors[1] < 6e-4
+
+
+def textbook(made: Model) -> float:
+    """The lowest critical factor by the matrices of textbooks (6/5, L/10, 2L²/15, −L²/30), one rod after another."""
+    axial = linear(made).axial_force
+    count = made.particles.count
+    stiffness, geometric = np.zeros((2, 3 * count, 3 * count))
+    for row in range(made.rods.count):
+        rod = made.rods[row]
+        (dx, dy), ea, ei = rod.difference, rod.stiffness, rod.bending_stiffness
+        h = math.hypot(dx, dy)
+        c, s = dx / h, dy / h
+        turn = np.kron(np.eye(2), np.array([[c, s, 0], [-s, c, 0], [0, 0, 1]]))
+        bar = np.zeros((6, 6))
+        bar[np.ix_([0, 3], [0, 3])] = ea / h * np.array([[1, -1], [-1, 1]])
+        beam = np.array([[12, 6 * h, -12, 6 * h], [6 * h, 4 * h * h, -6 * h, 2 * h * h]])
+        beam = np.array([*beam, -beam[0], [6 * h, 2 * h * h, -6 * h, 4 * h * h]]) * ei / h**3
+        bar[np.ix_([1, 2, 4, 5], [1, 2, 4, 5])] += beam
+        tension = np.zeros((6, 6))
+        if ei:
+            string = np.array(
+                [
+                    [36, 3 * h, -36, 3 * h],
+                    [3 * h, 4 * h * h, -3 * h, -h * h],
+                    [-36, -3 * h, 36, -3 * h],
+                    [3 * h, -h * h, -3 * h, 4 * h * h],
+                ]
+            ) / (30 * h)
+            tension[np.ix_([1, 2, 4, 5], [1, 2, 4, 5])] = string
+        else:
+            tension[np.ix_([1, 4], [1, 4])] = np.array([[1, -1], [-1, 1]]) / h
+        ends = made.rods.between[row].astype(int)
+        place = np.concatenate([3 * end + np.arange(3) for end in ends])
+        stiffness[np.ix_(place, place)] += turn.T @ bar @ turn
+        geometric[np.ix_(place, place)] += axial[row] * turn.T @ tension @ turn
+    turns = made.particles.inertia > 0.0
+    free = np.column_stack([~made.particles.fixed, turns & ~made.particles.fixed_rotation]).ravel()
+    values = eigh(-geometric[free][:, free], stiffness[free][:, free], eigvals_only=True)
+    return float(1.0 / values[-1])
+
+
+@pytest.mark.parametrize("number", range(6))
+def test_random_frames_and_trusses_against_textbook_matrices(number: int) -> None:
+    lot = np.random.default_rng([91, number])
+    particles = [
+        {
+            "name": f"P{i}",
+            "position": [2.0 * (i // 2) + lot.uniform(-0.3, 0.3), 3.0 * (i % 2) + lot.uniform(-0.3, 0.3)],
+            "force": lot.normal(0.0, 10.0, 2).tolist(),
+            **((CLAMPED if i else PINNED) if i in (0, 1) else {}),
+        }
+        for i in range(8)
+    ]
+    pairs = [(i, j) for i in range(8) for j in range(i + 1, 8) if j - i <= 2 or (j - i == 3 and i % 2)]
+    bends = lot.random(len(pairs)) < (0.6 if number < 4 else 0.0)
+    rods = [
+        {
+            "name": f"R{i}{j}",
+            "between": [f"P{i}", f"P{j}"],
+            "stiffness": 1e5,
+            "bending_stiffness": float(lot.uniform(20.0, 400.0)) if bent else 0.0,
+        }
+        for (i, j), bent in zip(pairs, bends.tolist(), strict=True)
+    ]
+    made = parse(model(particles, rods))
+    assert buckling(made).factors[0] == pytest.approx(textbook(made), rel=1e-9)
+
+
+def test_a_vierendeel_girder_gives_way_in_its_upper_chord() -> None:
+    bays = 4
+    particles: list[dict[str, Any]] = [
+        {"name": f"{side}{i}", "position": [3.0 * i, 2.0 * (side == "U")]}
+        for i in range(bays + 1)
+        for side in "LU"
+    ]
+    particles[0] |= PINNED
+    particles[2 * bays] |= {"fixed": [False, True]}
+    particles[2 * (bays // 2) + 1]["force"] = [0.0, -10.0]
+    pairs = [(f"{side}{i}", f"{side}{i + 1}") for side in "LU" for i in range(bays)]
+    pairs += [(f"L{i}", f"U{i}") for i in range(bays + 1)]
+    facts = {"stiffness": 2e5, "bending_stiffness": 500.0}
+    rods = [{"name": a + b, "between": [a, b], **facts} for a, b in pairs]
+    made = parse(model(particles, rods))
+    found = buckling(made)
+    assert found.factors[0] == pytest.approx(textbook(made), rel=1e-9)
+    names = made.particles.names
+    pressed = {
+        name for name, length in zip(made.rods.names, found.effective_length, strict=True) if length > 0.0
+    }
+    assert {"U1U2", "U2U3"} <= pressed
+    assert not {"L1L2", "L2L3"} & pressed
+    assert len(names) == 10
+
+
+def test_a_shallow_truss_and_one_in_a_line() -> None:
+    """Von Mises: K₀ = 2 EA/L (H/L)², K_G = 2 N/L (b/L)². In a line nothing resists."""
+    session = Session.open("von_mises")
+    found, rods = session.buckling(), session.model.rods
+    (span, height) = np.abs(rods.difference[0])
+    assert -found.factors[0] * found.live[0] == pytest.approx(
+        rods.stiffness[0] * height**2 / span**2, rel=1e-12
+    )
+    line = column(2, PINNED, HEADS["pinned"], bending_stiffness=0.0)
+    with pytest.raises(
+        NoEquilibrium, match="A mechanism has no critical load: nothing resists moving P1 along x"
+    ):
+        buckling(parse(line))
+
+
+def test_tension_holds_a_mechanism_beside_a_column() -> None:
+    """A bar that hangs, loaded, beside the column: the column's load remains the answer."""
+    document = column(4, CLAMPED, HEADS["free"])
+    document["particles"] += [
+        {"name": "top", "position": [3.0, 9.0], "fixed": [True, True]},
+        {"name": "bob", "position": [3.0, 5.0], "force": [0.0, -1.0]},
+    ]
+    document["rods"].append({"name": "hanger", "between": ["top", "bob"], "stiffness": 1e5})
+    critical = (math.pi / 2 / LENGTH) ** 2 * EI
+    assert buckling(parse(document)).factors[0] == pytest.approx(critical * (1 + 3.28e-5), rel=1e-6)
+
+
+def test_what_cannot_buckle_says_why() -> None:
+    pulled = buckling(parse(column(2, CLAMPED, {"force": [0.0, 1.0]})))
+    assert not len(pulled.factors)
+    assert pulled.message.startswith("Nothing is compressed")
+    held = buckling(parse(column(1, CLAMPED, HEADS["clamped"])))
+    assert "what is compressed (rod R0) cannot move aside" in held.message
+    bare = buckling(parse(column(1, CLAMPED, {"force": [0.0, 0.0]})))
+    assert bare.message.startswith("No force or load acts")
+    strut = buckling(parse(column(1, PINNED, HEADS["pinned"], hinged=[True, True])))
+    assert not len(strut.factors)
+
+
+def test_notes_name_struts_and_strains() -> None:
+    document = model(
+        [
+            {"name": "A", "position": [0.0, 0.0], "fixed": [True, True]},
+            {"name": "B", "position": [3.0, 4.0], "force": [0.0, -10.0]},
+            {"name": "C", "position": [6.0, 0.0], "fixed": [True, True]},
+        ],
+        [
+            {"name": "AB", "between": ["A", "B"], "bending_stiffness": 100.0, "hinged": [True, True]},
+            {"name": "BC", "between": ["B", "C"]},
+        ],
+    )
+    found = buckling(parse(document))
+    assert "is shortened by" in found.notes[0]
+    assert "Before, rod AB would buckle between its hinges" in found.notes[1]
+    (coarse,) = buckling(parse(column(1, PINNED, HEADS["pinned"]))).notes
+    assert "Rod R0 bends within itself" in coarse
+    assert not buckling(parse(column(1, CLAMPED, HEADS["free"]))).notes
+
+
+# --- the command -----------------------------------------------------------------------------------------
+
+
+def test_the_command_prints_factors_modes_and_effective_lengths(
+    capsys: pytest.CaptureFixture[str], tmp_path: Any
+) -> None:
+    path = tmp_path / "column.json"
+    path.write_text(json.dumps(column(2, CLAMPED, HEADS["free"])))
+    assert main(["buckling", str(path), "--modes", "2", "--format", "json"]) == 0
+    found = json.loads(capsys.readouterr().out)
+    assert len(found["factors"]) == len(found["modes"]) == 2
+    assert found["factors"] == sorted(found["factors"])
+    assert set(found["modes"][0]) == {"P0", "P1", "P2"}
+    assert found["modes"][0]["P0"] == [0.0, 0.0, 0.0]
+    assert len(found["modes"][0]["P2"]) == 3
+    assert found["effective_length"]["R0"] == pytest.approx(20.0, rel=1e-3)
+    assert found["effective_length_factor"]["R0"] == pytest.approx(4.0, rel=1e-3)
+    assert found["axial_force"]["R0"] == pytest.approx(
+        {"steady": 0.0, "factor 1": -1.0, "critical": -found["factors"][0]}, abs=1e-9
+    )
+    assert main(["buckling", str(path)]) == 0
+    out = capsys.readouterr().out
+    assert "mode 1" in out
+    assert "effective length, m" in out
+    assert main(["buckling", str(path), "--format", "csv", "--modes", "1"]) == 0
+    assert capsys.readouterr().out.splitlines()[0] == "mode,factor,particle,x,y,rotation"
+
+
+def test_the_command_says_why_there_is_no_factor(capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["buckling", "collision_i"]) == 1
+    assert "No force or load acts on the rods" in capsys.readouterr().out
+    assert main(["buckling", "pendulum"]) == 1
+    assert "Mechanism: the load moves bob" in capsys.readouterr().err
