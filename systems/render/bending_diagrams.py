@@ -136,7 +136,8 @@ def _measured(sheet: Sheet, rows: Rows, quantity: str, room: float) -> _Diagram 
     points, normals = _stations(sheet, base, shares, quantity)
     heights = scale * values(polynomials, shares)
     found = _Diagram(rows, base, polynomials, scale, largest, points, normals, heights)
-    return found.some((np.abs(points) < _FAR).all(axis=(1, 2)) & np.isfinite(normals).all(axis=(1, 2)))
+    near = (np.abs(points) < _FAR) & np.isfinite(normals)
+    return found.some(np.asarray(near.all(axis=(1, 2))))
 
 
 def _pieces(sheet: Sheet, rows: Rows) -> int:
