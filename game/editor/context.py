@@ -14,6 +14,7 @@ from components.camera import Viewport
 from components.field import Vector
 from components.handle import Handle
 from components.model import Model
+from components.rod import bends
 from components.settings import Settings
 from components.slider import Place, under
 from components.tags import Selected
@@ -328,6 +329,8 @@ class Context:
         """Show the document that is open now, from the first frame on."""
         self.make_room()
         self.view.fit(self.model)
+        if self.model.rods.count:
+            self.view.rigid = bends(self.model)
         if missing := missing_mods(self.model):
             self.notice = (
                 f"This model holds data of mods that are not loaded: {', '.join(missing)}. They are kept and"
