@@ -15,7 +15,6 @@ from components.mistake import Mistake
 from components.model import Model
 from components.view import Shape
 from systems.edit.arrows import extent
-from systems.statics.explain import listed
 
 if TYPE_CHECKING:  # it imports scipy
     from systems.statics.buckling import Buckling
@@ -130,6 +129,8 @@ def _meant(model: Model) -> list[Shape]:
 
 def _buckled(model: Model, found: Buckling) -> list[Shape]:
     """The modes with their factors; the lowest with the shortest effective length of a member."""
+    from systems.statics.explain import listed
+
     shapes = []
     for number, (factor, motion) in enumerate(zip(found.factors, found.modes, strict=True), start=1):
         title = f"Buckling mode {number}: load × {written.number(factor)}"
