@@ -400,7 +400,7 @@ def test_collapse_names_the_rod_and_the_load(capsys: pytest.CaptureFixture[str])
     ("change", "status", "said"),
     [
         ({"fixed": [False, False]}, "mechanism", "Free body: nothing holds A, B and C along y"),
-        ({"fixed": [False, True]}, "mechanism", "Free body: nothing holds A, B and C along x, where 120 kN"),
+        ({"fixed": [False, True]}, "mechanism", "Free body: nothing holds A, B and C along x, where 120.0 kN"),
         ({"fixed": [True, False]}, "equilibrium", "First-order mechanism: without load nothing resists moving"),
     ],
 )
