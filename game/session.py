@@ -244,8 +244,9 @@ class Session(Context):
     def load_path(self, factor: float = 1.0, *, until: str | None = None, points: int = 500) -> Curve:
         """The load–displacement curve, through limit points, up to a load factor or a displacement "B.y=-2.5".
 
-        Changes nothing. Its arrays are load_factor (k,), displacement (k, particles, 2) in m, axial_force
-        (k, rods) in kN and stable (k,); complete: False if it could not be followed so far. Raises ValueError.
+        Changes nothing. Its arrays are load_factor (k,), displacement (k, particles, 2) in m, rotation (k, particles) in
+        rad, axial_force (k, rods) in kN, bending_moment (k, rods, 2) in kN·m and stable (k,); complete: False if it
+        could not be followed so far. Raises ValueError.
         """
         from systems.statics.path import goal_of, load_path
 
