@@ -106,6 +106,8 @@ def _of_rods(columns: _Columns, rows: NDArray[np.intp]) -> Iterator[Result]:
     yield from _utilisation(columns, rows)
     if len(rows) == 1:
         (row,) = rows
+        if rods.bending_stiffness[row]:
+            yield _largest_moment(columns, int(row))
         strain, length = 1000.0 * columns("rods.strain"), columns("rods.length") * CM[1]
         yield _result("strain", _number(strain[row], strain, "‰"), Rod.strain)
         if not math.isnan(rods.area[row]):
@@ -117,8 +119,6 @@ def _of_rods(columns: _Columns, rows: NDArray[np.intp]) -> Iterator[Result]:
         if rods.plastic_strain[row]:
             plastic = 1000.0 * rods.plastic_strain
             yield _result("plastic strain", _number(plastic[row], plastic, "‰"), Rod.plastic_strain)
-    if len(rows) == 1 and rods.bending_stiffness[rows[0]]:
-        yield _largest_moment(columns, int(rows[0]))
 
 
 def _largest_moment(columns: _Columns, row: int) -> Result:
