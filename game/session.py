@@ -248,9 +248,9 @@ class Session(Context):
 
         branch: number of the bifurcation from which on it follows the other branch, along the mode; negative: against it.
 
-        Changes nothing. Its arrays are load_factor (k,), displacement (k, particles, 2) in m, axial_force
-        (k, rods) in kN and stable (k,); its events are limit points and bifurcations; complete: False if it could not be
-        followed so far. Raises ValueError.
+        Changes nothing. Its arrays are load_factor (k,), displacement (k, particles, 2) in m, rotation (k, particles) in
+        rad, axial_force (k, rods) in kN, bending_moment (k, rods, 2) in kN·m and stable (k,); its events are limit points
+        and bifurcations; complete: False if it could not be followed so far. Raises ValueError.
         """
         from systems.statics.path import goal_of, load_path
 

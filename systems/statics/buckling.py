@@ -11,8 +11,9 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from components.model import Model
+from systems.statics.assembly import Matrix
 from systems.statics.bending import needed_parts
-from systems.statics.equations import Array, Matrix, Structure, normalised, upright
+from systems.statics.equations import Array, Structure, normalised, upright
 from systems.statics.events import NoEquilibrium
 from systems.statics.explain import describe_motion, divide_named, rod_names
 from systems.statics.factor import NO_STIFFNESS, SOFT, Factor, pseudo_random, regular, soft_modes, unresisted

@@ -7,7 +7,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from systems.statics.equations import ROUND_OFF, SYMMETRIC, Array, Flags, Matrix, Response, Structure
+from systems.statics.assembly import SYMMETRIC, Matrix
+from systems.statics.equations import ROUND_OFF, Array, Flags, Response, Structure
 from systems.statics.lapack import lapack
 
 if TYPE_CHECKING:  # only large structures need it
