@@ -11,6 +11,7 @@ from components.camera import Viewport
 from game import Session
 from game.commands.command_line import main
 from game.documents.shapes import PERIOD, NoShape, buckling_shapes
+from systems.render.marks import Text
 from systems.render.picture import compose
 from systems.render.theme import load_theme
 from tests.verification.test_buckling import CLAMPED, HEADS, column
@@ -109,3 +110,15 @@ def test_a_picture_of_a_buckling_mode(tmp_path: Path, capsys: pytest.CaptureFixt
     assert main(["render", "collision_i", *words[2:], "1"]) == 2
     assert "No force or load acts on the rods" in capsys.readouterr().err
     assert math.isfinite(np.array(Session.open(str(path)).buckling().factors).sum())
+
+
+def test_labels_stay_where_they_are_while_a_shape_swings() -> None:
+    session = opened()
+    session.press("b")
+    placed: dict = {}
+    pictures = []
+    for elapsed in (0.0, 0.2 * PERIOD, 0.3 * PERIOD, 0.17 * PERIOD):
+        session.update_view(elapsed)
+        picture = compose(session.model, session.view, load_theme(), placed)
+        pictures.append({mark.text: (mark.x, mark.y) for mark in picture.marks if isinstance(mark, Text)})
+    assert all(picture == pictures[0] for picture in pictures)
