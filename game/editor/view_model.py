@@ -47,6 +47,7 @@ def show(context: Context, elapsed: float) -> None:
     view.flashes = _flashes(context)
     view.heading = scene.heading
     view.shape = context.document.shapes.shown
+    view.swing = context.document.shapes.swing(elapsed) if view.shape is not None else 1.0
     pages = pages_of_help(context) if view.help else []
     view.keys = pages[min(view.help, len(pages)) - 1] if pages else []
     view.pages = len(pages)

@@ -111,7 +111,7 @@ _BY_PURPOSE: dict[str, tuple[Binding, ...]] = {
         Binding("m", "toggle theory", LIVE, "theory beside the run, on / off"),
         Binding("j", "toggle energy", LIVE, "energy account on / off"),
         Binding("ctrl+h", "toggle events", LIVE, "what happened, on / off"),
-        Binding("b", "next shape", LIVE, "mechanisms, natural modes, none"),
+        Binding("b", "next shape", LIVE, "mechanisms, buckling, natural modes, none"),
         Binding("ctrl+l", "new slider", LIVE, "slider for the load or stiffness selected"),
         Binding("k", "force method", (PAUSE,), "force method"),
     ),

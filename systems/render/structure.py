@@ -236,7 +236,8 @@ def draw_shape(sheet: Sheet) -> None:
         return
     if shape.about is not None:
         position = position + shape.about * sheet.model.settings.displacement_scale
-    places = sheet.view.camera.to_pixels(position + shape.displacement)
+    moved = position + sheet.view.swing * shape.displacement
+    places = sheet.view.camera.to_pixels(moved)
     colour = faded(sheet.theme.sketch, _SHAPE_OPACITY)
     pixels = np.hypot(*shape.displacement.T) * sheet.view.camera.scale
     moving = pixels > _SHAPE_FROM * sheet.unit
@@ -246,7 +247,8 @@ def draw_shape(sheet: Sheet) -> None:
     ends = sheet.ends[rows]
     start, end = places[ends[:, 0]], places[ends[:, 1]]
     if shape.rotation is not None:
-        bent = moved_axes(sheet.model, rows, position + shape.displacement, shape.displacement, shape.rotation)
+        swung = sheet.view.swing * shape.displacement, sheet.view.swing * shape.rotation
+        bent = moved_axes(sheet.model, rows, moved, *swung)
         if (lines := pieces(bent, rows, FLAT / sheet.view.camera.scale)) is not None:
             straight = ~sheet.chosen(lines.rods, rows)
             to_pixels = sheet.view.camera.to_pixels

@@ -13,7 +13,7 @@ import numpy as np
 from components.model import Model
 from systems.statics.assembly import Matrix
 from systems.statics.bending import needed_parts
-from systems.statics.equations import Array, Structure, normalised
+from systems.statics.equations import Array, Structure, normalised, upright
 from systems.statics.events import NoEquilibrium
 from systems.statics.explain import describe_motion, divide_named, rod_names
 from systems.statics.factor import NO_STIFFNESS, SOFT, Factor, pseudo_random, regular, soft_modes, unresisted
@@ -66,7 +66,7 @@ def buckling(model: Model, count: int = MODES, start: Start | None = None) -> Bu
     vectors = _modes(structure, held, softening, count)
     factors = _factors(structure, vectors, _geometric(structure, dead, 0.0), softening)
     fields = structure.fields(vectors)
-    modes = np.array([_upright(normalised(field)) for field in fields]).reshape(fields.shape)
+    modes = np.array([upright(normalised(field)) for field in fields]).reshape(fields.shape)
     lowest = dead + factors[0] * live if len(factors) else np.zeros(len(dead))
     return Buckling(
         factors,
@@ -159,14 +159,6 @@ def _factors(structure: Structure, vectors: Array, steady: Matrix, softening: Ma
         energy += float(vector @ (steady @ vector))
         found.append(-energy / float(vector @ (softening @ vector)))
     return np.array(found)
-
-
-def _upright(mode: Array) -> Array:
-    """A mode or its opposite: that of which the largest part is positive, of displacements if there are any."""
-    part = np.abs(mode) * ([1.0, 1.0, 0.0][: mode.shape[1]] if np.abs(mode[:, :2]).max() > 0.5 else 1.0)
-    most = np.unravel_index(part.argmax(), mode.shape)
-    turned: Array = mode if mode[most] > 0.0 else -mode
-    return turned
 
 
 def _effective_length(model: Model, axial_force: Array) -> Array:
