@@ -25,7 +25,9 @@ def command(words: Sequence[str]) -> int:
         description="Linear buckling: the factors of forces and loads at which the structure gives way, and how.",
     )
     add_model(parser)
-    parser.add_argument("--modes", type=partial(count, least=1), default=5, metavar="N", help="at most so many; default 5")
+    parser.add_argument(
+        "--modes", type=partial(count, least=1), default=5, metavar="N", help="at most so many; default 5"
+    )
     add_output(parser)
     options = parser.parse_args(words)
     session = session_of(options)
@@ -55,7 +57,9 @@ def _data(model: Model, found: Buckling) -> dict[str, Any]:
     modes[:, :, : found.modes.shape[-1]] = found.modes
     lowest = found.factors[0] if len(found.factors) else 1.0
     forces = zip(found.dead.tolist(), found.live.tolist(), strict=True)
-    lengths = {name: length for name, length in zip(rods, found.effective_length, strict=True) if length == length}
+    lengths = {
+        name: length for name, length in zip(rods, found.effective_length, strict=True) if length == length
+    }
     own = dict(zip(rods, model.rods.rest_length, strict=True))
     return {
         "factors": found.factors,

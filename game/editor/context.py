@@ -14,7 +14,7 @@ from components.camera import Viewport
 from components.field import Vector
 from components.handle import Handle
 from components.model import Model
-from components.settings import Settings
+from components.settings import NO_DIAGRAMS, Settings
 from components.slider import Place, under
 from components.tags import Selected
 from components.view import Preview, Readout, View
@@ -322,12 +322,15 @@ class Context:
         """Open a model. A document with unsaved work, or any to `keep`, stays open, and undo goes back to it."""
         self.leave_gesture()
         self.documents.add(model, file, keep=keep)
+        self.view.all_diagrams = False
         self.begin_document()
 
     def begin_document(self) -> None:
         """Show the document that is open now, from the first frame on."""
         self.make_room()
         self.view.fit(self.model)
+        if self.model.settings.diagrams != NO_DIAGRAMS:
+            self.view.all_diagrams, self.view.quantity = True, self.model.settings.diagrams
         if missing := missing_mods(self.model):
             self.notice = (
                 f"This model holds data of mods that are not loaded: {', '.join(missing)}. They are kept and"

@@ -21,7 +21,11 @@ from systems.statics.theory import linear
 FULL = 600  # unknowns up to which all eigenvalues are computed
 MODES = 5
 NOTHING = 1e-10  # of the largest axial force, or of the largest eigenvalue: round-off
-STIFFENED = (1e-6, 1e-8, 1e-10)  # of the rods' stiffness: by what tension is to hold a mechanism before it gives way
+STIFFENED = (
+    1e-6,
+    1e-8,
+    1e-10,
+)  # of the rods' stiffness: by what tension is to hold a mechanism before it gives way
 STRAINED = 0.1  # strain at a critical factor above which no material is still elastic
 
 
@@ -85,9 +89,7 @@ def _geometric(structure: Structure, axial_force: Array, share: float) -> Matrix
     return replace(structure, bending=bending).tangent(rods, np.ones(len(axial_force), dtype=bool))
 
 
-def _resisting(
-    model: Model, structure: Structure, stiffness: Matrix, softening: Matrix
-) -> Matrix:
+def _resisting(model: Model, structure: Structure, stiffness: Matrix, softening: Matrix) -> Matrix:
     """The stiffness at a load so small that every motion is resisted: none, but where tension holds mechanisms."""
     weight = structure.weight
     if regular(stiffness, weight, -SOFT).definite:

@@ -206,7 +206,9 @@ def test_random_frames_and_trusses_against_textbook_matrices(number: int) -> Non
 def test_a_vierendeel_girder_gives_way_in_its_upper_chord() -> None:
     bays = 4
     particles: list[dict[str, Any]] = [
-        {"name": f"{side}{i}", "position": [3.0 * i, 2.0 * (side == "U")]} for i in range(bays + 1) for side in "LU"
+        {"name": f"{side}{i}", "position": [3.0 * i, 2.0 * (side == "U")]}
+        for i in range(bays + 1)
+        for side in "LU"
     ]
     particles[0] |= PINNED
     particles[2 * bays] |= {"fixed": [False, True]}
@@ -219,7 +221,9 @@ def test_a_vierendeel_girder_gives_way_in_its_upper_chord() -> None:
     found = buckling(made)
     assert found.factors[0] == pytest.approx(textbook(made), rel=1e-9)
     names = made.particles.names
-    pressed = {name for name, length in zip(made.rods.names, found.effective_length, strict=True) if length > 0.0}
+    pressed = {
+        name for name, length in zip(made.rods.names, found.effective_length, strict=True) if length > 0.0
+    }
     assert {"U1U2", "U2U3"} <= pressed
     assert not {"L1L2", "L2L3"} & pressed
     assert len(names) == 10
@@ -235,7 +239,9 @@ def test_a_shallow_truss_and_one_in_a_line() -> None:
     critical = 2.0 * made.rods.stiffness[0] * height**3 / (length * span**2) / length
     assert found.factors[0] * load == pytest.approx(critical * 1.0, rel=1e-9)
     line = column(2, PINNED, HEADS["pinned"], bending_stiffness=0.0)
-    with pytest.raises(NoEquilibrium, match="A mechanism has no critical load: nothing resists moving P1 along x"):
+    with pytest.raises(
+        NoEquilibrium, match="A mechanism has no critical load: nothing resists moving P1 along x"
+    ):
         buckling(parse(line))
 
 
