@@ -64,14 +64,16 @@ class Status:
 class Preview:
     """The element that a tool is about to make, or the state of a drag, drawn over the model.
 
-    kind: "rod", "force", "velocity", "roller", "pinned", "pull" or "box". start, end: points of the picture (m); of a
-    box, two opposite corners; of a support, its point and towards its ground. label: its value with its unit, or "".
+    kind: "rod", "force", "distributed force", "moment", "velocity", "hinge", "roller", "pinned", "guided", "clamped",
+    "pull" or "box". start, end: points of the picture (m); of a box, two opposite corners; of a support, its point and
+    towards its ground. label: its value with its unit, or "". along: the ends of the rods that bear it.
     """
 
     kind: str
     start: Vector
     end: Vector
     label: str = ""
+    along: tuple[tuple[Vector, Vector], ...] = ()
 
 
 @dataclass(frozen=True)
@@ -136,6 +138,7 @@ class Shape:
 class View:
     """How one model is shown in one viewport.
 
+    rigid: rods are drawn with rigid ends.
     heading: the word top left ("Pause"), or "". all_diagrams: force diagrams of all elements. quantity: which force
     diagrams show where rods bend, "N", "M" or "V".
     legend: show the meaning of colours. explains_all: of those of the pictures beside this one, too.
@@ -165,6 +168,7 @@ class View:
     camera: Camera = field(default_factory=Camera)
     heading: str = ""
     all_diagrams: bool = False
+    rigid: bool = False
     quantity: str = AXIAL
     forces_known: bool = True
     legend: bool = True

@@ -5,7 +5,7 @@ from __future__ import annotations
 import itertools
 import math
 from collections.abc import Callable, Collection, Mapping, Sequence, Set
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from types import MappingProxyType, NoneType
 from typing import Annotated, Any, Literal, NoReturn
 
@@ -25,6 +25,7 @@ from components.mistake import Mistake
 from components.model import ADDED, Model
 from components.particle import Particle, check_spin, check_velocities
 from components.rod import Rod
+from components.section import NAMES, given_by
 from components.settings import Settings
 from components.slider import Slider
 from components.suggestions import missing, remedy
@@ -255,6 +256,8 @@ def _read(model: Model, section: _Section) -> None:
     kind = section.kind
     if FOREIGN in section.keys:
         _check_components(section)
+    if kind is Rod and not section.keys.isdisjoint(NAMES):
+        section = _with_numbers(section)
     columns = {field.name: _column(model, section, field) for field in _saved_fields(kind)}
     if kind in _CHECKS:
         _CHECKS[kind](model, section, columns)
@@ -270,6 +273,18 @@ def _read(model: Model, section: _Section) -> None:
             raise ModelError(f"{section.path}: {error}") from None
     if FOREIGN in section.keys:
         _keep_foreign(model, section, handles)
+
+
+def _with_numbers(section: _Section) -> _Section:
+    """Rods with the numbers that their section and material give, where an element states none itself."""
+    elements = []
+    for row, element in enumerate(section.elements):
+        named = {}
+        for key in NAMES:
+            if element.get(key) is not None:
+                named[key] = Rod.__dict__[key].check(element[key], section.where(row, key))
+        elements.append({**given_by(**named), **element, **named} if named else element)
+    return replace(section, elements=elements, keys=set().union(*elements))
 
 
 # --- columns -----------------------------------------------------------------------------------------
@@ -597,6 +612,8 @@ def _elements(count: int, parts: Sequence[Part]) -> list[dict[str, Any]]:
 
 def _differs_from_default(field: Field[Any], column: Column) -> NDArray[np.bool_]:
     """Which rows do not hold the default's very bits, so that -0.0 is not taken for 0.0; shape (n,)."""
+    if field.dtype is str:
+        return np.asarray(column != field.default, dtype=bool)
     if column.dtype == np.dtype(object):
         return np.array([value != field.default for value in column], dtype=bool)
     default = field.allocate(1)

@@ -12,6 +12,7 @@ from components.field import Role
 from components.mistake import Mistake
 from components.model import Model
 from components.view import Shape
+from systems.edit.arrows import extent
 
 DRAWN_SHARE = 0.12  # of the structure's size that the largest displacement is drawn as
 LOWEST = 10  # mechanisms, and modes, in the round of `next`
@@ -126,8 +127,3 @@ def _shape(
 ) -> Shape:
     drawn = DRAWN_SHARE * extent(model) * motion
     return Shape(title, drawn[:, :2], about, drawn[:, 2] if drawn.shape[1] > 2 else None)
-
-
-def extent(model: Model) -> float:
-    """The larger of width and height (m)."""
-    return float(np.ptp(model.particles.position, axis=0).max())

@@ -14,6 +14,7 @@ from components.camera import Viewport
 from components.field import Vector
 from components.handle import Handle
 from components.model import Model
+from components.rod import bends
 from components.settings import NO_DIAGRAMS, Settings
 from components.slider import Place, under
 from components.tags import Selected
@@ -331,6 +332,8 @@ class Context:
         self.view.fit(self.model)
         if self.model.settings.diagrams != NO_DIAGRAMS:
             self.view.all_diagrams, self.view.quantity = True, self.model.settings.diagrams
+        if self.model.rods.count:
+            self.view.rigid = bends(self.model)
         if missing := missing_mods(self.model):
             self.notice = (
                 f"This model holds data of mods that are not loaded: {', '.join(missing)}. They are kept and"

@@ -11,7 +11,7 @@ from components.model import Model
 from components.tags import Hovered
 from components.view import MARGIN, Preview, Readout, Status, drawn_places, drawn_positions
 from game.editor.context import Context
-from game.editor.gestures.drawing import TOOL_HINTS
+from game.editor.gestures.drawing import end_pointed_at, hint_of_tool
 from game.editor.host import Waiting
 from game.editor.readouts import own_readouts
 from systems.base import StopReason
@@ -154,7 +154,9 @@ def _flashes(context: Context) -> NDArray[np.float64]:
 
 def _preview(context: Context) -> Preview | None:
     try:
-        return context.gesture.preview(context, context.pointer) if context.gesture is not None else None
+        if context.gesture is None:
+            return end_pointed_at(context, context.pointer) if context.scene in LIVE else None
+        return context.gesture.preview(context, context.pointer)
     except Refusal as error:
         context.gesture, context.notice = None, str(error)
         return None
@@ -163,7 +165,7 @@ def _preview(context: Context) -> Preview | None:
 def _drawing_hint(context: Context) -> str:
     if context.scene not in LIVE:
         return ""
-    return context.gesture.hint if context.gesture is not None else TOOL_HINTS.get(context.view.tool, "")
+    return context.gesture.hint if context.gesture is not None else hint_of_tool(context)
 
 
 def _state_word(context: Context) -> str:

@@ -19,8 +19,9 @@ from components.round_numbers import round_down
 from components.table import Table
 from components.tags import Selected
 from components.view import View
-from game.documents.shapes import DRAWN_SHARE, extent
+from game.documents.shapes import DRAWN_SHARE
 from game.force_method import PARTS
+from systems.edit.arrows import extent
 from systems.run.real_time import RealTimeRunner
 from systems.run.simulation import Simulation
 from systems.schedule import Schedule

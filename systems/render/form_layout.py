@@ -124,8 +124,11 @@ def lay_out(form: Form, viewport: Viewport, unit: float) -> FormLayout:
         height = _height(row, 0.0, u)
         fixed += _placed(row, left, top, width, height, u)
         top += height
-    message, lines = top - 11.0 * u, message_lines(form, width, u)
-    top += max(len(lines) - 1, 0) * MESSAGE_LINE * u
+    lines = len(message_lines(form, width, u))
+    message = (
+        top + (0.5 * MESSAGE_LINE if readings else -11.0) * u
+    )  # below the heading there is room for a line
+    top += max(lines - (not readings), 0) * MESSAGE_LINE * u
     right, first = left + width, form.heading.first
     edges = left, right, header, heading_width, message, top, bottom
     return _with_rows(FormLayout(v, u, *edges, close, accept, explained, first), fixed, rows)

@@ -6,8 +6,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from components import written
-from components.bent import axes, rigid_joints
+from components.bent import axes
 from components.model import Model
+from components.rod import rigid_joints
 from components.tags import DiagramShown
 from systems.render.arrows import MOST, arrows, head_length
 from systems.render.labels import Label, half_size

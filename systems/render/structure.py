@@ -7,7 +7,8 @@ import math
 import numpy as np
 from numpy.typing import NDArray
 
-from components.bent import FLAT, moved_axes, pieces, rigid_joints
+from components.bent import FLAT, moved_axes, pieces
+from components.rod import rigid_joints
 from components.round_numbers import round_up
 from components.tags import Hovered, Selected
 from systems.render.clip import bounds, clip_segments

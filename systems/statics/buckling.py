@@ -11,10 +11,12 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from components.model import Model
-from systems.statics.equations import Array, Matrix, Structure, normalised
+from systems.statics.assembly import Matrix
+from systems.statics.bending import needed_parts
+from systems.statics.equations import Array, Structure, normalised
 from systems.statics.events import NoEquilibrium
-from systems.statics.explain import capitalised, describe_motion, rod_names
-from systems.statics.factor import NO_STIFFNESS, SOFT, Factor, pseudo_random, regular, soft_modes
+from systems.statics.explain import describe_motion, divide_named, rod_names
+from systems.statics.factor import NO_STIFFNESS, SOFT, Factor, pseudo_random, regular, soft_modes, unresisted
 from systems.statics.state import Start
 from systems.statics.theory import linear
 
@@ -78,7 +80,7 @@ def buckling(model: Model, count: int = MODES, start: Start | None = None) -> Bu
 
 
 def _geometric(structure: Structure, axial_force: Array, share: float) -> Matrix:
-    """The stiffness of straight rods by these axial forces alone, and by the turning of a share of the distributed forces."""
+    """The stiffness of straight rods by these axial forces alone, and by what a share of the distributed forces turns."""
     bending, bent = structure.bending, structure.unmoved.bent
     if bending is not None and bent is not None:
         still = {name: np.zeros_like(values) for name, values in vars(bent).items()}
@@ -160,8 +162,9 @@ def _factors(structure: Structure, vectors: Array, steady: Matrix, softening: Ma
 
 
 def _upright(mode: Array) -> Array:
-    """A mode or its opposite: that of which the largest part is positive."""
-    most = np.unravel_index(np.abs(mode).argmax(), mode.shape)
+    """A mode or its opposite: that of which the largest part is positive, of displacements if there are any."""
+    part = np.abs(mode) * ([1.0, 1.0, 0.0][: mode.shape[1]] if np.abs(mode[:, :2]).max() > 0.5 else 1.0)
+    most = np.unravel_index(part.argmax(), mode.shape)
     turned: Array = mode if mode[most] > 0.0 else -mode
     return turned
 
@@ -190,7 +193,7 @@ def _why_none(model: Model, live: Array) -> str:
 
 
 def _notes(model: Model, factors: Array, lowest: Array) -> list[str]:
-    """What the lowest factor leaves out: strain beyond what is elastic, struts, and rods that one cubic is too coarse for."""
+    """What the lowest factor leaves out: strains that are not elastic, struts, and rods that one cubic is too coarse for."""
     if not len(factors):
         return []
     rods, notes = model.rods, []
@@ -209,4 +212,7 @@ def _notes(model: Model, factors: Array, lowest: Array) -> list[str]:
             f"Before, {rod_names(model, rows)} would buckle between {'its' if len(rows) == 1 else 'their'} hinges, at"
             " π² EI/L². Divide what is to bend between hinges."
         )
+    parts = needed_parts(model, lowest)
+    if (parts > 1).any():
+        notes.append(divide_named(model, np.flatnonzero(parts > 1), parts))
     return notes

@@ -7,7 +7,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from systems.statics.equations import SYMMETRIC, Array, Flags, Matrix, Response, Structure
+from systems.statics.assembly import SYMMETRIC, Matrix
+from systems.statics.equations import ROUND_OFF, Array, Flags, Response, Structure
 from systems.statics.lapack import lapack
 
 if TYPE_CHECKING:  # only large structures need it
@@ -126,8 +127,8 @@ def unresisted(structure: Structure, response: Response, matrix: Matrix, modes: 
     """Those of some soft modes (N, k) that round-off alone resists: not the bending of what many rods divide."""
     if structure.bending is None:
         return modes
-    kept = [float(m @ (matrix @ m)) < SOFT * structure.effort(m, response) for m in modes.T]
-    return modes[:, kept]
+    kept = [float(m @ (matrix @ m)) <= SOFT * structure.effort(m, response) + ROUND_OFF for m in modes.T]
+    return modes[:, kept]  # a bar that turns takes no effort at all; modes are orthonormal in W
 
 
 def soft_count(matrix: Matrix, weight: Array) -> int:

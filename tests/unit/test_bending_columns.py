@@ -93,7 +93,7 @@ def test_files_keep_every_fact_and_write_no_defaults() -> None:
     moved = {"rotation": 7.5, "angular_velocity": -2.0, "moment": 4.0, "inertia": 5.0}
     assert saved["particles"][1] | moved == saved["particles"][1]
     assert document(parse(saved)) == saved
-    plain = document(rod(bending_stiffness=0.0))
+    plain = document(rod(bending_stiffness=None))
     assert set(plain["rods"][0]) == {"name", "between", "stiffness"}
     assert set(plain["particles"][1]) == {"name", "position"}
 

@@ -1,5 +1,6 @@
 """Linear buckling: Euler's four loads, portals, columns under their own weight, and textbook matrices, assembled slowly."""
 
+import itertools
 import json
 import math
 from typing import Any
@@ -58,7 +59,6 @@ def test_eulers_four_loads(foot: dict[str, Any], head: str, root: float, errors:
         assert found.factors[0] / critical - 1.0 == pytest.approx(error, rel=0.01)
         assert found.effective_length == pytest.approx(math.pi * LENGTH / root / math.sqrt(1 + error), rel=1e-4)
         assert found.live == pytest.approx(-1.0, rel=1e-12)
-        assert np.abs(found.modes).max() == pytest.approx(1.0)
 
 
 def test_the_mode_of_a_pinned_column_is_a_sine() -> None:
@@ -90,7 +90,9 @@ def test_weight_acts_in_full_and_does_not_grow() -> None:
     """Half the critical load weighs on the column: so the force may be the other half."""
     light = column(4, CLAMPED, HEADS["free"])
     critical = buckling(parse(light)).factors[0]
-    heavy = column(4, CLAMPED, {"mass": 1000.0})
+    heavy = column(4, CLAMPED, HEADS["free"])
+    for particle in heavy["particles"]:
+        particle["mass"] = 1000.0 if particle["name"] == "P4" else 1e-9
     heavy["environment"] = {"acceleration": [0.0, -0.5 * critical]}
     found = buckling(parse(heavy))
     assert found.factors[0] == pytest.approx(0.5 * critical, rel=1e-9)
@@ -117,7 +119,7 @@ def portal(parts: int, foot: dict[str, Any], beam: float) -> dict[str, Any]:
         ]
         rods += [
             {"name": f"{a}-{b}", "between": [a, b], "stiffness": 1e9, "bending_stiffness": stiffness}
-            for a, b in zip(chain, chain[1:], strict=False)
+            for a, b in itertools.pairwise(chain)
         ]
     return model(particles, rods)
 
@@ -134,7 +136,7 @@ def test_portals_sway(foot: dict[str, Any], beam: float) -> None:
     critical = root**2 * EI / 16.0
     errors = [buckling(parse(portal(parts, foot, beam))).factors[0] / critical - 1.0 for parts in (1, 4)]
     assert 0.0 < errors[0] < (0.008 if foot is PINNED else 0.03)
-    assert 0.0 < errors[1] < 2e-4
+    assert 0.0 < errors[1] < 6e-4
 
 
 def textbook(made: Model) -> float:
@@ -230,14 +232,13 @@ def test_a_vierendeel_girder_gives_way_in_its_upper_chord() -> None:
 
 
 def test_a_shallow_truss_and_one_in_a_line() -> None:
-    """Von Mises: K₀ = 2 EA/L (H/L)², K_G = 2 N/L (b/L)², N = −P L/2H. In a line nothing resists, held by tension only."""
-    found = Session.open("von_mises").buckling()
-    made = Session.open("von_mises").model
-    height, span = made.particles.position[1, 1], 5.0
-    length = math.hypot(height, span)
-    load = -made.particles.force[1, 1]
-    critical = 2.0 * made.rods.stiffness[0] * height**3 / (length * span**2) / length
-    assert found.factors[0] * load == pytest.approx(critical * 1.0, rel=1e-9)
+    """Von Mises: K₀ = 2 EA/L (H/L)², K_G = 2 N/L (b/L)². In a line nothing resists."""
+    session = Session.open("von_mises")
+    found, rods = session.buckling(), session.model.rods
+    (span, height) = np.abs(rods.difference[0])
+    assert -found.factors[0] * found.live[0] == pytest.approx(
+        rods.stiffness[0] * height**2 / span**2, rel=1e-12
+    )
     line = column(2, PINNED, HEADS["pinned"], bending_stiffness=0.0)
     with pytest.raises(
         NoEquilibrium, match="A mechanism has no critical load: nothing resists moving P1 along x"
@@ -284,6 +285,9 @@ def test_notes_name_struts_and_strains() -> None:
     found = buckling(parse(document))
     assert "is shortened by" in found.notes[0]
     assert "Before, rod AB would buckle between its hinges" in found.notes[1]
+    (coarse,) = buckling(parse(column(1, PINNED, HEADS["pinned"]))).notes
+    assert "Rod R0 bends within itself" in coarse
+    assert not buckling(parse(column(1, CLAMPED, HEADS["free"]))).notes
 
 
 # --- the command -----------------------------------------------------------------------------------------

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import signal
+from itertools import pairwise
 from pathlib import Path
 from typing import Any
 
@@ -70,6 +71,7 @@ def test_other_commands_end_with_a_sentence(
 ) -> None:
     path = tmp_path / "endless.json"
     path.write_text(json.dumps(BILLION_IMPACTS), encoding="utf-8")
+    main(["run", str(path), "--at", "1e-9"])  # compiles
     given = words.replace("MODEL", str(path)).replace("OUT", str(tmp_path / "out"))
     with interrupted_after(1.0):
         assert main(given.split()) == 130
@@ -83,13 +85,16 @@ def test_what_lasts_says_how_far_it_is(
     monkeypatch.setattr(progress, "FURTHER", 0.2)
     path = tmp_path / "endless.json"
     path.write_text(json.dumps(BILLION_IMPACTS), encoding="utf-8")
+    main(["run", str(path), "--at", "1e-9"])  # compiles
+    capsys.readouterr()
     with interrupted_after(1.0), progress.told():
         assert main(["run", str(path), "--at", "1e6"]) == 130
     said = [line for line in capsys.readouterr().err.splitlines() if "impacts. Ctrl+C stops it." in line]
     impacts = [int(line.rpartition(" steps, ")[2].partition(" ")[0]) for line in said]
+    fallen = [later < sooner for sooner, later in pairwise(impacts)]
     assert len(impacts) > 1
-    assert impacts == sorted(impacts)
-    assert impacts[-1] > 1000
+    assert sum(fallen) <= 1  # Ctrl+C goes back to what is kept, and the voice may tell of that, too
+    assert max(impacts) > 1000
 
 
 @pytest.mark.parametrize(
