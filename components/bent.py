@@ -14,11 +14,12 @@ from numpy.typing import NDArray
 from components.derived import chord_rotation
 from components.diagrams import all_slopes
 from components.model import Model
+from components.settings import DIAGRAMS
 
 Array = NDArray[np.float64]
 Rows = NDArray[np.intp]
 
-AXIAL, MOMENT, SHEAR = QUANTITIES = ("N", "M", "V")  # in the order in which their diagrams follow one another
+AXIAL, MOMENT, SHEAR = QUANTITIES = DIAGRAMS
 FLAT = 0.25  # pixels by which a curve may differ from the lines that are drawn of it
 MOST_PIECES = 32  # of a drawn rod
 _LARGEST = 1e6  # pieces that a rod would have to be cut into; such are left out

@@ -15,7 +15,7 @@ from components.field import Vector
 from components.handle import Handle
 from components.model import Model
 from components.rod import bends
-from components.settings import Settings
+from components.settings import NO_DIAGRAMS, Settings
 from components.slider import Place, under
 from components.tags import Selected
 from components.view import Preview, Readout, View
@@ -323,12 +323,15 @@ class Context:
         """Open a model. A document with unsaved work, or any to `keep`, stays open, and undo goes back to it."""
         self.leave_gesture()
         self.documents.add(model, file, keep=keep)
+        self.view.all_diagrams = False
         self.begin_document()
 
     def begin_document(self) -> None:
         """Show the document that is open now, from the first frame on."""
         self.make_room()
         self.view.fit(self.model)
+        if self.model.settings.diagrams != NO_DIAGRAMS:
+            self.view.all_diagrams, self.view.quantity = True, self.model.settings.diagrams
         if self.model.rods.count:
             self.view.rigid = bends(self.model)
         if missing := missing_mods(self.model):

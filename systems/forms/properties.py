@@ -29,6 +29,7 @@ EXACT, DIGITS = 12, 9  # significant digits: numbers with so few are shown in fu
 _OF_RODS = (
     "diagram_scale",
     "original_diagrams",
+    "diagrams",
     "plasticity",
     "sleeping",
 )  # settings that concern rods; the others particles
