@@ -74,11 +74,16 @@ class Factor:
 
 def regular(matrix: Matrix, weight: Array, share: float = NO_STIFFNESS) -> Factor:
     """Factor of K + share × weight: definite if every motion is resisted by more than −share."""
+    return Factor(shifted(matrix, weight, share))
+
+
+def shifted(matrix: Matrix, weight: Array, share: float = NO_STIFFNESS) -> Matrix:
+    """K + share × weight."""
     if isinstance(matrix, np.ndarray):
-        return Factor(matrix + np.diag(share * weight))
-    shifted = matrix.copy()
-    shifted.setdiag(matrix.diagonal() + share * weight)
-    return Factor(shifted)
+        return matrix + np.diag(share * weight)
+    found = matrix.copy()
+    found.setdiag(matrix.diagonal() + share * weight)
+    return found
 
 
 def is_stable(structure: Structure, response: Response, soft: Flags | None = None) -> bool:
