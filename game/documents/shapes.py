@@ -135,7 +135,7 @@ def _buckled(model: Model, found: Buckling) -> list[Shape]:
         row, length = int(found.leading[number - 1]), float(found.leading_length[number - 1])
         if math.isfinite(length):
             rod = cut(str(model.rods.column("name")[row]))
-            title += f"; effective length of {rod} {written.displacement(length)}"
+            title += f"; effective length {written.displacement(length)} ({rod})"
         shapes.append(_shape(model, title, motion))
     return shapes
 

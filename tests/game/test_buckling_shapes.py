@@ -35,7 +35,7 @@ def test_buckling_modes_come_before_natural_modes() -> None:
         session.press("b")
         titles.append(shown(session))
     factor = session.buckling().factors[0]
-    assert titles[0] == f"Buckling mode 1: load × {factor:.4g}; effective length of R3 2000 cm"
+    assert titles[0] == f"Buckling mode 1: load × {factor:.4g}; effective length 2000 cm (R3)"
     assert [title[:15] for title in titles[1:3]] == ["Buckling mode 2", "Buckling mode 3"]
     assert titles[3].startswith("Mode 1 of ")
     assert titles[0] in compose(session.model, _with_first(session), load_theme()).texts
