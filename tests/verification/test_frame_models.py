@@ -190,3 +190,20 @@ def test_ball_and_corner_part_by_newtons_law() -> None:
     assert ball.velocity[0] == pytest.approx(before[0] - shared * 645.0 / 300.0, abs=0.01)
     assert corner.velocity[0] == pytest.approx(shared, rel=0.05)
     assert (round(ball.velocity[0], 2), round(shared, 2)) == (-0.15, 2.98)
+
+
+@pytest.mark.parametrize(
+    ("name", "duration"), [("portal", 1.3), ("flexible_pendulum", 1.0), ("rolled_cantilever", 2.0)]
+)
+def test_defaults_are_exact_to_a_millionth(name: str, duration: float) -> None:
+    """Against a tolerance of 1e-12, of the largest displacement and rotation."""
+    content, found = document(name), []
+    for settings in ({}, {"integrator": "dop853", "tolerance": 1e-12}):
+        session = Session.open(content | {"settings": content["settings"] | settings})
+        session.run(time=duration)
+        particles = session.particles
+        found.append(
+            [particles.displacement.copy(), particles.rotation.copy(), session.rods.bending_moment.copy()]
+        )
+    for default, tight in zip(*found, strict=True):
+        assert np.abs(default - tight).max() <= 1e-6 * np.abs(tight).max()
