@@ -121,7 +121,7 @@ class Readout:
 
 @dataclass(frozen=True)
 class Shape:
-    """A mechanism or a mode of vibration, to be drawn over the model.
+    """A mechanism, or a mode of buckling or vibration, to be drawn over the model.
 
     title: such as "Mode 1 of 5: 9.276 Hz". displacement: (m), as drawn, (n, 2). about: the displacement (m) of the
     equilibrium that it leads away from, (n, 2); None: it leads away from the original positions. rotation: (rad), on the
@@ -154,7 +154,8 @@ class View:
     menu: the list of what can be done somewhere, while it is open.
     theme: the name of its colours. readouts: panels at the right edge; hidden with the legend.
     pointed: what is said of the element under the pointer, beside it.
-    shape: a mechanism or mode that is drawn over the model, with its title below the caption.
+    shape: a mechanism or mode that is drawn over the model, with its title below the caption. swing: the share of it, from
+    1 to −1, that is drawn now.
     utilisation: rods show in colours how much of their strength they bear.
     largest_force: that (kN) of pictures beside this one, with which its arrows share a scale; 0: none.
     free_bodies: rods and joints are drawn apart, with the forces on each.
@@ -198,6 +199,7 @@ class View:
     free_bodies: bool = False
     events: bool = False
     shape: Shape | None = None
+    swing: float = 1.0
     pointed: Readout | None = None
     fitted: bool = False
     shares: bool = False

@@ -241,18 +241,22 @@ class Session(Context):
         """
         return self.document.assessment.comparison()
 
-    def load_path(self, factor: float = 1.0, *, until: str | None = None, points: int = 500) -> Curve:
-        """The load–displacement curve, through limit points, up to a load factor or a displacement "B.y=-2.5".
+    def load_path(
+        self, factor: float = 1.0, *, until: str | None = None, points: int = 500, branch: int = 0
+    ) -> Curve:
+        """The load–displacement curve, through limit points, up to a load factor, or "B.y=-2.5" or "B.rotation=1".
+
+        branch: number of the bifurcation from which on it follows the other branch, along the mode; negative: against it.
 
         Changes nothing. Its arrays are load_factor (k,), displacement (k, particles, 2) in m, rotation (k, particles) in
-        rad, axial_force (k, rods) in kN, bending_moment (k, rods, 2) in kN·m and stable (k,); complete: False if it
-        could not be followed so far. Raises ValueError.
+        rad, axial_force (k, rods) in kN, bending_moment (k, rods, 2) in kN·m and stable (k,); its events are limit points
+        and bifurcations; complete: False if it could not be followed so far. Raises ValueError.
         """
         from systems.statics.path import goal_of, load_path
 
         if points < 2:
             raise ValueError(f"points is {points}; a curve has at least 2.")
-        return load_path(self.model, goal_of(self.model, factor, until), points=points)
+        return load_path(self.model, goal_of(self.model, factor, until), points=points, branch=branch)
 
     def buckling(self, modes: int = 5) -> Buckling:
         """Critical load factors by linear buckling, ascending, with their modes; changes nothing.

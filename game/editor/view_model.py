@@ -22,6 +22,7 @@ from systems.render.help import help_pages
 from systems.render.overlays import BAR
 
 COMPILING = "Compiling the step program, which models of this size wait for once:"
+STILL = ("pause", "properties")  # scenes of the model in which time stands still
 FLASH = 0.15  # s shown, for which an impact is marked
 MOST_WATCHED = 2000  # particles, up to which it is told that they left the picture
 FARTHEST = 8.0  # times: by how much the view shows more than the original structure to follow what moves
@@ -41,12 +42,14 @@ def show(context: Context, elapsed: float) -> None:
         if context.notice
         else [*(remark.message for remark in context.remarks), "" if follows(context) else _gone(context)]
     )
+    lasting += [_unsettled(context)] * (not any(lasting))
     view.preview = _preview(context)
     if view.pressed is not None and not (view.pointer is not None and view.pressed.contains(view.pointer)):
         view.pressed = None
     view.flashes = _flashes(context)
     view.heading = scene.heading
     view.shape = context.document.shapes.shown
+    view.swing = context.document.shapes.swing(elapsed) if view.shape is not None else 1.0
     pages = pages_of_help(context) if view.help else []
     view.keys = pages[min(view.help, len(pages)) - 1] if pages else []
     view.pages = len(pages)
@@ -78,6 +81,14 @@ def _show_readouts(context: Context) -> None:
         readout.title: since.get(readout.title, latest + number)
         for number, readout in enumerate(view.readouts, start=1)
     }
+
+
+def _unsettled(context: Context) -> str:
+    """The sentence that what was settled was edited since and is in equilibrium no more, "" if it is."""
+    document = context.document
+    if context.scene not in STILL or document.is_undeformed or document.assessment.balanced:
+        return ""
+    return "Edited: no longer in equilibrium. E settles it again."
 
 
 def _gone(context: Context) -> str:

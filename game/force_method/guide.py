@@ -69,7 +69,8 @@ class Set:
 
     def scale_to(self, state: SetState) -> None:
         """Choose drawing scales for the displacements and forces of a final state."""
-        self.suited = _scale_to(DRAWN_SHARE * extent(self.model), largest(state.displacement))
+        size = extent(self.model) if self.model.rods.count else 0.0
+        self.suited = _scale_to(DRAWN_SHARE * size, largest(state.displacement))
         self.model.settings.diagram_scale = _scale_to(DIAGRAM_HEIGHT, largest(state.axial_force))
 
     def settle(self) -> None:

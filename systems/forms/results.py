@@ -113,7 +113,8 @@ def _of_rods(columns: _Columns, rows: NDArray[np.intp]) -> Iterator[Result]:
         if not math.isnan(rods.area[row]):
             stress = 1e-3 * force / np.where(np.isnan(rods.area), np.inf, rods.area)
             told = "Axial force per area of the cross-section; tension positive."
-            yield Result(SECTION, "stress", _number(stress[row], stress, "MPa"), told)
+            title = "axial stress" if rods.bending_stiffness[row] else "stress"
+            yield Result(SECTION, title, _number(stress[row], stress, "MPa"), told)
         yield _result("length", _number(length[row], length, CM[0]), Rod.length)
         yield from _at_ends(columns, row)
         if rods.plastic_strain[row]:
@@ -158,7 +159,8 @@ def _utilisation(columns: _Columns, rows: NDArray[np.intp]) -> Iterator[Result]:
         most = int(np.nanargmax(used))
         whose = f" ({rods.column('name')[rows[most]]})" if len(rows) > 1 else ""
         text = f"{written.share(used[most])}{whose}"
-    title = "largest utilisation" if len(rows) > 1 else "utilisation"
+    title = "axial utilisation" if rods.bending_stiffness[rows].any() else "utilisation"
+    title = f"largest {title}" if len(rows) > 1 else title
     yield Result(SECTION, title, text, "Axial force, as a share of the strength in its direction.")
 
 

@@ -60,7 +60,7 @@ _BY_PURPOSE: dict[str, tuple[Binding, ...]] = {
     "Draw": (
         Binding("p", "place", LIVE, "new particle under the pointer"),
         Binding("l", "rod", LIVE, "rod from one particle to another"),
-        Binding("ctrl+r", "rigid", LIVE, "rigid or pinned rods: those selected, or drawn"),
+        Binding("ctrl+r", "rigid", LIVE, "rigid rods of frames: drawn, or those selected"),
         Binding("ctrl+j", "hinge", LIVE, "hinge at an end of a rod, or rigid"),
         Binding("c", "support", LIVE, "support: next, or drag to its ground"),
         Binding("f", "force", LIVE, "load, as an arrow from a particle or a rod"),
@@ -111,7 +111,7 @@ _BY_PURPOSE: dict[str, tuple[Binding, ...]] = {
         Binding("m", "toggle theory", LIVE, "theory beside the run, on / off"),
         Binding("j", "toggle energy", LIVE, "energy account on / off"),
         Binding("ctrl+h", "toggle events", LIVE, "what happened, on / off"),
-        Binding("b", "next shape", LIVE, "mechanisms, natural modes, none"),
+        Binding("b", "next shape", LIVE, "mechanisms, buckling, natural modes, none"),
         Binding("ctrl+l", "new slider", LIVE, "slider for the load or stiffness selected"),
         Binding("k", "force method", (PAUSE,), "force method"),
     ),

@@ -49,6 +49,14 @@ def normalised(motion: Array) -> Array:
     return scaled
 
 
+def upright(motion: Array) -> Array:
+    """A normalised motion (n, 2 or 3) or its opposite: that of which the largest part, if any a shift, is positive."""
+    shifts = np.abs(motion[:, :2]).max() > 0.5
+    part = np.abs(motion) * np.array([1.0, 1.0, 0.0 if shifts else 1.0])[: motion.shape[1]]
+    turned: Array = motion if motion.ravel()[part.argmax()] > 0.0 else -motion
+    return turned
+
+
 @dataclass(frozen=True)
 class Response:
     """The state of the rods at given displacements, by return mapping from a given plastic strain; (rods,).
@@ -452,10 +460,14 @@ class Structure:
         pull = (self.stiffness / self.rest_length * stretched)[:, None] * response.axis
         if self.bending is None:
             return self.scatter(pull)
-        moment, length = self.bending.moments(self.slope_rates(field, response)), response.length
-        return self._sheared(
-            response, pull, moment, moment.sum(axis=1) / np.where(length > 0.0, length, np.inf)
-        )
+        return self.held_kinks(self.slope_rates(field, response), pull)
+
+    def held_kinks(self, slopes: Array, pull: Array | None = None) -> Array:
+        """Forces (n, 3) that hold the particles against rods with small slopes (rods, 2) at their ends, and axial forces."""
+        assert self.bending is not None
+        response, moment = self.unmoved, self.bending.moments(slopes)
+        shear = moment.sum(axis=1) / np.where(response.length > 0.0, response.length, np.inf)
+        return self._sheared(response, np.zeros_like(response.axis) if pull is None else pull, moment, shear)
 
     def carried(self, response: Response) -> Array:
         """What the whole distributed forces would add to the particles' forces, besides halves of them on both ends."""

@@ -60,9 +60,9 @@ def drag_by(session: Session, start: tuple[float, float], points: tuple[float, f
 
 def test_a_portal_is_drawn_and_loaded_with_the_toolbar() -> None:
     session = opened()
-    push(session, "rod")
     push(session, "rigid")
     assert tool(session, "rigid").pressed
+    assert tool(session, "rod").pressed
     for at in ((-2, 0), (-2, 3), (2, 3), (2, 0)):
         session.click(*at)
     assert session.notice.startswith("Rod 3: 300")

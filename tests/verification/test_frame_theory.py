@@ -9,9 +9,11 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from components.model import Model
+from game.commands.reports.verify import influence
 from game.documents.models import parse
 from systems.statics.counting import counted
 from systems.statics.events import NoEquilibrium
+from systems.statics.force_method import ForceMethodError
 from systems.statics.settle import settle
 from systems.statics.state import StaticState
 from systems.statics.theory import indeterminacy, linear, mechanisms, self_stress
@@ -237,6 +239,47 @@ def test_a_warm_side_bends_what_is_free_and_stresses_what_is_held() -> None:
     other = held("B", length, fixed_rotation=True)
     _, found = answered([clamp, other], [beam("AB", temperature_gradient=gradient)])
     assert found.diagrams["bending_moment"][0] == pytest.approx([-EI * curvature] * 2, rel=1e-12)
+
+
+@pytest.mark.parametrize("hinged", [[False, False], [True, False]])
+def test_influence_lines_are_what_a_moved_load_does(hinged: list[bool]) -> None:
+    """Of moments, shears, clamps and rotations: the answers of first-order theory for a force at each place in turn."""
+    particles = [
+        held("A", 0.0, fixed_rotation=True),
+        free("B", 0.0, 3.0),
+        free("C", 2.0, 3.5),
+        free("D", 4.0, 3.0),
+        held("E", 4.0),
+    ]
+    rods = [beam("AB"), beam("BC", hinged=hinged), beam("CD"), beam("DE")]
+    parts = {"start": ("bending_moment", 0), "end": ("bending_moment", 1), "shear": ("shear", 0)}
+    names = [f"{rod}.{part}" for rod in ("AB", "BC", "DE") for part in parts]
+    names = [name for name in names if not (hinged[0] and name == "BC.start")]
+    names += ["A.rotation", "B.rotation", "C.y", "E.x", "BC"]
+    made = parse(model(particles, rods))
+    lines = influence(made, names)["influence"]
+    for at, axis in [("B", 0), ("C", 0), ("C", 1), ("D", 1)]:
+        unit = [
+            p | {"force": [float(axis == 0), float(axis == 1)]} if p["name"] == at else p for p in particles
+        ]
+        answer = linear(parse(model(unit, rods)))
+        for name in names:
+            place, _, what = name.rpartition(".")
+            if what in parts:
+                quantity, end = parts[what]
+                expected = answer.diagrams[quantity][made.rods[place].row, end]
+            elif what == "rotation":
+                of = answer.reaction_moment if place == "A" else answer.rotation
+                expected = of[made.particles[place].row]
+            elif place:
+                of = answer.reaction if place == "E" else answer.displacement
+                expected = of[made.particles[place].row, "xy".index(what)]
+            else:
+                expected = answer.axial_force[made.rods[name].row]
+            assert lines[name]["of"][at][axis] == pytest.approx(expected, rel=1e-9, abs=1e-11)
+    if hinged[0]:
+        with pytest.raises(ForceMethodError, match="BC is hinged at its start, so there is no moment"):
+            influence(made, ["BC.start"])
 
 
 def test_a_beam_with_a_hinge_too_many_is_a_mechanism() -> None:

@@ -17,13 +17,15 @@ from systems.edit.weight import weigh_along
 
 @action("rigid", while_drawing=True)
 def _rigid(context: Context, pixel: Vector) -> None:
-    """Make the selected rods rigid at both ends, or pinned if they are so; without any, those that will be drawn."""
+    """Make the selected rods rigid at both ends, or pinned if they are so; without any, draw such rods."""
     drawing = isinstance(context.gesture, DrawRod) or context.view.tool == DrawRod.tool
     rods = [] if drawing else context.selected_of(Rod)
     if not rods:
         context.view.rigid = not context.view.rigid
         if isinstance(context.gesture, DrawRod):
             context.gesture.say(context)
+        elif context.view.rigid and not drawing:
+            context.take_up(DrawRod.tool)
         context.notice = (
             f"Rods are drawn {'rigid at both ends' if context.view.rigid else 'pinned at both ends'}."
         )
