@@ -22,8 +22,8 @@ from components.table import Table
 from components.view import View
 from components.wording import quoted
 from game.documents import models
-from game.documents.document import ModelError
 from game.documents.open_documents import ModelFile, Source, file_of
+from game.documents.sections import ModelError
 from game.editor.actions import ACTIONS, WHILE_DRAWING
 from game.editor.context import FAULTS, Context
 from game.editor.dropping import open_dropped

@@ -21,10 +21,10 @@ from components.view import Preview, Readout, View
 from game.documents import models
 from game.documents.autosave import Autosave
 from game.documents.chronicle import Happening
-from game.documents.document import missing_mods
 from game.documents.history.history import History
 from game.documents.history.timeline import Timeline
 from game.documents.open_documents import ModelFile, OpenDocument, OpenDocuments, Source, file_of
+from game.documents.sections import missing_mods
 from game.editor.clipboard import Part
 from game.editor.host import ProgramPreparation, Waiting, Window
 from game.scripts.script import Script
