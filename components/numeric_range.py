@@ -16,13 +16,8 @@ UNKNOWN_SHARE = 1e-3  # of a radius: how well places must be known for impacts
 _TABLES = ("particles", "rods", "loads", "environment", "settings")
 _FOLLOWING = ("rest_length", "mass")  # derived, from positions that may be too near or too far
 _OF_ROTATIONS = "inertia"  # derived, from bending stiffnesses
-_MOVING = (
-    "displacement",
-    "velocity",
-    "rotation",
-    "angular_velocity",
-    "plastic_strain",
-)  # state that a person can type
+# State that a person can type.
+_MOVING = ("displacement", "velocity", "rotation", "angular_velocity", "plastic_strain")
 
 
 def incomputable(model: Model) -> str:
