@@ -14,15 +14,16 @@ from numpy.typing import NDArray
 from components.derived import chord_rotation
 from components.diagrams import all_slopes
 from components.model import Model
-from components.table import flags
+from components.settings import DIAGRAMS
 
 Array = NDArray[np.float64]
 Rows = NDArray[np.intp]
 
-AXIAL, MOMENT, SHEAR = QUANTITIES = ("N", "M", "V")  # in the order in which their diagrams follow one another
+AXIAL, MOMENT, SHEAR = QUANTITIES = DIAGRAMS
 FLAT = 0.25  # pixels by which a curve may differ from the lines that are drawn of it
 MOST_PIECES = 32  # of a drawn rod
 _LARGEST = 1e6  # pieces that a rod would have to be cut into; such are left out
+_STEEP, _STEEPEST = 0.05, 2.5  # rad, slopes from which on tangents are drawn truly, and up to which
 _SAMPLES = 33  # between which a zero of a polynomial is looked for
 
 
@@ -30,36 +31,48 @@ _SAMPLES = 33  # between which a zero of a polynomial is looked for
 class Axes:
     """The axes of some rods as drawn (m): chords, unit vectors to their left, and by how much they bend away there.
 
-    start, end, left: (n, 2). bow: polynomials (n, 5), the present deflection × displacement scale.
+    start, end, left: (n, 2). bow: polynomials (n, 5), the present deflection × displacement scale. drift: likewise by how
+    much their points move along the chords, which lets strongly bent rods leave joints in the right direction; None: not.
     """
 
     start: Array
     end: Array
     left: Array
     bow: Array
+    drift: Array | None = None
 
     def some(self, which: Rows | NDArray[np.bool_]) -> Axes:
         """Those of some of the rods."""
-        return Axes(self.start[which], self.end[which], self.left[which], self.bow[which])
+        drift = None if self.drift is None else self.drift[which]
+        return Axes(self.start[which], self.end[which], self.left[which], self.bow[which], drift)
 
     def points(self, shares: Array) -> Array:
         """Points at shares (k,) or (n, k), shape (n, k, 2)."""
         along = np.broadcast_to(shares, (len(self.start), np.shape(shares)[-1]))[..., None]
         chord = self.start[:, None] * (1.0 - along) + self.end[:, None] * along
-        found: Array = chord + values(self.bow, shares)[..., None] * self.left[:, None]
+        found: Array = chord + self._away(self.bow, self.drift, shares)
         return found
 
     def tangents(self, shares: Array) -> Array:
         """Their directions at shares (k,) or (n, k), not of unit length, shape (n, k, 2)."""
-        rise = values(derivative(self.bow), shares)
-        found: Array = (self.end - self.start)[:, None] + rise[..., None] * self.left[:, None]
+        drift = None if self.drift is None else derivative(self.drift)
+        found: Array = (self.end - self.start)[:, None] + self._away(derivative(self.bow), drift, shares)
+        return found
+
+    def _away(self, bow: Array, drift: Array | None, shares: Array) -> Array:
+        found: Array = values(bow, shares)[..., None] * self.left[:, None]
+        if drift is not None:
+            ahead = np.stack([self.left[:, 1], -self.left[:, 0]], axis=1)
+            found = found + values(drift, shares)[..., None] * ahead[:, None]
         return found
 
     @property
     def curvature(self) -> Array:
         """Into how many pieces each would have to be cut to be straight within a metre, (n,); a root of a length."""
-        second = derivative(derivative(self.bow))
-        most: Array = np.sqrt(np.abs(second).sum(axis=1) / 8.0)
+        second = np.abs(derivative(derivative(self.bow))).sum(axis=1)
+        if self.drift is not None:
+            second += np.abs(derivative(derivative(self.drift))).sum(axis=1)
+        most: Array = np.sqrt(second / 8.0)
         return most
 
 
@@ -78,7 +91,21 @@ def axes(model: Model, rows: Rows) -> Axes:
     particles, scale = model.particles, float(model.settings.displacement_scale)
     ends = rods.between[rows].astype(np.intp)
     drawn = particles.position[ends] + particles.displacement[ends] * scale
-    return Axes(drawn[:, 0], drawn[:, 1], state.left, scale * (state.cubic + state.sag))
+    drift = _drift(state)
+    drift = None if drift is None else scale * drift
+    return Axes(drawn[:, 0], drawn[:, 1], state.left, scale * (state.cubic + state.sag), drift)
+
+
+def _drift(state: _State) -> Array | None:
+    """How far points move along the chords, so that ends with slopes φ lie at angles φ to them, not arctan φ."""
+    length = state.length
+    slopes = state.cubic[:, [1, 3]] / np.where(length > 0.0, length, 1.0)[:, None]
+    slopes[:, 1] -= slopes[:, 0]  # the cubic has φ_s and φ_s + φ_e
+    steep = np.clip(np.abs(slopes), 0.0, _STEEPEST)
+    if not (steep > _STEEP).any():
+        return None
+    shorter = np.where(steep > _STEEP, steep / np.tan(np.maximum(steep, _STEEP)) - 1.0, -(steep**2) / 3.0)
+    return length[:, None] * _cubic(*shorter.T)
 
 
 def moved_axes(model: Model, rows: Rows, places: Array, displacement: Array, rotation: Array) -> Axes:
@@ -240,12 +267,6 @@ def pieces(found: Axes, rows: Rows, fineness: float) -> Lines | None:
     row = np.concatenate(of)
     order = np.argsort(row, kind="stable")
     return Lines(np.concatenate(starts)[order], np.concatenate(ends)[order], row[order])
-
-
-def rigid_joints(model: Model) -> NDArray[np.bool_]:
-    """Which particles have rigid rod ends, (particles,)."""
-    rods = model.rods
-    return flags(rods.between[rods.turning_shares > 0.0], model.particles.count)
 
 
 def distributed_shares(model: Model) -> Array:

@@ -10,6 +10,7 @@ from components.field import Field
 from components.handle import Handle
 
 NUMBER, WORD, TEXT, FILE_NAME = "number", "word", "text", "file name"
+NAME = "name"  # one of some words, or a text of a form that is known
 _WITH_UNIT = re.compile(r"(.*[\d.]) ?([^\d\s.eE].*)")
 
 
@@ -39,7 +40,7 @@ class Box(Handle):
     )
     elements: Field[Any] = Field(dtype=object, doc="A tuple of the elements that it is for.")
     accepts: Field[str] = Field(
-        doc="What may be typed.", default=TEXT, dtype=str, choices=(NUMBER, WORD, TEXT, FILE_NAME)
+        doc="What may be typed.", default=TEXT, dtype=str, choices=(NUMBER, WORD, TEXT, FILE_NAME, NAME)
     )
     words: Field[Any] = Field(
         dtype=object, doc="A tuple of words that it takes; besides numbers, or the only ones."

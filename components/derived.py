@@ -30,13 +30,17 @@ def derive_lengths(world: World) -> None:
 
 
 def derive_stiffness(world: World) -> None:
-    """EA of every rod: prescribed, else E·A, else that of a rod of which nothing is known."""
+    """EA and EI of every rod: prescribed, else E·A and E·I, else those of a bar of which nothing is known."""
     rods = world.tables["rods"]
-    with np.errstate(over="ignore", under="ignore"):  # too large numbers are reported before a run
-        known = rods.youngs_modulus * rods.area
-    prescribed = rods.prescribed_stiffness
-    automatic = np.where(np.isnan(known), DEFAULT_STIFFNESS, known)
-    world.writable("rods.stiffness")[...] = np.where(np.isnan(prescribed), automatic, prescribed)
+    for name, of_section, unknown in (
+        ("stiffness", rods.area, DEFAULT_STIFFNESS),
+        ("bending_stiffness", rods.second_moment, 0.0),
+    ):
+        with np.errstate(over="ignore", under="ignore"):  # too large numbers are reported before a run
+            known = rods.youngs_modulus * of_section
+        prescribed = rods.column(f"prescribed_{name}")
+        automatic = np.where(np.isnan(known), unknown, known)
+        world.writable(f"rods.{name}")[...] = np.where(np.isnan(prescribed), automatic, prescribed)
 
 
 def derive_masses(world: World) -> None:
@@ -200,8 +204,11 @@ DERIVATIONS = (
         derive_lengths,
     ),
     Derivation(
-        ("rods.stiffness",),
-        ("rods.prescribed_stiffness", "rods.youngs_modulus", "rods.area"),
+        ("rods.stiffness", "rods.bending_stiffness"),
+        (
+            *("rods.prescribed_stiffness", "rods.prescribed_bending_stiffness"),
+            *("rods.youngs_modulus", "rods.area", "rods.second_moment"),
+        ),
         derive_stiffness,
     ),
     Derivation(

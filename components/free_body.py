@@ -12,10 +12,11 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from components.bent import distributed_shares, is_frame, rigid_joints
+from components.bent import distributed_shares, is_frame
 from components.derived import chord_rotation
 from components.load import factor_at
 from components.model import Model
+from components.rod import rigid_joints
 from components.written import ROUNDING
 
 Vectors = NDArray[np.float64]

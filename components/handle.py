@@ -4,13 +4,14 @@ from __future__ import annotations
 
 import weakref
 from collections import deque
-from collections.abc import Callable, Collection
+from collections.abc import Callable, Collection, Mapping
 from itertools import repeat
 from typing import TYPE_CHECKING, Any, ClassVar, Self
 
 import numpy as np
 from numpy.typing import NDArray
 
+from components.field import Column
 from components.suggestions import missing
 from components.table import Store, Table, refuse_orphans
 
@@ -72,6 +73,11 @@ class Handle:
         """False once the entity is deleted (and True again when that is undone)."""
         world = self._world()
         return world is not None and bool(world.row_of_entity[self.entity] >= 0)
+
+    @classmethod
+    def completed(cls, columns: Mapping[str, Column], count: int) -> Mapping[str, Column]:
+        """The checked columns that new elements are given, with what follows from them."""
+        return columns
 
     @classmethod
     def after_change(cls, table: Table[Any], rows: NDArray[np.intp], changed: Collection[str]) -> None:

@@ -15,6 +15,7 @@ UNKNOWN_SHARE = 1e-3  # of a radius: how well places must be known for impacts
 
 _TABLES = ("particles", "rods", "loads", "environment", "settings")
 _FOLLOWING = ("rest_length", "mass")  # derived, from positions that may be too near or too far
+_OF_SECTIONS = "stiffness", "bending_stiffness"  # derived, as E·A and E·I
 _OF_ROTATIONS = "inertia"  # derived, from bending stiffnesses
 # State that a person can type.
 _MOVING = ("displacement", "velocity", "rotation", "angular_velocity", "plastic_strain")
@@ -61,7 +62,7 @@ def is_extreme(field: Field[Any], column: Column) -> Column:
 def is_computed_with(field: Field[Any]) -> bool:
     """True if the numbers of a Field are checked: those that a person made or can type, and some that follow."""
     return field.dtype is float and (
-        field.role is Role.DOCUMENT or field.name in (*_FOLLOWING, *_MOVING, _OF_ROTATIONS)
+        field.role is Role.DOCUMENT or field.name in (*_FOLLOWING, *_MOVING, *_OF_SECTIONS, _OF_ROTATIONS)
     )
 
 

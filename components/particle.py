@@ -63,9 +63,9 @@ class Particle(Handle):
         default=None,
         nullable=True,
         above=0.0,
-        title="rotational inertia",
+        title="inertia",
         key="inertia",
-        doc="Of its own; automatic: so much of each rigid rod end's that no smaller steps are needed.",
+        doc="Of its own, against turning; automatic: so much of each rigid rod end's that no smaller steps are needed.",
         overrides="inertia",
     )
     mass: Field[float] = derived(

@@ -2,19 +2,31 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection
+import math
+from collections.abc import Collection, Mapping
 from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from components.field import CM, ENDS, Field, FieldError, Vector, derived, state
+from components.field import CM, ENDS, Column, Field, FieldError, Vector, derived, state
 from components.handle import Handle
 from components.particle import Particle, rods_without_length
+from components.section import (
+    MATERIALS,
+    SECTIONS,
+    by_area,
+    check_material,
+    check_section,
+    given_by,
+    material_named,
+)
 from components.table import Table, flags
 from components.world import World
 
 DEFAULT_STIFFNESS = 164640.0  # kN, of a rod of which no other is known
+_NAMED_BY = {"area": "section", "second_moment": "section", "youngs_modulus": "material"}
+_NUMBERS_OF_NAMES = {*_NAMED_BY, "material"}
 
 
 class Rod(Handle):
@@ -59,6 +71,34 @@ class Rod(Handle):
         above=0.0,
         doc="A of the cross-section: E·A is the stiffness, axial force / A the stress.",
         shown=("cm²", 1e4),
+    )
+    second_moment: Field[float | None] = Field(
+        "m⁴",
+        default=None,
+        nullable=True,
+        absent="unknown",
+        above=0.0,
+        title="second moment",
+        doc="I of the cross-section: E·I is the bending stiffness.",
+        shown=("cm⁴", 1e8),
+    )
+    section: Field[str | None] = Field(
+        dtype=str,
+        default=None,
+        nullable=True,
+        absent="none",
+        choices=SECTIONS,
+        checker=check_section,
+        doc="IPE, HEA, HEB, CHS, SHS or rectangle 300×500: gives A, I, and with its material weight and strength.",
+    )
+    material: Field[str | None] = Field(
+        dtype=str,
+        default=None,
+        nullable=True,
+        absent="none",
+        choices=MATERIALS,
+        checker=check_material,
+        doc="Gives E and thermal expansion, and with an area weight and strength.",
     )
     prescribed_rest_length: Field[float | None] = Field(
         "m",
@@ -106,8 +146,15 @@ class Rod(Handle):
         dtype=bool,
         doc="A cable: slack, without force, where its ends are nearer than its length without force.",
     )
-    bending_stiffness: Field[float] = Field(
-        "kN·m²", minimum=0.0, doc="EI: moment per unit of curvature; 0: a bar, pinned at both ends."
+    prescribed_bending_stiffness: Field[float | None] = Field(
+        "kN·m²",
+        default=None,
+        nullable=True,
+        minimum=0.0,
+        title="bending stiffness",
+        key="bending_stiffness",
+        doc="EI: moment per curvature; 0: a bar, pinned; automatic: E × second moment, 0 where one is unknown.",
+        overrides="bending_stiffness",
     )
     hinged: Field[tuple[bool, bool]] = Field(
         dtype=bool,
@@ -140,6 +187,11 @@ class Rod(Handle):
         default=DEFAULT_STIFFNESS,
         doc="EA: prescribed, or Young's modulus × area, or 164640 kN where one is unknown.",
         overridden_by="prescribed_stiffness",
+    )
+    bending_stiffness: Field[float] = derived(
+        "kN·m²",
+        doc="EI: prescribed, or Young's modulus × second moment, or 0: a bar, pinned at both ends.",
+        overridden_by="prescribed_bending_stiffness",
     )
     rest_length: Field[float] = derived(
         "m",
@@ -228,6 +280,20 @@ class Rod(Handle):
         return particles[first], particles[second]
 
     @classmethod
+    def completed(cls, columns: Mapping[str, Column], count: int) -> Mapping[str, Column]:
+        """With the numbers that a section and a material give, where none are given themselves."""
+        names = [columns.get(name, [None] * count) for name in ("section", "material")]
+        given = [given_by(*pair) for pair in zip(*names, strict=True)]
+        made = dict(columns)
+        for name in dict.fromkeys(name for each in given for name in each):
+            field = vars(cls)[name]
+            if name == "material" or name not in columns:
+                column = made[name] = made.get(name, field.allocate(count)).copy()
+                for row, each in enumerate(given):
+                    column[row] = each.get(name, column[row])
+        return made
+
+    @classmethod
     def after_change(cls, table: Table[Any], rows: NDArray[np.intp], changed: Collection[str]) -> None:
         """A rod joins two different particles that no other joins, and has some length."""
         if "between" in changed:
@@ -238,8 +304,62 @@ class Rod(Handle):
                     f"{table.world.describe(table[row])}: its ends are at the same place;"
                     " place them apart or give it a rest length above 0."
                 )
+        if "section" in changed or not _NUMBERS_OF_NAMES.isdisjoint(changed):
+            _heed_names(table, rows, changed)
         if "temperature_change" in changed or "thermal_expansion" in changed:
             _check_warmth(table, rows)
+
+
+def _heed_names(table: Table[Any], rows: NDArray[np.intp], changed: Collection[str]) -> None:
+    """Let numbers follow the names of section and material, and names not stand beside other numbers than theirs.
+
+    The joints stay: a bar that did not bend is hinged at both ends. Raises FieldError for new rods that contradict
+    themselves.
+    """
+    world, alone = table.world, len(changed) == 1
+    if alone and not {"section", "material"}.isdisjoint(changed):
+        pinned = table.bending_stiffness[rows] == 0.0
+        for row in rows.tolist():
+            _follow_names(table, table[row])
+        stiff = rows[pinned & (table.bending_stiffness[rows] > 0.0)]
+        world.assign([table[row] for row in stiff.tolist()], "hinged", [(True, True)] * len(stiff))
+        return
+    for row in rows.tolist():
+        rod = table[row]
+        for name, number in _contradictions(rod, changed):
+            if not alone:
+                field, value = table.fields[number], getattr(rod, number)
+                unit, factor = field.shown
+                raise FieldError(
+                    f"{world.describe(rod)}: {field.title} is {value * factor:.6g} {unit}, which is not that of"
+                    f" {getattr(rod, name)}; leave out one of the two."
+                )
+            world.assign([rod], name, None)
+
+
+def _follow_names(table: Table[Any], rod: Rod) -> None:
+    given = given_by(rod.section, rod.material)
+    substance = material_named(rod.material) if rod.material is not None else None
+    if rod.section is None and substance is not None and rod.area is not None:
+        given |= by_area(substance, rod.area)
+    known = {"stiffness": rod.section or rod.area, "bending_stiffness": rod.section or rod.second_moment}
+    automatic = [f"prescribed_{name}" for name, by in known.items() if by and "youngs_modulus" in given]
+    for name, value in [*given.items(), *((name, None) for name in automatic)]:
+        table.world.assign([rod], name, [value])
+
+
+def _contradictions(rod: Rod, changed: Collection[str]) -> list[tuple[str, str]]:
+    """Names that a rod has beside another, changed number than theirs, each with the Field of that."""
+    if rod.section is None and rod.material is None:
+        return []
+    given = given_by(rod.section, rod.material)
+    return [
+        (name, number)
+        for number, name in _NAMED_BY.items()
+        if number in changed
+        and getattr(rod, name) is not None
+        and not math.isclose(getattr(rod, number) or math.inf, given[number], rel_tol=1e-3)
+    ]
 
 
 def _check_warmth(table: Table[Any], rows: NDArray[np.intp]) -> None:
@@ -280,6 +400,28 @@ def bends(world: World) -> bool:
     """True if some rod has bending stiffness, and an end that is not hinged."""
     rods = world.tables["rods"]
     return bool(rods.turning_shares.any())
+
+
+def rigid_joints(world: World) -> NDArray[np.bool_]:
+    """Which particles have rigid ends of rods that bend, shape (particles,)."""
+    rods = world.tables["rods"]
+    return flags(rods.between[rods.turning_shares > 0.0], world.tables["particles"].count)
+
+
+def idle_moment(world: World) -> str:
+    """The sentence about a moment on a particle without rigid rod ends, which turns nothing; "" if there is none."""
+    particles, loads = world.tables["particles"], world.tables["loads"]
+    moment = np.abs(particles.moment)
+    np.maximum.at(moment, loads.on, np.abs(loads.moment))
+    if not moment.any():
+        return ""
+    for row in np.flatnonzero((moment > 0.0) & ~rigid_joints(world))[:1].tolist():
+        named = world.describe(particles[row])
+        return (
+            f"{named[:1].upper()}{named[1:]}: a moment of {moment[row]:g} kN·m acts on it, but there are no rigid rod"
+            " ends that it could turn; make one rigid or take the moment away."
+        )
+    return ""
 
 
 def is_curved(world: World) -> bool:

@@ -6,6 +6,12 @@ from components.field import Field, derived, look
 from components.handle import Handle
 
 AUTOMATIC = "automatic"
+NO_DIAGRAMS = "none"
+DIAGRAMS = (
+    "N",
+    "M",
+    "V",
+)  # of axial forces, bending moments and shears, in the order in which they follow one another
 INTEGRATORS: dict[str, str] = {AUTOMATIC: "chosen for the model by a fixed rule"}
 
 
@@ -63,6 +69,13 @@ class Settings(Handle):
         dtype=bool,
         title="undeformed diagrams",
         doc="Force diagrams of rods that bend stand on these as they were originally, not as they are.",
+    )
+    diagrams: Field[str] = look(
+        default=NO_DIAGRAMS,
+        dtype=str,
+        title="diagrams at first",
+        doc="Which force diagrams are shown when the model is opened: axial forces N, bending moments M or shears V.",
+        choices=(NO_DIAGRAMS, *DIAGRAMS),
     )
     automatic_displacement_scale: Field[float] = derived(default=1.0, doc="The one that suits the model.")
     displacement_scale: Field[float] = derived(

@@ -150,9 +150,9 @@ class SliderStack:
         first = self.above + EDGE + HEIGHT + SUPPORT
         first += ARROW if arrows or canvas.width < NARROW * unit else 0.0
         least = min(margin, LEAST_MARGIN * canvas.height / unit)
-        missing = max(first - least, 0.0) / (1.0 - LEAST_MARGIN if arrows and least < margin else 1.0)
-        further = (len(self.controls) - 1) * (HEIGHT + GAP)
-        return round((missing + further) * unit)
+        missing = max(first - least, 0.0) + (len(self.controls) - 1) * (HEIGHT + GAP)
+        kept = 1.0 - LEAST_MARGIN if arrows and least < margin else 1.0  # the margin shrinks with the room
+        return round(missing / kept * unit)
 
     def places(self, canvas: Viewport, unit: float) -> list[Place]:
         """Where the controls are in a canvas with `unit` pixels per point."""

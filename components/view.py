@@ -64,14 +64,16 @@ class Status:
 class Preview:
     """The element that a tool is about to make, or the state of a drag, drawn over the model.
 
-    kind: "rod", "force", "velocity", "roller", "pinned", "pull" or "box". start, end: points of the picture (m); of a
-    box, two opposite corners; of a support, its point and towards its ground. label: its value with its unit, or "".
+    kind: "rod", "force", "distributed force", "moment", "velocity", "hinge", "roller", "pinned", "guided", "clamped",
+    "pull" or "box". start, end: points of the picture (m); of a box, two opposite corners; of a support, its point and
+    towards its ground. label: its value with its unit, or "". along: the ends of the rods that bear it.
     """
 
     kind: str
     start: Vector
     end: Vector
     label: str = ""
+    along: tuple[tuple[Vector, Vector], ...] = ()
 
 
 @dataclass(frozen=True)
@@ -119,7 +121,7 @@ class Readout:
 
 @dataclass(frozen=True)
 class Shape:
-    """A mechanism or a mode of vibration, to be drawn over the model.
+    """A mechanism, or a mode of buckling or vibration, to be drawn over the model.
 
     title: such as "Mode 1 of 5: 9.276 Hz". displacement: (m), as drawn, (n, 2). about: the displacement (m) of the
     equilibrium that it leads away from, (n, 2); None: it leads away from the original positions. rotation: (rad), on the
@@ -136,6 +138,7 @@ class Shape:
 class View:
     """How one model is shown in one viewport.
 
+    rigid: rods are drawn with rigid ends.
     heading: the word top left ("Pause"), or "". all_diagrams: force diagrams of all elements. quantity: which force
     diagrams show where rods bend, "N", "M" or "V".
     legend: show the meaning of colours. explains_all: of those of the pictures beside this one, too.
@@ -151,7 +154,8 @@ class View:
     menu: the list of what can be done somewhere, while it is open.
     theme: the name of its colours. readouts: panels at the right edge; hidden with the legend.
     pointed: what is said of the element under the pointer, beside it.
-    shape: a mechanism or mode that is drawn over the model, with its title below the caption.
+    shape: a mechanism or mode that is drawn over the model, with its title below the caption. swing: the share of it, from
+    1 to −1, that is drawn now.
     utilisation: rods show in colours how much of their strength they bear.
     largest_force: that (kN) of pictures beside this one, with which its arrows share a scale; 0: none.
     free_bodies: rods and joints are drawn apart, with the forces on each.
@@ -165,6 +169,7 @@ class View:
     camera: Camera = field(default_factory=Camera)
     heading: str = ""
     all_diagrams: bool = False
+    rigid: bool = False
     quantity: str = AXIAL
     forces_known: bool = True
     legend: bool = True
@@ -194,6 +199,7 @@ class View:
     free_bodies: bool = False
     events: bool = False
     shape: Shape | None = None
+    swing: float = 1.0
     pointed: Readout | None = None
     fitted: bool = False
     shares: bool = False

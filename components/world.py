@@ -310,7 +310,7 @@ class World:
         if names is not None:
             self._check_names(table, checked["name"].tolist())
         with self.transaction(f"new {kind.noun}"):
-            self.execute(Create(kind, count, checked))
+            self.execute(Create(kind, count, kind.completed(checked, count)))
             kind.after_change(table, np.arange(table.count - count, table.count), table.fields)
         handles: list[H] = table.handles[table.count - count :]
         return handles

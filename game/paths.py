@@ -221,7 +221,7 @@ def _vector(field: Field[Any], text: str) -> tuple[Any, ...]:
 def _scalar(field: Field[Any], text: str) -> Any:
     """The value that a text means for a field; the text itself if it means none, which the field then refuses."""
     text = text.strip()
-    if field.dtype is str:
+    if field.dtype is str and not field.nullable:
         return text
     if text.lower() in ("null", "none"):
         return None

@@ -22,8 +22,8 @@ from components.table import Table
 from components.view import View
 from components.wording import quoted
 from game.documents import models
+from game.documents.format import ModelError
 from game.documents.open_documents import ModelFile, Source, file_of
-from game.documents.sections import ModelError
 from game.editor.actions import ACTIONS, WHILE_DRAWING
 from game.editor.context import FAULTS, Context
 from game.editor.dropping import open_dropped
@@ -42,6 +42,7 @@ from game.scripts.script import ScriptError
 from systems.base import EVENT_INTERVAL, Phase, StopReason, System
 from systems.catalogue import SYSTEMS, step_systems
 from systems.edit import Refusal
+from systems.edit.dividing import divide
 from systems.edit.pull import Pull
 from systems.input.bindings import FILES, FORMS, TEXT, key_named, only_in_pause
 from systems.render.picture import Stage
@@ -239,17 +240,22 @@ class Session(Context):
         """
         return self.document.assessment.comparison()
 
-    def load_path(self, factor: float = 1.0, *, until: str | None = None, points: int = 500) -> Curve:
-        """The load–displacement curve, through limit points, up to a load factor or a displacement "B.y=-2.5".
+    def load_path(
+        self, factor: float = 1.0, *, until: str | None = None, points: int = 500, branch: int = 0
+    ) -> Curve:
+        """The load–displacement curve, through limit points, up to a load factor, or "B.y=-2.5" or "B.rotation=1".
 
-        Changes nothing. Its arrays are load_factor (k,), displacement (k, particles, 2) in m, axial_force
-        (k, rods) in kN and stable (k,); complete: False if it could not be followed so far. Raises ValueError.
+        branch: number of the bifurcation from which on it follows the other branch, along the mode; negative: against it.
+
+        Changes nothing. Its arrays are load_factor (k,), displacement (k, particles, 2) in m, rotation (k, particles) in
+        rad, axial_force (k, rods) in kN, bending_moment (k, rods, 2) in kN·m and stable (k,); its events are limit points
+        and bifurcations; complete: False if it could not be followed so far. Raises ValueError.
         """
         from systems.statics.path import goal_of, load_path
 
         if points < 2:
             raise ValueError(f"points is {points}; a curve has at least 2.")
-        return load_path(self.model, goal_of(self.model, factor, until), points=points)
+        return load_path(self.model, goal_of(self.model, factor, until), points=points, branch=branch)
 
     def buckling(self, modes: int = 5) -> Buckling:
         """Critical load factors by linear buckling, ascending, with their modes; changes nothing.
@@ -263,6 +269,21 @@ class Session(Context):
         if modes < 1:
             raise ValueError(f"modes is {modes}; ask for at least 1.")
         return buckling(self.model, modes)
+
+    # --- editing -----------------------------------------------------------------------------------
+
+    def divide(self, rod: Rod | str, parts: int = 2) -> list[Rod]:
+        """Divide a rod that bends into equal parts, which then are selected; undo joins them. Raises Refusal.
+
+        >>> portal = {"format": "pinjoint model", "version": 1}
+        >>> portal["particles"] = [{"name": "A", "position": [0, 0]}, {"name": "B", "position": [4, 0]}]
+        >>> portal["rods"] = [{"name": "AB", "between": ["A", "B"], "bending_stiffness": 4000}]
+        >>> [part.name for part in Session.open(portal).divide("AB", 2)]
+        ['AB 1', 'AB 2']
+        """
+        made = divide(self.model, [self.rods[rod] if isinstance(rod, str) else rod], parts)
+        self.select(*made)
+        return made
 
     # --- scenes and actions --------------------------------------------------------------------------
 

@@ -14,6 +14,7 @@ from game.commands.arguments import Parser, UsageError, count, finite
 from game.commands.options import ANSWERED, NOT_ANSWERED, add_model, session_of
 from game.commands.output import Row, add_output, write_result
 from game.streams import tell
+from systems.statics.events import event_record
 
 if TYPE_CHECKING:  # it imports scipy
     from systems.statics.path import Curve
@@ -34,24 +35,47 @@ def command(words: Sequence[str]) -> int:
         "--factor", type=finite, default=1.0, help="end where the load factor first reaches this; default 1"
     )
     goal.add_argument(
-        "--until", metavar="B.y=-2.5", help="end where a particle first has this displacement (m)"
+        "--until",
+        metavar="B.y=-2.5",
+        help="end where a particle first has this displacement (m), or B.rotation=1 (rad)",
+    )
+    parser.add_argument(
+        "--branch",
+        type=int,
+        default=0,
+        metavar="N",
+        help="leave along the mode of the Nth bifurcation, against it if negative; default: straight on",
     )
     parser.add_argument("--points", type=count, default=500, metavar="N", help="at most so many equilibria")
     add_output(parser, default="csv")
     options = parser.parse_args(words)
     session = session_of(options)
     try:
-        found = session.load_path(options.factor, until=options.until, points=options.points)
+        found = session.load_path(
+            options.factor, until=options.until, points=options.points, branch=options.branch
+        )
     except ValueError as error:
         raise UsageError(str(error)) from None
     laws = session.schedule.left_out_of_statics(session.model)
     message = "" if found.complete else _why_it_ends(session.model, found, options.points)
+    message = " ".join(filter(None, [_what_is_missing(found, options.branch), message]))
     said = {"complete": found.complete, "message": message, "left_out": laws}
     write_result(options, said | _data(session.model, found), _rows)
     if laws:
         tell(f"The curve leaves out the laws of mods: {', '.join(laws)}.")
+    for event in found.events:
+        tell(event.message)
     tell(message)
-    return ANSWERED if found.complete and not laws else NOT_ANSWERED
+    return ANSWERED if found.complete and not laws and not message else NOT_ANSWERED
+
+
+def _what_is_missing(curve: Curve, branch: int) -> str:
+    """A sentence if there is no bifurcation of this number, else ""."""
+    there = sum(event.kind == "bifurcation" for event in curve.events)
+    if abs(branch) <= there:
+        return ""
+    passed = "no bifurcation" if there == 0 else f"only {there} bifurcation{'s' * (there > 1)}"
+    return f"The curve passes {passed}, so that there is no branch {branch} to follow."
 
 
 def _why_it_ends(model: Model, curve: Curve, most: int) -> str:
@@ -79,7 +103,7 @@ def _why_nothing_follows(model: Model) -> str:
 
 
 def _data(model: Model, curve: Curve) -> dict[str, Any]:
-    """A curve as plain data, each list with one entry for every equilibrium.
+    """A curve as plain data: columns, each list with one entry for every equilibrium, and the same as points; and events.
 
     displacement (m): by free direction, such as "B.y"; axial_force (kN): by rod. Where members bend: rotation (rad), by
     particle that turns; bending_moment (kN·m), by rigid end, such as "AB.start".
@@ -101,6 +125,27 @@ def _data(model: Model, curve: Curve) -> dict[str, Any]:
         "displacement": {f"{names[row]}.{'xy'[axis]}": curve.displacement[:, row, axis] for row, axis in free},
         "axial_force": dict(zip(model.rods.names, curve.axial_force.T, strict=True)),
         **bent,
+        "points": [_point(model, curve, number) for number in range(len(curve.load_factor))],
+        "events": [event_record(model, event) for event in curve.events],
+    }
+
+
+def _point(model: Model, curve: Curve, number: int) -> dict[str, Any]:
+    """One equilibrium of a curve as plain data, by particle and by rod, with what bending adds."""
+    bent = bends(model)
+    particles = zip(model.particles.names, curve.displacement[number], curve.rotation[number], strict=True)
+    rods = zip(model.rods.names, curve.axial_force[number], curve.bending_moment[number], strict=True)
+    return {
+        "load_factor": curve.load_factor[number],
+        "stable": curve.stable[number],
+        "particles": {
+            name: {"displacement": moved} | ({"rotation": turned} if bent else {})
+            for name, moved, turned in particles
+        },
+        "rods": {
+            name: {"axial_force": force} | ({"bending_moment": moments} if bent else {})
+            for name, force, moments in rods
+        },
     }
 
 

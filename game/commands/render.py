@@ -53,6 +53,9 @@ def command(words: Sequence[str]) -> int:
         metavar="N",
         help="draw a natural mode over it, 1 the lowest; at rest, that under load",
     )
+    shape.add_argument(
+        "--buckling-mode", type=int, metavar="N", help="draw a mode in which it gives way over it, 1 the lowest"
+    )
     parser.add_argument("--theme", choices=theme_names(), default="light", help="colours")
     parser.add_argument(
         "--background",
@@ -91,8 +94,8 @@ def _check_background(options: argparse.Namespace) -> None:
 
 def _show_shape(session: Session, options: argparse.Namespace) -> None:
     """Draw the mechanism or mode that the options ask for. Raises NoShape if there is none with that number."""
-    for kind in ("mechanism", "mode"):
-        if (number := getattr(options, kind)) is not None:
+    for kind in ("mechanism", "mode", "buckling mode"):
+        if (number := getattr(options, kind.replace(" ", "_"))) is not None:
             session.document.shapes.show(numbered(session.model, kind, number))
 
 

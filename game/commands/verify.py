@@ -21,7 +21,8 @@ def command(words: Sequence[str]) -> int:
         "--influence",
         nargs="+",
         metavar="NAME",
-        help="influence lines instead: of a rod AB, a reaction A.y, or a displacement B.y (unit-load method)",
+        help="influence lines instead: of a rod AB, its moments AB.start, AB.end and AB.shear, a reaction A.y or"
+        " A.rotation, or a displacement B.y (unit-load method)",
     )
     parser.add_argument("--theory-only", action="store_true", help="without the simulation")
     parser.add_argument(

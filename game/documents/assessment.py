@@ -5,7 +5,10 @@ from __future__ import annotations
 import math
 from typing import TYPE_CHECKING
 
+import numpy as np
+
 from components.field import Role
+from components.free_body import apart
 from components.load import CONSTANT, static_factor
 from components.model import Model
 from components.snapshot import Snapshot
@@ -24,6 +27,7 @@ _SHAPE = (  # on which the degrees depend
     *("rods.between", "rods.turning_shares"),
     *("particles.position", "particles.fixed", "particles.fixed_rotation"),
 )
+UNBALANCED = 1e-5  # of the largest force: more is left over where nothing moves and there is no equilibrium
 LARGEST = 2000  # rods up to which theory is found without being asked for; more would take noticeable time
 
 
@@ -39,6 +43,7 @@ class Assessment:
         self._remarks: tuple[Moment, tuple[Event, ...]] | None = None
         self._degrees: tuple[tuple[int, ...], Indeterminacy] | None = None
         self._error: tuple[Moment, MeasuredError | None] | None = None
+        self._balanced: tuple[int, bool] | None = None
 
     def begin(self, beginning: Snapshot) -> None:
         """A run begins in this state."""
@@ -97,6 +102,16 @@ class Assessment:
     def is_small(self) -> bool:
         """True if theory is found without a noticeable wait."""
         return self._model.rods.count <= LARGEST
+
+    @property
+    def balanced(self) -> bool:
+        """False if what stood still in equilibrium was edited so that it is none; contacts are not looked at."""
+        model = self._model
+        if self.disturbed != "edited" or not self.is_small or model.clock.collision_state is not None:
+            return True
+        if self._balanced is None or self._balanced[0] != model.revision:
+            self._balanced = model.revision, bool(model.particles.velocity.any()) or _balanced(model)
+        return self._balanced[1]
 
     def comparison(self) -> Comparison:
         """The run as it is now beside theory."""
@@ -162,3 +177,14 @@ def _histories(model: Model) -> set[str]:
         found.add(repr(CONSTANT))
     unsteady = (static_factor(load.history) != 1.0 for load in model.loads)
     return set() if any(unsteady) else found
+
+
+def _balanced(model: Model) -> bool:
+    """True if forces and moments on all joints leave nothing over."""
+    known = apart(model)
+    largest = float(np.abs(known.on_ends[..., :2]).max(initial=0.0))
+    reach = float(model.rods.length.max(initial=0.0))
+    return bool(
+        np.abs(known.left_over).max(initial=0.0) <= UNBALANCED * largest
+        and np.abs(known.left_over_moment).max(initial=0.0) <= UNBALANCED * largest * reach
+    )

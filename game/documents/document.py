@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import itertools
 from collections.abc import Callable, Collection, Mapping, Sequence, Set
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from types import MappingProxyType, NoneType
 from typing import Any
 
@@ -19,14 +19,13 @@ from components.handle import Handle
 from components.model import ADDED, Model
 from components.particle import Particle, check_spin, check_velocities
 from components.rod import Rod
+from components.section import NAMES, given_by
 from components.slider import Slider
 from components.suggestions import missing, remedy
 from components.table import fields_of
 from components.wording import cut, is_broken, quoted
 from game.documents.facts import Gathered, gathered, spread
-from game.documents.mod_data import DATA as FOREIGN
-from game.documents.mod_data import MODS, upgraded
-from game.documents.sections import (
+from game.documents.format import (
     BY_COLUMNS,
     FORMAT,
     SECTIONS,
@@ -37,6 +36,8 @@ from game.documents.sections import (
     required,
     saved_fields,
 )
+from game.documents.mod_data import DATA as FOREIGN
+from game.documents.mod_data import MODS, upgraded
 from game.documents.sliders import KEY as SLIDERS
 from game.documents.sliders import SliderError, read_sliders
 
@@ -239,6 +240,8 @@ def _read(model: Model, section: _Section) -> None:
     kind = section.kind
     if FOREIGN in section.keys:
         _check_components(section)
+    if kind is Rod and not section.keys.isdisjoint(NAMES):
+        section = _with_numbers(section)
     columns = {field.name: _column(model, section, field) for field in saved_fields(kind)}
     if kind in _CHECKS:
         _CHECKS[kind](model, section, columns)
@@ -254,6 +257,18 @@ def _read(model: Model, section: _Section) -> None:
             raise ModelError(f"{section.path}: {error}") from None
     if FOREIGN in section.keys:
         _keep_foreign(model, section, handles)
+
+
+def _with_numbers(section: _Section) -> _Section:
+    """Rods with the numbers that their section and material give, where an element states none itself."""
+    elements = []
+    for row, element in enumerate(section.elements):
+        named = {}
+        for key in NAMES:
+            if element.get(key) is not None:
+                named[key] = Rod.__dict__[key].check(element[key], section.where(row, key))
+        elements.append({**given_by(**named), **element, **named} if named else element)
+    return replace(section, elements=elements, keys=set().union(*elements))
 
 
 # --- columns -----------------------------------------------------------------------------------------

@@ -13,7 +13,7 @@ from components.model import Model
 from components.numeric_range import incomputable
 from components.obstacles import obstacles
 from components.round_numbers import round_down
-from game.documents.shapes import extent
+from systems.edit.arrows import extent
 from systems.islands import lowest_joined
 from systems.physics.pace import expected_displacement, loaded_mode
 

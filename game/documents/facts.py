@@ -14,9 +14,7 @@ from components.field import MADE, Column, Field
 from components.handle import Handle
 from components.model import ADDED, Model
 from components.table import Table
-from game.documents.mod_data import DATA as FOREIGN
-from game.documents.mod_data import MODS, known_versions, versions_in
-from game.documents.sections import (
+from game.documents.format import (
     BY_COLUMNS,
     FORMAT,
     SECTIONS,
@@ -26,6 +24,8 @@ from game.documents.sections import (
     required,
     saved_fields,
 )
+from game.documents.mod_data import DATA as FOREIGN
+from game.documents.mod_data import MODS, known_versions, versions_in
 from game.documents.sliders import KEY as SLIDERS
 from game.documents.sliders import slider_entries
 
@@ -160,6 +160,8 @@ def _elements(count: int, parts: Sequence[Part]) -> list[dict[str, Any]]:
 
 def _differs_from_default(field: Field[Any], column: Column) -> NDArray[np.bool_]:
     """Which rows do not hold the default's very bits, so that -0.0 is not taken for 0.0; shape (n,)."""
+    if field.dtype is str:
+        return np.asarray(column != field.default, dtype=bool)
     if column.dtype == np.dtype(object):
         return np.array([value != field.default for value in column], dtype=bool)
     default = field.allocate(1)

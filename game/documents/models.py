@@ -24,7 +24,7 @@ from components.model import Model
 from components.suggestions import nearest
 from components.wording import quoted
 from game.documents.document import document, parse
-from game.documents.sections import ModelError
+from game.documents.format import ModelError
 
 _ENCODER = msgspec.json.Encoder()
 
@@ -59,16 +59,26 @@ def _bundled_files() -> dict[str, Traversable]:
 # --- reading ---------------------------------------------------------------------------------------
 
 
+class _RodHeader(msgspec.Struct):
+    bending_stiffness: float = 0.0
+
+
 class ModelHeader(msgspec.Struct):
-    """The title and the description in a model file."""
+    """The title and the description in a model file, and whether its rods bend."""
 
     title: str = ""
     description: str = ""
+    rods: tuple[_RodHeader, ...] = ()
+
+    @property
+    def bends(self) -> bool:
+        """True if some rod has bending stiffness."""
+        return any(rod.bending_stiffness > 0.0 for rod in self.rods)
 
 
 @cache
 def header_of(name: str) -> ModelHeader:
-    """Title and description of a bundled model, without reading the rest of its file; empty if it cannot be read."""
+    """What the start page needs of a bundled model, without the rest of its file; empty if it cannot be read."""
     try:
         return msgspec.json.decode(_found(name).read_bytes(), type=ModelHeader)
     except (OSError, ValueError, RecursionError):  # `load` explains it

@@ -14,7 +14,7 @@ from components.collision_state import PersistentContacts
 from components.field import SAVED
 from components.load import load_ends
 from components.model import Model
-from components.rod import bends
+from components.rod import bends, idle_moment
 from components.snapshot import Snapshot
 from game.documents import models
 from game.documents.assessment import Assessment
@@ -149,6 +149,7 @@ class OpenDocument:
         begun.restore(self.model)
         particles = self.model.particles
         self.model.writable("particles.velocity")[particles.fixed] = 0.0  # supported since
+        self.model.writable("particles.angular_velocity")[particles.fixed_rotation] = 0.0
         self.simulation.start_anew()
         self.timeline.clear()
         self.history.end_run()
@@ -162,6 +163,8 @@ class OpenDocument:
             velocity = begun.column(model, "particles.velocity").copy()
             velocity[model.particles.fixed] = 0.0
             model.give("particles.velocity", velocity)
+            spin = begun.column(model, "particles.angular_velocity")
+            model.give("particles.angular_velocity", np.where(model.particles.fixed_rotation, 0.0, spin))
             model.clock.collision_state = begun.columns["clock.collision_state"][0]
 
     def settle(self, factors: Sequence[float] | float) -> tuple[str, str]:
@@ -199,7 +202,7 @@ class OpenDocument:
                 else f"{rod[:1].upper()}{rod[1:]} has yielded at once."
             )
         status, note = without_mods(found.status, self._schedule.left_out_of_statics(model))
-        return status, " ".join(filter(None, [*account, note]))
+        return status, " ".join(filter(None, [*account, note, idle_moment(model)]))
 
     # --- edits and the file ------------------------------------------------------------------------
 

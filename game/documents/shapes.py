@@ -1,8 +1,10 @@
-"""Shapes: mechanisms and natural modes of a structure, to be drawn over the model."""
+"""Shapes: mechanisms, buckling modes and natural modes of a structure, to be drawn over the model."""
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Sequence
+from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
@@ -12,9 +14,16 @@ from components.field import Role
 from components.mistake import Mistake
 from components.model import Model
 from components.view import Shape
+from systems.edit.arrows import extent
+
+if TYPE_CHECKING:  # it imports scipy
+    from systems.statics.buckling import Buckling
 
 DRAWN_SHARE = 0.12  # of the structure's size that the largest displacement is drawn as
 LOWEST = 10  # mechanisms, and modes, in the round of `next`
+LOWEST_BUCKLING = 3  # buckling modes in it
+ALIKE = 1.0 + 1e-6  # effective lengths up to this ratio count as the same
+PERIOD = 2.4  # s, in which a shape swings to and fro
 LOWEST_OF_LARGE = 50  # modes of structures that are too large for all
 LARGEST = 2000  # rods; shapes of larger structures are left to the command line
 
@@ -31,6 +40,7 @@ class Shapes:
         self._round: list[Shape] = []  # the shapes that `next` goes through
         self._shown: Shape | None = None
         self._revision = -1
+        self._time = 0.0
 
     @property
     def shown(self) -> Shape | None:
@@ -45,10 +55,19 @@ class Shapes:
 
     def show(self, shape: Shape) -> None:
         """Draw a shape until the model is edited, or leaves the equilibrium that the shape is about."""
-        self._shown, self._revision = shape, self._newest(shape)
+        self._shown, self._revision, self._time = shape, self._newest(shape), 0.0
+
+    def hide(self) -> None:
+        """Draw none any more."""
+        self._shown = None
+
+    def swing(self, elapsed: float) -> float:
+        """The share of the shape, from 1 to −1, that is drawn so many seconds after the last picture; 1 in the first."""
+        self._time += elapsed
+        return math.cos(2.0 * math.pi * self._time / PERIOD)
 
     def next(self) -> None:
-        """Go on to the next: mechanisms, then modes by their frequency, then none. Raises NoShape."""
+        """Go on to the next: mechanisms, buckling by its load, modes by their frequency, then none. Raises NoShape."""
         if self.shown is None:
             self._round = _first_ones(self._model)
             self.show(self._round[0])
@@ -57,13 +76,13 @@ class Shapes:
         if after < len(self._round):
             self.show(self._round[after])
         else:
-            self._shown = None
+            self.hide()
 
 
 def _first_ones(model: Model) -> list[Shape]:
     if model.rods.count > LARGEST:
         raise NoShape(f"Of more than {LARGEST} rods this takes a while; use: pinjoint render --mode 1")
-    found = [*mechanism_shapes(model, LOWEST), *mode_shapes(model, LOWEST)]
+    found = [*mechanism_shapes(model, LOWEST), *_meant(model), *mode_shapes(model, LOWEST)]
     if not found:
         raise NoShape("There are no mechanisms or modes: no rod has an end that is free to move.")
     return found
@@ -79,6 +98,49 @@ def mechanism_shapes(model: Model, most: int | None = None) -> list[Shape]:
         _shape(model, f"Mechanism {number} of {count}: moves {describe_motion(model, motion[None])}", motion)
         for number, motion in enumerate(motions[:most], start=1)
     ]
+
+
+def buckling_shapes(model: Model, most: int = LOWEST) -> list[Shape]:
+    """The modes in which the structure gives way under its load. Raises NoShape, saying why there is none."""
+    from systems.statics.buckling import buckling
+    from systems.statics.events import NoEquilibrium
+
+    try:
+        found = buckling(model, most)
+    except NoEquilibrium as reason:
+        raise NoShape(str(reason)) from None
+    if found.message:
+        raise NoShape(found.message)
+    return _buckled(model, found)
+
+
+def _meant(model: Model) -> list[Shape]:
+    """The lowest buckling modes, but of factors at which what is compressed were strained beyond all that is elastic."""
+    from systems.statics.buckling import STRAINED, buckling
+    from systems.statics.events import NoEquilibrium
+
+    try:
+        found = buckling(model, LOWEST_BUCKLING)
+    except NoEquilibrium:
+        return []
+    strains = [(-(found.dead + factor * found.live) / model.rods.stiffness).max() for factor in found.factors]
+    return [shape for shape, strain in zip(_buckled(model, found), strains, strict=True) if strain <= STRAINED]
+
+
+def _buckled(model: Model, found: Buckling) -> list[Shape]:
+    """The modes with their factors; the lowest with the shortest effective length of a member."""
+    from systems.statics.explain import listed
+
+    shapes = []
+    for number, (factor, motion) in enumerate(zip(found.factors, found.modes, strict=True), start=1):
+        title = f"Buckling mode {number}: load × {written.number(factor)}"
+        if number == 1 and np.isfinite(found.effective_length).any():
+            length = float(np.nanmin(found.effective_length))
+            rows = np.flatnonzero(found.effective_length <= length * ALIKE)
+            names = listed([str(model.rods.column("name")[row]) for row in rows.tolist()])
+            title += f"; effective length {written.displacement(length)} ({names})"
+        shapes.append(_shape(model, title, motion))
+    return shapes
 
 
 def mode_shapes(model: Model, most: int | None = None) -> list[Shape]:
@@ -108,8 +170,12 @@ def mode_shapes(model: Model, most: int | None = None) -> list[Shape]:
 
 
 def numbered(model: Model, kind: str, number: int) -> Shape:
-    """A "mechanism" or "mode" by its number, from 1. Raises NoShape."""
-    find: dict[str, Callable[[Model], Sequence[Shape]]] = {"mechanism": mechanism_shapes, "mode": mode_shapes}
+    """A "mechanism", "buckling mode" or "mode" by its number, from 1. Raises NoShape."""
+    find: dict[str, Callable[[Model], Sequence[Shape]]] = {
+        "mechanism": mechanism_shapes,
+        "buckling mode": buckling_shapes,
+        "mode": mode_shapes,
+    }
     found = find[kind](model)
     if not found:
         why = "every motion elongates a rod" if kind == "mechanism" else "nothing can vibrate"
@@ -126,8 +192,3 @@ def _shape(
 ) -> Shape:
     drawn = DRAWN_SHARE * extent(model) * motion
     return Shape(title, drawn[:, :2], about, drawn[:, 2] if drawn.shape[1] > 2 else None)
-
-
-def extent(model: Model) -> float:
-    """The larger of width and height (m)."""
-    return float(np.ptp(model.particles.position, axis=0).max())

@@ -20,8 +20,8 @@ from components.table import Table, fields_of
 from components.tags import Selected
 from game.documents.document import parse
 from game.documents.facts import document_of
+from game.documents.format import ModelError
 from game.documents.models import laid_out
-from game.documents.sections import ModelError
 from systems.edit import Refusal
 from systems.edit.moving import moving_rows
 

@@ -12,12 +12,13 @@ from typing import ClassVar
 from components.camera import Viewport
 from components.field import Vector
 from components.model import Model
-from components.settings import Settings
+from components.rod import bends
+from components.settings import NO_DIAGRAMS, Settings
 from components.slider import Place, under
 from components.view import Preview, Readout, View
 from game.documents import models
+from game.documents.format import missing_mods
 from game.documents.open_documents import ModelFile, Source, file_of
-from game.documents.sections import missing_mods
 from game.editor.workspace import Workspace
 from game.scripts.script import Script
 from systems.base import Mod
@@ -270,12 +271,17 @@ class Context(Workspace):
         """Open a model. A document with unsaved work, or any to `keep`, stays open, and undo goes back to it."""
         self.leave_gesture()
         self.documents.add(model, file, keep=keep)
+        self.view.all_diagrams = False
         self.begin_document()
 
     def begin_document(self) -> None:
         """Show the document that is open now, from the first frame on."""
         self.make_room()
         self.view.fit(self.model)
+        if self.model.settings.diagrams != NO_DIAGRAMS:
+            self.view.all_diagrams, self.view.quantity = True, self.model.settings.diagrams
+        if self.model.rods.count:
+            self.view.rigid = bends(self.model)
         if missing := missing_mods(self.model):
             self.notice = (
                 f"This model holds data of mods that are not loaded: {', '.join(missing)}. They are kept and"

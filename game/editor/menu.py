@@ -5,12 +5,13 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from components.field import Vector
-from components.handle import Handle
 from components.menu import Menu
 from components.particle import Particle
-from components.rod import Rod
+from components.rod import Rod, rigid_joints
 from game.editor.context import Context
 from game.editor.toolbar import tool
+from systems.edit.dividing import DIVISIONS
+from systems.edit.rods import is_rigid, share_at
 from systems.forms.properties import heading
 from systems.input.bindings import ADDED_BUTTONS, ADDED_TOOLS, FORCE_METHOD, LIVE, offers, toolbar
 
@@ -33,18 +34,21 @@ _RESULTS = (
     ("new slider", "slider for it"),
 )
 _SUPPORTS = ("free", "pin", "hold y", "hold x")
+_CLAMPS = ("clamp", "guide y", "guide x", "hold rotation")
 _FROM_HERE = (
     ("force", "load: click its end"),
+    ("moment", "moment: click left or right"),
     ("velocity", "velocity: click its end"),
     ("rod", "rod from here"),
 )
 _PARTS = (("copy", "copy"), ("duplicate", "duplicate"), ("delete", "delete"))
+_DIVISIONS = ("split", *DIVISIONS.values())
 _OF_RODS = (("toggle cable", "cable: tension only"), ("release", "release it in the force method"))
 
 
 def menu_at(context: Context, pixel: Vector) -> Menu:
     """The menu of the selected elements, or of the canvas, opened at a pixel."""
-    groups = _groups(context)
+    groups = _groups(context, pixel)
     offered = offers(context.scene)
     entries = [[entry if isinstance(entry, tuple) else (entry, "") for entry in group] for group in groups]
     tools = [
@@ -61,33 +65,51 @@ def _title(context: Context) -> str:
     return named[:1].upper() + named[1:]
 
 
-def _groups(context: Context) -> Groups:
+def _groups(context: Context, pixel: Vector) -> Groups:
     if context.scene == FORCE_METHOD:
         unknown = [("pick unknown", "release this")]
         return [unknown, *([binding.action for binding in group] for group in toolbar(context.scene))]
-    return _of_selection(context.selected) if context.has_selected else _of_canvas(context)
+    return _of_selection(context, pixel) if context.has_selected else _of_canvas(context)
 
 
-def _of_selection(selected: Sequence[Handle]) -> Groups:
+def _of_selection(context: Context, pixel: Vector) -> Groups:
     """What the elements have in common comes first."""
-    particles = any(isinstance(handle, Particle) for handle in selected)
-    one = particles and len(selected) == 1
-    rods = any(isinstance(handle, Rod) for handle in selected)
-    results = _RESULTS if particles or rods else _RESULTS[:1]
-    only_rod = _OF_RODS if len(selected) == 1 else _OF_RODS[:1]
+    selected, particles, rods = context.selected, context.selected_of(Particle), context.selected_of(Rod)
+    alone = len(selected) == 1
+    turns = (
+        bool(rigid_joints(context.model)[[particle.row for particle in particles]].any())
+        if particles
+        else False
+    )
+    from_here = [entry for entry in _FROM_HERE if turns or entry[0] != "moment"]
+    bent = any(rod.bending_stiffness > 0.0 for rod in rods)
     return [
-        results,
-        _SUPPORTS if particles else (),
-        _FROM_HERE if one else (),
-        only_rod if rods else (),
+        _RESULTS if particles or rods else _RESULTS[:1],
+        (*_SUPPORTS, *(_CLAMPS if turns else ())) if particles else (),
+        from_here if particles and alone else (),
+        _joints(context, rods[0], pixel)
+        if rods and alone
+        else [("rigid", "rigid at both ends")]
+        if rods
+        else (),
+        (("force", "distributed load: click its end"), "weight along") if rods and alone else (),
+        (_DIVISIONS if alone else _DIVISIONS[1:]) if bent else (),
+        (_OF_RODS if alone else _OF_RODS[:1]) if rods else (),
         _PARTS,
     ]
+
+
+def _joints(context: Context, rod: Rod, pixel: Vector) -> Sequence[Entry]:
+    """What can be done with the joints of a rod at its ends, first with the nearer one."""
+    end = int(share_at(rod, context.view.camera.to_model(pixel)) > 0.5)
+    here = "hinge" if is_rigid(rod, end) else "make rigid"
+    return [("hinge", f"{here} at {rod.ends[end].name}"), ("rigid", "rigid at both ends")]
 
 
 def _of_canvas(context: Context) -> Groups:
     """Where the toolbar is hidden, all that it has, too."""
     groups: list[list[Entry]] = [
-        [("place", "new particle here"), "rod", *ADDED_TOOLS, ("paste", "paste here"), "select all"],
+        [("place", "new particle here"), "rod", "rigid", *ADDED_TOOLS, ("paste", "paste here"), "select all"],
         ["toggle run", "restart", "settle"],
         ["toggle diagrams", "toggle free bodies", "toggle utilisation"],
         ["toggle theory", "toggle energy", "toggle events", "next shape"],

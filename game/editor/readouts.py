@@ -31,7 +31,7 @@ MOST_JOINTS = 6  # whose sums are shown while none is selected
 MOST_EVENTS = 10  # of a run, that are listed
 UNSEEN = 1e-7  # of the largest force on a body: left out of sums
 NOTHING = 1e-12  # of the largest exact value of its kind: round-off, shown as 0
-UNSEEN_ENERGY = 1e-5  # of the largest: less is shown as 0 beside it
+NO_ENERGY = 1e-5  # of the largest energy: less is shown as 0 beside it
 
 _BEFORE_SIGNS = re.compile("([+−=]) ")  # where a sum may be broken
 _SHOWN = {
@@ -69,7 +69,7 @@ def _events(context: Context) -> Iterator[Readout]:
 
 def _energy(context: Context) -> Iterator[Readout]:
     energies = context.energy.as_dict()
-    nothing = UNSEEN_ENERGY * max(map(abs, energies.values()))
+    nothing = NO_ENERGY * max(map(abs, energies.values()))
     rows = [
         (name.replace("_", " "), f"{written.number(value, nothing=nothing)} J")
         for name, value in energies.items()

@@ -17,18 +17,24 @@ from components.rod import Rod
 from components.round_numbers import round_up
 from components.settings import Settings
 from components.slider import Aim, Control, SetSliders, Slider, SliderStack
-from game.documents.shapes import extent
 from game.documents.sliders import unmovable
 from game.editor.context import Context
 from systems.edit import Refusal
-from systems.edit.arrows import usual_force
+from systems.edit.arrows import extent, usual_force
 from systems.input.bindings import LIVE
 
 SCALE = -1  # the key of the control of the displacement scale
 SCALES = Slider((), 1.0, 1000.0, logarithmic=True)  # of displacements, unless the model needs more
 ABOVE = 28.0  # points, of the status bar
 DECADES = 10.0  # a new slider of a stiffness goes from the value / 10 to the value × 10
-NOTHING = {"K": 50.0, "kN": 10.0, "m/s²": 10.0, "m/s": 1.0}  # by unit: how far a new slider of a 0 goes
+NOTHING = {
+    "K": 50.0,
+    "kN": 10.0,
+    "kN/m": 10.0,
+    "kN·m": 10.0,
+    "m/s²": 10.0,
+    "m/s": 1.0,
+}  # by unit: how far a new slider of a 0 goes
 
 
 # --- what is shown -------------------------------------------------------------------------------------------
@@ -176,7 +182,9 @@ def _around(model: Model, field: Field[Any], value: float, aims: tuple[Aim, ...]
     if field.name in ("position", "displacement") and not incomputable(model):
         reach = round_up(0.25 * extent(model)) or 1.0
         return Slider(aims, value - reach, value + reach)
-    if field.above is not None and field.unit.startswith("kN"):
+    if (field.above is not None and field.unit.startswith("kN")) or (
+        field is Rod.prescribed_bending_stiffness and value > 0.0
+    ):
         return Slider(aims, value / DECADES, value * DECADES, logarithmic=True)
     if field.above is not None:
         return Slider(aims, 0.5 * value, 1.5 * value)
@@ -210,13 +218,14 @@ def add_usual_slider(context: Context) -> None:
 def _usual(model: Model, elements: Sequence[Handle]) -> tuple[Sequence[Handle], str, str]:
     """Elements, and their Field and axis that people move most."""
     first = elements[0]
-    if isinstance(first, Rod):
-        return elements, "stiffness", ""
+    if isinstance(first, Rod) and not any(first.distributed_force):
+        return elements, "bending_stiffness" if first.bending_stiffness else "stiffness", ""
     if isinstance(first, Particle) and not any(first.force):
         loads = [load for load in model.loads if load.on == first.row]
         elements, first = (loads[:1], loads[0]) if loads else (elements, first)
-    x, y = first.force  # type: ignore[attr-defined]
-    return elements, "force", "x" if abs(x) > abs(y) else "y"
+    field = "distributed_force" if isinstance(first, Rod) else "force"
+    x, y = getattr(first, field)
+    return elements, field, "x" if abs(x) > abs(y) else "y"
 
 
 def remove_slider(context: Context, key: int) -> None:

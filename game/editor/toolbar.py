@@ -12,6 +12,9 @@ from components.tags import DiagramShown
 from components.toolbar import Tool, Toolbar
 from game.editor.context import Context
 from game.editor.gestures.drawing import Drawing
+from systems.edit.dividing import DIVISIONS
+from systems.edit.rods import is_rigid
+from systems.edit.supports import SUPPORTS, Held, held
 from systems.input.bindings import Binding, offers, toolbar
 from systems.render.bending_diagrams import NAMES
 
@@ -50,12 +53,12 @@ def _in_hand(context: Context) -> str:
     return context.gesture.tool if isinstance(context.gesture, Drawing) else context.view.tool
 
 
-def _held(*fixed: bool) -> Condition:
+def _held(wanted: Held) -> Condition:
     """Whether all selected particles have a support."""
 
     def holds(context: Context) -> bool:
         particles = context.selected_of(Particle)
-        return bool(particles) and all(particle.fixed == fixed for particle in particles)
+        return bool(particles) and all(held(particle) == wanted for particle in particles)
 
     return holds
 
@@ -63,6 +66,12 @@ def _held(*fixed: bool) -> Condition:
 def _are_cables(context: Context) -> bool:
     rods = context.selected_of(Rod)
     return bool(rods) and all(rod.tension_only for rod in rods)
+
+
+def _are_rigid(context: Context) -> bool:
+    """Whether the selected rods, or else those that will be drawn, are rigid at both ends."""
+    rods = [] if _in_hand(context) == "rod" else context.selected_of(Rod)
+    return all(is_rigid(rod, end) for rod in rods for end in (0, 1)) if rods else context.view.rigid
 
 
 def _shows_diagrams(context: Context) -> bool:
@@ -94,10 +103,8 @@ _PRESSED: dict[str, Condition] = {
     "toggle energy": lambda context: context.view.energy,
     "toggle events": lambda context: context.view.events,
     "next shape": lambda context: context.view.shape is not None,
-    "free": _held(False, False),
-    "pin": _held(True, True),
-    "hold y": _held(False, True),
-    "hold x": _held(True, False),
+    "rigid": _are_rigid,
+    **{name: _held(wanted) for name, wanted in SUPPORTS.items()},
     "toggle cable": _are_cables,
     "toggle help": lambda context: context.view.help > 0,
 }
@@ -111,7 +118,12 @@ _NEEDS: dict[str, Condition] = {
     "step back": lambda context: context.timeline.first < context.model.clock.steps,
     "restart": lambda context: not context.document.is_undeformed,
     **dict.fromkeys(
-        ("settle", "support", "force", "velocity"), lambda context: context.model.particles.count > 0
+        ("settle", "support", "force", "moment", "velocity"),
+        lambda context: context.model.particles.count > 0,
+    ),
+    **dict.fromkeys(("hinge", "weight along"), lambda context: context.model.rods.count > 0),
+    **dict.fromkeys(
+        DIVISIONS.values(), lambda context: any(r.bending_stiffness > 0.0 for r in context.selected_of(Rod))
     ),
     "next grid": lambda context: context.model.grids.count > 0,
     "force method": lambda context: context.model.rods.count > 0,

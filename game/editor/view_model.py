@@ -11,7 +11,7 @@ from components.model import Model
 from components.tags import Hovered
 from components.view import MARGIN, Preview, Readout, Status, drawn_places, drawn_positions
 from game.editor.context import Context
-from game.editor.gestures.drawing import TOOL_HINTS
+from game.editor.gestures.drawing import end_pointed_at, hint_of_tool
 from game.editor.host import Waiting
 from game.editor.readouts import own_readouts
 from systems.base import StopReason
@@ -22,6 +22,7 @@ from systems.render.help import help_pages
 from systems.render.overlays import BAR
 
 COMPILING = "Compiling the step program, which models of this size wait for once:"
+STILL = ("pause", "properties")  # scenes of the model in which time stands still
 FLASH = 0.15  # s shown, for which an impact is marked
 MOST_WATCHED = 2000  # particles, up to which it is told that they left the picture
 FARTHEST = 8.0  # times: by how much the view shows more than the original structure to follow what moves
@@ -41,12 +42,14 @@ def show(context: Context, elapsed: float) -> None:
         if context.notice
         else [*(remark.message for remark in context.remarks), "" if follows(context) else _gone(context)]
     )
+    lasting += [_unsettled(context)] * (not any(lasting))
     view.preview = _preview(context)
     if view.pressed is not None and not (view.pointer is not None and view.pressed.contains(view.pointer)):
         view.pressed = None
     view.flashes = _flashes(context)
     view.heading = scene.heading
     view.shape = context.document.shapes.shown
+    view.swing = context.document.shapes.swing(elapsed) if view.shape is not None else 1.0
     pages = pages_of_help(context) if view.help else []
     view.keys = pages[min(view.help, len(pages)) - 1] if pages else []
     view.pages = len(pages)
@@ -78,6 +81,14 @@ def _show_readouts(context: Context) -> None:
         readout.title: since.get(readout.title, latest + number)
         for number, readout in enumerate(view.readouts, start=1)
     }
+
+
+def _unsettled(context: Context) -> str:
+    """The sentence that what was settled was edited since and is in equilibrium no more, "" if it is."""
+    document = context.document
+    if context.scene not in STILL or document.is_undeformed or document.assessment.balanced:
+        return ""
+    return "Edited: no longer in equilibrium. E settles it again."
 
 
 def _gone(context: Context) -> str:
@@ -154,7 +165,9 @@ def _flashes(context: Context) -> NDArray[np.float64]:
 
 def _preview(context: Context) -> Preview | None:
     try:
-        return context.gesture.preview(context, context.pointer) if context.gesture is not None else None
+        if context.gesture is None:
+            return end_pointed_at(context, context.pointer) if context.scene in LIVE else None
+        return context.gesture.preview(context, context.pointer)
     except Refusal as error:
         context.gesture, context.notice = None, str(error)
         return None
@@ -163,7 +176,7 @@ def _preview(context: Context) -> Preview | None:
 def _drawing_hint(context: Context) -> str:
     if context.scene not in LIVE:
         return ""
-    return context.gesture.hint if context.gesture is not None else TOOL_HINTS.get(context.view.tool, "")
+    return context.gesture.hint if context.gesture is not None else hint_of_tool(context)
 
 
 def _state_word(context: Context) -> str:

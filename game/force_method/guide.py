@@ -19,8 +19,9 @@ from components.round_numbers import round_down
 from components.table import Table
 from components.tags import Selected
 from components.view import View
-from game.documents.shapes import DRAWN_SHARE, extent
+from game.documents.shapes import DRAWN_SHARE
 from game.force_method import PARTS
+from systems.edit.arrows import extent
 from systems.run.real_time import RealTimeRunner
 from systems.run.simulation import Simulation
 from systems.schedule import Schedule
@@ -68,7 +69,8 @@ class Set:
 
     def scale_to(self, state: SetState) -> None:
         """Choose drawing scales for the displacements and forces of a final state."""
-        self.suited = _scale_to(DRAWN_SHARE * extent(self.model), largest(state.displacement))
+        size = extent(self.model) if self.model.rods.count else 0.0
+        self.suited = _scale_to(DRAWN_SHARE * size, largest(state.displacement))
         self.model.settings.diagram_scale = _scale_to(DIAGRAM_HEIGHT, largest(state.axial_force))
 
     def settle(self) -> None:

@@ -12,7 +12,7 @@ from typing import Any, TextIO
 
 from components.field import Vector
 from components.wording import as_json, cut, is_broken
-from game.documents.sections import ModelError
+from game.documents.format import ModelError
 from game.editor.context import FAULTS
 from game.mods.loading import MODS
 from game.mods.mod import INCLUDED, ModError
@@ -111,6 +111,7 @@ _EXAMPLES: dict[str, Any] = {  # by key of a line: a value of the required shape
     "box": "stiffness",
     "set": "particles.B.force=120,-160",
     "action": "undo",
+    "divide": ["AB", 4],
     "run": 0.5,
     "steps": 128,
     "expect": "scene = pause",
@@ -182,6 +183,7 @@ _VERBS: dict[str, Callable[[Session, Any], Any]] = {
     "box": lambda session, title: session.click_box(title),
     "set": lambda session, text: apply_override(session.model, text),
     "action": lambda session, name: session.act(name),
+    "divide": lambda session, value: session.divide(*value),
     "run": lambda session, time: session.run(until="rest") if time == "rest" else session.run(time=time),
     "steps": lambda session, count: session.run(steps=count),
     "say": lambda session, text: None,

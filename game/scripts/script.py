@@ -11,6 +11,7 @@ further line does one thing:
     {"type": "200000"}   {"box": "stiffness"}   typing, and selecting a box by its title
     {"set": "particles.B.force=120,-160"}       as --set of the command line
     {"action": "undo"}                          a named action
+    {"divide": ["AB", 4]}                       a rod that bends, into so many equal parts
     {"run": "rest"}   {"run": 0.5}              until at rest; or by seconds
     {"steps": 128}                              by steps
     {"expect": "rods.AB.axial_force ≈ -28.34 ± 0.01"}   also =, <, >, <=, >=; scene, time, count.rods, energy.…

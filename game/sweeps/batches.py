@@ -13,7 +13,7 @@ from components.field import Column, FieldError
 from components.rod import bends
 from components.settings import AUTOMATIC
 from game.commands.reports.results import reported
-from game.documents.sections import ModelError
+from game.documents.format import ModelError
 from game.paths import ENERGIES, EVERY, PathError, Target, locate, settable
 from game.sweeps.batch import Batch
 from game.sweeps.batch_program import BatchProgram
@@ -30,7 +30,11 @@ MOST_NUMBERS = 2_000_000  # in the largest array of a batch: of stiffness, rods 
 # What makes another model of it, or lets its parts rest by themselves.
 _ALONE = (
     *("particles.name", "particles.fixed", "rods.name", "loads.name", "settings.sleeping"),
-    *("rods.bending_stiffness", "rods.hinged"),  # models that bend are computed one by one
+    *(
+        "rods.prescribed_bending_stiffness",
+        "rods.second_moment",
+        "rods.hinged",
+    ),  # models that bend are computed one by one
 )
 _REPORTED = ("particles", "rods")
 
@@ -61,6 +65,7 @@ class Batches:
             plan.analysis.load_factors is None
             and 0 < model.rods.count <= SMALL
             and not bends(model)
+            and bool(np.isnan(model.rods.second_moment).all())
             and model.clock.step_size == 0.0  # it has not begun
             and len(placed) <= 1  # two could meet on the way, which is refused
             and all(type(system).__module__.startswith("systems.") for system in self._runner.step_systems)

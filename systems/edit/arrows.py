@@ -12,6 +12,8 @@ from systems.edit.placing import SNAP_REACH
 
 COMFORTABLE = 100.0  # points, length of an arrow of usual size
 USUAL_STRAIN = 1e-3  # of a loaded structure, where no force is known yet
+USUAL_SLOPE = 0.1  # force × extent² / bending stiffness, likewise
+LEVER = 0.25  # of a moment, as a share of the extent
 USUAL_ACCELERATION = 10.0  # m/s², of a loaded free body
 USUAL_SPEED = 5.0  # m/s
 
@@ -22,9 +24,29 @@ def usual_force(model: Model) -> float:
     largest = max(np.abs(particles.force).max(initial=0.0), np.abs(loads.force).max(initial=0.0))
     if largest > 0.0:
         return float(largest)
+    if rods.count and (bending := rods.bending_stiffness.max()) > 0.0:
+        return float(USUAL_SLOPE * bending / extent(model) ** 2)
     if rods.count:
         return float(USUAL_STRAIN * rods.stiffness.max())
     return float(USUAL_ACCELERATION * particles.mass.max(initial=1.0) / 1000.0)
+
+
+def extent(model: Model) -> float:
+    """The larger side (m) of the box around the particles' original places."""
+    return float(np.ptp(model.particles.position, axis=0).max(initial=0.0)) or 1.0
+
+
+def usual_moment(model: Model) -> float:
+    """The usual size (kN·m) of moments: the largest there is, else that of a usual force with a lever."""
+    particles, loads = model.particles, model.loads
+    largest = max(np.abs(particles.moment).max(initial=0.0), np.abs(loads.moment).max(initial=0.0))
+    return float(largest) or LEVER * usual_force(model) * extent(model)
+
+
+def usual_distributed_force(model: Model) -> float:
+    """The usual size (kN/m) of distributed forces: the largest there is, else that of usual forces as far apart."""
+    largest = float(np.abs(model.rods.distributed_force).max(initial=0.0))
+    return largest or usual_force(model) / extent(model)
 
 
 def usual_speed(model: Model) -> float:

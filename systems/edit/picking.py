@@ -21,6 +21,8 @@ Numbers = NDArray[np.float64]
 
 PARTICLE_REACH = 8.0  # points from the centre, at least its radius
 ROD_REACH = 10.0  # points
+END_REACH, END_SHARE = 48.0, 0.4  # points, and share of a rod: what belongs to an end of it
+RING = 16.0  # points from a joint, where hinges of one rod are
 GRID_REACH = 5.0  # points
 
 
@@ -36,6 +38,36 @@ class Grip:
         """The place of the point (m)."""
         place: Vector = getattr(self.element, self.point)
         return place
+
+
+@dataclass(frozen=True)
+class End:
+    """An end of a rod, by its number, 0 or 1."""
+
+    rod: Rod
+    number: int
+
+
+def pick_end(model: Model, view: View, pixel: Vector) -> End | None:
+    """The end of the rod under a pixel, if it is near; None under the toolbar."""
+    rod = None if view.covers(pixel) else pick_rod(model, view, pixel)
+    if rod is None:
+        return None
+    x, y = (view.camera.to_pixels(drawn_positions(model)[list(rod.between)]) - pixel).T
+    away = np.hypot(x, y)
+    number = int(np.argmin(away))
+    reach = min(END_REACH * view.pixel_ratio, END_SHARE * float(np.hypot(x[1] - x[0], y[1] - y[0])))
+    return End(rod, number) if away[number] <= reach else None
+
+
+def ring_of(model: Model, view: View, end: End) -> Vector:
+    """Where a hinge at an end of a rod is drawn (m)."""
+    rows = list(end.rod.between)
+    at, other = drawn_positions(model)[rows if end.number == 0 else rows[::-1]]
+    length = float(np.hypot(*(other - at)))
+    share = min(RING * view.pixel_ratio / view.camera.scale / length, 0.25) if length > 0.0 else 0.0
+    x, y = (at + share * (other - at)).tolist()
+    return x, y
 
 
 def pick(model: Model, view: View, pixel: Vector) -> Handle | None:

@@ -5,16 +5,27 @@ from __future__ import annotations
 import itertools
 import math
 from collections.abc import Iterable, Sequence
+from typing import Any
 
 import numpy as np
 
+from components.field import Vector
 from components.handle import Handle
 from components.model import Model
 from components.particle import Particle
 from components.rod import Rod, spawn_rods
+from components.section import USUAL_SECTION
 from components.table import flags
+from components.view import drawn_positions
 from systems.edit import Refusal
 from systems.edit.moving import rows_of
+
+# What members have of their section and material.
+MADE_OF = (
+    *(Rod.section, Rod.material, Rod.youngs_modulus, Rod.area, Rod.second_moment, Rod.thermal_expansion),
+    *(Rod.prescribed_stiffness, Rod.prescribed_bending_stiffness, Rod.bending_damping, Rod.damping),
+    *(Rod.density, Rod.tensile_strength, Rod.compressive_strength),
+)
 
 
 def distance(first: Particle, second: Particle) -> float:
@@ -36,10 +47,11 @@ def check_ends(model: Model, first: Particle, second: Particle) -> None:
         raise Refusal(f"{first.name} and {second.name} are at the same place; move one of them first.")
 
 
-def join(model: Model, first: Particle, second: Particle) -> Rod:
+def join(model: Model, first: Particle, second: Particle, *, rigid: bool = False) -> Rod:
     """A new rod, without force as the particles are now; their masses follow from the rods again.
 
-    Raises Refusal if it cannot be.
+    rigid: a member with rigid ends, like the newest one that bends, else of the usual section. Raises Refusal if it
+    cannot be.
     """
     check_ends(model, first, second)
     moved = first.displacement != second.displacement
@@ -48,9 +60,69 @@ def join(model: Model, first: Particle, second: Particle) -> Rod:
             model,
             [(first.row, second.row)],
             prescribed_rest_length=[distance(first, second) if moved else None],
+            **(_like_members(model) if rigid else {}),
         )
         masses_from_rods(model, [first, second])
     return rod
+
+
+def _like_members(model: Model) -> dict[str, Any]:
+    """What a new member is made of, by Field."""
+    bent = np.flatnonzero(model.rods.bending_stiffness > 0.0)
+    if not len(bent):
+        return {"section": np.array([USUAL_SECTION], dtype=object)}
+    return {field.name: model.rods.column(field.name)[bent[-1:]] for field in MADE_OF}
+
+
+def share_at(rod: Rod, point: Vector) -> float:
+    """How far along a rod, as it is drawn, a point (m) lies: 0 at its start, 1 at its end."""
+    ends = [end.row for end in rod.ends]
+    start, end = drawn_positions(rod.ends[0].world)[ends]  # type: ignore[arg-type]
+    along = end - start
+    return float((np.subtract(point, start) * along).sum() / (along**2).sum())
+
+
+def toggle_hinge(model: Model, rod: Rod, end: int) -> str:
+    """Hinge an end of a rod, or make it rigid; returns what it is now. A bar that did not bend gets the usual section."""
+    rigid = is_rigid(rod, end)
+    hinged = [not is_rigid(rod, other) for other in (0, 1)]
+    hinged[end] = rigid
+    with model.transaction(f"{'hinge' if rigid else 'rigid joint'} of {model.describe(rod)}"):
+        _let_bend(model, [rod] if not rigid else [])
+        model.assign([rod], "hinged", [hinged])
+    return f"{'hinged' if rigid else 'rigid'} at {rod.ends[end].name}"
+
+
+def toggle_joint(model: Model, particle: Particle) -> str:
+    """Hinge all rods' ends at a particle, or make them rigid if they are hinged; returns what they are now."""
+    ends = np.argwhere(model.rods.between == particle.row).tolist()
+    if not ends:
+        raise Refusal(f"{particle.name} has no rods that could be hinged; click an end of a rod.")
+    rigid = any(is_rigid(model.rods[row], end) for row, end in ends)
+    with model.transaction(f"{'hinges' if rigid else 'rigid joint'} at {model.describe(particle)}"):
+        for row, end in ends:
+            if is_rigid(model.rods[row], end) == rigid:
+                toggle_hinge(model, model.rods[row], end)
+    return "all rods hinged to it" if rigid else "all rods rigidly joined"
+
+
+def is_rigid(rod: Rod, end: int) -> bool:
+    """True if a rod bends and is rigidly joined at that end."""
+    return rod.bending_stiffness > 0.0 and not rod.hinged[end]
+
+
+def join_rigidly(model: Model, rods: Sequence[Rod], rigid: bool) -> None:
+    """Make both ends of rods rigid, or hinge them."""
+    with model.transaction("rigid joints" if rigid else "hinges"):
+        _let_bend(model, rods if rigid else [])
+        model.assign(list(rods), "hinged", [(not rigid, not rigid)] * len(rods))
+
+
+def _let_bend(model: Model, rods: Sequence[Rod]) -> None:
+    """Give rods that do not bend what new members are made of."""
+    pinned = [rod for rod in rods if rod.bending_stiffness == 0.0]
+    for name, value in _like_members(model).items() if pinned else ():
+        model.assign(pinned, name, np.repeat(value, len(pinned)))
 
 
 def delete(model: Model, handles: Iterable[Handle]) -> None:

@@ -1,33 +1,60 @@
-"""Supports: holding particles in one direction or both."""
+"""Supports: holding particles in one direction or both, and their rotation."""
 
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 
 from components.field import Vector
 from components.model import Model
 from components.particle import Particle
+from components.rod import rigid_joints
 
-# Names of the supports, in the order in which pressing the key goes through them.
-NAMES = {
-    (False, False): "free",
-    (True, True): "pinned: held in x and y",
-    (False, True): "on a roller: held in y",
-    (True, False): "on a roller: held in x",
+Held = tuple[bool, bool, bool]  # in x, in y, and the rotation
+
+# Names of the supports, in the order in which pressing the key goes through them; those that hold the rotation only
+# where rigid rod ends would turn.
+NAMES: dict[Held, str] = {
+    (False, False, False): "free",
+    (True, True, False): "pinned: held in x and y",
+    (True, True, True): "clamped: held in x and y, cannot turn",
+    (False, True, False): "on a roller: held in y",
+    (True, False, False): "on a roller: held in x",
+    (False, True, True): "guided: held in y, cannot turn",
+    (True, False, True): "guided: held in x, cannot turn",
+    (False, False, True): "cannot turn, free in x and y",
+}
+SUPPORTS: dict[str, Held] = {  # by the names of the actions of menus
+    "free": (False, False, False),
+    "pin": (True, True, False),
+    "hold y": (False, True, False),
+    "hold x": (True, False, False),
+    "clamp": (True, True, True),
+    "guide y": (False, True, True),
+    "guide x": (True, False, True),
+    "hold rotation": (False, False, True),
 }
 DIAGONAL = math.tan(math.pi / 8.0)  # tan 22.5°; a direction farther from an axis counts along both
 
 
-def next_support(model: Model, particles: list[Particle]) -> str:
+def held(particle: Particle) -> Held:
+    """What a particle's support holds."""
+    return (*particle.fixed, particle.fixed_rotation)
+
+
+def next_support(model: Model, particles: Sequence[Particle]) -> str:
     """Give particles the support after that of the first one; returns its name."""
-    cycle = list(NAMES)
-    return support(model, particles, cycle[(cycle.index(particles[0].fixed) + 1) % len(cycle)])
+    turns, now = rigid_joints(model)[particles[0].row], held(particles[0])
+    cycle = [kind for kind in NAMES if turns or not kind[2] or kind == now]
+    return support(model, particles, cycle[(cycle.index(now) + 1) % len(cycle)])
 
 
-def support(model: Model, particles: list[Particle], fixed: tuple[bool, bool]) -> str:
-    """Hold particles in x and y, or not; returns the name of the support."""
-    model.assign(particles, "fixed", [fixed] * len(particles))
-    return NAMES[fixed]
+def support(model: Model, particles: Sequence[Particle], wanted: Held) -> str:
+    """Hold particles in x and y and their rotation, or not; returns the name of the support."""
+    with model.transaction(f"support of {model.describe(particles[0])}"):
+        model.assign(list(particles), "fixed", [wanted[:2]] * len(particles))
+        model.assign(list(particles), "fixed_rotation", [wanted[2]] * len(particles))
+    return NAMES[wanted]
 
 
 def support_towards(along: Vector) -> tuple[bool, bool]:

@@ -41,6 +41,8 @@ def problem(model: Model, box: Box) -> str:
     try:
         field.check(_with_part(box.elements[0], field, part, value), box.section)
     except FieldError as error:
+        if field.choices is not None:  # too many to be named here
+            return f"no {field.title} is called so"
         return str(error).removeprefix(f"{box.section}: ").removesuffix(".")
     return ""
 
@@ -86,7 +88,7 @@ def _assign(model: Model, box: Box, elements: Sequence[Handle]) -> None:
     if field.shape:
         rows = model.row_of_entity[[element.entity for element in elements]]
         values = model.tables[elements[0].table].column(field.name)[rows]
-        values[:, "xy".index(part)] = value
+        values[:, field.axes.index(part)] = value
     model.assign(elements, field.name, values)
 
 
@@ -112,10 +114,10 @@ def _value(field: Field[Any], part: str, text: str) -> Any:
     """
     if field.dtype is bool:
         return text == YES_NO[1]
-    if field.dtype is str or part == KIND:
-        return text
     if field.nullable and text == field.absent:
         return None
+    if field.dtype is str or part == KIND:
+        return text
     digits, unit = number_and_unit(text)
     number = Decimal(digits) / Decimal(repr(_per_inside_unit(field, unit or field.shown[0])))
     return int(number) if field.dtype is int and number == number.to_integral_value() else float(number)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from decimal import Decimal
 from typing import Any
@@ -12,16 +12,16 @@ import numpy as np
 from numpy.typing import NDArray
 
 from components.bent import is_frame
-from components.box import NUMBER, TEXT, WORD, Box
+from components.box import NAME, NUMBER, TEXT, WORD, Box
 from components.field import SAVED, Field
 from components.form import Form
 from components.handle import Handle
 from components.load import HISTORIES, Load
 from components.model import Model
 from components.particle import Particle
-from components.rod import Rod
+from components.rod import Rod, rigid_joints
 from components.settings import Settings
-from systems.forms.typing import YES_NO
+from systems.forms.typing import YES_NO, select
 
 MIXED = "mixed"
 KIND = "kind"  # the part of a history that is its kind
@@ -29,17 +29,24 @@ EXACT, DIGITS = 12, 9  # significant digits: numbers with so few are shown in fu
 _OF_RODS = (
     "diagram_scale",
     "original_diagrams",
+    "diagrams",
     "plasticity",
     "sleeping",
 )  # settings that concern rods; the others particles
 _DECIDED = (Particle.asleep, Rod.yielded_at)  # by the run
-CROSS_SECTION = "Cross-section"
-_OF_SECTION = (Rod.youngs_modulus, Rod.area)  # which may give the stiffness instead of a person
-OF_BENDING = (  # set by files, scripts and --set
-    *(Particle.rotation, Particle.angular_velocity, Particle.fixed_rotation, Particle.moment),
-    *(Particle.prescribed_inertia, Rod.bending_stiffness, Rod.hinged, Rod.distributed_force),
-    *(Rod.temperature_gradient, Rod.bending_damping, Load.moment),
-)
+# Fields of one kind with a heading of their own, in the order in which these follow.
+_APART: Mapping[str, tuple[Field[Any], ...]] = {
+    "Cross-section": (Rod.section, Rod.material, Rod.youngs_modulus, Rod.area, Rod.second_moment),
+    "Bending": (
+        *(Rod.prescribed_bending_stiffness, Rod.hinged, Rod.distributed_force),
+        *(Rod.temperature_gradient, Rod.bending_damping),
+    ),
+    "Rotation": (
+        *(Particle.rotation, Particle.angular_velocity, Particle.fixed_rotation),
+        *(Particle.moment, Particle.prescribed_inertia),
+    ),
+}
+_OF_BENT_RODS = (Rod.hinged, Rod.temperature_gradient, Rod.bending_damping)  # that mean nothing to others
 _NUMBERS = (float, int)
 _EDITABLE = (*_NUMBERS, bool, str)
 
@@ -80,11 +87,7 @@ def subjects(model: Model, selected: Sequence[Handle]) -> list[Subject]:
     if not selected:
         found = [_subject(model, heading(model, []), [model.environment])]
         found += [_subject(model, model.describe(grid), [grid]) for grid in model.grids if grid.shown]
-    found += [
-        replace(subject, section=CROSS_SECTION, fields=_OF_SECTION)
-        for subject in found
-        if isinstance(subject.elements[0], Rod)
-    ]
+    found += [part for subject in found for part in _parts(model, subject)]
     found += [_subject(model, model.describe(load), [load]) for load in _loads_on(model, selected)]
     for section, kind, of_rods in (("All particles", Particle, False), ("All rods", Rod, True)):
         if not selected or kind in kinds:
@@ -94,6 +97,27 @@ def subjects(model: Model, selected: Sequence[Handle]) -> list[Subject]:
                 chosen = tuple(field for field in chosen if field is not Settings.original_diagrams)
             found.append(Subject(section, (model.settings,), np.zeros(1, dtype=np.intp), chosen))
     return found
+
+
+def _parts(model: Model, subject: Subject) -> Iterator[Subject]:
+    """The Fields of elements that have a heading of their own, as far as they mean something to these."""
+    kind, turns = type(subject.elements[0]), _turn(model, subject)
+    for heading, fields in _APART.items():
+        chosen = tuple(f for f in fields if vars(kind).get(f.name) is f and (turns or f not in _OF_BENT_RODS))
+        if chosen and (turns or kind is Rod):
+            yield replace(subject, section=heading, fields=chosen)
+
+
+def _turn(model: Model, subject: Subject) -> bool:
+    """True if some of these rods bend, some of these particles turn, or are held or moved as if they did."""
+    kind, rows = type(subject.elements[0]), subject.rows
+    if kind is Rod:
+        return bool((model.rods.bending_stiffness[rows] > 0.0).any())
+    if kind is Load:
+        return bool(rigid_joints(model)[model.loads.on[rows]].any() or model.loads.moment[rows].any())
+    particles = model.particles
+    given = particles.fixed_rotation | (particles.moment != 0.0) | ~np.isnan(particles.prescribed_inertia)
+    return kind is Particle and bool((rigid_joints(model) | given)[rows].any())
 
 
 def _loads_on(model: Model, selected: Sequence[Handle]) -> list[Load]:
@@ -106,11 +130,15 @@ def _subject(model: Model, section: str, elements: Sequence[Handle]) -> Subject:
     kind = type(elements[0])
     fields = model.tables[kind.table].fields_in(*SAVED)
     wanted = [field for field in fields if field.dtype in _EDITABLE or field is Load.history]
-    wanted = [field for field in wanted if field not in (*_DECIDED, *_OF_SECTION, *OF_BENDING)]
+    apart = [field for fields in _APART.values() for field in fields]
+    wanted = [field for field in wanted if field not in (*_DECIDED, *apart)]
     if len(elements) > 1:
         wanted = [field for field in wanted if field.name != "name"]
     rows = model.row_of_entity[[element.entity for element in elements]].astype(np.intp)
-    return Subject(section, tuple(elements), rows, tuple(wanted))
+    subject = Subject(section, tuple(elements), rows, tuple(wanted))
+    if kind is Load and not _turn(model, subject):
+        wanted.remove(Load.moment)
+    return replace(subject, fields=tuple(wanted))
 
 
 # --- boxes -------------------------------------------------------------------------------------------
@@ -126,8 +154,11 @@ def fill(form: Form, model: Model, selected: Sequence[Handle]) -> None:
 def refresh(form: Form, model: Model, selected: Sequence[Handle]) -> None:
     """Let the boxes say what the model has now, except what is typed into them and what was refused."""
     wanted = [box for boxes in _sections(model, selected) for box in boxes]
-    if [box["target"] for box in wanted] != [box.target for box in form.boxes]:  # a load has another history
+    if [box["target"] for box in wanted] != [box.target for box in form.boxes]:  # such as of another history
+        target = form.selected.target if form.selected is not None else ""
         fill(form, model, selected)
+        if target:
+            select(form, next((box for box in form.boxes if box.target == target), None))
         return
     for box, now in zip(form.boxes, wanted, strict=True):
         kept = box is form.selected or box.problem
@@ -149,9 +180,9 @@ def _boxes(model: Model, subject: Subject, field: Field[Any]) -> Iterator[dict[s
         yield from _history_boxes(model, subject, field)
         return
     words = _words(field)
-    for axis in "xy" if field.shape else ("",):
+    for axis in field.axes if field.shape else ("",):
         content = _content(model, subject, field, axis)
-        accepts = NUMBER if field.dtype in _NUMBERS else WORD if words else TEXT
+        accepts = NUMBER if field.dtype in _NUMBERS else TEXT if not words else NAME if field.checker else WORD
         yield _box(subject, field, axis, content, accepts, words)
 
 
@@ -187,7 +218,7 @@ def _words(field: Field[Any]) -> tuple[str, ...] | None:
     if field.dtype is bool:
         return YES_NO
     if field.choices is not None:
-        return tuple(field.choices)
+        return (*([field.absent] if field.nullable else []), *field.choices)
     return (field.absent,) if field.nullable else None
 
 
@@ -198,7 +229,7 @@ def _content(model: Model, subject: Subject, field: Field[Any], axis: str) -> Co
     """The text of a box for some elements, and its note: that they differ, or that the value is automatic."""
     table = model.tables[subject.elements[0].table]
     column = table.column(field.name)
-    values = (column[:, "xy".index(axis)] if axis else column)[subject.rows]
+    values = (column[:, field.axes.index(axis)] if axis else column)[subject.rows]
     if field.nullable and field.dtype is float and np.isnan(values).all():
         if field.overrides is None:
             return field.absent, ""
@@ -206,6 +237,8 @@ def _content(model: Model, subject: Subject, field: Field[Any], axis: str) -> Co
         return text, f"{note}, {field.absent}" if note else field.absent
     if not (values == values[0]).all():
         return "", MIXED
+    if values[0] is None:
+        return field.absent, ""
     return _written(field, values[0]), ""
 
 

@@ -10,17 +10,18 @@ import numpy as np
 from numpy.typing import NDArray
 
 from components import written
-from components.field import CM, Field, Role
+from components.field import CM, ENDS, Field, Role
 from components.form import Form, Reading
 from components.handle import Handle
 from components.load import CONSTANT, Load, factor_at
 from components.model import Model
 from components.particle import Particle
-from components.rod import Rod, utilisation
+from components.rod import Rod, rigid_joints, utilisation
 
 SECTION = "Results"
 RESIDUAL = 1e-12  # of a length (m), force (kN) or speed (m/s): nothing, where all of them are as small
-_AXES = "xy"
+MRAD = "mrad", 1000.0  # rotations of structures are small
+SHORT = 4  # characters of names by which the ends of a rod are called
 
 
 class Result(NamedTuple):
@@ -97,21 +98,28 @@ def _of_rods(columns: _Columns, rows: NDArray[np.intp]) -> Iterator[Result]:
             row = rows[pick(force[rows])]
             text = f"{_number(force[row], force, 'kN')} ({names[row]})" if seen[row] else "none"
             yield _result(f"largest {title}", text, Rod.axial_force)
+        moment = np.abs(columns("rods.bending_moment")).max(axis=1)
+        if (rods.bending_stiffness[rows] > 0.0).any():
+            row = rows[np.argmax(moment[rows])]
+            text = f"{_number(moment[row], moment, 'kN·m')} ({names[row]})"
+            yield _result("largest end moment", text, Rod.bending_moment)
     yield from _utilisation(columns, rows)
     if len(rows) == 1:
         (row,) = rows
+        if rods.bending_stiffness[row]:
+            yield _largest_moment(columns, int(row))
         strain, length = 1000.0 * columns("rods.strain"), columns("rods.length") * CM[1]
         yield _result("strain", _number(strain[row], strain, "‰"), Rod.strain)
         if not math.isnan(rods.area[row]):
             stress = 1e-3 * force / np.where(np.isnan(rods.area), np.inf, rods.area)
             told = "Axial force per area of the cross-section; tension positive."
-            yield Result(SECTION, "stress", _number(stress[row], stress, "MPa"), told)
+            title = "axial stress" if rods.bending_stiffness[row] else "stress"
+            yield Result(SECTION, title, _number(stress[row], stress, "MPa"), told)
         yield _result("length", _number(length[row], length, CM[0]), Rod.length)
+        yield from _at_ends(columns, row)
         if rods.plastic_strain[row]:
             plastic = 1000.0 * rods.plastic_strain
             yield _result("plastic strain", _number(plastic[row], plastic, "‰"), Rod.plastic_strain)
-    if len(rows) == 1 and rods.bending_stiffness[rows[0]]:
-        yield _largest_moment(columns, int(rows[0]))
 
 
 def _largest_moment(columns: _Columns, row: int) -> Result:
@@ -121,6 +129,24 @@ def _largest_moment(columns: _Columns, row: int) -> Result:
     text = _number(value, moments[:, 0], "kN·m")
     at = "" if math.isnan(distance) else f" at {written.length(distance, written.DIGITS)}"
     return _result("largest moment", f"{text}{at}", Rod.largest_moment)
+
+
+def _at_ends(columns: _Columns, row: np.intp) -> Iterator[Result]:
+    """Forces, moment and rotation at both ends of a rod that bends, or bears a force along it."""
+    rods = columns.model.rods
+    bends = rods.bending_stiffness[row] > 0.0
+    if not (bends or rods.distributed_force[row].any()):
+        return
+    ends = [particle.name for particle in columns.model.rods[int(row)].ends]
+    ends = ends if max(map(len, ends)) <= SHORT else [*ENDS]
+    for title, field, unit, factor in (
+        ("N at its ends", Rod.end_axial_force, "kN", 1.0),
+        ("V at its ends", Rod.shear, "kN", 1.0),
+        ("M at its ends", Rod.bending_moment, "kN·m", 1.0),
+        ("rotation of its ends", Rod.end_rotation, *MRAD),
+    )[: 4 if bends else 2]:
+        values = factor * columns(f"rods.{field.name}")
+        yield _vector(title, values[row], values, unit, field, axes=ends)
 
 
 def _utilisation(columns: _Columns, rows: NDArray[np.intp]) -> Iterator[Result]:
@@ -133,7 +159,8 @@ def _utilisation(columns: _Columns, rows: NDArray[np.intp]) -> Iterator[Result]:
         most = int(np.nanargmax(used))
         whose = f" ({rods.column('name')[rows[most]]})" if len(rows) > 1 else ""
         text = f"{written.share(used[most])}{whose}"
-    title = "largest utilisation" if len(rows) > 1 else "utilisation"
+    title = "axial utilisation" if rods.bending_stiffness[rows].any() else "utilisation"
+    title = f"largest {title}" if len(rows) > 1 else title
     yield Result(SECTION, title, text, "Axial force, as a share of the strength in its direction.")
 
 
@@ -146,9 +173,16 @@ def _of_particles(columns: _Columns, rows: NDArray[np.intp]) -> Iterator[Result]
     if len(rows) == 1:
         (row,) = rows
         yield _vector("displacement", moved[row], moved, CM[0], Particle.displacement)
+        turns = rigid_joints(columns.model)[row]
+        if turns:
+            angle = MRAD[1] * particles.rotation
+            yield _result("rotation", _number(angle[row], angle, MRAD[0]), Particle.rotation)
         held = particles.fixed[row]
         if held.any():
             yield _vector("reaction", reactions[row], reactions, "kN", Particle.reaction, held)
+        if turns and particles.fixed_rotation[row]:
+            moment = columns("particles.reaction_moment")
+            yield _result("reaction moment", _number(moment[row], moment, "kN·m"), Particle.reaction_moment)
         force = columns("particles.applied_force")
         yield _vector("sum of loads", force[row], force, "kN", Particle.applied_force)
         speed = np.hypot(*particles.velocity.T)
@@ -171,6 +205,8 @@ def _of_loads(model: Model, particle: int) -> Iterator[Result]:
     for row in np.flatnonzero(model.loads.on == particle).tolist():
         load = model.loads[row]
         text = f"{written.vector(load.force)} kN"
+        if load.moment:
+            text += f", {written.given(load.moment)} kN·m"
         if load.history["kind"] != CONSTANT["kind"]:
             now = factor_at(load.history, model.clock.time) * model.loads.force[row]
             text = f"{written.vector(now, written.DIGITS)} of {text}"
@@ -203,11 +239,12 @@ def _vector(
     unit: str,
     field: Field[Any],
     shown: Sequence[bool] = (True, True),
+    axes: Sequence[str] = "xy",
 ) -> Result:
     """The components that are to be shown."""
     parts = [
         f"{axis} {_number(value, column)}"
-        for axis, value, wanted in zip(_AXES, values, shown, strict=True)
+        for axis, value, wanted in zip(axes, values, shown, strict=True)
         if wanted
     ]
     return _result(title, f"{'   '.join(parts)} {unit}", field)

@@ -5,7 +5,7 @@ from __future__ import annotations
 import re
 from collections.abc import Sequence
 
-from components.box import FILE_NAME, NUMBER, TEXT, Box, fits_file_names
+from components.box import FILE_NAME, NAME, NUMBER, TEXT, Box, fits_file_names
 from components.field import LENGTHS
 from components.form import Form
 from components.tags import Selected
@@ -159,8 +159,9 @@ def _set(form: Form, box: Box, text: str, caret: int) -> None:
 def _entered(box: Box, character: str) -> tuple[str, int] | None:
     """Text and caret after a character was typed; None if the box does not accept it."""
     words: Sequence[str] = box.words or ()
-    whole = box.marked or box.text in words
+    whole = box.marked or (box.text in words and box.accepts != NAME)
     before, after = ("", "") if whole else (box.text[: box.caret], box.text[box.caret :])
+    after = "" if box.accepts == NAME and box.text in words else after
     if box.accepts == NUMBER:
         if box.unit in LENGTHS and _WITH_UNIT_SO_FAR.fullmatch(before + character + after):
             return before + character + after, len(before) + 1
@@ -173,15 +174,19 @@ def _entered(box: Box, character: str) -> tuple[str, int] | None:
         character = character.replace("/", "-")
         if fits_file_names(character):
             return before + character + after, len(before) + 1
-    return _completed(box, words, character)
+    completed = _completed(box, words, character)
+    if completed is None and box.accepts == NAME and character.isprintable():
+        return before + character + after, len(before) + 1
+    return completed
 
 
 def _completed(box: Box, words: Sequence[str], character: str) -> tuple[str, int] | None:
     """The word whose beginning was typed, and the number of typed characters."""
-    so_far = "" if box.marked or box.text not in words else box.text[: box.caret]
-    for typed in (so_far + character, character):
+    so_far = "" if box.marked or not (box.text in words or box.accepts == NAME) else box.text[: box.caret]
+    alone = () if box.accepts == NAME and so_far else (character,)
+    for typed in (so_far + character, *alone):
         meant = _MEANS.get(typed, typed).lower() if words == YES_NO else typed.lower()
         for word in words:
-            if word.startswith(meant):
+            if word.lower().startswith(meant):
                 return word, len(meant)
     return None

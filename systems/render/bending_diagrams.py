@@ -136,7 +136,8 @@ def _measured(sheet: Sheet, rows: Rows, quantity: str, room: float) -> _Diagram 
     points, normals = _stations(sheet, base, shares, quantity)
     heights = scale * values(polynomials, shares)
     found = _Diagram(rows, base, polynomials, scale, largest, points, normals, heights)
-    return found.some((np.abs(points) < _FAR).all(axis=(1, 2)) & np.isfinite(normals).all(axis=(1, 2)))
+    near = (np.abs(points) < _FAR) & np.isfinite(normals)
+    return found.some(np.asarray(near.all(axis=(1, 2))))
 
 
 def _pieces(sheet: Sheet, rows: Rows) -> int:
@@ -325,6 +326,7 @@ def _told(sheet: Sheet, quantity: str, diagram: _Diagram) -> tuple[Rows, Rows, V
     same = np.abs(ends[:, 0] - ends[:, 1]) <= _ALIKE * largest
     same[which] = False
     middle = np.flatnonzero(same & (told.any(axis=1) | (quantity == AXIAL)))
+    middle = middle[~_continued(sheet, diagram.rows[middle], ends[middle, 0], largest)]
     told[same] = False
     if quantity == MOMENT:
         told &= ~_repeated(sheet, diagram, ends, largest)
@@ -336,6 +338,16 @@ def _told(sheet: Sheet, quantity: str, diagram: _Diagram) -> tuple[Rows, Rows, V
         np.concatenate([end.astype(np.float64), shares, np.full(len(middle), 0.5)]),
         np.concatenate([ends[rod, end], between, values(polynomials[middle], np.array([0.5]))[:, 0]]),
     )
+
+
+def _continued(sheet: Sheet, rows: Rows, constant: Values, largest: float) -> NDArray[np.bool_]:
+    """Which rods with constant values go on from another one with the same, by a joint of these two only."""
+    start, end = sheet.ends[rows].T
+    before = np.full(len(sheet.centres), np.nan)
+    before[end] = np.abs(constant)
+    joined = np.bincount(sheet.ends.ravel(), minlength=len(sheet.centres)) == 2
+    same: NDArray[np.bool_] = joined[start] & (np.abs(before[start] - np.abs(constant)) <= _ALIKE * largest)
+    return same
 
 
 def _repeated(sheet: Sheet, diagram: _Diagram, ends: Values, largest: float) -> NDArray[np.bool_]:

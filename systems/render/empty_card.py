@@ -16,7 +16,15 @@ from systems.render.overlays import BAR
 from systems.render.theme import Theme, faded
 from systems.render.typography import font_size, shortened, text_width
 
-_FIRST = ("place", "rod", "support", "force", "load", "toggle help")  # the tools, if the toolbar has them
+_FIRST = (
+    "place",
+    "rod",
+    "rigid",
+    "support",
+    "force",
+    "load",
+    "toggle help",
+)  # the tools, if the toolbar has them
 _ROW, _ICON, _PAD, _GAP = 27.0, 34.0, 24.0, 26.0  # points: a row, its icon, around rows, between title and key
 _HEAD, _EMBLEM, _ROOMY = 52.0, 68.0, 420.0  # points: the title, the emblem, and a canvas high enough for that
 _SIZE = 13.0  # points, of type

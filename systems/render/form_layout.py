@@ -34,6 +34,7 @@ PILL, PILL_WIDTH, PILL_GAP = 40.0, 184.0, 10.0  # points: tiles of a section wit
 BESIDE, SEARCH = 985.0, 340.0  # points of width from which the name stands beside the heading; that it takes
 LOWEST = 0.65  # share of a picture's height that it keeps where one more row fits then
 LEAST_PICTURE = 30.0  # points
+SECTIONS_SEEN = 2  # with pictures, that begin in sight in any window
 
 PROPERTIES = "Properties"  # the heading of an element's own boxes, where its results stand above them
 
@@ -116,8 +117,11 @@ def lay_out(form: Form, viewport: Viewport, unit: float) -> FormLayout:
         height = _height(row, 0.0, u)
         fixed += _placed(row, left, top, width, height, u)
         top += height
-    message, lines = top - 11.0 * u, message_lines(form, width, u)
-    top += max(len(lines) - 1, 0) * MESSAGE_LINE * u
+    lines = len(message_lines(form, width, u))
+    message = (
+        top + (0.5 * MESSAGE_LINE if readings else -11.0) * u
+    )  # below the heading there is room for a line
+    top += max(lines - (not readings), 0) * MESSAGE_LINE * u
     right, first = left + width, form.heading.first
     edges = left, right, header, heading_width, message, top, bottom
     return _with_rows(FormLayout(v, u, *edges, close, accept, explained, first), fixed, rows)
@@ -279,18 +283,18 @@ def _height(row: Row, picture: float, u: float) -> float:
 
 
 def _picture_height(rows: Sequence[Row], width: float, room: float, u: float) -> float:
-    """Height of the pictures of tiles: reduced until the first row of each section is in sight, or where one more row is."""
+    """Height of the pictures of tiles: reduced until two sections begin in sight, and where one more row fits then."""
     high, least = _tile_width(width, u) * PROPORTION, LEAST_PICTURE * u
     pictured = [not isinstance(row, str) and isinstance(row[0], Tile) and not _are_pills(row) for row in rows]
     ends = [number + 1 for number, has in enumerate(pictured) if has]
-    headings = [number for number, row in enumerate(rows) if isinstance(row, str)]
-    needed = next((end for end in ends if end > max(headings, default=0)), 0)
+    begun = [end for end in ends if end < 2 or not pictured[end - 2]]  # ends of the first rows of sections
+    needed = max(begun[:SECTIONS_SEEN], default=0)
     for end in reversed(ends):
         fixed = sum(_height(row, 0.0, u) for row in rows[:end])
         each = (room - fixed) / sum(pictured[:end])
-        if end <= needed or each >= LOWEST * high:
-            return max(min(each, high), least)
-    return high
+        if each >= (least if end <= needed else LOWEST * high):
+            return min(each, high)
+    return least if ends else high
 
 
 def _tile_width(width: float, u: float) -> float:

@@ -118,10 +118,11 @@ def _draw_bending(
     if not sheet.is_frame:
         return
     u, colour = sheet.unit, sheet.theme.ink
-    across = along[:, ::-1] * [1.0, -1.0]  # to the left, y down
+    across = along[:, ::-1] * [1.0, -1.0]  # to the left as drawn, y down
+    true = known.along[sheet.rods][:, ::-1] * [-1.0, 1.0]  # and as it is
     for side, joint, out in ((0, sheet.start, along), (1, sheet.end, -along)):
         force = known.on_ends[sheet.rods, side]
-        shear = (force[:, :2] * [1.0, -1.0] * across).sum(axis=1)
+        shear = (force[:, :2] * true).sum(axis=1)
         rim = joint + (sheet.radii[sheet.ends[sheet.rods, side]] + 3.0 * GAP * u)[:, None] * out
         which = np.flatnonzero(bearing & (np.abs(shear) > SMALLEST_FORCE))
         if len(which):

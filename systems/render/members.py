@@ -6,8 +6,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from components import written
-from components.bent import axes, rigid_joints
+from components.bent import axes
 from components.model import Model
+from components.rod import rigid_joints
 from components.tags import DiagramShown
 from systems.render.arrows import MOST, arrows, head_length
 from systems.render.labels import Label, half_size
@@ -146,7 +147,8 @@ def _label_row(sheet: Sheet, row: int, tails: Points, along: Points, size: float
         out = out if out[1] <= 0.0 else -out
     reach = abs(out[0]) * half[0] + abs(out[1]) * half[1] + 2.0 * sheet.unit
     shares = np.array([0.5, 0.35, 0.65, 0.2, 0.8])
-    base = tails[0] + shares[:, None] * way
+    at = shares * (len(tails) - 1.0)
+    base = np.stack([np.interp(at, np.arange(len(tails)), part) for part in tails.T], axis=1)
     places = np.concatenate([base + out * reach, base + out * (reach + 12.0 * sheet.unit)])
     backing, of = faded(sheet.theme.background, 0.86), ("rods", row)
     label = Label(text, places, font, sheet.theme.load, -1e9 - size, "semibold", backing, "spare", key, of, of)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from components.box import NUMBER, WORD, Box, number_and_unit
+from components.box import NAME, NUMBER, WORD, Box, number_and_unit
 from components.camera import Rectangle, Viewport
 from components.form import Form, Reading, Tile
 from components.view import BETWEEN, View
@@ -166,6 +166,8 @@ class _Writer:
             unit = box.unit
             if self._has_room_for_unit(place, box):
                 unit = "" if box.changed or self._has_room_for_note(place, box) else box.note
+                if text_width(f"{box.title} {unit}", size) + 8.0 * u > place.width:
+                    unit = unit.replace("automatic", "auto")
             taken = text_width(unit, size) + 8.0 * u if unit else 0.0
             title = shortened(box.title, place.width - taken, size)
             marks.append(Text(title, place.left, above, size, theme.muted))
@@ -206,13 +208,13 @@ class _Writer:
         if box.note and not box.changed and self._has_room_for_note(place, box):
             x, anchor = (left + room, "right") if text else (left + 2.0 * u, "left")
             marks.append(Text(box.note, x, middle, small, theme.muted, anchor=anchor))
-        if box.accepts == WORD:
+        if box.accepts in (WORD, NAME):
             marks.append(_turning(place.right - 14.0 * u, middle, u, theme.muted))
         return marks
 
     def _room(self, place: Place, box: Box) -> float:
         """Pixels for what stands in a box."""
-        return place.width - 2 * _PAD * self.unit - (12.0 * self.unit if box.accepts == WORD else 0.0)
+        return place.width - 2 * _PAD * self.unit - (12.0 * self.unit if box.accepts in (WORD, NAME) else 0.0)
 
     def _has_room_for_unit(self, place: Place, box: Box) -> bool:
         """True if the unit stands behind the number, not above the box."""

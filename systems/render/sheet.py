@@ -10,9 +10,10 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
-from components.bent import FLAT, Lines, curved_lines, is_frame, largest_sag, rigid_joints
+from components.bent import FLAT, Lines, curved_lines, is_frame, largest_sag
 from components.camera import Viewport
 from components.model import Model
+from components.rod import rigid_joints
 from components.tags import Hovered
 from components.view import View, drawn_positions
 from systems.render.clip import bounds, clip_rods, clip_segments

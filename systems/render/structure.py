@@ -7,9 +7,11 @@ import math
 import numpy as np
 from numpy.typing import NDArray
 
-from components.bent import FLAT, moved_axes, pieces, rigid_joints
+from components.bent import FLAT, moved_axes, pieces
+from components.rod import rigid_joints
 from components.round_numbers import round_up
 from components.tags import Hovered, Selected
+from components.view import Shape
 from systems.render.clip import bounds, clip_segments
 from systems.render.labels import Label, half_size
 from systems.render.marks import Discs, Fills, Points, Rectangles, Strokes
@@ -235,29 +237,38 @@ def draw_shape(sheet: Sheet) -> None:
         return
     if shape.about is not None:
         position = position + shape.about * sheet.model.settings.displacement_scale
-    places = sheet.view.camera.to_pixels(position + shape.displacement)
-    colour = faded(sheet.theme.sketch, _SHAPE_OPACITY)
+    colour, swing = faded(sheet.theme.sketch, _SHAPE_OPACITY), sheet.view.swing
     pixels = np.hypot(*shape.displacement.T) * sheet.view.camera.scale
     moving = pixels > _SHAPE_FROM * sheet.unit
     if shape.rotation is not None:
         moving |= shape.rotation != 0.0
     rows = np.flatnonzero(moving[sheet.ends].any(axis=1))
-    ends = sheet.ends[rows]
-    start, end = places[ends[:, 0]], places[ends[:, 1]]
-    if shape.rotation is not None:
-        bent = moved_axes(sheet.model, rows, position + shape.displacement, shape.displacement, shape.rotation)
-        if (lines := pieces(bent, rows, FLAT / sheet.view.camera.scale)) is not None:
-            straight = ~sheet.chosen(lines.rods, rows)
-            to_pixels = sheet.view.camera.to_pixels
-            start = np.concatenate([start[straight], to_pixels(lines.start)])
-            end = np.concatenate([end[straight], to_pixels(lines.end)])
-    start, end, _ = clip_segments(start, end, *bounds(sheet.viewport))
+    start, end = farthest = _lines_of_shape(sheet, shape, position, rows, 1.0)
+    if swing != 1.0:
+        start, end = _lines_of_shape(sheet, shape, position, rows, swing)
+    sheet.occupancy.line(*farthest, FAINT)  # so that labels stay where they are while it swings
     if len(start):
-        sheet.occupancy.line(start, end, FAINT)
         sheet.marks.append(Strokes(start, end, _SHAPE_WIDTH * sheet.unit, colour))
+    places = sheet.view.camera.to_pixels(position + swing * shape.displacement)
     dots = places[moving & sheet.sees(places)]
     if len(dots):
         sheet.marks.append(Discs(dots, np.full(len(dots), _SHAPE_RADIUS * sheet.unit), colour, colour))
+
+
+def _lines_of_shape(
+    sheet: Sheet, shape: Shape, position: Points, rows: Rows, swing: float
+) -> tuple[Points, Points]:
+    """Visible pieces of some rods in pixels, displaced from these positions by so much of a shape."""
+    moved = position + swing * shape.displacement
+    places, ends, to_pixels = sheet.view.camera.to_pixels(moved), sheet.ends[rows], sheet.view.camera.to_pixels
+    start, end = places[ends[:, 0]], places[ends[:, 1]]
+    if shape.rotation is not None:
+        bent = moved_axes(sheet.model, rows, moved, swing * shape.displacement, swing * shape.rotation)
+        if (lines := pieces(bent, rows, FLAT / sheet.view.camera.scale)) is not None:
+            straight = ~sheet.chosen(lines.rods, rows)
+            start = np.concatenate([start[straight], to_pixels(lines.start)])
+            end = np.concatenate([end[straight], to_pixels(lines.end)])
+    return clip_segments(start, end, *bounds(sheet.viewport))[:2]
 
 
 def label_names(sheet: Sheet) -> None:

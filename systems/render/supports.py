@@ -5,8 +5,8 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from components.bent import rigid_joints
 from components.model import Model
+from components.rod import rigid_joints
 from systems.render.marks import Points, Stamps
 from systems.render.sheet import DIRECTIONS, MANY, Rows, Sheet
 from systems.render.symbols import SUPPORT_DEPTH

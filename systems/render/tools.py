@@ -17,6 +17,8 @@ from systems.render.theme import Colour, faded
 from systems.render.typography import line_height, text_width
 
 _WIDTH = 2.5  # points, of lines
+_APART, _MOST_ARROWS = 26.0, 40  # points between arrows along a rod, and how many there are at most
+_ARC = 24.0  # points, radius of a moment's
 _COILS = 9  # of the spring that pulls
 
 Pixel = NDArray[np.float64]
@@ -42,6 +44,8 @@ def draw_preview(sheet: Sheet) -> list[Mark]:
     if not np.isfinite([start, end]).all():
         return []
     drawn = _KINDS[preview.kind](sheet, start, end)
+    for ends in preview.along:
+        drawn += _along(sheet, sheet.view.camera.to_pixels(ends), end - start)
     return [*drawn, *(_label(sheet, preview, end) if preview.label else [])]
 
 
@@ -95,6 +99,39 @@ def _arrow(sheet: Sheet, start: Pixel, end: Pixel, colour: Colour) -> list[Mark]
     return [*_lines(sheet, np.array([start, neck + 0.2 * head * forward]), colour), Fills(point[None], colour)]
 
 
+def _along(sheet: Sheet, ends: Pixel, force: Pixel) -> list[Mark]:
+    """Arrows of one force all along a rod, which point to it, and the line from which they come."""
+    colour, length = sheet.theme.load, float(np.hypot(*(ends[1] - ends[0])))
+    size = float(np.hypot(*force))
+    if not np.isfinite(ends).all() or size < 1.0:
+        return []
+    back = force * min(1.0, 60.0 * sheet.unit / size)
+    count = int(np.clip(length / (_APART * sheet.unit), 1, _MOST_ARROWS))
+    feet = ends[0] + np.linspace(0.0, 1.0, count + 1)[:, None] * (ends[1] - ends[0])
+    arrows = [mark for foot in feet for mark in _arrow(sheet, foot - back, foot, colour)]
+    return [*_lines(sheet, ends - back, colour, 1.5), *arrows]
+
+
+def _moment(sheet: Sheet, start: Pixel, end: Pixel) -> list[Mark]:
+    """An arc around the particle, from above it to the side of the pointer; to the left counter-clockwise."""
+    away = float(end[0] - start[0])
+    if away == 0.0:
+        return []
+    sweep = np.linspace(0.0, np.clip(abs(away) / (100.0 * sheet.unit), 0.25, 1.0) * 1.5 * np.pi, 25)
+    side = np.copysign(1.0, away)
+    points = start + _ARC * sheet.unit * np.column_stack([side * np.sin(sweep), -np.cos(sweep)])
+    return [
+        *_lines(sheet, points[:-2], sheet.theme.load),
+        *_arrow(sheet, points[-4], points[-1], sheet.theme.load),
+    ]
+
+
+def _hinge(sheet: Sheet, start: Pixel, end: Pixel) -> list[Mark]:
+    """A ring where a click acts."""
+    colour = sheet.theme.sketch
+    return [Stamps("disc", start[None], 7.0 * sheet.unit, 2.0 * sheet.unit, faded(colour, 0.25), colour)]
+
+
 def _lines(sheet: Sheet, points: Points, colour: Colour, width: float = _WIDTH) -> list[Mark]:
     """Lines through points (n, 2), as far as they can be seen."""
     start, end, _ = clip_segments(points[:-1], points[1:], *bounds(sheet.viewport))
@@ -117,9 +154,14 @@ def _label(sheet: Sheet, preview: Preview, at: Pixel) -> list[Mark]:
 _KINDS: dict[str, Drawn] = {
     "rod": _rod,
     "force": lambda sheet, start, end: _arrow(sheet, start, end, sheet.theme.load),
+    "distributed force": lambda sheet, start, end: [],
+    "moment": _moment,
+    "hinge": _hinge,
     "velocity": lambda sheet, start, end: _arrow(sheet, start, end, sheet.theme.ink),
     "roller": partial(_support, "roller"),
     "pinned": partial(_support, "pinned"),
+    "guided": partial(_support, "guided"),
+    "clamped": partial(_support, "clamped"),
     "pull": _pull,
     "box": _box,
 }

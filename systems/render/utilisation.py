@@ -90,7 +90,8 @@ def _said(model: Model, row: int, share: float) -> str:
     """What is said of the first rod at its strength, or of that which is nearest to it."""
     rod = model.rods[row]
     if rod.yielded_at is None:
-        return f"{rod.name} {written.share(share)}: nearest to its limit"
+        by = " by N alone" if rod.bending_stiffness > 0.0 else ""  # bending takes its part of the strength too
+        return f"{rod.name} {written.share(share)}: nearest to its limit{by}"
     return f"{rod.name} {written.share(share)}: first, at {written.time(rod.yielded_at)}"
 
 

@@ -14,6 +14,7 @@ from components.departure import Departure
 from components.field import Column, Role
 from components.model import ADDED, Model
 from components.numeric_range import incomputable
+from components.rod import idle_moment
 from components.snapshot import Snapshot
 from components.world import Derivation
 from systems.base import REVIEW_INTERVAL, Integrator, StepSystem, StopReason
@@ -172,7 +173,7 @@ class Simulation:
                 collides = any(system.impulsive for system in self.plan)
                 parted = part_overlaps(self.model) if collides else ""  # what edits left in one place
                 self.program.commit()  # rods that edits left beyond a strength yield
-                self.note = " ".join(filter(None, [self.programs.note, parted]))
+                self.note = " ".join(filter(None, [self.programs.note, parted, idle_moment(self.model)]))
                 self._account.close()
                 self._sleep.review(self.program)
                 self.step_size.begin(self.step_size.first())

@@ -175,16 +175,19 @@ class Bending:
         return found
 
 
-def needed_parts(model: Model, axial_force: Array) -> NDArray[np.intp]:
+def needed_parts(model: Model, axial_force: Array, slopes: Array | None = None) -> NDArray[np.intp]:
     """Into how many rods each would have to be divided, so that each bends as its cubic does; 1 of most, (rods,).
 
-    While ν = −N L₀²/EI is at most 2.5 in every rod, critical loads are exact to 0.75 %.
+    While ν = −N L₀²/EI is at most 2.5 in every rod, critical loads are exact to 0.75 %. slopes: of the ends, (rods, 2),
+    at most a quarter turn; None: small.
     """
     rods = model.rods
     bent = (rods.turning_shares > 0.0).any(axis=1)
     pressed = np.where(bent, -axial_force * rods.rest_length**2, 0.0)
     ratio = np.divide(pressed, rods.bending_stiffness, out=np.zeros(rods.count), where=bent)
-    parts: NDArray[np.intp] = np.ceil(np.sqrt(np.maximum(ratio, 0.0) / WITHIN)).astype(np.intp)
+    by_force = np.sqrt(np.maximum(ratio, 0.0) / WITHIN)
+    by_slopes = 0.0 if slopes is None else 4.0 * np.abs(slopes).max(axis=1, initial=0.0) / FULL_TURN - 1e-9
+    parts: NDArray[np.intp] = np.ceil(np.maximum(by_force, by_slopes)).astype(np.intp)
     return np.maximum(parts, 1)
 
 

@@ -11,15 +11,27 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from components.model import Model
+from systems.statics.assembly import Matrix
 from systems.statics.bending import needed_parts
-from systems.statics.equations import Array, Matrix, Structure, normalised
+from systems.statics.equations import Array, Structure, normalised, upright
 from systems.statics.events import NoEquilibrium
 from systems.statics.explain import describe_motion, divide_named, rod_names
-from systems.statics.factor import NO_STIFFNESS, SOFT, Factor, pseudo_random, regular, soft_modes, unresisted
+from systems.statics.factor import (
+    NO_STIFFNESS,
+    SOFT,
+    Factor,
+    pseudo_random,
+    regular,
+    shifted,
+    soft_modes,
+    unresisted,
+)
 from systems.statics.state import Start
 from systems.statics.theory import linear
 
-FULL = 600  # unknowns up to which all eigenvalues are computed
+FULL = 150  # unknowns up to which all eigenvalues are computed
+RESTARTS = 100
+LANCZOS = 40  # vectors that the lowest of larger structures are found from, at least
 MODES = 5
 NOTHING = 1e-10  # of the largest axial force, or of the largest eigenvalue: round-off
 STIFFENED = (
@@ -62,10 +74,11 @@ def buckling(model: Model, count: int = MODES, start: Start | None = None) -> Bu
     stiffness = structure.initial_tangent + _geometric(structure, dead, 0.0)
     softening = _geometric(structure, live, 1.0)
     held = _resisting(model, structure, stiffness, softening)
-    vectors = _modes(structure, held, softening, count)
+    softens = bool((live < 0.0).any() or model.rods.distributed_force.any())
+    vectors = _modes(structure, held, softening, count if softens else 0)
     factors = _factors(structure, vectors, _geometric(structure, dead, 0.0), softening)
     fields = structure.fields(vectors)
-    modes = np.array([_upright(normalised(field)) for field in fields]).reshape(fields.shape)
+    modes = np.array([upright(normalised(field)) for field in fields]).reshape(fields.shape)
     lowest = dead + factors[0] * live if len(factors) else np.zeros(len(dead))
     return Buckling(
         factors,
@@ -121,9 +134,11 @@ def _resisting(model: Model, structure: Structure, stiffness: Matrix, softening:
 def _modes(structure: Structure, stiffness: Matrix, softening: Matrix, count: int) -> Array:
     """The φ (N, k) of the lowest positive λ of (K + λ K_G) φ = 0, by the largest 1/λ."""
     size = structure.size
-    if size == 0 or abs(softening).max() == 0.0:
+    if size == 0 or count == 0:
         return np.zeros((size, 0))
-    count = min(count, size)
+    if not Factor(stiffness).definite:  # by round-off: factors are computed without what is added
+        stiffness = shifted(stiffness, structure.weight)
+    count = min(count, size // 3) if size > FULL else min(count, size)
     if size <= FULL:
         from scipy.linalg import eigh
 
@@ -133,13 +148,24 @@ def _modes(structure: Structure, stiffness: Matrix, softening: Matrix, count: in
         values, vectors = eigh(-soft, stiff)
         vectors = vectors / root[:, None]
     else:
-        from scipy.sparse.linalg import LinearOperator, eigsh
-
-        inverse = LinearOperator(stiffness.shape, matvec=Factor(stiffness).solve, dtype=np.float64)
-        first = pseudo_random(size, 1)[:, 0]
-        values, vectors = eigsh(-softening, count, M=stiffness, Minv=inverse, which="LA", v0=first)
+        values, vectors = _largest(structure, -softening, stiffness, count)
     order = np.argsort(-values)[:count]
-    found: Array = vectors[:, order[values[order] > NOTHING * np.abs(values).max()]]
+    found: Array = vectors[:, order[values[order] > NOTHING * np.abs(values).max(initial=0.0)]]
+    return found
+
+
+def _largest(structure: Structure, one: Matrix, other: Matrix, count: int) -> tuple[Array, Array]:
+    """The largest eigenvalues of A φ = μ B φ and their φ, sparse; those that are found of few, beside many that are 0."""
+    from scipy.sparse.linalg import ArpackNoConvergence, LinearOperator, eigsh
+
+    inverse = LinearOperator(other.shape, matvec=Factor(other).solve, dtype=np.float64)
+    first, basis = pseudo_random(structure.size, 1)[:, 0], max(LANCZOS, 3 * count)
+    try:
+        found: tuple[Array, Array] = eigsh(
+            one, count, M=other, Minv=inverse, which="LA", v0=first, ncv=basis, maxiter=RESTARTS
+        )
+    except ArpackNoConvergence as end:
+        found = end.eigenvalues, end.eigenvectors
     return found
 
 
@@ -158,14 +184,6 @@ def _factors(structure: Structure, vectors: Array, steady: Matrix, softening: Ma
         energy += float(vector @ (steady @ vector))
         found.append(-energy / float(vector @ (softening @ vector)))
     return np.array(found)
-
-
-def _upright(mode: Array) -> Array:
-    """A mode or its opposite: that of which the largest part is positive, of displacements if there are any."""
-    part = np.abs(mode) * ([1.0, 1.0, 0.0][: mode.shape[1]] if np.abs(mode[:, :2]).max() > 0.5 else 1.0)
-    most = np.unravel_index(part.argmax(), mode.shape)
-    turned: Array = mode if mode[most] > 0.0 else -mode
-    return turned
 
 
 def _effective_length(model: Model, axial_force: Array) -> Array:

@@ -11,7 +11,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass, replace
 from functools import cached_property
-from typing import TYPE_CHECKING, TypeAlias, Union
+from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
@@ -20,6 +20,7 @@ from components.model import Model
 from components.rod import bends
 from components.table import flags
 from systems.islands import lowest_joined
+from systems.statics.assembly import DENSE, Assembly, Matrix, sparse_order, spread_by_ends
 from systems.statics.bending import Bending, Bent
 
 if TYPE_CHECKING:  # only large structures need it
@@ -28,10 +29,6 @@ if TYPE_CHECKING:  # only large structures need it
 Array = NDArray[np.float64]
 Flags = NDArray[np.bool_]
 Rows = NDArray[np.intp]
-Matrix: TypeAlias = Union[Array, "csc_matrix"]  # full up to DENSE unknowns, else sparse
-
-SYMMETRIC = {"SymmetricMode": True}  # pivots on the diagonal
-DENSE = 100  # unknowns up to which full matrices are faster
 
 TURNS_ONLY = 1e-9  # m/rad: a motion that shifts particles by less is one of rotations
 AT_LIMIT = 1e-10  # share of its strength within which a rod counts as yielding
@@ -50,6 +47,14 @@ def normalised(motion: Array) -> Array:
         size = np.abs(motion[:, 2]).max()
     scaled: Array = motion / size
     return scaled
+
+
+def upright(motion: Array) -> Array:
+    """A normalised motion (n, 2 or 3) or its opposite: that of which the largest part, if any a shift, is positive."""
+    shifts = np.abs(motion[:, :2]).max() > 0.5
+    part = np.abs(motion) * np.array([1.0, 1.0, 0.0 if shifts else 1.0])[: motion.shape[1]]
+    turned: Array = motion if motion.ravel()[part.argmax()] > 0.0 else -motion
+    return turned
 
 
 @dataclass(frozen=True)
@@ -187,13 +192,11 @@ class Structure:
         index = np.flatnonzero(self.unknown.ravel())
         if not self.sparse or len(index) <= DENSE:
             return index
-        from scipy.sparse import csc_matrix, identity
-        from scipy.sparse.linalg import splu
+        return index[sparse_order(self.ends, self.width, len(self.position), index)]
 
-        links = _by_ends(np.ones((len(self.ends), 2 * self.width)), self.ends, len(self.position))[:, index]
-        pattern = csc_matrix(links.T @ links + identity(len(index)))
-        order = splu(pattern, permc_spec="MMD_AT_PLUS_A", diag_pivot_thresh=0.0, options=SYMMETRIC).perm_c
-        return index[np.argsort(order)]
+    @cached_property
+    def _assembly(self) -> Assembly:
+        return Assembly(self.ends, self.unknown.shape, self.index, self.sparse and self.size > DENSE)
 
     @property
     def size(self) -> int:
@@ -457,10 +460,14 @@ class Structure:
         pull = (self.stiffness / self.rest_length * stretched)[:, None] * response.axis
         if self.bending is None:
             return self.scatter(pull)
-        moment, length = self.bending.moments(self.slope_rates(field, response)), response.length
-        return self._sheared(
-            response, pull, moment, moment.sum(axis=1) / np.where(length > 0.0, length, np.inf)
-        )
+        return self.held_kinks(self.slope_rates(field, response), pull)
+
+    def held_kinks(self, slopes: Array, pull: Array | None = None) -> Array:
+        """Forces (n, 3) that hold the particles against rods with small slopes (rods, 2) at their ends, and axial forces."""
+        assert self.bending is not None
+        response, moment = self.unmoved, self.bending.moments(slopes)
+        shear = moment.sum(axis=1) / np.where(response.length > 0.0, response.length, np.inf)
+        return self._sheared(response, np.zeros_like(response.axis) if pull is None else pull, moment, shear)
 
     def carried(self, response: Response) -> Array:
         """What the whole distributed forces would add to the particles' forces, besides halves of them on both ends."""
@@ -541,40 +548,7 @@ class Structure:
                 response.bent, along, response.axial_force, a, response.length, geometric
             ).reshape(-1, 2, 3, 2, 3)
             parts[:, :, :2, :, :2] += bars
-        return self._assembled(parts.ravel())
-
-    def _assembled(self, parts: Array) -> Matrix:
-        """Sum of the rods' matrices (rods, 2 ends × width, 2 ends × width), flattened."""
-        if not self.sparse or self.size <= DENSE:
-            kept, place = self._dense_pattern
-            full = np.bincount(place, parts[kept], self.size**2).astype(np.float64)
-            return full.reshape(self.size, self.size)
-        from scipy.sparse import csc_matrix
-
-        kept, slot, rows, starts = self._sparse_pattern
-        values = np.bincount(slot, parts[kept], len(rows))
-        return csc_matrix((values, rows, starts), shape=(self.size, self.size))
-
-    @cached_property
-    def _dense_pattern(self) -> tuple[Rows, Rows]:
-        """Those of the rods' entries that are between unknowns, and the place of each in the flat matrix."""
-        number = np.full(self.unknown.size, -1, dtype=np.intp)
-        number[self.index] = np.arange(self.size, dtype=np.intp)
-        each = 2 * self.width
-        own = number.reshape(-1, self.width)[self.ends].reshape(-1, each)
-        row = np.repeat(own, each, axis=1).ravel()
-        column = np.tile(own, (1, each)).ravel()
-        kept = np.flatnonzero((row >= 0) & (column >= 0))
-        return kept, column[kept] * self.size + row[kept]
-
-    @cached_property
-    def _sparse_pattern(self) -> tuple[Rows, Rows, NDArray[np.int32], NDArray[np.int32]]:
-        """The same for compressed columns: entries, the slot of each, and the slots' rows and starts."""
-        kept, place = self._dense_pattern
-        places, slot = np.unique(place, return_inverse=True)
-        counts = np.bincount(places // self.size, minlength=self.size)
-        starts = np.concatenate([[0], np.cumsum(counts)]).astype(np.int32)
-        return kept, slot, (places % self.size).astype(np.int32), starts
+        return self._assembly.matrix(parts.ravel())
 
     @property
     def deformations(self) -> int:
@@ -592,7 +566,7 @@ class Structure:
             by_slopes = self._slopes_by_ends(response)
             by_ends = np.concatenate([by_ends, by_slopes[rigid]])
             ends = np.concatenate([ends, np.repeat(self.ends, rigid.sum(axis=1), axis=0)])
-        return _by_ends(by_ends, ends, len(self.position))[:, self.index].tocsc()
+        return spread_by_ends(by_ends, ends, len(self.position))[:, self.index].tocsc()
 
     def elongations(self, response: Response, rows: Rows) -> Array:
         """The elongations of some rods from the unknowns, in full, (k, N)."""
@@ -621,21 +595,6 @@ class Structure:
         by_ends[:, :, :2], by_ends[:, :, 3:5] = left[:, None], -left[:, None]
         by_ends[:, 0, 2] = by_ends[:, 1, 5] = 1.0
         return by_ends
-
-
-def compatibility(ends: Rows, axis: Array, particles: int) -> csc_matrix:
-    """Elongations from the displacements of all particles, (rods, 2n)."""
-    return _by_ends(np.concatenate([-axis, axis], axis=1), ends, particles)
-
-
-def _by_ends(entries: Array, ends: Rows, particles: int) -> csc_matrix:
-    """A matrix (rows, width × n) of which each row has its entries (rows, 2 × width) at the coordinates of two particles."""
-    from scipy.sparse import csc_matrix
-
-    width = entries.shape[1] // 2
-    columns = width * np.repeat(ends, width, axis=1) + np.tile(np.arange(width), 2)
-    rows = np.repeat(np.arange(len(ends)), 2 * width)
-    return csc_matrix((entries.ravel(), (rows, columns.ravel())), (len(ends), width * particles))
 
 
 def _held_by_rods(particles: int, ends: Rows, bending: Bending | None) -> Flags:

@@ -59,10 +59,8 @@ def divide_named(model: Model, rows: Rows, parts: Rows) -> str:
     into = [f"{cut(str(names[row]))} into {parts[row]}" for row in rows.tolist()]
     more = f" and {len(into) - NAMED} more" if len(into) > NAMED else ""
     what = f"{capitalised(rod_names(model, rows))} {'bends within itself' if len(rows) == 1 else 'bend within themselves'}"
-    return (
-        f"{what}: compression bends a rod more than one can tell. For an error below 1 % divide"
-        f" {', '.join(into[:NAMED])}{more}."
-    )
+    into_parts = f"Divide {', '.join(into[:NAMED])}{more}, by the menu of a rod or session.divide."
+    return f"{what}, more than one rod can follow. {into_parts}"
 
 
 def describe_motion(model: Model, modes: Array) -> str:

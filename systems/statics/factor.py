@@ -7,7 +7,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from systems.statics.equations import ROUND_OFF, SYMMETRIC, Array, Flags, Matrix, Response, Structure
+from systems.statics.assembly import SYMMETRIC, Matrix
+from systems.statics.equations import ROUND_OFF, Array, Flags, Response, Structure
 from systems.statics.lapack import lapack
 
 if TYPE_CHECKING:  # only large structures need it
@@ -16,6 +17,7 @@ if TYPE_CHECKING:  # only large structures need it
 NO_STIFFNESS = 1e-13  # of the rods' stiffness at the same particle: round-off
 SOFT = 1e-12  # of the same: a motion that is resisted less counts as not resisted
 INVERSE_ITERATIONS = 30
+NEAREST_ITERATIONS = 12  # near a singular matrix each gains many digits
 
 
 class Factor:
@@ -72,11 +74,16 @@ class Factor:
 
 def regular(matrix: Matrix, weight: Array, share: float = NO_STIFFNESS) -> Factor:
     """Factor of K + share × weight: definite if every motion is resisted by more than −share."""
+    return Factor(shifted(matrix, weight, share))
+
+
+def shifted(matrix: Matrix, weight: Array, share: float = NO_STIFFNESS) -> Matrix:
+    """K + share × weight."""
     if isinstance(matrix, np.ndarray):
-        return Factor(matrix + np.diag(share * weight))
-    shifted = matrix.copy()
-    shifted.setdiag(matrix.diagonal() + share * weight)
-    return Factor(shifted)
+        return matrix + np.diag(share * weight)
+    found = matrix.copy()
+    found.setdiag(matrix.diagonal() + share * weight)
+    return found
 
 
 def is_stable(structure: Structure, response: Response, soft: Flags | None = None) -> bool:
@@ -105,6 +112,15 @@ def softest(structure: Structure, response: Response, soft: Flags | None = None)
         if abs(value - previous) <= 1e-6 * abs(value + share):
             break
     return value, mode
+
+
+def nearest_mode(matrix: Matrix, weight: Array) -> Array:
+    """The mode (N,) that K resists least, with or against it, relative to W, by inverse iteration."""
+    factor, mode = regular(matrix, weight), pseudo_random(len(weight), 1)[:, 0]
+    for _ in range(NEAREST_ITERATIONS):
+        mode = factor.solve(weight * mode)
+        mode = mode / np.sqrt(float(weight @ mode**2))
+    return mode
 
 
 def soft_modes(matrix: Matrix, weight: Array, factor: Factor | None = None, most: int = 8) -> Array:

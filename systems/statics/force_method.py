@@ -18,7 +18,8 @@ from components.numeric_range import incomputable
 from components.particle import Particle
 from components.rod import Rod
 from components.suggestions import missing
-from systems.statics.equations import Array, Structure, compatibility, normalised
+from systems.statics.assembly import compatibility
+from systems.statics.equations import Array, Structure, normalised
 from systems.statics.explain import cables_named, describe_motion
 from systems.statics.external import external_forces
 from systems.statics.factor import Factor, soft_count, soft_modes

@@ -10,7 +10,9 @@ from numpy.typing import NDArray
 
 from components.model import Model
 from components.suggestions import missing
+from systems.statics.critical import BIFURCATION, branch_off, passed
 from systems.statics.equations import Array, Structure
+from systems.statics.events import Event
 from systems.statics.external import External, external_forces
 from systems.statics.follow import Path, Point, Step, Tangent
 from systems.statics.settle import settle
@@ -20,6 +22,7 @@ DETAIL = 0.02  # of a rod's length between points; smaller: a smoother curve
 FIRST = 1e-3  # of the same, for the first increment
 LANDED = 1e-13  # of the goal, or of the last increment: near enough
 LANDINGS = 60  # trials
+AXES = ("x", "y", "rotation")
 
 
 @dataclass(frozen=True)
@@ -29,7 +32,8 @@ class Curve:
     Where members bend: rotation (k, n) in rad, bending_moment (k, rods, 2) in kN·m; else zeros.
 
     stable: (k,), False where the structure would snap or collapse under a dead load. complete: False if it
-    has as many points as were asked for, or its path was lost, before the goal.
+    has as many points as were asked for, or its path was lost, before the goal. events: limit points and bifurcations on
+    the way, in order.
     """
 
     load_factor: Array
@@ -39,18 +43,25 @@ class Curve:
     bending_moment: Array
     stable: NDArray[np.bool_]
     complete: bool
+    events: tuple[Event, ...] = ()
 
 
 @dataclass(frozen=True)
 class Goal:
-    """The end of a curve: a load factor, or a displacement (m) of a (particle row, axis), reached for the first time."""
+    """The end of a curve: a load factor, or a displacement of a (particle row, axis), reached for the first time.
+
+    In m; axis 2: a rotation in rad.
+    """
 
     value: float
     displaced: tuple[int, int] | None = None
 
 
 def goal_of(model: Model, factor: float = 1.0, until: str | None = None) -> Goal:
-    """The end of a curve: a load factor, or a displacement in m such as "B.y=-2.5". Raises ValueError."""
+    """The end of a curve: a load factor, a displacement such as "B.y=-2.5" (m), or a rotation "B.rotation=1" (rad).
+
+    Raises ValueError.
+    """
     if until is None:
         if not math.isfinite(factor):
             raise ValueError(f"The load factor is {factor}; give a finite number.")
@@ -61,24 +72,30 @@ def goal_of(model: Model, factor: float = 1.0, until: str | None = None) -> Goal
         value = float(amount)
     except ValueError:
         value = math.nan
-    if axis not in ("x", "y") or not math.isfinite(value):
-        raise ValueError(f"'{until}' is no displacement; write it like B.y=-2.5, in m.")
+    if axis not in AXES or not math.isfinite(value):
+        raise ValueError(
+            f"'{until}' is no displacement; write it like B.y=-2.5, in m, or B.rotation=1, in rad."
+        )
     if name not in model.particles:
         raise ValueError(missing("particles", name, model.particles.names))
-    particle, direction = model.particles[name], "xy".index(axis)
-    if particle.fixed[direction]:
+    particle, direction = model.particles[name], AXES.index(axis)
+    if axis == "rotation":
+        if model.particles.turning[particle.row] == 0.0:
+            raise ValueError(f"{name} does not turn: it is clamped, or no rod is joined rigidly there.")
+    elif particle.fixed[direction]:
         raise ValueError(
             f"{name} is constrained along {axis}, so it cannot move there; choose a free direction."
         )
     return Goal(value, (particle.row, direction))
 
 
-def load_path(model: Model, goal: Goal, *, points: int = 500, detail: float = DETAIL) -> Curve:
+def load_path(model: Model, goal: Goal, *, points: int = 500, detail: float = DETAIL, branch: int = 0) -> Curve:
     """The curve from the load factor 0 on, by arc-length continuation with exact geometry and yielding.
 
     The factor first grows, or falls below 0 if that leads towards the goal. The curve ends exactly at the goal, or
     after so many points, and goes straight on through bifurcations. Accelerations act in full from the start.
-    detail: of a rod's length, the largest change between points. Raises ValueError without a force or load to
+    detail: of a rod's length, the largest change between points. branch: number of the bifurcation at which it goes on
+    along the mode instead, or, if negative, against it. Raises ValueError without a force or load to
     scale, or without an equilibrium at the factor 0.
     """
     unloaded = settle(model, (0.0,)).final
@@ -89,7 +106,7 @@ def load_path(model: Model, goal: Goal, *, points: int = 500, detail: float = DE
     if not structure.gather(loaded).any():
         raise ValueError("No force or load acts on a free direction; apply one that the factor can scale.")
     search = _Search.towards(goal, structure, external, unloaded)
-    found, complete = search.run(points, detail)
+    found, complete, events = search.run(model, points, detail, branch)
     return Curve(
         load_factor=search.sign * np.array([point.t for point, _ in found]),
         displacement=np.array([point.displacement[:, :2] for point, _ in found]),
@@ -98,6 +115,7 @@ def load_path(model: Model, goal: Goal, *, points: int = 500, detail: float = DE
         bending_moment=np.array([structure.end_moments(point.response) * [-1.0, 1.0] for point, _ in found]),
         stable=np.array([tangent.stable for _, tangent in found]),
         complete=complete,
+        events=tuple(events),
     )
 
 
@@ -132,26 +150,39 @@ class _Search:
         here = self.sign * point.t if displaced is None else float(point.displacement[displaced])
         return here - self.goal.value
 
-    def run(self, points: int, detail: float) -> tuple[list[tuple[Point, Tangent]], bool]:
-        """Points and tangents up to the goal; and whether it was reached."""
+    def run(
+        self, model: Model, points: int, detail: float, branch: int
+    ) -> tuple[list[tuple[Point, Tangent]], bool, list[Event]]:
+        """Points and tangents up to the goal; whether it was reached; and what happened on the way."""
         path, point = self.path, self.start
         tangent = path.tangent(point)
         path.reference = path.size(tangent.rate)
         found, increment, side = [(point, tangent)], FIRST, self.beyond(point)
+        events: list[Event] = []
+        bifurcations = 0
         while side != 0.0 and len(found) < points:
             largest = detail / path.structure.move(tangent.rate, point.response) * path.stretch(tangent)
             step = path.advance(point, tangent, min(largest, increment * largest))
             if step is None:
-                return found, False
+                return found, False, events
             reached = side * self.beyond(step.point) <= 0.0
             if reached:
                 step = self._landed(found[-1], step)
+            for critical in passed(path, point, tangent, step):
+                bifurcations += critical.kind == BIFURCATION
+                events.append(critical.event(model, path, self.sign, bifurcations))
+                if critical.kind == BIFURCATION and bifurcations == abs(branch):
+                    found.append((critical.point, critical.tangent))
+                    switched = branch_off(path, critical, math.copysign(1.0, branch), detail)
+                    if switched is None:
+                        return found, False, events
+                    step, reached = switched, side * self.beyond(switched.point) <= 0.0
             point, tangent = step.point, step.tangent
             found.append((point, tangent))
             if reached:
-                return found, True
+                return found, True, events
             increment = min(1.0, 2.0 * increment)
-        return found, side == 0.0
+        return found, side == 0.0, events
 
     def _landed(self, last: tuple[Point, Tangent], step: Step) -> Step:
         """The last increment shortened so that it ends at the goal, by the secant method with bisection."""

@@ -282,8 +282,11 @@ class _Settling:
         return structure.largest(unbalanced) / self.largest if self.largest > 0.0 else 0.0
 
     def _note_slender(self, factor: float) -> None:
-        """Report, once, the rods in which compression bends the axis more than one cubic follows."""
-        parts = needed_parts(self.model, self.point.response.axial_force[: self.model.rods.count])
+        """Report, once, the rods that bend more than one cubic follows."""
+        response, rods = self.point.response, slice(self.model.rods.count)
+        if response.bent is None:
+            return
+        parts = needed_parts(self.model, response.axial_force[rods], response.bent.slopes[rods])
         rows = np.flatnonzero((parts > 1) & ~self.slender)
         if len(rows):
             self.slender[rows] = True
@@ -383,8 +386,11 @@ class _SettlingWithDiscs(_Settling):
             self.events.append(first_order_mechanism(self.model, self.factor, fields, slack, *places))
 
     def _note_slender(self, factor: float) -> None:
-        """Report, once, the rods in which compression bends the axis more than one cubic follows."""
-        parts = needed_parts(self.model, self.point.response.axial_force[: self.model.rods.count])
+        """Report, once, the rods that bend more than one cubic follows."""
+        response, rods = self.point.response, slice(self.model.rods.count)
+        if response.bent is None:
+            return
+        parts = needed_parts(self.model, response.axial_force[rods], response.bent.slopes[rods])
         rows = np.flatnonzero((parts > 1) & ~self.slender)
         if len(rows):
             self.slender[rows] = True

@@ -237,8 +237,20 @@ def influence_on_rod(model: Model, rod: int) -> Array:
     return _deflection(model, structure, structure.scatter(pull))
 
 
+def influence_on_ends(model: Model, rod: int, slopes: tuple[float, float]) -> Array:
+    """The work of the moments on both ends of a rod on these slopes, per unit force on each particle, (n, 3).
+
+    Müller-Breslau: the deflection that such kinks cause. With (−1, 0) the bending moment at its start, with (0, 1) that at
+    its end, with (1, 1)/L its shear. Raises NoEquilibrium.
+    """
+    structure = Structure.of(model, "linear")
+    kinks = np.zeros((len(structure.ends), 2))
+    kinks[rod] = slopes
+    return _deflection(model, structure, structure.held_kinks(kinks))
+
+
 def influence_on_reaction(model: Model, particle: int, axis: int) -> Array:
-    """Reaction of a constrained direction (row, 0 or 1) per unit force on each particle along x and y, (n, 2)."""
+    """Reaction of a constrained direction (row, 0 or 1; of a clamp 2) per unit force on each particle, (n, …)."""
     structure = Structure.of(model, "linear")
     if not structure.fixed[particle, axis]:
         raise ValueError(f"{model.particles[particle].name} is not constrained along {'xy'[axis]}.")
@@ -247,7 +259,7 @@ def influence_on_reaction(model: Model, particle: int, axis: int) -> Array:
 
 
 def influence_on_displacement(model: Model, particle: int, axis: int) -> Array:
-    """Displacement (m/kN) of a particle along an axis per unit force on each particle, (n, 2).
+    """Displacement (m/kN) of a particle along an axis, or its rotation (2, rad/kN), per unit force on each particle, (n, …).
 
     Maxwell: the deflection under a unit load there, the unit-load method's virtual state.
     """

@@ -86,6 +86,27 @@ def ceilings(steps: list[Row]) -> list[Row]:
     return rows
 
 
+def bending(*, quick: bool) -> list[Row]:
+    """Nanoseconds of one core per rod and step: undamped trusses, and the same rods as members that bend, in turns."""
+    stiff = KINDS["elastic"] | {"bending_stiffness": 100.0}
+    rows = []
+    for size in (0, 10_000) if quick else (0, 100, 1_000, 10_000, 100_000):
+        pair = [lattice(size, **rods) if size else truss(**rods) for rods in (KINDS["elastic"], stiff)]
+        rods = pair[0].rods.count
+        steps = max(20, 2_000_000 // rods)
+        pinned, bent = best_of_each(*(program_runner(model, steps) for model in pair), rounds=15)
+        rows.append(
+            {
+                "rods": rods,
+                "truss_ns_per_rod": pinned / steps / rods * 1e9,
+                "bending_ns_per_rod": bent / steps / rods * 1e9,
+                "bending_us_per_step": bent / steps * 1e6,
+                "ratio": bent / pinned,
+            }
+        )
+    return rows
+
+
 def _step_cost(kind: str, model: Model) -> Row:
     rods = model.rods.count
     steps = max(20, 300_000 // rods)
@@ -284,6 +305,7 @@ def report(*, quick: bool) -> dict[str, list[Row]]:
         "steps": steps,
         "scaling": scaling(steps),
         "ceiling": ceilings(steps),
+        "bending": bending(quick=quick),
         "cores": sharing(quick=quick),
         "skipping": skipping.report(),
         "besides_steps": besides_steps(),

@@ -19,7 +19,11 @@ STIFF = [
     "isostatic_10x",
     "hyperstatic_10x",
     "braced_portal",
+    "portal",
+    "three_hinged_arch",
     "tower",
+    "two_storey_frame",
+    "vierendeel",
     "warren_bridge",
 ]
 
@@ -56,8 +60,10 @@ def test_large_motions_loose_particles_and_collapses_are_true_to_scale(name: str
     session = Session.open(name)
     session.settings.displacement_scale = None
     session.exaggerate()
-    yielding = {"three_bar_plastic": 100.0, "hyperstatic_yield": 20.0, "overshoot_yield": 5.0}
-    assert session.settings.displacement_scale == yielding.get(name, 1.0)
+    # Before it buckles or snaps, a frame moves little; its file says how it is drawn.
+    small = {"three_bar_plastic": 100.0, "hyperstatic_yield": 20.0, "overshoot_yield": 5.0}
+    small |= {"eulers_columns": 100.0, "williams_toggle": 20.0, "gerber_beam": 50.0, "sway_resonance": 100.0}
+    assert session.settings.displacement_scale == small.get(name, 1.0)
 
 
 def test_an_old_file_keeps_its_factor_and_a_new_model_has_none() -> None:

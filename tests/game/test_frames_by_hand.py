@@ -143,6 +143,19 @@ def test_free_bodies_show_shears_and_moments_with_sums() -> None:
     assert sums["ΣM about its start"].endswith("= 0")
 
 
+def test_forces_apart_are_those_of_the_true_shape() -> None:
+    """However much larger displacements are drawn."""
+    session = Session.open(portal_at_rest())
+    session.resize(1280, 800)
+    session.settings.displacement_scale = 40.0
+    session.view.fit(session.model)
+    session.get_ready()
+    session.view.free_bodies = True
+    session.update_view()
+    texts = compose(session.model, session.view, load_theme("light")).texts
+    assert {"1.369 kN", "8.889 kN", "29.85 kN", "42.15 kN"} <= set(texts)
+
+
 def test_pictures_of_one_quantity(tmp_path: Path) -> None:
     import json
 

@@ -353,3 +353,29 @@ def test_a_new_slider_shows_all_sliders_where_they_were_hidden() -> None:
     session.select(session.rods["AB"])
     session.press("ctrl+l")
     assert "AB: stiffness" in [place.control.title for place in session.view.slider_places]
+
+
+def test_what_was_settled_and_edited_is_said_to_be_out_of_equilibrium() -> None:
+    """A slider of a stiffness changes forces at once; those of a settled structure are no answer then."""
+    session = Session.open("isostatic")
+    session.rods["AB"].stiffness *= 1.1
+    session.update_view()
+    assert session.view.status.notice == "", "it was neither run nor settled"
+    session.settle()
+    session.act("toggle diagrams")
+    session.update_view()
+    assert "equilibrium." in session.view.status.notice
+    with session.model.transaction("stiffer"):
+        session.rods["AB"].stiffness *= 2.0
+    session.notice = ""
+    session.update_view()
+    assert session.view.status.notice == "Edited: no longer in equilibrium. E settles it again."
+    session.undo()
+    session.notice = ""
+    session.update_view()
+    assert session.view.status.notice == ""
+    session.redo()
+    session.settle()
+    session.notice = ""
+    session.update_view()
+    assert session.view.status.notice == ""

@@ -20,6 +20,7 @@ DIGITS = 5  # significant; pictures are small
 STILL = 1e-6  # of the fastest: no motion that is to be seen
 # Simulated time (s); the others are settled.
 MOMENTS = {
+    "ball_on_frame": 1.13,
     "ball_on_truss": 0.3,
     "billiards_break": 0.9,
     "collision_i": 0.0,
@@ -28,6 +29,7 @@ MOMENTS = {
     "collision_iv": 0.0,
     "collision_v": 0.0,
     "collision_vi": 0.0,
+    "flexible_pendulum": 0.6,
     "galperin_pi": 0.0,
     "hanging_net": 1.0,
     "hard_disc_gas": 1.0,
@@ -36,6 +38,7 @@ MOMENTS = {
     "pendulum": 0.25,
     "pile": 1.5,
     "staircase": 0.6,
+    "sway_resonance": 4.3,
 }
 
 

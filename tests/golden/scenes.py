@@ -278,7 +278,6 @@ SCENES: dict[str, Scene] = {
     "menu-of-canvas": _menu_of_canvas,
 }
 ALONE_IN_LAYOUT = {
-    "frame-shears",
     "frame-free-bodies",
     "notice",
     "properties-of-all",
@@ -290,7 +289,6 @@ IN_OTHER_SIZES = (
     ("usual", "drawing-a-wall"),
     ("usual", "free-bodies"),
     ("usual", "frame-free-bodies"),
-    ("usual", "frame-shears"),
     ("large", "simulation-at-rest"),
     ("large", "properties"),
     ("large", "force-method"),

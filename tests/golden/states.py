@@ -19,6 +19,33 @@ LONG_NAME = "a footbridge of the second term, with its handrail"
 SENTENCE = "Rod BC of the upper chord yields in compression at 96.3 % of the load."
 
 
+MEMBER = {
+    "format": "pinjoint model",
+    "version": 1,
+    "particles": [
+        {"name": "A", "position": [0, 0], "fixed": [True, True], "fixed_rotation": True},
+        {"name": "B", "position": [4, 0]},
+    ],
+    "rods": [{"name": "AB", "between": ["A", "B"], "section": "IPE 200", "distributed_force": [0, -5]}],
+}
+
+
+def _hinging(window: Window) -> Session:
+    """The tool that hinges, over an end."""
+    session = opened(window, MEMBER)
+    session.view.tool = "hinge"
+    x, y = session.point(0.0, 0.0)
+    session.view.pointer = x + 16.0 * window.ratio, y
+    session.frame(0.0)
+    return session
+
+
+def _menu_of_member(window: Window) -> Session:
+    session = opened(window, MEMBER)
+    session.press("right click", session.point(1.0, 0.0))
+    return session
+
+
 def _saved(*names: str) -> None:
     """The person has saved models with these names."""
     models_folder().mkdir(parents=True, exist_ok=True)
@@ -238,6 +265,10 @@ STATES: dict[str, Scene] = {
     ),
     "properties-refused-below": _properties("isostatic", "mass", select="particles.A", typed="-5"),
     "properties-scrolled": _scrolled,
+    "properties-member": _properties(MEMBER, "section", select="rods.AB", typed="IPE 205"),
+    "properties-clamped": _properties(MEMBER, "applied moment", select="particles.A"),
+    "hinging": _hinging,
+    "menu-member": _menu_of_member,
     "properties-grid": lambda window: pressed(window, "g", "return"),
     "properties-wall": _properties("staircase", select="walls.floor"),
     "notice-long": _noticed(" ".join([SENTENCE] * 6)),

@@ -7,8 +7,9 @@ from collections.abc import Callable, Iterator
 import numpy as np
 import pytest
 
-from components.bent import QUANTITIES, distributed_shares
+from components.bent import FLAT, QUANTITIES, distributed_shares
 from components.model import Model
+from components.rod import bends
 from components.written import DIGITS, given, number
 from game import Session
 from game.documents import models
@@ -77,7 +78,8 @@ def misplaced(picture: Picture, model: Model) -> Iterator[str]:
             if not _says(text, own[0], model, row if table == "particles" else int(model.loads.on[row])):
                 yield f"{text.text} of {model.tables[table].names[row]} stands at another arrow"
         if line is not None:
-            yield from _astray(text, line, own, parts)
+            # Curves are drawn flat within so many pixels of where they are.
+            yield from _astray(text, line, own, parts, FLAT if bends(model) else 0.1)
             continue
         to_any = min(distance(box, part) for part in own)
         to_line = min((distance(box, part) for part in own if part.kind == "line"), default=to_any)
@@ -104,10 +106,10 @@ def leader(text: Text, picture: Picture) -> Points | None:
     return None
 
 
-def _astray(text: Text, line: Points, own: list[Part], parts: list[Part]) -> Iterator[str]:
+def _astray(text: Text, line: Points, own: list[Part], parts: list[Part], within: float) -> Iterator[str]:
     """What is wrong with a value that stands away: on something, or its line leads elsewhere, or across others."""
     end = (*line[1], *line[1])
-    if min(distance(end, part) for part in own) > 0.1:
+    if min(distance(end, part) for part in own) > within:
         yield f"the line from {text.text} ends elsewhere"
     for part, _ in near(text_box(text, text.size), parts, 0.0):
         yield f"{text.text} stands on the {part.kind} of {part.owner}"

@@ -18,6 +18,7 @@ from systems.render.marks import Strokes, Text
 from systems.render.picture import compose
 from systems.render.plots import draw_plot, round_ticks
 from systems.render.theme import load_theme
+from tests.systems.render.frame_models import portal_at_rest
 
 LIGHT = load_theme("light")
 BOX = (0.0, 0.0, 300.0, 150.0)
@@ -184,3 +185,16 @@ def test_a_plot_of_nothing_or_of_one_value_is_drawn() -> None:
     assert draw_plot(Plot("t", "u", (("u", empty, empty),)), BOX, LIGHT, 1.0, (100.0, 50.0))
     one = np.array([3.0])
     assert draw_plot(Plot("t", "u", (("u", one, one),)), BOX, LIGHT, 1.0, (100.0, 50.0))
+
+
+def test_members_offer_their_moments_and_joints_their_rotation() -> None:
+    session = Session.open(portal_at_rest())
+    session.get_ready()
+    session.select(session.rods["BC"])
+    session.press("o")
+    assert [read.title for read in probes_of(session).all[0].read] == ["bending moment start of rod BC (kN·m)"]
+    assert probes_of(session).all[0].table[-1, 2] == pytest.approx(1.359, rel=1e-3)
+    session.select(session.particles["B"])
+    for _ in range(5):
+        session.press("o")
+    assert "rotation of particle B" in session.notice

@@ -88,6 +88,7 @@ class Hostile:
     def __init__(self, seed: int) -> None:
         self.random = random.Random(seed)
         self.wild = self.random.choice((0.0, 0.03, 0.15, 0.5))  # share of the numbers that are extreme
+        self.bends = self.random.random() < 0.4
 
     def number(self, usual: float, *, above: bool = False) -> float:
         """A number near a usual one, or an extreme one."""
@@ -136,7 +137,33 @@ class Hostile:
             acceleration=self.pair(1.0, -9.81),
             mass=self.number(2.0, above=True),
             radius=self.number(0.2, above=True),
+            **(self._turning() if self.bends else {}),
         )
+
+    def _turning(self) -> dict[str, Any]:
+        """What particles have where rods bend."""
+        held = self.random.random() < 0.3
+        return {
+            "fixed_rotation": held,
+            "rotation": self.number(0.01),
+            "angular_velocity": 0.0 if held else self.number(1.0),
+            "moment": self.number(2.0),
+            "inertia": self.number(0.1, above=True),
+        }
+
+    def _bending(self) -> dict[str, Any]:
+        """What rods have that bend."""
+        return {
+            "bending_stiffness": abs(self.number(1e3)),
+            "second_moment": self.number(1e-5, above=True),
+            "youngs_modulus": self.number(2e8, above=True),
+            "hinged": [self.random.random() < 0.3, self.random.random() < 0.3],
+            "distributed_force": self.pair(1.0, -5.0),
+            "temperature_gradient": self.number(20.0),
+            "bending_damping": abs(self.number(0.1)),
+            "section": self.random.choice(4 * ("IPE 200", "shs 100x5", "rectangle 30×50") + ("HEX 1",)),
+            "material": self.random.choice(6 * ("S235", "timber C24") + ("cheese",)),
+        }
 
     def _rod(self, first: str, second: str) -> dict[str, Any]:
         return {"name": f"{first}{second}", "between": [first, second]} | self.some(
@@ -150,6 +177,7 @@ class Hostile:
             thermal_expansion=abs(self.number(1e-5)),
             tension_only=True,
             plastic_strain=self.number(1e-3),
+            **(self._bending() if self.bends else {}),
         )
 
     def _load(self, on: str) -> dict[str, Any]:
@@ -157,7 +185,8 @@ class Hostile:
         for key, value in history.items():
             if isinstance(value, float):
                 history[key] = self.number(value)
-        return {"on": on, "force": self.pair(5.0, 5.0), "history": history}
+        moment = {"moment": self.number(1.0)} if self.bends else {}
+        return {"on": on, "force": self.pair(5.0, 5.0), "history": history} | moment
 
     def _settings(self) -> dict[str, Any]:
         return self.some(

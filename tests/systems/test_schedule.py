@@ -158,6 +158,9 @@ YIELDING = (
     "plasticity.first_yield",
 )
 RAMP, DRAG = ("loads.ramp",), ("physics.drag",)
+BENDING = (*DAMPED, "physics.bending", "physics.bending_damping")
+TURNING_DRAG = (*DRAG, "physics.turning_drag")
+CABLES = ("physics.elasticity", "physics.slackness", "physics.axial_damping_of_cables")
 
 PLANS = {
     "isostatic": YIELDING,
@@ -174,7 +177,7 @@ PLANS = {
     "hanging_net": DAMPED + DRAG,
     "tower": YIELDING + RAMP,
     "warren_bridge": YIELDING + RAMP,
-    "braced_portal": ("physics.elasticity", "physics.slackness", "physics.axial_damping_of_cables", *RAMP),
+    "braced_portal": CABLES + RAMP,
     "ball_on_truss": DAMPED,
     "billiards_break": (),
     "galperin_pi": (),
@@ -182,6 +185,18 @@ PLANS = {
     "newtons_cradle": (),
     "pile": (),
     "staircase": (),
+    "ball_on_frame": (*CABLES, "physics.bending", "physics.bending_damping"),
+    "eulers_columns": BENDING + TURNING_DRAG + RAMP,
+    "flexible_pendulum": (*ELASTIC, "physics.bending"),
+    "gerber_beam": BENDING,
+    "lees_frame": BENDING + TURNING_DRAG + RAMP,
+    "portal": BENDING + RAMP,
+    "rolled_cantilever": BENDING + TURNING_DRAG + RAMP,
+    "sway_resonance": (*BENDING, "loads.sine"),
+    "three_hinged_arch": BENDING,
+    "two_storey_frame": BENDING + RAMP,
+    "vierendeel": BENDING,
+    "williams_toggle": BENDING + TURNING_DRAG + RAMP,
 } | {f"collision_{number}": () for number in ("i", "ii", "iii", "iv", "v", "vi")}
 
 

@@ -43,8 +43,13 @@ def needed(model: dict[str, Any]) -> set[str]:
         systems.add("physics.slackness")
     if any(rod.get("damping", Rod.damping.default) for rod in rods):
         systems.add("physics.axial_damping_of_cables" if cables else "physics.axial_damping")
+    bends = any(rod.get("bending_stiffness") and rod.get("hinged") != [True, True] for rod in rods)
+    if bends:
+        systems.add("physics.bending")
+    if bends and any(rod.get("damping", Rod.damping.default) for rod in rods):
+        systems.add("physics.bending_damping")
     if model.get("environment", {}).get("drag", Environment.drag.default):
-        systems.add("physics.drag")
+        systems |= {"physics.drag", "physics.turning_drag"} if bends else {"physics.drag"}
     if model.get("settings", {}).get("collisions", True) and can_meet(model):
         systems.add("collision.discs")
     kinds = {load.get("history", {"kind": "constant"})["kind"] for load in model.get("loads", [])}

@@ -10,7 +10,7 @@ from components.field import FieldError
 from components.model import Model
 from game import Session
 from game.documents.document import document, parse
-from game.documents.sections import ModelError
+from game.documents.format import ModelError
 from game.paths import PathError, apply_override, locate_one
 
 EI, EA, LENGTH, DENSITY = 10.0, 2e4, 2.0, 6.15
@@ -94,7 +94,7 @@ def test_files_keep_every_fact_and_write_no_defaults() -> None:
     moved = {"rotation": 7.5, "angular_velocity": -2.0, "moment": 4.0, "inertia": 5.0}
     assert saved["particles"][1] | moved == saved["particles"][1]
     assert document(parse(saved)) == saved
-    plain = document(rod(bending_stiffness=0.0))
+    plain = document(rod(bending_stiffness=None))
     assert set(plain["rods"][0]) == {"name", "between", "stiffness"}
     assert set(plain["particles"][1]) == {"name", "position"}
 

@@ -124,6 +124,23 @@ def test_pieces_are_flat_and_follow_the_axis() -> None:
     assert scale * distance.max() <= FLAT
 
 
+def test_strongly_bent_rods_leave_joints_in_the_right_direction() -> None:
+    """A quarter of a circle: upright tangents at both ends, and a middle on the circle within 2 %."""
+    session = Session.open(FRAMES["cantilever"]())
+    turn, chord = 0.5 * np.pi, 4.0
+    session.model.writable("particles.rotation")[1] = turn
+    session.model.writable("particles.displacement")[1] = chord * np.array(
+        [np.cos(turn / 2) - 1.0, np.sin(turn / 2)]
+    )
+    found = axes(session.model, ONE)
+    start, end = found.tangents(np.array([0.0, 1.0]))[0]
+    assert np.arctan2(start[1], start[0]) == pytest.approx(0.0, abs=1e-9)
+    assert np.arctan2(end[1], end[0]) == pytest.approx(turn, abs=1e-9)
+    radius = chord / (2.0 * np.sin(turn / 2.0))
+    middle = found.points(np.array([0.5]))[0, 0] - np.array([0.0, radius])
+    assert np.hypot(*middle) == pytest.approx(radius, rel=0.02)
+
+
 def test_what_does_not_look_bent_has_no_pieces() -> None:
     assert curved_lines(Session.open("isostatic").model, 1e-9) is None
     assert len(middles(Session.open("isostatic").model)) == 0

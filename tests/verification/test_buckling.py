@@ -323,3 +323,39 @@ def test_the_command_says_why_there_is_no_factor(capsys: pytest.CaptureFixture[s
     assert "No force or load acts on the rods" in capsys.readouterr().out
     assert main(["buckling", "pendulum"]) == 1
     assert "Mechanism: the load moves bob" in capsys.readouterr().err
+
+
+def test_few_modes_of_many_unknowns_are_found() -> None:
+    """A hanging net of bars with one that is pushed: beside few critical factors, nearly all eigenvalues are 0."""
+    side = 9
+    particles: list[dict[str, Any]] = [
+        {
+            "name": f"{i}.{j}",
+            "position": [i, j],
+            **(PINNED if j == side - 1 else {"force": [0.0, -1.0]}),
+        }
+        for i in range(side)
+        for j in range(side)
+    ]
+    steps = ((1, 0), (0, 1), (1, 1))
+    rods = [
+        {"name": f"{i}.{j} {a}{b}", "between": [f"{i}.{j}", f"{i + a}.{j + b}"]}
+        for i in range(side)
+        for j in range(side)
+        for a, b in steps
+        if i + a < side and j + b < side
+    ]
+    pulled = buckling(parse(model(particles, rods)))
+    assert pulled.message.startswith("Nothing is compressed")
+    particles.append({"name": "Q", "position": [-2.0, side - 1.0], **PINNED})
+    rods.append({"name": "QP", "between": ["Q", f"0.{side - 2}"]})
+    made = parse(model(particles, rods))
+    found = buckling(made, count=3)
+    assert found.factors[0] == pytest.approx(textbook(made), rel=1e-6)
+
+
+@pytest.mark.parametrize("stiffness", [1e6, 1e12])
+def test_slender_columns_keep_their_digits(stiffness: float) -> None:
+    """Matrices of many short rods have lost them; the energy of deformations has not."""
+    found = buckling(parse(column(100, CLAMPED, HEADS["free"], stiffness=stiffness)), count=1)
+    assert found.factors[0] / ((math.pi / 2 / LENGTH) ** 2 * EI) - 1.0 == pytest.approx(8.4e-11, rel=0.2)

@@ -96,7 +96,7 @@ def test_an_unknown_whose_release_makes_a_mechanism_is_refused_with_the_motion()
 @pytest.mark.parametrize(
     ("name", "words"),
     [
-        ("A", r"say which constraint, such as A\.x or A\.y"),
+        ("A", r"say which of its supports, such as A\.x or A\.y"),
         ("A.x", "A is free along x"),
         ("ACC", "did you mean 'AC'"),
     ],

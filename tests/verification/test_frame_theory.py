@@ -9,10 +9,15 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from components.model import Model
+from game.commands.reports.verify import influence
 from game.documents.models import parse
 from systems.statics.counting import counted
+from systems.statics.events import NoEquilibrium
+from systems.statics.force_method import ForceMethodError
+from systems.statics.settle import settle
 from systems.statics.state import StaticState
-from systems.statics.theory import indeterminacy, linear
+from systems.statics.theory import indeterminacy, linear, mechanisms, self_stress
+from systems.statics.vibration import vibrations
 from tests.reference import frame_theory
 from tests.reference.models import model
 
@@ -234,3 +239,118 @@ def test_a_warm_side_bends_what_is_free_and_stresses_what_is_held() -> None:
     other = held("B", length, fixed_rotation=True)
     _, found = answered([clamp, other], [beam("AB", temperature_gradient=gradient)])
     assert found.diagrams["bending_moment"][0] == pytest.approx([-EI * curvature] * 2, rel=1e-12)
+
+
+@pytest.mark.parametrize("hinged", [[False, False], [True, False]])
+def test_influence_lines_are_what_a_moved_load_does(hinged: list[bool]) -> None:
+    """Of moments, shears, clamps and rotations: the answers of first-order theory for a force at each place in turn."""
+    particles = [
+        held("A", 0.0, fixed_rotation=True),
+        free("B", 0.0, 3.0),
+        free("C", 2.0, 3.5),
+        free("D", 4.0, 3.0),
+        held("E", 4.0),
+    ]
+    rods = [beam("AB"), beam("BC", hinged=hinged), beam("CD"), beam("DE")]
+    parts = {"start": ("bending_moment", 0), "end": ("bending_moment", 1), "shear": ("shear", 0)}
+    names = [f"{rod}.{part}" for rod in ("AB", "BC", "DE") for part in parts]
+    names = [name for name in names if not (hinged[0] and name == "BC.start")]
+    names += ["A.rotation", "B.rotation", "C.y", "E.x", "BC"]
+    made = parse(model(particles, rods))
+    lines = influence(made, names)["influence"]
+    for at, axis in [("B", 0), ("C", 0), ("C", 1), ("D", 1)]:
+        unit = [
+            p | {"force": [float(axis == 0), float(axis == 1)]} if p["name"] == at else p for p in particles
+        ]
+        answer = linear(parse(model(unit, rods)))
+        for name in names:
+            place, _, what = name.rpartition(".")
+            if what in parts:
+                quantity, end = parts[what]
+                expected = answer.diagrams[quantity][made.rods[place].row, end]
+            elif what == "rotation":
+                of = answer.reaction_moment if place == "A" else answer.rotation
+                expected = of[made.particles[place].row]
+            elif place:
+                of = answer.reaction if place == "E" else answer.displacement
+                expected = of[made.particles[place].row, "xy".index(what)]
+            else:
+                expected = answer.axial_force[made.rods[name].row]
+            assert lines[name]["of"][at][axis] == pytest.approx(expected, rel=1e-9, abs=1e-11)
+    if hinged[0]:
+        with pytest.raises(ForceMethodError, match="BC is hinged at its start, so there is no moment"):
+            influence(made, ["BC.start"])
+
+
+def test_a_beam_with_a_hinge_too_many_is_a_mechanism() -> None:
+    """It is named, moves without bending a rod, and the load on it has no linear answer."""
+    particles = [
+        held("A", 0.0, fixed_rotation=True),
+        free("B", 2.0, force=[0.0, -1.0]),
+        free("C", 4.0),
+        held("D", 6.0, fixed=[False, True]),
+    ]
+    rods = [beam("AB"), beam("BC", hinged=[True, False]), beam("CD", hinged=[True, False])]
+    made = parse(model(particles, rods))
+    degrees = indeterminacy(made)
+    assert (degrees.static, degrees.mechanisms) == (0, 1)
+    assert counted(made).degree == -1
+    (motion,) = mechanisms(made)
+    assert motion[:, 1] == pytest.approx([0.0, 0.0, 1.0, 0.0], abs=1e-12)
+    assert np.abs(motion[:, 2]) == pytest.approx([0.0, 0.0, 0.5, 0.5], abs=1e-12)
+    with pytest.raises(NoEquilibrium, match="Mechanism: the load moves C along y"):
+        linear(parse(model([*particles[:2], {**particles[2], "force": [0.0, -1.0]}, particles[3]], rods)))
+    assert linear(made).displacement[1, 1] == pytest.approx(-(2.0**3) / (3.0 * EI), rel=1e-9)
+
+
+def test_states_of_self_stress_balance_every_joint() -> None:
+    """A square of rigid corners, free: three states, each in balance by the forces and moments that it names."""
+    corners = [("A", 0.0, 0.0), ("B", 3.0, 0.0), ("C", 3.0, 2.0), ("D", 0.0, 2.0)]
+    made = parse(
+        model([free(*corner) for corner in corners], [beam(name) for name in ("AB", "BC", "CD", "DA")])
+    )
+    states = self_stress(made)
+    degrees = indeterminacy(made)
+    assert (degrees.static, degrees.internal, degrees.mechanisms, len(states)) == (3, 3, 3, 3)
+    first, second = made.rods.between.astype(int).T
+    axis = made.rods.difference / made.rods.original_length[:, None]
+    left = np.stack([-axis[:, 1], axis[:, 0]], axis=1)
+    for state in states:
+        force, moment = state[:4], state[4:].reshape(4, 2)
+        pull = force[:, None] * axis - (moment.sum(axis=1) / made.rods.original_length)[:, None] * left
+        left_over, turning = np.zeros((4, 2)), np.zeros(4)
+        np.add.at(left_over, first, pull)
+        np.add.at(left_over, second, -pull)
+        np.add.at(turning, made.rods.between.astype(int).ravel(), moment.ravel())
+        assert np.abs(left_over).max() < 1e-12
+        assert np.abs(turning).max() < 1e-12
+
+
+@pytest.mark.parametrize(
+    ("parts", "slenderness", "error"), [(8, 200.0, -0.0073), (16, 50.0, -0.0025), (32, 200.0, -0.00062)]
+)
+def test_a_cantilever_vibrates_as_euler_and_bernoulli_say(parts: int, slenderness: float, error: float) -> None:
+    """ω = 1.8751² √(EI/ρL⁴), less what lumped masses make of it."""
+    length, density = 4.0, 6.15
+    stiff = {"stiffness": EI * (slenderness / length) ** 2, "density": density}
+    particles = [free(f"P{i}", length * i / parts) for i in range(parts + 1)]
+    particles[0] |= {"fixed": [True, True], "fixed_rotation": True}
+    rods = [{**beam("AB", **stiff), "name": f"R{i}", "between": [f"P{i}", f"P{i + 1}"]} for i in range(parts)]
+    found = vibrations(parse(model(particles, rods)))
+    wanted = 1.87510406871**4 * EI * 1000.0 / (density * length**4)
+    assert math.sqrt(found.angular_squared[0] / wanted) - 1.0 == pytest.approx(error, rel=0.02)
+    assert np.abs(found.modes[0][-1, 2]) * length == pytest.approx(
+        1.3765, rel=5e-3
+    )  # slope of mode 1 at its tip
+
+
+def test_bars_bear_distributed_forces_at_both_ends() -> None:
+    """A truss of two bars under their weight per metre of 3 kN: half of each hangs on their joint."""
+    particles = [held("A", -4.0, 3.0), free("B", 0.0), held("C", 4.0, 3.0)]
+    bar = {"stiffness": 1e6, "distributed_force": [0.0, -3.0]}
+    made = parse(model(particles, [{"name": name, "between": list(name), **bar} for name in ("AB", "BC")]))
+    found = linear(made)
+    assert found.axial_force == pytest.approx([12.5, 12.5], rel=1e-12)  # 15 kN at B, on bars of slope 3:5
+    assert found.reaction[:, 1].sum() == pytest.approx(30.0, rel=1e-12)
+    assert settle(made).final.reaction[:, 1].sum() == pytest.approx(30.0, rel=1e-12)
+    assert np.abs(found.diagrams["largest_moment"][:, 0]) == pytest.approx(3.0 * 5.0**2 / 8.0 * 0.8, rel=1e-12)

@@ -328,7 +328,7 @@ def test_the_shallow_truss_snaps_at_its_limit_load() -> None:
     """Von Mises truss, H = 1 m, half-span 5 m, EA = 1280 MN: snaps through at 3789.46 kN."""
     (event,) = events(settle(models.load("von_mises")), "snap-through")
     assert event.load_factor * 3800.0 == pytest.approx(3789.46, abs=0.01)
-    assert "3789.46 kN" in event.message
+    assert "3789 kN" in event.message
 
 
 @pytest.mark.parametrize("share", [0.5, 0.9])
@@ -400,7 +400,7 @@ def test_collapse_names_the_rod_and_the_load(capsys: pytest.CaptureFixture[str])
     ("change", "status", "said"),
     [
         ({"fixed": [False, False]}, "mechanism", "Free body: nothing holds A, B and C along y"),
-        ({"fixed": [False, True]}, "mechanism", "Free body: nothing holds A, B and C along x, where 120 kN"),
+        ({"fixed": [False, True]}, "mechanism", "Free body: nothing holds A, B and C along x, where 120.0 kN"),
         ({"fixed": [True, False]}, "equilibrium", "First-order mechanism: without load nothing resists moving"),
     ],
 )

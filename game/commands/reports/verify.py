@@ -8,7 +8,9 @@ from typing import Any
 
 import numpy as np
 
+from components.field import ENDS
 from components.model import Model
+from components.rod import Rod
 from game.commands import output
 from game.commands.output import aligned, as_written
 from game.commands.reports.report import static_state
@@ -17,10 +19,11 @@ from systems.statics.counting import Count, counted
 from systems.statics.equations import Array
 from systems.statics.events import NoEquilibrium, event_record
 from systems.statics.explain import describe_motion
-from systems.statics.force_method import find_unknown
+from systems.statics.force_method import ForceMethodError, find_unknown
 from systems.statics.theory import (
     indeterminacy,
     influence_on_displacement,
+    influence_on_ends,
     influence_on_reaction,
     influence_on_rod,
     mechanisms,
@@ -47,6 +50,7 @@ SHOWN = 6  # mechanisms and frequencies in a table
 NOTHING = 1e-12  # of the largest value beside it: round-off
 _IN_TABLES = {"m": ("mm", 1000.0)}  # else units as in files
 
+_AXES = ("x", "y", "rotation")
 _VALUES = ("simulation", "linear", "exact", "simulation_error", "linear_error")
 
 Found = dict[str, Any]
@@ -183,9 +187,9 @@ def _messages(found: Found) -> Iterator[str]:
 def influence(model: Model, names: Sequence[str]) -> Found:
     """Influence lines by linear theory: the effect of 1 kN along x and y on each particle in turn.
 
-    names: a rod "AB" (its axial force), a constraint "A.y" (its reaction, kN per kN) or a free direction "B.y"
-    (its displacement, m per kN, by the unit-load method). Raises ForceMethodError for other names, and
-    NoEquilibrium for a mechanism.
+    names: a rod "AB" (its axial force), where it bends "AB.start", "AB.end" (bending moments) or "AB.shear"; a constraint
+    "A.y" or "A.rotation" (its reaction, kN per kN), or a free direction (its displacement, m per kN, by the unit-load
+    method). Raises ForceMethodError for other names, and NoEquilibrium for a mechanism.
     """
     if indeterminacy(model).mechanisms:
         moving = describe_motion(model, mechanisms(model))
@@ -195,18 +199,36 @@ def influence(model: Model, names: Sequence[str]) -> Found:
 
 
 def _influence(model: Model, name: str) -> Found:
-    particle, _, axis = name.rpartition(".")
-    if name not in model.rods and particle in model.particles and axis in ("x", "y"):
-        row, direction = model.particles[particle].row, "xy".index(axis)
-        if not model.particles.fixed[row, direction]:
-            line = influence_on_displacement(model, row, direction)
-            return {"quantity": "displacement", "unit": "m/kN", "of": _line(model, line)}
-    unknown = find_unknown(model, name)
-    if unknown.axis is None:
-        line = influence_on_rod(model, unknown.element.row)
-        return {"quantity": "axial_force", "unit": "kN/kN", "of": _line(model, line)}
-    line = influence_on_reaction(model, unknown.element.row, unknown.axis)
-    return {"quantity": "reaction", "unit": "kN/kN", "of": _line(model, line)}
+    place, _, what = name.rpartition(".")
+    if name not in model.rods and place in model.rods and what in (*ENDS, "shear"):
+        return _influence_on_end(model, model.rods[place], what)
+    if name not in model.rods and place in model.particles and what in _AXES:
+        row, axis = model.particles[place].row, _AXES.index(what)
+        turns = axis == 2
+        if turns and model.particles.inertia[row] == 0.0:
+            raise ForceMethodError(f"{place} has no rotation: no rod that bends is joined rigidly there.")
+        if not (model.particles.fixed_rotation[row] if turns else model.particles.fixed[row, axis]):
+            line, unit = influence_on_displacement(model, row, axis), "rad/kN" if turns else "m/kN"
+            return {"quantity": "rotation" if turns else "displacement", "unit": unit, "of": _line(model, line)}
+        line, unit = influence_on_reaction(model, row, axis), "kN·m/kN" if turns else "kN/kN"
+        return {"quantity": "reaction_moment" if turns else "reaction", "unit": unit, "of": _line(model, line)}
+    line = influence_on_rod(model, find_unknown(model, name).element.row)
+    return {"quantity": "axial_force", "unit": "kN/kN", "of": _line(model, line)}
+
+
+def _influence_on_end(model: Model, rod: Rod, what: str) -> Found:
+    """The influence line of the bending moment at an end of a rod, or of its shear."""
+    rigid = (model.rods.turning_shares[rod.row] > 0.0).tolist()
+    if not any(rigid) or (what in ENDS and not rigid[ENDS.index(what)]):
+        where = "does not bend" if not any(rigid) else f"is hinged at its {what}"
+        raise ForceMethodError(
+            f"{rod.name} {where}, so there is no {'shear' if what == 'shear' else 'moment'}."
+        )
+    if what == "shear":
+        line = influence_on_ends(model, rod.row, (1.0 / rod.original_length,) * 2)
+        return {"quantity": "shear", "unit": "kN/kN", "of": _line(model, line)}
+    line = influence_on_ends(model, rod.row, (-1.0, 0.0) if what == ENDS[0] else (0.0, 1.0))
+    return {"quantity": "bending_moment", "unit": "kN·m/kN", "of": _line(model, line)}
 
 
 def _line(model: Model, field: Array) -> dict[str, list[float]]:

@@ -1,6 +1,6 @@
 """Named actions, by subject: the only way in, for keys, mouse, scripts and mods; importing them registers them."""
 
-from game.editor.actions import editing, force_method, menu, modes, pointer, sliding, time, view
+from game.editor.actions import editing, force_method, members, menu, modes, pointer, sliding, time, view
 from game.editor.context import ACTIONS, WHILE_DRAWING, Action, action
 
 __all__ = [
@@ -10,6 +10,7 @@ __all__ = [
     "action",
     "editing",
     "force_method",
+    "members",
     "menu",
     "modes",
     "pointer",

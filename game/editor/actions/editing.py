@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 import numpy as np
 
 from components import written
@@ -57,9 +59,9 @@ def _support(context: Context, pixel: Vector) -> None:
     context.notice = f"{all_of(context, chosen)}: {support}"
 
 
-def all_of(context: Context, particles: list[Particle]) -> str:
-    """Some particles as a sentence begins with them."""
-    return context.name(particles[0]) if len(particles) == 1 else f"{len(particles)} particles"
+def all_of(context: Context, elements: Sequence[Handle]) -> str:
+    """Some elements of a kind as a sentence begins with them."""
+    return context.name(elements[0]) if len(elements) == 1 else f"{len(elements)} {elements[0].table}"
 
 
 def nudge(context: Context, direction: Vector, *, far: bool) -> bool:

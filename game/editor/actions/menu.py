@@ -15,7 +15,7 @@ from game.editor.menu import menu_at
 from game.editor.scenes.force_method import ForceMethod
 from systems.edit import Refusal
 from systems.edit.picking import pick, pick_line, pick_particle
-from systems.edit.supports import support
+from systems.edit.supports import SUPPORTS, Held, support
 from systems.input.bindings import LIVE
 from systems.render.menu import menu_of
 
@@ -93,25 +93,20 @@ def _environment(context: Context, pixel: Vector) -> None:
     ACTIONS["properties"](context, pixel)
 
 
-def _hold(fixed: tuple[bool, bool]) -> Action:
+def _hold(wanted: Held) -> Action:
     """Give all selected particles a support."""
 
     def act(context: Context, pixel: Vector) -> None:
         particles = context.selected_of(Particle)
         if not particles:
             raise Refusal("No particle is selected; click one first.")
-        context.notice = f"{all_of(context, particles)}: {support(context.model, particles, fixed)}"
+        context.notice = f"{all_of(context, particles)}: {support(context.model, particles, wanted)}"
 
     return act
 
 
-for _name, _fixed in {
-    "free": (False, False),
-    "pin": (True, True),
-    "hold y": (False, True),
-    "hold x": (True, False),
-}.items():
-    action(_name)(_hold(_fixed))
+for _name, _wanted in SUPPORTS.items():
+    action(_name)(_hold(_wanted))
 
 
 @action("toggle cable")
@@ -122,8 +117,9 @@ def _toggle_cable(context: Context, pixel: Vector) -> None:
         raise Refusal("No rod is selected; click one first.")
     cable = not all(rod.tension_only for rod in rods)
     context.model.assign(rods, "tension_only", cable)
-    named = context.name(rods[0]) if len(rods) == 1 else f"{len(rods)} rods"
-    context.notice = f"{named}: {'tension only, as a cable' if cable else 'tension and compression'}"
+    context.notice = (
+        f"{all_of(context, rods)}: {'tension only, as a cable' if cable else 'tension and compression'}"
+    )
 
 
 @action("release")

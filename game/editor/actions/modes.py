@@ -35,10 +35,12 @@ def _to_pause_and(context: Context, scene: str) -> None:
 
 @action("escape", while_drawing=True)
 def _escape(context: Context, pixel: Vector) -> None:
-    """Cancel the drawing, else put the tool away, else end the run or deselect."""
+    """Cancel the drawing, else put the tool away, else hide a shape, else end the run or deselect."""
     if context.cancel_gesture():
         return
-    if context.scene == "simulation":
+    if context.document.shapes.shown is not None:
+        context.document.shapes.hide()
+    elif context.scene == "simulation":
         context.scenes.request("pause")
     elif context.has_selected:
         context.select()

@@ -46,7 +46,7 @@ for _name, _act in _ACTIONS.items():
 
 @action("next shape", while_drawing=True)
 def _next_shape(context: Context, pixel: Vector) -> None:
-    """Show the next mechanism or natural mode; after the last, none."""
+    """Show the next mechanism, buckling mode or natural mode; after the last, none."""
     if context.view.put_together() and context.view.shape is not None:
         return
     try:

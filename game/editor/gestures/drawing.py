@@ -10,15 +10,25 @@ from components.field import Vector
 from components.handle import Handle
 from components.model import Model
 from components.particle import Particle
+from components.rod import Rod, rigid_joints
 from components.view import Preview, drawn_positions
 from game.editor.context import Context, Gesture
 from systems.edit import Refusal
-from systems.edit.arrows import arrow_end, arrow_value, usual_force, usual_speed
-from systems.edit.picking import PARTICLE_REACH, pick_particle
+from systems.edit.arrows import (
+    arrow_end,
+    arrow_value,
+    usual_distributed_force,
+    usual_force,
+    usual_moment,
+    usual_speed,
+)
+from systems.edit.picking import PARTICLE_REACH, pick_end, pick_particle, pick_rod, ring_of
 from systems.edit.placing import place, place_at, snapped, snapped_to_points
-from systems.edit.rods import check_ends, distance, join
-from systems.edit.supports import NAMES, next_support, support, support_towards
+from systems.edit.rods import check_ends, distance, is_rigid, join
+from systems.edit.supports import NAMES, Held, next_support, support, support_towards
 
+CLAMPED_BEYOND = 60.0  # points from a particle to its ground, which then holds its rotation, too
+HINGES = "hinge"  # the tool by which clicks hinge ends of rods; its action acts at once
 SMALLEST_RIM = 5.0  # points, of a particle as it is drawn
 
 
@@ -97,9 +107,14 @@ class DrawRod(Drawing):
     def __init__(self, context: Context, begin: Particle | Vector, *, goes_on: bool = False) -> None:
         self._begin, self.goes_on = begin, goes_on
         self._end: Particle | None = None
+        self.say(context)
+
+    def say(self, context: Context) -> None:
+        """Let the hint name the kind of rod that is drawn."""
+        begin = self._begin
         named = f" from {begin.name}" if isinstance(begin, Particle) else ""
-        done = "double click ends the chain     Esc done" if goes_on else "Esc cancel"
-        self.hint = f"rod{named}: L or click where it ends     {done}"
+        done = "double click ends the chain     Esc done" if self.goes_on else "Esc cancel"
+        self.hint = f"rod{named}: L or click where it ends     {kind_of_rods(context)}     {done}"
 
     @classmethod
     def begin(cls, context: Context, pixel: Vector) -> Drawing | None:
@@ -122,10 +137,11 @@ class DrawRod(Drawing):
         with model.transaction("new rod"):
             first = begin if isinstance(begin, Particle) else place_at(model, view, begin)
             self._end = pick_particle(model, view, pixel) or place(model, view, pixel)
-            rod = join(model, first, self._end)
+            rod = join(model, first, self._end, rigid=view.rigid)
         made = model.particles.count - before
         new = f", with {made} new particle{'s' * (made > 1)}" if made else ""
-        context.notice = f"{context.name(rod)}: {written.length(rod.rest_length, written.DIGITS)}{new}"
+        made_of = f", {rod.section or 'rigid'}" if view.rigid else ""
+        context.notice = f"{context.name(rod)}: {written.length(rod.rest_length, written.DIGITS)}{made_of}{new}"
 
     def finish(self, context: Context, pixel: Vector) -> None:
         """End at a pixel; a click where a chain of rods has come to ends the chain."""
@@ -192,9 +208,80 @@ class DrawArrow(DrawFromParticle):
 
 
 class DrawForce(DrawArrow):
-    """The constant force on a particle."""
+    """The constant force on a particle; beside one, the distributed force on a rod."""
 
     tool, title, unit, usual = "force", "Load on", "kN", staticmethod(usual_force)
+
+    @classmethod
+    def begin(cls, context: Context, pixel: Vector) -> Drawing | None:
+        begun = super().begin(context, pixel)
+        rod = pick_rod(context.model, context.view, pixel) if begun is None else None
+        outside = context.view.covers(pixel)
+        return begun if rod is None or outside else DrawDistributedForce(context, rod, pixel)
+
+
+class DrawDistributedForce(Drawing):
+    """The distributed force on a rod, or on all selected rods if it is one of them, drawn from a point on it."""
+
+    tool = "force"
+
+    def __init__(self, context: Context, rod: Rod, pixel: Vector) -> None:
+        rods = context.selected_of(Rod)
+        self._rods = rods if rod in rods else [rod]
+        self._from = context.view.camera.to_model(pixel)
+        named = rod.name if len(self._rods) == 1 else f"{len(self._rods)} rods"
+        self.hint = f"distributed load on {named}: F or click where its arrow ends     Esc cancel"
+
+    def _value(self, context: Context, pixel: Vector) -> Vector:
+        return arrow_value(context.view, self._from, pixel, usual_distributed_force(context.model))
+
+    def drop(self, context: Context, pixel: Vector) -> None:
+        value, rods = self._value(context, pixel), [rod for rod in self._rods if rod.exists]
+        if rods:
+            context.model.assign(rods, "distributed_force", [value] * len(rods))
+            named = context.name(rods[0]) if len(rods) == 1 else f"{len(rods)} rods"
+            context.notice = f"{named}: distributed load {written.vector(value)} kN/m"
+
+    def preview(self, context: Context, pixel: Vector) -> Preview | None:
+        value, usual = self._value(context, pixel), usual_distributed_force(context.model)
+        end = arrow_end(context.view, self._from, value, usual)
+        drawn = drawn_positions(context.model)
+        ends = [drawn[list(rod.between)].tolist() for rod in self._rods if rod.exists]
+        along = tuple(((first[0], first[1]), (last[0], last[1])) for first, last in ends)
+        return Preview("distributed force", self._from, end, f"{written.vector(value)} kN/m", along)
+
+
+class DrawMoment(DrawFromParticle):
+    """The constant moment on a particle: to the left counter-clockwise, to the right clockwise."""
+
+    tool = "moment"
+
+    def __init__(self, context: Context, particle: Particle) -> None:
+        if not rigid_joints(context.model)[particle.row]:
+            raise Refusal(
+                f"{particle.name} has no rigid rod ends that a moment could turn; Ctrl+J makes a rod's end rigid."
+            )
+        super().__init__(context, particle)
+        self.hint = f"moment on {particle.name}: left of it counter-clockwise, right clockwise     Esc cancel"
+
+    def _value(self, context: Context, pixel: Vector) -> float:
+        usual = usual_moment(context.model)
+        return -arrow_value(context.view, self.start(context), pixel, usual)[0] + 0.0
+
+    def drop(self, context: Context, pixel: Vector) -> None:
+        value = self._value(context, pixel)
+        context.model.assign([self.particle], "moment", value)
+        context.notice = f"Moment on {self.particle.name}: {_moment(value)}"
+
+    def preview(self, context: Context, pixel: Vector) -> Preview | None:
+        value, start = self._value(context, pixel), self.start(context)
+        x, _ = context.view.camera.to_model(pixel) if value else start
+        return Preview("moment", start, (x, start[1]), _moment(value))
+
+
+def _moment(value: float) -> str:
+    way = ", counter-clockwise" if value > 0.0 else ", clockwise" if value < 0.0 else ""
+    return f"{written.given(abs(value))} kN·m{way}"
 
 
 class DrawVelocity(DrawArrow):
@@ -271,30 +358,44 @@ class DrawSupport(DrawFromParticle):
         super().__init__(context, particle)
         selected = [handle for handle in context.selected if isinstance(handle, Particle)]
         self._particles = selected if particle in selected else [particle]
-        self.hint = "ground below or above: held in y     at a side: in x     between: both     Esc cancel"
+        self._turns = bool(rigid_joints(context.model)[particle.row])
+        farther = "farther: cannot turn either     " if self._turns else ""
+        self.hint = (
+            f"ground below or above: held in y     at a side: in x     between: both     {farther}Esc cancel"
+        )
 
     def drop(self, context: Context, pixel: Vector) -> None:
-        along = self._along(context, pixel)
+        wanted = self._wanted(context, pixel)
         particles = [particle for particle in self._particles if particle.exists]
-        if along is None:
-            name = next_support(context.model, particles)
-        else:
-            name = support(context.model, particles, support_towards(along))
+        name = (
+            next_support(context.model, particles)
+            if wanted is None
+            else support(context.model, particles, wanted)
+        )
         others = f" and {len(particles) - 1} more" if len(particles) > 1 else ""
         context.notice = f"{context.name(self.particle)}{others}: {name}"
 
     def preview(self, context: Context, pixel: Vector) -> Preview | None:
         """The symbol of the support on the side of the pointer, with its point on the rim of the particle."""
-        along, (x, y) = self._along(context, pixel), self.start(context)
-        if along is None:
+        along, wanted, (x, y) = self._along(context, pixel), self._wanted(context, pixel), self.start(context)
+        if along is None or wanted is None:
             return None
-        fixed, camera = support_towards(along), context.view.camera
+        camera = context.view.camera
         level = abs(along[0]) > abs(along[1])
         side = (math.copysign(1.0, along[0]), 0.0) if level else (0.0, math.copysign(1.0, along[1]))
         rim = max(self.particle.radius, SMALLEST_RIM * context.view.pixel_ratio / camera.scale)
         start = x + rim * side[0], y + rim * side[1]
         end = start[0] + side[0] / camera.scale, start[1] + side[1] / camera.scale
-        return Preview("pinned" if all(fixed) else "roller", start, end, NAMES[fixed])
+        symbols = ("guided", "clamped") if wanted[2] else ("roller", "pinned")
+        return Preview(symbols[all(wanted[:2])], start, end, NAMES[wanted])
+
+    def _wanted(self, context: Context, pixel: Vector) -> Held | None:
+        """What a ground at a pixel holds; None if the pixel lies on the particle."""
+        along = self._along(context, pixel)
+        if along is None:
+            return None
+        points = math.hypot(*along) * context.view.camera.scale / context.view.pixel_ratio
+        return (*support_towards(along), self._turns and points > CLAMPED_BEYOND)
 
     def _along(self, context: Context, pixel: Vector) -> Vector | None:
         """The vector from the particle to a pixel (m); None if the pixel lies on the particle."""
@@ -304,12 +405,38 @@ class DrawSupport(DrawFromParticle):
         return along if math.hypot(*along) > max(reach, self.particle.radius) else None
 
 
+def kind_of_rods(context: Context) -> str:
+    """What rods are drawn with now, and how to change that, for the status line."""
+    return "rigid ends (Ctrl+R: pinned)" if context.view.rigid else "pinned (Ctrl+R: rigid ends)"
+
+
+def hint_of_tool(context: Context) -> str:
+    """The status line while clicks use the tool in hand."""
+    tool = context.view.tool
+    hint = TOOL_HINTS.get(tool, "")
+    return hint.replace("     ", f"     {kind_of_rods(context)}     ", 1) if tool == DrawRod.tool else hint
+
+
+def end_pointed_at(context: Context, pixel: Vector) -> Preview | None:
+    """With the tool for hinges in hand: what a click would make of the end under the pointer."""
+    model, view = context.model, context.view
+    if view.tool != HINGES or pick_particle(model, view, pixel) is not None:
+        return None
+    end = pick_end(model, view, pixel)
+    if end is None:
+        return None
+    at, named = ring_of(model, view, end), f"{end.rod.name} at {end.rod.ends[end.number].name}"
+    return Preview("hinge", at, at, f"{'hinge' if is_rigid(end.rod, end.number) else 'make rigid:'} {named}")
+
+
 # By tool: the status line while clicks use it, and what it draws ("place" draws nothing, "support" has an action).
 TOOL_HINTS = {
     "place": "click where particles are to be     Esc done",
     "support": "supports: drag from a particle to its ground, or click for the next kind     Esc done",
     "rod": "rods: click from place to place, or drag     double click ends a chain     Esc done",
-    "force": "loads: drag an arrow from a particle     F or Esc done",
+    HINGES: "click near a rod's end: hinged or rigid     at a joint: all rods there     Esc done",
+    "force": "loads: drag an arrow from a particle; from a rod, a distributed load     F or Esc done",
+    "moment": "moments: drag from a particle, to the left counter-clockwise     Esc done",
     "velocity": "velocities: drag an arrow from a particle     V or Esc done",
 }
-TOOLS: dict[str, type[Drawing]] = {kind.tool: kind for kind in (DrawRod, DrawForce, DrawVelocity)}
+TOOLS: dict[str, type[Drawing]] = {kind.tool: kind for kind in (DrawRod, DrawForce, DrawMoment, DrawVelocity)}

@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from dataclasses import replace
 from typing import ClassVar
 
-from components.box import WORD, Box
+from components.box import NAME, WORD, Box
 from components.camera import Camera, Viewport
 from components.field import Vector
 from components.form import Form, Tile
@@ -84,7 +84,7 @@ class FormScene(Scene):
         box = self.form.selected
         if direction in ("up", "down"):
             by = 1 if direction == "down" else -1
-            if box is not None and box.accepts == WORD:
+            if box is not None and box.accepts in (WORD, NAME):
                 typing.turn_word(self.form, box, by)
                 self.changed(context)
             else:
@@ -152,7 +152,7 @@ class FormScene(Scene):
                 again = box is self.form.selected
                 if not again:
                     typing.select(self.form, box)
-                if box.accepts == WORD and (again or box.words == typing.YES_NO):
+                if box.accepts in (WORD, NAME) and (again or box.words == typing.YES_NO):
                     typing.turn_word(self.form, box)
                     self.changed(context)
                 elif again and place is not None:

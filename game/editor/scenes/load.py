@@ -15,12 +15,16 @@ from game.scripts.script import Script, lessons
 WELCOME = "Welcome to Pinjoint. What would you like to begin with?"
 NEW = "New, empty model"
 LESSONS = "Begin here"
-EXAMPLES = "Examples"
+TRUSSES, BENDING, COLLISIONS = EXAMPLES = "Trusses", "Members that bend", "Collisions"
 YOURS = "Your models"
 DISCARD = "discard unsaved work"  # the source of the tile that discards what windows left behind
 ALL = "all of this section"  # the source of a tile that shows all tiles of its section, not only a row of them
-# The first examples; the others follow in alphabetical order.
-FIRST = ("isostatic", "hyperstatic", "pendulum", "collision_iii", "warren_bridge", "hyperstatic_yield", "tower")
+# The first of each section; the others follow in alphabetical order.
+FIRST = (
+    *("isostatic", "hyperstatic", "pendulum", "warren_bridge", "hyperstatic_yield", "tower", "ball_on_truss"),
+    *("portal", "eulers_columns", "rolled_cantilever", "ball_on_frame", "gerber_beam", "three_hinged_arch"),
+    *("collision_iii", "newtons_cradle", "billiards_break", "pile", "staircase", "galperin_pi"),
+)
 
 
 class Load(FileScene):
@@ -40,11 +44,8 @@ class Load(FileScene):
     def make_form(self, context: Context) -> Form:
         self._asked = False
         new = Offer(LESSONS, NEW, "draw your own", "", None, "An empty plane to draw on.", "+")
-        yours = _yours(context)
-        lessons = [new, *_lessons()]
-        if yours:
-            lessons.append(Offer(LESSONS, "All lessons", "to watch", "", ALL, symbol="»", rest=True))
-        offers = [*yours, *lessons, *_examples()]
+        rest = Offer(LESSONS, "All lessons", "to watch", "", ALL, symbol="»", rest=True)
+        offers = [*_yours(context), new, *_lessons(), rest, *_examples()]
         form = self.new_form(WELCOME if self.welcome else "Open a model", "", offers, "Open")
         form.boxes[0].note = "type to search, or click a picture"
         return form
@@ -144,8 +145,20 @@ def _lessons() -> list[Offer]:
 
 
 def _examples() -> list[Offer]:
-    """The bundled models."""
-    names = sorted(models.bundled(), key=lambda name: models.header_of(name).title)
+    """The bundled models by subject, of each the first and a tile that stands for the rest."""
+    told = {name: models.header_of(name) for name in models.bundled()}
+    names = sorted(told, key=lambda name: told[name].title)
     names.sort(key=lambda name: FIRST.index(name) if name in FIRST else len(FIRST))
-    shown = [(name, models.header_of(name)) for name in names]
-    return [Offer(EXAMPLES, told.title or name, name, name, name, told.description) for name, told in shown]
+    offers = []
+    for section in EXAMPLES:
+        some = [name for name in names if _subject(told[name]) == section]
+        offers += [Offer(section, told[n].title or n, n, n, n, told[n].description) for n in some]
+        offers.append(Offer(section, f"All {len(some)}", "of these", "", ALL, symbol="»", rest=True))
+    return offers
+
+
+def _subject(header: models.ModelHeader) -> str:
+    """The section in which a bundled model is offered."""
+    if not header.rods:
+        return COLLISIONS
+    return BENDING if header.bends else TRUSSES

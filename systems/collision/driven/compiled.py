@@ -23,7 +23,7 @@ def _contents() -> tuple[str, dict[str, Callable[..., Any]]]:
     from systems.collision.driven.kernels import joint_impacts
     from systems.collision.kernels import overlap, pairs
 
-    return entries_to(
+    source, kernels = entries_to(
         {
             "collide": collide,
             "list_pairs": list_pairs,
@@ -32,6 +32,15 @@ def _contents() -> tuple[str, dict[str, Callable[..., Any]]]:
             "part": overlap.separate,
         }
     )
+    layout = [_layout(arrays) for arrays in idle()]  # what is kept on disk is of no use for another
+    return f"{source}# arrays: {layout}\n", kernels
+
+
+def _layout(arrays: Any) -> Any:
+    """The names, types and dimensions of arrays, in named tuples of their own where they are."""
+    if isinstance(arrays, np.ndarray):
+        return arrays.dtype.str, arrays.ndim
+    return [(name, _layout(held)) for name, held in zip(arrays._fields, arrays, strict=True)]
 
 
 DRIVEN = GeneratedModule("driven_collisions", _contents)

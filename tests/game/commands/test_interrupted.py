@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import signal
+from itertools import pairwise
 from pathlib import Path
 from typing import Any
 
@@ -90,9 +91,10 @@ def test_what_lasts_says_how_far_it_is(
         assert main(["run", str(path), "--at", "1e6"]) == 130
     said = [line for line in capsys.readouterr().err.splitlines() if "impacts. Ctrl+C stops it." in line]
     impacts = [int(line.rpartition(" steps, ")[2].partition(" ")[0]) for line in said]
+    fallen = [later < sooner for sooner, later in pairwise(impacts)]
     assert len(impacts) > 1
-    assert impacts == sorted(impacts)
-    assert impacts[-1] > 1000
+    assert sum(fallen) <= 1  # Ctrl+C goes back to what is kept, and the voice may tell of that, too
+    assert max(impacts) > 1000
 
 
 @pytest.mark.parametrize(

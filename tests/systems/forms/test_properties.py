@@ -9,21 +9,21 @@ import pytest
 
 from components.box import Box
 from components.camera import Viewport
-from components.field import same
+from components.field import SAVED, Field, same
 from components.particle import Particle
+from components.rod import Rod
 from components.tags import Selected
 from game import Session
 from game.editor.scenes.form import FormScene
 from game.editor.scenes.properties import Properties
 from game.scripts.playing import Recorder, play, session_of
 from game.scripts.script import Script
-from systems.forms.properties import OF_BENDING
 from systems.render.form_layout import FormLayout
 from systems.render.marks import Text
 from systems.render.picture import compose
 from systems.render.theme import load_theme
 from tests.reference.boxes import overlapping, text_boxes
-from tests.reference.models import model, particle, triangle
+from tests.reference.models import model, particle, rod, triangle
 
 SIZES = [(320, 240), (400, 800), (640, 480), (1000, 720), (1366, 768), (3840, 2160)]
 
@@ -124,14 +124,115 @@ def test_boxes_are_alphabetical_in_their_section(session: Session, names: tuple[
 
 
 def test_every_field_that_a_person_can_set_has_a_box(session: Session) -> None:
-    scene = open_of(session, "B")
-    targets = {box.target for box in scene.form.boxes}
-    for field in Particle.__dict__.values():
-        if field in OF_BENDING:
-            continue
-        if getattr(field, "dtype", None) is float and field.role.value != "derived":
-            axes = ("x", "y") if field.shape else ("",)
-            assert {f"particles.{field.name}{'.' * bool(axis)}{axis}" for axis in axes} <= targets
+    session.model.rods.bending_stiffness = 10.0
+    for name, kind in (("B", Particle), ("AB", Rod)):
+        targets = {box.target for box in open_of(session, name).form.boxes}
+        for field in vars(kind).values():
+            decided = field in (
+                Particle.asleep,
+                Rod.yielded_at,
+                Rod.between,
+            )  # by the run, or when it was drawn
+            if isinstance(field, Field) and field.role in SAVED and not decided:
+                axes = field.axes if field.shape else ("",)
+                wanted = {f"{kind.table}.{field.name}{'.' * bool(axis)}{axis}" for axis in axes}
+                assert wanted <= targets
+        session.press("escape")
+
+
+# --- members that bend -----------------------------------------------------------------------------
+
+
+def cantilever(**properties: object) -> Session:
+    """A rod that bends, clamped at A, loaded at B."""
+    particles = [
+        particle("A", 0, 0, fixed=[True, True], fixed_rotation=True),
+        particle("B", 2, 0, force=[0, -1]),
+    ]
+    given = {"bending_stiffness": 100.0, "damping": 1e4, **properties}
+    return Session.open(model(particles, [rod("A", "B", **given)]))
+
+
+def sections_of(scene: Properties) -> set[str]:
+    return {box.section for box in scene.form.boxes}
+
+
+def test_what_bends_has_boxes_of_its_own_and_others_have_not(session: Session) -> None:
+    scene = open_of(session, "AB")
+    assert sections_of(scene) == {"rod AB", "Cross-section", "Bending", "All rods"}
+    bending = {box.title for box in scene.form.boxes if box.section == "Bending"}
+    assert bending == {"bending stiffness", "distributed force x", "distributed force y"}
+    session.press("escape")
+    assert "Rotation" not in sections_of(open_of(session, "B"))
+    session.press("escape")
+    bent = cantilever()
+    assert {"hinged start", "hinged end", "temperature gradient", "bending damping"} <= {
+        box.title for box in open_of(bent, "AB").form.boxes
+    }
+    bent.press("escape")
+    assert "Rotation" in sections_of(open_of(bent, "B"))
+
+
+def test_a_bar_begins_to_bend_while_its_box_stays_selected(session: Session) -> None:
+    scene = open_of(session, "AB")
+    session.click_box("bending stiffness")
+    session.type("50")
+    session.press("tab")
+    assert session.rods["AB"].bending_stiffness == 50.0
+    assert "hinged start" in session.boxes
+    assert scene.form.selected is not None
+    entered(session, "hinged end", "yes")
+    assert session.rods["AB"].hinged == (False, True)
+    entered(session, "distributed force y", "-3.5")
+    assert session.rods["AB"].distributed_force == (0.0, -3.5)
+    session.press("escape")
+    session.undo()
+    assert session.rods["AB"].bending_stiffness == 0.0
+    assert session.rods["AB"].distributed_force == (0.0, 0.0)
+
+
+def test_a_clamp_and_a_moment_are_typed() -> None:
+    session = cantilever()
+    open_of(session, "B")
+    entered(session, "applied moment", "2")
+    entered(session, "rotation constrained", "yes")
+    assert (session.particles["B"].moment, session.particles["B"].fixed_rotation) == (2.0, True)
+
+
+def test_a_section_and_a_material_are_typed_or_turned_to() -> None:
+    session = cantilever()
+    open_of(session, "AB")
+    assert session.boxes["section"] == "none"
+    entered(session, "section", "ipe 2")
+    assert session.rods["AB"].section == "IPE 200"
+    assert session.boxes["section"] == "IPE 200"
+    assert session.boxes["second moment"] == "1943.17"
+    assert session.boxes["material"] == "S235"
+    box = box_of(session, "bending stiffness")
+    assert (box.text[:4], box.note) == ("4080", "automatic")
+    session.click_box("section")
+    session.press("down")
+    session.press("return")
+    assert session.rods["AB"].section == "IPE 220"
+    entered(session, "section", "rect 60x100")
+    assert session.boxes["section"] == "rectangle 60×100"
+    entered(session, "material", "alu")
+    assert session.rods["AB"].youngs_modulus == 70e6
+    entered(session, "area", "30")
+    assert session.boxes["section"] == "none"
+
+
+def test_results_tell_of_both_ends() -> None:
+    session = cantilever(distributed_force=[0, -2])
+    session.run(until="rest", limit=20.0)
+    scene = open_of(session, "AB")
+    told = {reading.title: reading.text for reading in scene.form.readings}
+    assert told["M at its ends"].startswith("A −")
+    assert told["V at its ends"].endswith("kN")
+    assert "mrad" in told["rotation of its ends"]
+    session.press("escape")
+    told = {reading.title: reading.text for reading in open_of(session, "A").form.readings}
+    assert told["reaction moment"].endswith("kN·m")
 
 
 def test_a_mass_that_follows_from_the_rods_is_shown_and_said_to_be_automatic(session: Session) -> None:

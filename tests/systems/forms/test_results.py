@@ -143,3 +143,12 @@ def test_a_file_keeps_e_and_a_and_old_files_keep_their_stiffness(tmp_path: Path)
     assert "area" not in path.read_text(encoding="utf-8")
     old = models.load(path)
     assert old.rods.stiffness[0] == 0.1 + 0.2
+
+
+def test_of_a_member_that_bends_utilisation_and_stress_are_said_to_be_axial() -> None:
+    session = at_rest(tensile_strength=215, compressive_strength=215, bending_stiffness=1000, area=20e-4)
+    session.select(session.rods["BC"])
+    session.press("return")
+    shown = readings(session)
+    assert {"axial utilisation", "axial stress"} <= {*shown}
+    assert not {"utilisation", "stress"} & {*shown}

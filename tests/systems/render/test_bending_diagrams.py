@@ -1,5 +1,6 @@
 """Diagrams of N, M and V along members that bend."""
 
+import itertools
 from typing import Any
 
 import numpy as np
@@ -12,7 +13,16 @@ from game import Session
 from systems.render.marks import Bars, Discs, Fills, Picture, Strokes
 from systems.render.picture import compose
 from systems.render.theme import faded
-from tests.systems.render.frame_models import CLAMPED, EI, PINNED, ROLLER, frame, gerber_at_rest, portal_at_rest
+from tests.systems.render.frame_models import (
+    CLAMPED,
+    EI,
+    PINNED,
+    ROLLER,
+    at_rest,
+    frame,
+    gerber_at_rest,
+    portal_at_rest,
+)
 from tests.systems.render.pictures import LIGHT
 
 INK = faded(LIGHT.ink, 0.9)  # of outlines
@@ -118,6 +128,25 @@ def test_a_moment_that_passes_a_joint_is_told_where_it_is_largest() -> None:
     picture, _ = shown(gerber_at_rest(), MOMENT)
     told = [text for text in picture.texts if text.endswith("kN·m")]
     assert len(told) == len(set(told)) == 3, "under the force, above C, within DE"
+
+
+def test_a_constant_moment_is_told_once() -> None:
+    names = "ABCDE"
+    source = frame(
+        {
+            name: (0.5 * x, 0.0, {"A": CLAMPED, "E": {"moment": 3.0}}.get(name, {}))
+            for x, name in enumerate(names)
+        },
+        {f"{a} {b}": {} for a, b in itertools.pairwise(names)},
+    )
+    at_rest(
+        source,
+        {name: (0.0, 3.0 * (0.5 * x) ** 2 / 2.0 / EI, 3.0 * 0.5 * x / EI) for x, name in enumerate(names)},
+    )
+    texts = shown(source, MOMENT)[0].texts
+    assert len([text for text in texts if text.startswith("3.0") and text.endswith("kN·m")]) == 2, (
+        "and the reaction"
+    )
 
 
 def test_on_the_original_shape_if_wanted() -> None:

@@ -93,8 +93,8 @@ def test_an_empty_model_says_how_to_begin() -> None:
     texts = compose(session.model, session.view, LIGHT).texts
     assert {"An empty model", "New particle under the pointer", "P", "Open a model", "D"} <= set(texts)
     enabled = [button for button in Card(session.view).buttons if button.tool.enabled]
-    assert [button.tool.action for button in enabled] == ["place", "rod", "load", "toggle help"]
-    place, _, load, _ = enabled
+    assert [button.tool.action for button in enabled] == ["place", "rod", "rigid", "load", "toggle help"]
+    place, _, _, load, _ = enabled
     session.press("click", (place.left + 40.0, place.top + 5.0))
     session.update_view()
     assert session.view.tool == "place"

@@ -13,7 +13,7 @@ import pytest
 from game import Session
 from game.commands.command_line import main
 from game.documents.document import document, parse
-from game.documents.sections import ModelError
+from game.documents.format import ModelError
 from game.scripts.playing import Recorder, play
 from game.scripts.script import Script
 from systems.base import StopReason

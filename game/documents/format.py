@@ -1,4 +1,4 @@
-"""Sections: what documents consist of, by their keys, and what cannot stand in one."""
+"""Format: what documents consist of, by their keys, and what cannot stand in one."""
 
 from __future__ import annotations
 

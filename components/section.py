@@ -1,0 +1,233 @@
+"""Sections and materials: standard profiles from their dimensions, rectangles, and what rods of them are given.
+
+Read from assets/sections.json, which names its sources. Sections are bent about their strong axis.
+"""
+
+from __future__ import annotations
+
+import json
+import math
+import re
+from collections.abc import Callable, Collection
+from dataclasses import dataclass
+from functools import cache
+from importlib.resources import files
+from typing import Any
+
+from components.field import LARGEST, FieldError
+from components.suggestions import missing
+from components.wording import cut, quoted
+
+USUAL_SECTION, USUAL_MATERIAL = "IPE 200", "S235"  # of members of which nothing else is known
+RECTANGLE = "rectangle 300×500"  # the form of such a name: width × depth in mm
+_RECTANGLE = re.compile(r"rect(?:angle)? (\d+(?:\.\d+)?)×(\d+(?:\.\d+)?)")
+_SQUARE = re.compile(r"(shs [\d.]+)×([\d.]+)×([\d.]+)")  # with both widths, as catalogues write it
+_MPA, _GPA = 1e3, 1e6  # kN/m²
+
+
+@dataclass(frozen=True)
+class Section:
+    """A cross-section, with area (m²), second moment of area (m⁴) and plastic section modulus (m³)."""
+
+    name: str
+    area: float
+    second_moment: float
+    plastic_modulus: float
+
+
+@dataclass(frozen=True)
+class Material:
+    """A material: E and strengths in kN/m², density in kg/m³, thermal expansion in 1/K."""
+
+    name: str
+    youngs_modulus: float
+    density: float
+    tension: float
+    compression: float
+    expansion: float
+
+
+# --- properties from dimensions --------------------------------------------------------------------------
+
+
+def rolled(h: float, b: float, t_w: float, t_f: float, r: float) -> tuple[float, float, float]:
+    """A, I and W_pl of an I-section with fillets of radius r between web and flanges."""
+    clear = h - 2.0 * t_f
+    corner = (1.0 - math.pi / 4.0) * r**2  # each of four fillets: a square less a quarter of a disc
+    centre = (10.0 - 3.0 * math.pi) / (12.0 - 3.0 * math.pi) * r  # of it, from the flange
+    own = (1.0 / 3.0 - math.pi / 16.0 - 1.0 / (9.0 * (4.0 - math.pi))) * r**4  # about its centre
+    arm = 0.5 * clear - centre
+    area = 2.0 * b * t_f + clear * t_w + 4.0 * corner
+    second = (b * h**3 - (b - t_w) * clear**3) / 12.0 + 4.0 * (own + corner * arm**2)
+    plastic = 0.25 * t_w * h**2 + (b - t_w) * (h - t_f) * t_f + 4.0 * corner * arm
+    return area, second, plastic
+
+
+def tube(d: float, t: float) -> tuple[float, float, float]:
+    """A, I and W_pl of a circular hollow section."""
+    inner = d - 2.0 * t
+    area, second = math.pi / 4.0 * (d**2 - inner**2), math.pi / 64.0 * (d**4 - inner**4)
+    return area, second, (d**3 - inner**3) / 6.0
+
+
+def box(b: float, t: float) -> tuple[float, float, float]:
+    """A, I and W_pl of a square hollow section, with corners of radius 1.5 t outside and t inside."""
+    return _less(_rounded(b, 1.5 * t), _rounded(b - 2.0 * t, t))
+
+
+def rectangle(b: float, h: float) -> tuple[float, float, float]:
+    """A, I and W_pl of a solid rectangle."""
+    return b * h, b * h**3 / 12.0, b * h**2 / 4.0
+
+
+def _rounded(side: float, r: float) -> tuple[float, float, float]:
+    """Of a solid square with rounded corners: an I-section without flanges, whose fillets are cut away."""
+    area, second, plastic = rectangle(side, side)
+    cut_away = rolled(side, 0.0, 0.0, 0.0, r)
+    return _less((area, second, plastic), cut_away)
+
+
+def _less(one: tuple[float, float, float], other: tuple[float, float, float]) -> tuple[float, float, float]:
+    return one[0] - other[0], one[1] - other[1], one[2] - other[2]
+
+
+_SHAPES: dict[str, Callable[..., tuple[float, float, float]]] = {"I": rolled, "tube": tube, "box": box}
+
+
+# --- by name ---------------------------------------------------------------------------------------------
+
+
+@cache
+def _tables() -> tuple[dict[str, Section], dict[str, Material]]:
+    held = json.loads((files("assets") / "sections.json").read_text(encoding="utf-8"))
+    sections = [
+        _section(f"{family} {size}", _SHAPES[of["shape"]](*dimensions))
+        for family, of in held["families"].items()
+        for size, dimensions in of["sizes"].items()
+    ]
+    materials = [
+        Material(
+            name,
+            of["youngs_modulus"] * _GPA,
+            float(of["density"]),
+            of["tension"] * _MPA,
+            of["compression"] * _MPA,
+            of["expansion"],
+        )
+        for name, of in held["materials"].items()
+    ]
+    return {each.name: each for each in sections}, {each.name: each for each in materials}
+
+
+def _section(name: str, in_mm: tuple[float, float, float]) -> Section:
+    area, second, plastic = (
+        float(f"{value * 10.0 ** (-3 * power):.6g}") for value, power in zip(in_mm, (2, 4, 3), strict=True)
+    )
+    return Section(name, area, second, plastic)
+
+
+class _Names(Collection[str]):
+    """The names of a table, which is not read before they are asked for."""
+
+    def __init__(self, table: int) -> None:
+        self._table = table
+
+    def __contains__(self, name: object) -> bool:
+        return name in _tables()[self._table]
+
+    def __iter__(self) -> Any:
+        return iter(_tables()[self._table])
+
+    def __len__(self) -> int:
+        return len(_tables()[self._table])
+
+
+SECTIONS, MATERIALS = _Names(0), _Names(1)
+
+
+def section_named(name: str) -> Section | None:
+    """The section of a name, whatever its capitals and spaces: "ipe200", "SHS 100x5", "rectangle 300x500"."""
+    wanted = _folded(name)
+    if found := _RECTANGLE.fullmatch(wanted):
+        b, h = map(float, found.groups())
+        sound = 0.0 < b < LARGEST and 0.0 < h < LARGEST
+        return _section(f"rectangle {b:.12g}×{h:.12g}", rectangle(b, h)) if sound else None
+    if (square := _SQUARE.fullmatch(wanted)) and square[1] == f"shs {square[2]}":
+        wanted = f"{square[1]}×{square[3]}"
+    return next((each for known, each in _tables()[0].items() if _folded(known) == wanted), None)
+
+
+def material_named(name: str) -> Material | None:
+    """The material of a name, whatever its capitals and spaces."""
+    wanted = _folded(name)
+    return next((each for known, each in _tables()[1].items() if _folded(known) == wanted), None)
+
+
+@cache
+def _folded(name: str) -> str:
+    tidy = re.sub(r"\s+", "", name).casefold()
+    tidy = re.sub(r"(?<=\d)[x*](?=\d)", "×", tidy)
+    return re.sub(r"^(ipe|hea|heb|chs|shs|rectangle|rect|timber|concrete)", r"\1 ", tidy)
+
+
+def check_section(value: Any, where: str) -> str:
+    """The usual spelling of a section's name, or FieldError."""
+    if (found := section_named(_text(value, where, "section"))) is not None:
+        return found.name
+    family = value.strip()[:3].upper()
+    sizes = [name.removeprefix(f"{family} ") for name in SECTIONS if name.startswith(f"{family} ")]
+    if sizes:
+        raise FieldError(f"{where}: There is no section '{cut(value)}'; {family} come in {', '.join(sizes)}.")
+    raise FieldError(
+        f"{where}: There is no section '{cut(value)}'; write it like IPE 200, HEA 200, HEB 200, CHS 60.3×4,"
+        f" SHS 100×5 or {RECTANGLE} (mm)."
+    )
+
+
+def check_material(value: Any, where: str) -> str:
+    """The usual spelling of a material's name, or FieldError."""
+    found = material_named(_text(value, where, "material"))
+    if found is None:
+        raise FieldError(f"{where}: {missing('materials', value, MATERIALS)}")
+    return found.name
+
+
+def _text(value: Any, where: str, what: str) -> str:
+    if not isinstance(value, str):
+        raise FieldError(f"{where}: {what} is {quoted(value)}; it must be a name.")
+    return str(value)
+
+
+# --- what they give to rods ------------------------------------------------------------------------------
+
+
+NAMES = ("section", "material")  # Fields of rods
+
+
+def given_by(section: str | None = None, material: str | None = None) -> dict[str, Any]:
+    """What rods of a section and a material are given, by Field; a section alone is of the usual material."""
+    found: dict[str, Any] = {}
+    profile = section_named(section) if section is not None else None
+    if profile is not None:
+        found = {"area": profile.area, "second_moment": profile.second_moment}
+        material = USUAL_MATERIAL if material is None else material
+    substance = material_named(material) if material is not None else None
+    if substance is not None:
+        found["material"] = substance.name
+        found |= {"youngs_modulus": substance.youngs_modulus, "thermal_expansion": substance.expansion}
+        if profile is not None:
+            found |= by_area(substance, profile.area)
+    return found
+
+
+def by_area(material: Material, area: float) -> dict[str, float]:
+    """What rods of a material with an area (m²) are given, by Field."""
+    return {
+        "density": _tidy(material.density * area),
+        "tensile_strength": _tidy(material.tension * area),
+        "compressive_strength": _tidy(material.compression * area),
+    }
+
+
+def _tidy(value: float) -> float:
+    return float(f"{value:.9g}")

@@ -1,0 +1,146 @@
+"""Dividing: members as chains of shorter ones, so that loads find a particle inside and buckling is followed closely."""
+
+from __future__ import annotations
+
+import itertools
+from collections.abc import Sequence
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from components.derived import chord_rotation
+from components.field import SAVED
+from components.model import Model
+from components.particle import Particle
+from components.rod import Rod
+from components.slider import SetSliders
+from systems.edit import Refusal
+
+MOST_PARTS = 1000
+DIVISIONS = {2: "divide in two", 4: "divide in four"}  # titles of what menus offer, by the number of parts
+# Half a rod has half of the first and twice the others; sliders that move these move the first part only.
+_WITH_LENGTH, _AGAINST_LENGTH = ("prescribed_rest_length",), ("damping", "bending_damping")
+
+Numbers = NDArray[np.float64]
+
+
+def divide(model: Model, rods: Sequence[Rod], parts: int = 2) -> list[Rod]:
+    """Divide rods into equally long ones, as one edit; returns the new ones, in order. Raises Refusal."""
+    if isinstance(parts, bool) or not isinstance(parts, int) or not 2 <= parts <= MOST_PARTS:
+        raise Refusal(f"A rod is divided into 2 to {MOST_PARTS} equal parts, not {parts!r:.40}.")
+    places = np.arange(1, parts) / parts
+    with model.transaction(f"divide {model.describe(rods[0]) if len(rods) == 1 else f'{len(rods)} rods'}"):
+        return [part for rod in rods for part in divide_at(model, rod, places)]
+
+
+def divide_at(model: Model, rod: Rod, places: Sequence[float] | Numbers) -> list[Rod]:
+    """Divide a rod at places, as shares of its length from its start; returns its parts. Raises Refusal.
+
+    The parts bend, weigh, bear and are damped as the rod did, which is the first of them now, and the state is that of
+    its curve. Hinges stay at its ends.
+    """
+    name = model.describe(rod)
+    if rod.bending_stiffness == 0.0:
+        raise Refusal(
+            f"{name[:1].upper()}{name[1:]} does not bend, and pinned bars in a line are a mechanism; make it rigid or"
+            " give it a bending stiffness first."
+        )
+    shares = np.asarray(places, dtype=np.float64)
+    lengths = np.diff(shares, prepend=0.0, append=1.0)
+    if not (lengths > 0.0).all():
+        raise Refusal(f"{name}: the places where it is divided must ascend between 0 and 1.")
+    ends, last = rod.ends, len(lengths) - 1
+    with model.transaction(f"divide {name}"):
+        between = _particles(model, rod, shares)
+        chain = [ends[0], *between, ends[1]]
+        pairs = [(first.row, second.row) for first, second in itertools.pairwise(chain)]
+        hinged = np.zeros((last + 1, 2), dtype=bool)
+        hinged[0, 0], hinged[last, 1] = rod.hinged
+        columns = _columns(model, rod, lengths) | {"hinged": hinged}
+        names = _names(model, rod, last + 1)
+        for field, values in columns.items():
+            model.assign([rod], field, values[:1])
+        model.assign([rod], "between", [pairs[0]])
+        model.assign([rod], "name", names[:1])
+        rest = {field: values[1:] for field, values in columns.items()}
+        made = model.create(Rod, last, name=names[1:], between=pairs[1:], **rest)
+        _let_sliders_move(model, rod, made)
+        if kept := model.foreign.get(rod.entity):
+            model.foreign.update({part.entity: kept for part in made})
+    return [rod, *made]
+
+
+def _columns(model: Model, rod: Rod, lengths: Numbers) -> dict[str, Any]:
+    """What the parts have, by Field."""
+    row, table = rod.row, model.rods
+    columns = {}
+    for field in table.fields_in(*SAVED):
+        if field.name in ("name", "between", "hinged"):
+            continue
+        values = np.repeat(table.column(field.name)[row : row + 1], len(lengths), axis=0)
+        if field.name in _WITH_LENGTH:
+            values = values * lengths
+        elif field.name in _AGAINST_LENGTH:
+            values = values / lengths
+        columns[field.name] = values
+    return columns
+
+
+def _names(model: Model, rod: Rod, count: int) -> list[str]:
+    """The rod's name with numbers from 1 on, behind its own if they are taken."""
+    stem = rod.name
+    while model.rods.taken(wanted := [f"{stem} {number}" for number in range(1, count + 1)]):
+        stem += " 1"
+    return wanted
+
+
+def _particles(model: Model, rod: Rod, shares: Numbers) -> list[Particle]:
+    """New particles on the rod as it is bent now: its cubic between the slopes of its rigid ends."""
+    first, second = rod.ends
+    rows = [first.row, second.row]
+    particles, at = model.particles, shares[:, None]
+
+    def along(column: str) -> Any:
+        start, end = particles.column(column)[rows]
+        return start + np.multiply.outer(shares, end - start)
+
+    chord = chord_rotation(model)[rod.row]
+    start, end = _slopes(model, rod, float(chord))
+    present = np.subtract(second.position, first.position) + np.subtract(
+        second.displacement, first.displacement
+    )
+    across = start * at * (1.0 - at) ** 2 - end * at**2 * (1.0 - at)
+    turned = start * (1.0 - 4.0 * shares + 3.0 * shares**2) + end * (3.0 * shares**2 - 2.0 * shares)
+    return model.create(
+        Particle,
+        len(shares),
+        position=along("position"),
+        displacement=along("displacement") + across * [-present[1], present[0]],
+        velocity=along("velocity"),
+        rotation=chord + turned,
+        angular_velocity=along("angular_velocity"),
+        radius=min(first.radius, second.radius),
+    )
+
+
+def _slopes(model: Model, rod: Rod, chord: float) -> tuple[float, float]:
+    """Of the ends of a rod, to its chord; a hinged end turns as far as its moment is zero."""
+    rigid = model.rods.turning_shares[rod.row] > 0.0
+    start, end = (particle.rotation - chord for particle in rod.ends)
+    if not rigid.any():
+        return 0.0, 0.0
+    return (start if rigid[0] else -0.5 * end), (end if rigid[1] else -0.5 * start)
+
+
+def _let_sliders_move(model: Model, rod: Rod, parts: Sequence[Rod]) -> None:
+    """Let sliders that move a number of the rod move that of the other parts as well."""
+    apart = (*_WITH_LENGTH, *_AGAINST_LENGTH)
+    sliders = []
+    for slider in model.sliders:
+        own = [aim for aim in slider.aims if aim.element is rod and aim.field not in apart]
+        added = tuple(replace(aim, element=part) for aim in own for part in parts)
+        sliders.append(replace(slider, aims=slider.aims + added))
+    if tuple(sliders) != model.sliders:
+        model.execute(SetSliders(tuple(sliders)))

@@ -1,0 +1,124 @@
+"""Buckling modes in the window: order, titles, swinging, and how they go away."""
+
+import json
+import math
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from components.camera import Viewport
+from game import Session
+from game.commands.command_line import main
+from game.documents.shapes import PERIOD, NoShape, buckling_shapes
+from systems.render.marks import Text
+from systems.render.picture import compose
+from systems.render.theme import load_theme
+from tests.verification.test_buckling import CLAMPED, HEADS, column
+
+
+def opened(parts: int = 4) -> Session:
+    session = Session.open(column(parts, CLAMPED, HEADS["free"]))
+    session.view.camera.viewport = Viewport(0, 0, 800, 600)
+    session.view.fit(session.model)
+    return session
+
+
+def shown(session: Session) -> str:
+    session.update_view()
+    return session.view.shape.title if session.view.shape is not None else ""
+
+
+def test_buckling_modes_come_before_natural_modes() -> None:
+    session, titles = opened(), []
+    for _ in range(4):
+        session.press("b")
+        titles.append(shown(session))
+    factor = session.buckling().factors[0]
+    assert titles[0].startswith(
+        f"Buckling mode 1: load × {factor:.4g}; effective length 2000 cm (R0, R1, R2 and R3)"
+    )
+    assert [title[:15] for title in titles[1:3]] == ["Buckling mode 2", "Buckling mode 3"]
+    assert titles[3].startswith("Mode 1 of ")
+    assert titles[0] in compose(session.model, _with_first(session), load_theme()).texts
+
+
+def _with_first(session: Session):
+    session.document.shapes.show(buckling_shapes(session.model)[0])
+    session.update_view()
+    return session.view
+
+
+def test_a_shape_swings_and_escape_hides_it() -> None:
+    session = opened()
+    session.press("b")
+    session.update_view()
+    assert session.view.swing == 1.0
+    still = compose(session.model, session.view, load_theme())
+    session.update_view(0.5 * PERIOD)
+    assert session.view.swing == pytest.approx(-1.0)
+    assert _drawn(compose(session.model, session.view, load_theme())) != _drawn(still)
+    session.update_view(0.5 * PERIOD)
+    assert session.view.swing == pytest.approx(1.0)
+    session.press("escape")
+    assert shown(session) == ""
+    assert session.view.swing == 1.0
+
+
+def _drawn(picture) -> bytes:
+    return b"".join(mark.start.round(3).tobytes() for mark in picture.marks if hasattr(mark, "start"))
+
+
+def test_an_edit_and_a_new_load_take_it_away() -> None:
+    session = opened()
+    session.press("b")
+    assert shown(session)
+    session.particles["P4"].force = (0.0, -2.0)
+    assert shown(session) == ""
+    session.press("b")
+    assert f"load × {session.buckling().factors[0]:.4g}" in shown(session)
+
+
+def test_what_is_no_danger_is_left_out() -> None:
+    """A truss that would be shortened by half of its length first, and a column that is pulled."""
+    session = Session.open("isostatic")
+    session.press("b")
+    assert shown(session) == "Mode 1 of 3: 347.6 Hz"
+    assert buckling_shapes(session.model)
+    session = Session.open(column(2, CLAMPED, {"force": [0.0, 1.0]}))
+    session.press("b")
+    assert shown(session).startswith("Mode 1 of ")
+    with pytest.raises(NoShape, match="Nothing is compressed"):
+        buckling_shapes(session.model)
+
+
+def test_a_picture_of_a_buckling_mode(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    path = tmp_path / "column.json"
+    path.write_text(json.dumps(column(2, CLAMPED, HEADS["free"])))
+    words = [
+        "render",
+        str(path),
+        "--size",
+        "320x240",
+        "--output",
+        str(tmp_path / "mode.png"),
+        "--buckling-mode",
+    ]
+    assert main([*words, "1"]) == 0
+    assert main([*words, "90"]) == 2
+    assert "There is no buckling mode 90; there are only" in capsys.readouterr().err
+    assert main(["render", "collision_i", *words[2:], "1"]) == 2
+    assert "No force or load acts on the rods" in capsys.readouterr().err
+    assert math.isfinite(np.array(Session.open(str(path)).buckling().factors).sum())
+
+
+def test_labels_stay_where_they_are_while_a_shape_swings() -> None:
+    session = opened()
+    session.press("b")
+    placed: dict = {}
+    pictures = []
+    for elapsed in (0.0, 0.2 * PERIOD, 0.3 * PERIOD, 0.17 * PERIOD):
+        session.update_view(elapsed)
+        picture = compose(session.model, session.view, load_theme(), placed)
+        pictures.append({mark.text: (mark.x, mark.y) for mark in picture.marks if isinstance(mark, Text)})
+    assert all(picture == pictures[0] for picture in pictures)
