@@ -31,6 +31,16 @@ class Rectangle:
     def bottom(self) -> float:
         return self.top + self.height
 
+    @property
+    def middle(self) -> Vector:
+        """The pixel in the middle."""
+        return self.left + self.width / 2.0, self.top + self.height / 2.0
+
+    @property
+    def box(self) -> tuple[float, float, float, float]:
+        """Left, top, width and height."""
+        return self.left, self.top, self.width, self.height
+
     def contains(self, pixel: Vector) -> bool:
         """True if the pixel lies inside."""
         x, y = pixel
@@ -45,11 +55,6 @@ class Viewport(Rectangle):
     top: int = 0
     width: int = 600
     height: int = 600
-
-    @property
-    def middle(self) -> Vector:
-        """The pixel in the middle."""
-        return self.left + self.width / 2.0, self.top + self.height / 2.0
 
 
 @dataclass

@@ -104,9 +104,7 @@ def derive_inertia(world: World) -> None:
     ends, length = rods.between.ravel(), rods.rest_length
     count = np.bincount(ends, minlength=particles.count)
     rigid = (rods.turning_shares > 0.0).ravel()
-    with np.errstate(
-        over="ignore", divide="ignore", invalid="ignore"
-    ):  # such numbers are reported before a run
+    with np.errstate(all="ignore"):  # such numbers are reported before a run
         radius = np.minimum(1.5 * rods.bending_stiffness / rods.stiffness, length**2 / 24.0)
         mass = np.repeat(rods.density * length, 2)
         mass = np.where(mass > 0.0, mass, (2.0 * particles.mass / count)[ends])

@@ -75,9 +75,7 @@ def _pulls(model: Model) -> tuple[Vectors, Vectors]:
     along = along / np.maximum(np.hypot(*along.T), 1e-300)[:, None]
     rate = ((particles.velocity[last] - particles.velocity[first]) * along).sum(axis=1)
     force, damper = rods.axial_force, rods.damping * rate
-    of_cable = np.where(
-        force > 0.0, np.maximum(damper, -force), 0.0
-    )  # none while it is slack, never compression
+    of_cable = np.where(force > 0.0, np.maximum(damper, -force), 0.0)  # none while slack, never compression
     total: Vectors = force + np.where(rods.tension_only, of_cable, damper)
     return total, along
 

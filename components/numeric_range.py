@@ -17,13 +17,8 @@ _TABLES = ("particles", "rods", "loads", "environment", "settings")
 _FOLLOWING = ("rest_length", "mass")  # derived, from positions that may be too near or too far
 _OF_SECTIONS = "stiffness", "bending_stiffness"  # derived, as E·A and E·I
 _OF_ROTATIONS = "inertia"  # derived, from bending stiffnesses
-_MOVING = (
-    "displacement",
-    "velocity",
-    "rotation",
-    "angular_velocity",
-    "plastic_strain",
-)  # state that a person can type
+# State that a person can type.
+_MOVING = ("displacement", "velocity", "rotation", "angular_velocity", "plastic_strain")
 
 
 def incomputable(model: Model) -> str:

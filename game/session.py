@@ -22,7 +22,7 @@ from components.table import Table
 from components.view import View
 from components.wording import quoted
 from game.documents import models
-from game.documents.document import ModelError
+from game.documents.format import ModelError
 from game.documents.open_documents import ModelFile, Source, file_of
 from game.editor.actions import ACTIONS, WHILE_DRAWING
 from game.editor.context import FAULTS, Context
@@ -85,10 +85,9 @@ class Session(Context):
             wanted={scene.name: scene.systems for scene in scenes},
         )
         super().__init__(model, schedule, pull, scenes, view or View(), file)
-        self.on_press: Callable[[str, Vector | None], None] | None = (
-            None  # called with every press; set by a recorder
-        )
-        self.on_resize: Callable[[], None] | None = None  # called after every change of size; set by a recorder
+        # Called with every press and after every change of size; set by a recorder.
+        self.on_press: Callable[[str, Vector | None], None] | None = None
+        self.on_resize: Callable[[], None] | None = None
         self._clicked: Layer | None = None  # what took the last press, if that was a click
         self._blank = Model()  # what the footer is drawn over
         self.offer_tools()

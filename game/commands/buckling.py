@@ -64,6 +64,10 @@ def _data(model: Model, found: Buckling) -> dict[str, Any]:
     return {
         "factors": found.factors,
         "modes": [dict(zip(names, mode.tolist(), strict=True)) for mode in modes],
+        "leading": [
+            {"rod": rods[row], "effective_length": length if length == length else None}
+            for row, length in zip(found.leading, found.leading_length, strict=True)
+        ],
         "effective_length": lengths,
         "effective_length_factor": {name: length / own[name] for name, length in lengths.items()},
         "axial_force": {
@@ -87,10 +91,13 @@ def _lines(found: Mapping[str, Any]) -> Iterator[str]:
     if not found["factors"]:
         yield found["message"]
         return
-    rows = [["critical load", "factor", "of the lowest", "moves most"]]
-    for number, (factor, mode) in enumerate(zip(found["factors"], found["modes"], strict=True), start=1):
+    rows = [["critical load", "factor", "of the lowest", "moves most", "led by", "effective length, m"]]
+    for number, (factor, mode, by) in enumerate(
+        zip(found["factors"], found["modes"], found["leading"], strict=True), start=1
+    ):
         most = max(mode, key=lambda name: max(map(abs, mode[name])))
-        rows.append([f"mode {number}", as_written(factor), as_written(factor / found["factors"][0]), most])
+        values = [as_written(factor), as_written(factor / found["factors"][0]), most]
+        rows.append([f"mode {number}", *values, by["rod"], as_written(by["effective_length"])])
     yield from aligned(rows)
     pressed = {name: of for name, of in found["axial_force"].items() if of["critical"] < 0.0}
     if pressed:

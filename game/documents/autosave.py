@@ -18,7 +18,7 @@ from components.handle import Handle
 from components.model import Model
 from components.table import Table
 from game.documents import library, models
-from game.documents.document import gathered
+from game.documents.facts import gathered
 from game.documents.locks import lock_file
 from game.documents.open_documents import OpenDocument
 from game.documents.sliders import slider_entries

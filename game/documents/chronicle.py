@@ -15,9 +15,7 @@ from components.rod import can_yield, has_cables
 from systems.base import StopReason
 from systems.run.simulation import Simulation
 
-COLLAPSED = (
-    4.0  # plastic strain over that at which a rod yields, beyond which one that nothing resists is no overshoot
-)
+COLLAPSED = 4.0  # plastic strain over that of first yield, beyond which it is no overshoot if nothing resists
 LARGEST = 100  # rods up to which stability is looked at: a fraction of a millisecond
 MOST_NAMED = 3  # elements in a sentence
 FIRST_IMPACTS, LOOKED_THROUGH = 3, 64  # instants of impacts that are told one by one, among so many impacts
@@ -136,9 +134,8 @@ class Chronicle:
         if count == 0:
             return []
         time = impacts.time
-        first = time[
-            : LOOKED_THROUGH if len(time) == count else 0
-        ]  # of more than are kept, the first are not known
+        known = LOOKED_THROUGH if len(time) == count else 0  # of more than are kept, the first are not known
+        first = time[:known]
         if self._struck[0] != first.tobytes():
             self._struck = first.tobytes(), *self._collisions(first)
         _, told, shown = self._struck

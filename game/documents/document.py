@@ -3,67 +3,50 @@
 from __future__ import annotations
 
 import itertools
-import math
 from collections.abc import Callable, Collection, Mapping, Sequence, Set
 from dataclasses import dataclass, replace
 from types import MappingProxyType, NoneType
-from typing import Annotated, Any, Literal, NoReturn
+from typing import Any
 
 import msgspec
 import numpy as np
-from numpy.typing import NDArray
 
-from components.clock import Clock
 from components.commands import Assign
 from components.departure import Departure
-from components.environment import Environment
-from components.field import MADE, SAVED, Column, Field, FieldError
+from components.field import Column, Field, FieldError
 from components.grid import Grid
 from components.handle import Handle
-from components.load import Load
-from components.mistake import Mistake
 from components.model import ADDED, Model
 from components.particle import Particle, check_spin, check_velocities
 from components.rod import Rod
 from components.section import NAMES, given_by
-from components.settings import Settings
 from components.slider import Slider
 from components.suggestions import missing, remedy
-from components.table import Table, fields_of
+from components.table import fields_of
 from components.wording import cut, is_broken, quoted
+from game.documents.facts import Gathered, gathered, spread
+from game.documents.format import (
+    BY_COLUMNS,
+    FORMAT,
+    SECTIONS,
+    VERSION,
+    ModelError,
+    copied,
+    fail,
+    required,
+    saved_fields,
+)
 from game.documents.mod_data import DATA as FOREIGN
-from game.documents.mod_data import MODS, known_versions, upgraded, versions_in
+from game.documents.mod_data import MODS, upgraded
 from game.documents.sliders import KEY as SLIDERS
-from game.documents.sliders import SliderError, read_sliders, slider_entries
-
-FORMAT = "pinjoint model"
-VERSION = 1
-BY_COLUMNS = "pinjoint model by columns"
+from game.documents.sliders import SliderError, read_sliders
 
 Migration = Callable[[dict[str, Any]], dict[str, Any]]
 MIGRATIONS: dict[int, Migration] = {}  # by version: the function that turns a document into the next version
 
-SECTIONS: Mapping[str, type[Handle]] = MappingProxyType(
-    {
-        "environment": Environment,
-        "settings": Settings,
-        "particles": Particle,
-        "rods": Rod,
-        "loads": Load,
-        "grids": Grid,
-        "state": Clock,
-    }
-)
-REQUIRED: Mapping[str, tuple[str, ...]] = MappingProxyType(
-    {"particles": ("name", "position"), "rods": ("name", "between"), "loads": ("on",)}
-)
 _HEADER = ("format", "version", "title", "description")
 
 Columns = Mapping[str, Column]
-
-
-class ModelError(Mistake, ValueError):
-    """A model that cannot be read or written; the message says where, what is wrong and the remedy."""
 
 
 def parse(document: Mapping[str, Any], source: str = "") -> Model:
@@ -76,8 +59,9 @@ def parse(document: Mapping[str, Any], source: str = "") -> Model:
         raise ModelError(f"{source}: {error}" if source else str(error)) from None
 
 
-def _fail(path: str, problem: str) -> NoReturn:
-    raise ModelError(f"{path}: {problem}")
+def document(model: Model) -> dict[str, Any]:
+    """The document that `parse` turns into this model again, bit for bit. Raises ModelError."""
+    return spread(gathered(model))
 
 
 # --- from a document to a model ----------------------------------------------------------------------
@@ -141,41 +125,52 @@ def _with_data_of_mods(document: Mapping[str, Any]) -> Mapping[str, Any]:
     try:
         return upgraded(document)
     except ValueError as error:
-        _fail(f"$.{MODS}", str(error))
+        fail(f"$.{MODS}", str(error))
 
 
 def _read_added(model: Model, kinds: Any) -> None:
     """Read the elements of mods' kinds; those of mods that are not loaded are kept as they are."""
     path = f"$.{FOREIGN}"
     if not isinstance(kinds, Mapping):
-        _fail(path, f"it must be an object, not {_kind_of(kinds)}.")
+        fail(path, f"it must be an object, not {_kind_of(kinds)}.")
     for name, elements in kinds.items():
         if not isinstance(name, str) or "." not in name or not isinstance(elements, list | tuple):
-            _fail(path, f'{quoted(name)} must be like "mod.Kind": […].')
+            fail(path, f'{quoted(name)} must be like "mod.Kind": […].')
         if name not in ADDED:
             _refuse_misspelt(name, ADDED, path)
-            model.foreign_kinds[name] = _copied(elements, f"{path}.{name}")
+            model.foreign_kinds[name] = copied(elements, f"{path}.{name}")
     for name, kind in ADDED.items():  # kinds that refer to others come after them
         if name in kinds:
             _read(model, _section(f"{path}.{name}", kind, kinds[name]))
 
 
+def _by_elements(document: Any) -> Any:
+    """A document in its usual form, in which it may be already."""
+    stated = document.get("format") if isinstance(document, Mapping) else None
+    if not (isinstance(stated, str) and stated == BY_COLUMNS):
+        return document
+    try:
+        return spread(msgspec.convert(document, Gathered))
+    except (msgspec.ValidationError, ValueError, IndexError, TypeError, AttributeError) as error:
+        fail("$", f"its columns do not fit together ({error}); it was damaged or changed by hand.")
+
+
 def _migrated(document: Any) -> Mapping[str, Any]:
     """The document in the present version of the format."""
     if not isinstance(document, Mapping):
-        _fail("$", f"it must be an object with the key 'format', not {_kind_of(document)}.")
+        fail("$", f"it must be an object with the key 'format', not {_kind_of(document)}.")
     stated = document.get("format")
     if not isinstance(stated, str) or stated != FORMAT:
-        _fail("$.format", f'it is {quoted(stated)}; a model file has "format": "{FORMAT}".')
+        fail("$.format", f'it is {quoted(stated)}; a model file has "format": "{FORMAT}".')
     version = document.get("version")
     if isinstance(version, bool) or not isinstance(version, int):
-        _fail("$.version", f'it is {quoted(version)}; it must be a whole number, now "version": {VERSION}.')
+        fail("$.version", f'it is {quoted(version)}; it must be a whole number, now "version": {VERSION}.')
     if version > VERSION:
-        _fail("$.version", f"it is {version}, but this program reads up to {VERSION}; update Pinjoint.")
+        fail("$.version", f"it is {version}, but this program reads up to {VERSION}; update Pinjoint.")
     migrated = dict(document)
     for old in range(version, VERSION):
         if old not in MIGRATIONS:
-            _fail("$.version", f"there never was a version {version}; the present one is {VERSION}.")
+            fail("$.version", f"there never was a version {version}; the present one is {VERSION}.")
         migrated = MIGRATIONS[old](migrated)
     state = migrated.get("state")
     if isinstance(state, Mapping) and "paths" in state and "collision_state" not in state:  # its earlier name
@@ -187,47 +182,36 @@ def _migrated(document: Any) -> Mapping[str, Any]:
 def _text(document: Mapping[str, Any], key: str) -> str:
     text = document.get(key, "")
     if not isinstance(text, str):
-        _fail(f"$.{key}", f"it is {quoted(text)}; it must be a text.")
+        fail(f"$.{key}", f"it is {quoted(text)}; it must be a text.")
     if is_broken(text):
-        _fail(f"$.{key}", f"it is {text!a}; half of a character cannot be kept in a file.")
+        fail(f"$.{key}", f"it is {text!a}; half of a character cannot be kept in a file.")
     return text
 
 
 def _section(path: str, kind: type[Handle], value: Any) -> _Section:
     """The section at a path once its shape and all its keys are checked."""
     if not kind.single and not isinstance(value, list | tuple):
-        _fail(path, f"it must be a list, not {_kind_of(value)}.")
+        fail(path, f"it must be a list, not {_kind_of(value)}.")
     elements = [value] if kind.single else value
     for row, element in enumerate(elements):
         if not isinstance(element, Mapping):
-            _fail(path if kind.single else f"{path}[{row}]", f"it must be an object, not {_kind_of(element)}.")
+            fail(path if kind.single else f"{path}[{row}]", f"it must be an object, not {_kind_of(element)}.")
     section = _Section(path, kind, elements, set().union(*elements))
-    known = [*(field.key for field in _saved_fields(kind) if not field.component), FOREIGN]
+    known = [*(field.key for field in saved_fields(kind) if not field.component), FOREIGN]
     if not section.keys <= set(known):
         for row, element in enumerate(elements):
             _refuse_unknown(element, known, section.where(row), kind)
-    for key in _required(kind):
+    for key in required(kind):
         for row, element in enumerate(elements):
             if key not in element:
-                _fail(section.where(row), f"its '{key}' is missing; every {kind.noun} needs one.")
+                fail(section.where(row), f"its '{key}' is missing; every {kind.noun} needs one.")
     return section
-
-
-def _required(kind: type[Handle]) -> Sequence[str]:
-    """The keys that every element of a kind must have."""
-    if kind.table in REQUIRED or kind not in ADDED.values():
-        return REQUIRED.get(kind.table, ())
-    return [field.key for field in fields_of(kind) if field.name in kind.points or field.references]
-
-
-def _saved_fields(kind: type[Handle]) -> list[Field[Any]]:
-    return [field for field in fields_of(kind) if field.role in SAVED]
 
 
 def _components(kind: type[Handle]) -> dict[str, dict[str, Field[Any]]]:
     """The Fields of mods' components of a kind, by component and key."""
     found: dict[str, dict[str, Field[Any]]] = {}
-    for field in _saved_fields(kind):
+    for field in saved_fields(kind):
         if field.component:
             found.setdefault(field.component, {})[field.key] = field
     return found
@@ -240,10 +224,10 @@ def _refuse_unknown(
         if key in keys:
             continue
         if kind is not None and key in {field.key for field in fields_of(kind) if not field.component}:
-            _fail(where, f"'{key}' is computed from the rest and is no part of a model file; remove it.")
+            fail(where, f"'{key}' is computed from the rest and is no part of a model file; remove it.")
         if added := [name for name, of in ADDED.items() if kind is None and str(key) in (name, of.table)]:
-            _fail(where, f'there is no key \'{key}\' here; write "{FOREIGN}": {{"{added[0]}": […]}}.')
-        _fail(where, f"there is no key '{cut(str(key))}' here; {remedy(str(key), keys)}")
+            fail(where, f'there is no key \'{key}\' here; write "{FOREIGN}": {{"{added[0]}": […]}}.')
+        fail(where, f"there is no key '{cut(str(key))}' here; {remedy(str(key), keys)}")
 
 
 def _kind_of(value: Any) -> str:
@@ -258,7 +242,7 @@ def _read(model: Model, section: _Section) -> None:
         _check_components(section)
     if kind is Rod and not section.keys.isdisjoint(NAMES):
         section = _with_numbers(section)
-    columns = {field.name: _column(model, section, field) for field in _saved_fields(kind)}
+    columns = {field.name: _column(model, section, field) for field in saved_fields(kind)}
     if kind in _CHECKS:
         _CHECKS[kind](model, section, columns)
     handles: Sequence[Handle]
@@ -322,10 +306,10 @@ def _names(section: _Section, field: Field[Any]) -> Column:
     for row, element in enumerate(section.elements):
         name = element["name"] if "name" in element else next(free)
         if not isinstance(name, str) or not name.strip():
-            _fail(section.where(row, "name"), f"it is {quoted(name)}; it must be a text that is not empty.")
+            fail(section.where(row, "name"), f"it is {quoted(name)}; it must be a text that is not empty.")
         if name in row_of:
             first = section.where(row_of[name])
-            _fail(section.where(row, "name"), f"{first} has this name already; choose another.")
+            fail(section.where(row, "name"), f"{first} has this name already; choose another.")
         row_of[name] = row
         column[row] = str(name)
     return column
@@ -343,10 +327,10 @@ def _rows_by_name(model: Model, section: _Section, field: Field[Any]) -> Column:
         count = field.shape[0] if field.shape else 1
         if not isinstance(names, list | tuple) or [isinstance(n, str) for n in names] != [True] * count:
             form = 'the names of two particles, ["A", "B"]' if field.shape else "the name of a particle"
-            _fail(section.where(row, field.key), f"it is {quoted(value)}; it must be {form}.")
+            fail(section.where(row, field.key), f"it is {quoted(value)}; it must be {form}.")
         for name in names:
             if name not in row_of:
-                _fail(section.where(row, field.key), missing(target.name, name, row_of))
+                fail(section.where(row, field.key), missing(target.name, name, row_of))
         column[row] = [row_of[name] for name in names] if field.shape else row_of[value]
     return column
 
@@ -368,12 +352,12 @@ def _check_rods(model: Model, section: _Section, columns: Columns) -> None:
     ends = np.sort(columns["between"].astype(np.int64), axis=1)
     for row in np.flatnonzero(ends[:, 0] == ends[:, 1])[:1].tolist():
         problem = f"both ends are '{model.particles.names[ends[row, 0]]}'; a rod needs two different particles."
-        _fail(section.where(row, "between"), problem)
+        fail(section.where(row, "between"), problem)
     pairs = ends[:, 0] * model.particles.count + ends[:, 1]
     _, first, pair = np.unique(pairs, return_index=True, return_inverse=True)
     for row in np.flatnonzero(first[pair] != np.arange(len(ends)))[:1].tolist():
         other = section.where(int(first[pair[row]]))
-        _fail(section.where(row, "between"), f"{other} joins these particles already; remove one of the two.")
+        fail(section.where(row, "between"), f"{other} joins these particles already; remove one of the two.")
     _check_lengths(model, section, columns)
 
 
@@ -383,14 +367,14 @@ def _check_lengths(model: Model, section: _Section, columns: Columns) -> None:
     usable = (lengths > 0.0) | ~np.isnan(columns["prescribed_rest_length"])
     for row in np.flatnonzero(~usable)[:1].tolist():
         remedy = "give it a 'rest_length' or place them apart"
-        _fail(section.where(row), f"the distance between its ends is 0 m; {remedy}.")
+        fail(section.where(row), f"the distance between its ends is 0 m; {remedy}.")
 
 
 def _check_grids(model: Model, section: _Section, columns: Columns) -> None:
     shown = np.flatnonzero(columns["shown"]).tolist()
     if len(shown) > 1:
         problem = f'{section.where(shown[0])} is shown already; give all but one grid "shown": false.'
-        _fail(section.where(shown[1], "shown"), problem)
+        fail(section.where(shown[1], "shown"), problem)
 
 
 _CHECKS: Mapping[type[Handle], Callable[[Model, _Section, Columns], None]] = MappingProxyType(
@@ -409,10 +393,10 @@ def _check_components(section: _Section) -> None:
             continue
         where, components = section.where(row, FOREIGN), element[FOREIGN]
         if not isinstance(components, Mapping):
-            _fail(where, f"it must be an object, not {_kind_of(components)}.")
+            fail(where, f"it must be an object, not {_kind_of(components)}.")
         for name, values in components.items():
             if not isinstance(name, str) or "." not in name or not isinstance(values, Mapping):
-                _fail(where, f'{quoted(name)} must be like "mod.Component": {{…}}.')
+                fail(where, f'{quoted(name)} must be like "mod.Component": {{…}}.')
             if name not in known:
                 _refuse_misspelt(name, known, where)
             if name in known:
@@ -424,7 +408,7 @@ def _refuse_misspelt(name: str, known: Collection[str], where: str) -> None:
     components = itertools.chain.from_iterable(map(_components, (*SECTIONS.values(), *ADDED.values())))
     mod = name.partition(".")[0]
     if mod in {loaded.partition(".")[0] for loaded in (*ADDED, *components)}:
-        _fail(where, f"the mod '{mod}' has no '{cut(name)}' here; {remedy(name, known)}")
+        fail(where, f"the mod '{mod}' has no '{cut(name)}' here; {remedy(name, known)}")
 
 
 def _component_section(section: _Section, component: str) -> _Section:
@@ -441,210 +425,4 @@ def _keep_foreign(model: Model, section: _Section, handles: Sequence[Handle]) ->
             continue
         foreign = {name: part for name, part in element[FOREIGN].items() if name not in known}
         if foreign or not element[FOREIGN]:  # an empty object stays too
-            model.foreign[handle.entity] = _copied(foreign, section.where(row, FOREIGN))
-
-
-def missing_mods(model: Model) -> list[str]:
-    """Names of the mods, not loaded, whose data a model keeps."""
-    kept = [*model.foreign.values(), model.foreign_kinds]
-    return sorted({name.partition(".")[0] for part in kept for name in part})
-
-
-def _copied(value: Any, where: str) -> Any:
-    """A copy of a value that JSON can hold."""
-    if isinstance(value, Mapping) and all(isinstance(key, str) and not is_broken(key) for key in value):
-        return {key: _copied(item, where) for key, item in value.items()}
-    if isinstance(value, list | tuple):
-        return [_copied(item, where) for item in value]
-    if isinstance(value, str) and is_broken(value):
-        _fail(where, f"{value!a} holds half of a character, which cannot be kept in a file.")
-    if value is None or isinstance(value, str | int) or (isinstance(value, float) and math.isfinite(value)):
-        return value
-    _fail(where, f"{quoted(value)} cannot be kept in a model file.")
-
-
-# --- from a model to a document ------------------------------------------------------------------------
-
-
-class Numbers(msgspec.Struct, frozen=True):
-    """Numbers of some elements as they lie in memory, which takes no time. absent: NaN stands for None."""
-
-    kind: Literal["<f8", "<i8", "|b1"]
-    pairs: bool
-    absent: bool
-    data: bytes
-
-    def tolist(self) -> list[Any]:
-        """One value, or pair of them, for each element."""
-        values: list[Any] = np.frombuffer(self.data, self.kind).reshape((-1, 2) if self.pairs else -1).tolist()
-        return [None if value != value else value for value in values] if self.absent else values
-
-
-Count = Annotated[int, msgspec.Meta(ge=0, le=10_000_000)]  # of elements: a damaged number asks for no more
-
-
-class Part(msgspec.Struct, frozen=True, array_like=True):
-    """One fact of some elements: what they hold under a key, or under that of a mod's component. rows: None for all."""
-
-    key: str
-    component: str
-    rows: list[int] | None
-    values: Numbers | list[Any]
-
-
-class Gathered(msgspec.Struct, frozen=True, tag_field="format", tag=BY_COLUMNS):
-    """A document by facts instead of by elements, which is many times as fast to make of a model and to write.
-
-    sections, added: the number of elements of a kind and what they hold, by the key in documents.
-    versions: of mods, by name. sliders: as in documents.
-    """
-
-    version: int
-    title: str
-    description: str
-    sections: dict[str, tuple[Count, list[Part]]]
-    added: dict[str, tuple[Count, list[Part]]]
-    foreign_kinds: dict[str, Any]
-    versions: dict[str, str]
-    sliders: list[Any] = []
-
-
-def document(model: Model) -> dict[str, Any]:
-    """The document that `parse` turns into this model again, bit for bit. Raises ModelError."""
-    return _spread(gathered(model))
-
-
-def gathered(model: Model, sliders: list[Any] | None = None) -> Gathered:
-    """The same document by facts, which `parse` takes, too. Raises ModelError. sliders: as the document holds them."""
-    sections = {name: _parts(model, kind) for name, kind in SECTIONS.items()}
-    added = {name: _parts(model, kind) for name, kind in ADDED.items() if kind.table in model.tables}
-    versions = known_versions(model.foreign_versions)
-    sliders = slider_entries(model) if sliders is None else sliders
-    title, description = model.title, model.description
-    return Gathered(VERSION, title, description, sections, added, model.foreign_kinds, versions, sliders)
-
-
-def _spread(facts: Gathered) -> dict[str, Any]:
-    made: dict[str, Any] = {"format": FORMAT, "version": facts.version}
-    made |= {key: text for key in ("title", "description") if (text := getattr(facts, key))}
-    for name, counted in facts.sections.items():
-        elements, kind = _elements(*counted), SECTIONS.get(name)
-        if kind is None or not kind.single:
-            made |= {name: elements} if elements else {}
-        elif elements[0] or kind is not Clock:
-            made[name] = elements[0]
-    made |= {SLIDERS: facts.sliders} if facts.sliders else {}
-    added = {name: elements for name, counted in facts.added.items() if (elements := _elements(*counted))}
-    added |= facts.foreign_kinds
-    made |= {FOREIGN: dict(sorted(added.items()))} if added else {}
-    return _with_versions(made, facts.versions)
-
-
-def _with_versions(made: dict[str, Any], known: Mapping[str, str]) -> dict[str, Any]:
-    """The document with the versions of the mods whose data it holds, of those that are known."""
-    versions = versions_in(made, known)
-    return made | ({MODS: versions} if versions else {})
-
-
-def _by_elements(document: Any) -> Any:
-    """A document in its usual form, in which it may be already."""
-    stated = document.get("format") if isinstance(document, Mapping) else None
-    if not (isinstance(stated, str) and stated == BY_COLUMNS):
-        return document
-    try:
-        return _spread(msgspec.convert(document, Gathered))
-    except (msgspec.ValidationError, ValueError, IndexError, TypeError, AttributeError) as error:
-        _fail("$", f"its columns do not fit together ({error}); it was damaged or changed by hand.")
-
-
-def document_of(model: Model, parts: Mapping[type[Handle], NDArray[np.int64]]) -> dict[str, Any]:
-    """The document of some rows alone, by kind, among them those that they refer to. Raises ModelError."""
-    made: dict[str, Any] = {"format": FORMAT, "version": VERSION}
-    elements = {kind: _elements(*_parts(model, kind, rows)) for kind, rows in parts.items() if len(rows)}
-    added = {name: elements.pop(kind) for name, kind in ADDED.items() if kind in elements}
-    made |= {kind.table: found for kind, found in elements.items()}
-    return _with_versions(made | ({FOREIGN: added} if added else {}), known_versions(model.foreign_versions))
-
-
-def _parts(model: Model, kind: type[Handle], rows: NDArray[np.int64] | None = None) -> tuple[int, list[Part]]:
-    """How many rows (None: all), and what they hold but for what is as by default (settings and the like: with that)."""
-    table = model.tables[kind.table]
-    always = {"name", *_required(kind)}
-    chosen = np.arange(table.count) if rows is None else rows
-    parts: list[Part] = []
-    for field in _saved_fields(kind):
-        column = table.column(field.name)[chosen]
-        _refuse_non_finite(model, table, chosen, field, column)
-        held: list[int] | None = None
-        if field.component or not (field.key in always or (kind.single and field.role in MADE)):
-            special = np.flatnonzero(_differs_from_default(field, column))
-            if len(special) < len(column):
-                held, column = special.tolist(), column[special]
-        if held != []:
-            parts.append(Part(field.key, field.component, held, _values(model, field, column)))
-    return len(chosen), [*parts, *_foreign_parts(model, table, chosen)]
-
-
-def _foreign_parts(model: Model, table: Table[Any], chosen: NDArray[np.int64]) -> list[Part]:
-    """What elements keep of mods that are not loaded."""
-    if not model.foreign:
-        return []
-    handles = [table.handles[row] for row in chosen.tolist()]
-    rows = [place for place, handle in enumerate(handles) if handle.entity in model.foreign]
-    kept = [_copied(model.foreign[handles[row].entity], model.describe(handles[row])) for row in rows]
-    return [Part(FOREIGN, "", rows, kept)] if rows else []
-
-
-def _elements(count: int, parts: Sequence[Part]) -> list[dict[str, Any]]:
-    """One object per element."""
-    elements: list[dict[str, Any]] = [{} for _ in range(count)]
-    for part in parts:
-        holding = elements if part.rows is None else [elements[row] for row in part.rows]
-        if part.component:
-            holding = [one.setdefault(FOREIGN, {}).setdefault(part.component, {}) for one in holding]
-        values = part.values.tolist() if isinstance(part.values, Numbers) else part.values
-        for one, value in zip(holding, values, strict=True):
-            one[part.key] = (
-                value if part.key != FOREIGN else dict(sorted({**one.get(FOREIGN, {}), **value}.items()))
-            )
-    return elements
-
-
-def _differs_from_default(field: Field[Any], column: Column) -> NDArray[np.bool_]:
-    """Which rows do not hold the default's very bits, so that -0.0 is not taken for 0.0; shape (n,)."""
-    if field.dtype is str:
-        return np.asarray(column != field.default, dtype=bool)
-    if column.dtype == np.dtype(object):
-        return np.array([value != field.default for value in column], dtype=bool)
-    default = field.allocate(1)
-    word = np.uint64 if default.nbytes % 8 == 0 else np.uint8
-    default = default.view(word).ravel()
-    bits = column.view(word).reshape(len(column), len(default))
-    differs: NDArray[np.bool_] = (bits != default).any(axis=1)
-    return differs
-
-
-def _values(model: Model, field: Field[Any], column: Column) -> Numbers | list[Any]:
-    """What a document holds in place of the entries of a column."""
-    if field.references is not None:
-        column = model.tables[field.references].column("name")[column]
-    if column.dtype != np.dtype(object):
-        kind: Any = column.dtype.newbyteorder("<").str
-        absent = field.nullable and field.dtype is float
-        return Numbers(kind, bool(field.shape), absent, column.astype(kind, copy=False).tobytes())
-    values: list[Any] = column.tolist()
-    return [_copied(value, field.title) for value in values] if field.dtype is object else values
-
-
-def _refuse_non_finite(
-    model: Model, table: Table[Any], rows: NDArray[np.int64], field: Field[Any], column: Column
-) -> None:
-    if field.dtype is not float:
-        return
-    finite = np.isfinite(column) | (np.isnan(column) if field.nullable else False)
-    for row in np.argwhere(~finite)[:1, 0].tolist():
-        element, value = table.handles[rows[row]], field.loaded(column, row)
-        raise ModelError(
-            f"{model.describe(element)}: {field.title} is {value}, which no file can hold;"
-            " rewind or undo to a state before it."
-        )
+            model.foreign[handle.entity] = copied(foreign, section.where(row, FOREIGN))

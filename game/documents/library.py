@@ -66,9 +66,7 @@ def models_folder() -> Path:
 
 def path_of(name: str) -> Path:
     """The file for a name. Raises NameRefused."""
-    name = unicodedata.normalize(
-        "NFC", name.strip()
-    )  # of several ways to write é the one that all systems find
+    name = unicodedata.normalize("NFC", name.strip())  # the way to write é that all systems find
     wrong = sorted({character for character in name if not fits_file_names(character)})
     if not name:
         raise NameRefused("The name is empty; type at least one character.")

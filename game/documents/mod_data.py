@@ -11,9 +11,8 @@ from components.wording import quoted
 DATA = "components"  # the key of the data of mods, at elements and in the document
 MODS = "mods"  # the key of the versions of the mods whose data a document holds
 
-Upgrade = Callable[
-    [dict[str, Any], str], None
-]  # changes a document; given the version of the mod that wrote it
+# Changes a document; given the version of the mod that wrote it.
+Upgrade = Callable[[dict[str, Any], str], None]
 
 VERSIONS: dict[str, str] = {}  # of the mods that add components or kinds, by name
 UPGRADES: dict[str, Upgrade] = {}  # by mod

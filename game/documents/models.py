@@ -23,7 +23,8 @@ import msgspec
 from components.model import Model
 from components.suggestions import nearest
 from components.wording import quoted
-from game.documents.document import ModelError, document, parse
+from game.documents.document import document, parse
+from game.documents.format import ModelError
 
 _ENCODER = msgspec.json.Encoder()
 

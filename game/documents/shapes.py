@@ -14,6 +14,7 @@ from components.field import Role
 from components.mistake import Mistake
 from components.model import Model
 from components.view import Shape
+from components.wording import cut
 from systems.edit.arrows import extent
 
 if TYPE_CHECKING:  # it imports scipy
@@ -22,7 +23,6 @@ if TYPE_CHECKING:  # it imports scipy
 DRAWN_SHARE = 0.12  # of the structure's size that the largest displacement is drawn as
 LOWEST = 10  # mechanisms, and modes, in the round of `next`
 LOWEST_BUCKLING = 3  # buckling modes in it
-ALIKE = 1.0 + 1e-6  # effective lengths up to this ratio count as the same
 PERIOD = 2.4  # s, in which a shape swings to and fro
 LOWEST_OF_LARGE = 50  # modes of structures that are too large for all
 LARGEST = 2000  # rods; shapes of larger structures are left to the command line
@@ -128,17 +128,14 @@ def _meant(model: Model) -> list[Shape]:
 
 
 def _buckled(model: Model, found: Buckling) -> list[Shape]:
-    """The modes with their factors; the lowest with the shortest effective length of a member."""
-    from systems.statics.explain import listed
-
+    """The modes with their factors, and the effective length of the rod whose compression leads each."""
     shapes = []
     for number, (factor, motion) in enumerate(zip(found.factors, found.modes, strict=True), start=1):
         title = f"Buckling mode {number}: load × {written.number(factor)}"
-        if number == 1 and np.isfinite(found.effective_length).any():
-            length = float(np.nanmin(found.effective_length))
-            rows = np.flatnonzero(found.effective_length <= length * ALIKE)
-            names = listed([str(model.rods.column("name")[row]) for row in rows.tolist()])
-            title += f"; effective length {written.displacement(length)} ({names})"
+        row, length = int(found.leading[number - 1]), float(found.leading_length[number - 1])
+        if math.isfinite(length):
+            rod = cut(str(model.rods.column("name")[row]))
+            title += f"; effective length {written.displacement(length)} ({rod})"
         shapes.append(_shape(model, title, motion))
     return shapes
 

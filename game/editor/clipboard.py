@@ -18,7 +18,9 @@ from components.particle import Particle
 from components.rod import Rod
 from components.table import Table, fields_of
 from components.tags import Selected
-from game.documents.document import ModelError, document_of, parse
+from game.documents.document import parse
+from game.documents.facts import document_of
+from game.documents.format import ModelError
 from game.documents.models import laid_out
 from systems.edit import Refusal
 from systems.edit.moving import moving_rows

@@ -7,42 +7,25 @@ from __future__ import annotations
 
 import operator
 from collections.abc import Callable, Iterator, Sequence
-from pathlib import Path
-from typing import ClassVar, TypeVar
+from typing import ClassVar
 
 from components.camera import Viewport
 from components.field import Vector
-from components.handle import Handle
 from components.model import Model
 from components.rod import bends
 from components.settings import NO_DIAGRAMS, Settings
 from components.slider import Place, under
-from components.tags import Selected
 from components.view import Preview, Readout, View
 from game.documents import models
-from game.documents.autosave import Autosave
-from game.documents.chronicle import Happening
-from game.documents.document import missing_mods
-from game.documents.history.history import History
-from game.documents.history.timeline import Timeline
-from game.documents.open_documents import ModelFile, OpenDocument, OpenDocuments, Source, file_of
-from game.editor.clipboard import Part
-from game.editor.host import ProgramPreparation, Waiting, Window
+from game.documents.format import missing_mods
+from game.documents.open_documents import ModelFile, Source, file_of
+from game.editor.workspace import Workspace
 from game.scripts.script import Script
 from systems.base import Mod
-from systems.collision.impacts import Impacts
 from systems.edit.pull import Pull
-from systems.physics.pace import natural_pace
 from systems.render.picture import Stage
-from systems.run.energy import Energy
-from systems.run.real_time import TimeScale
-from systems.run.simulation import Simulation
 from systems.run.system import Time
 from systems.schedule import Schedule
-from systems.statics.events import Event
-
-H = TypeVar("H", bound=Handle)
-
 
 # --- actions ---------------------------------------------------------------------------------------------
 
@@ -255,62 +238,27 @@ FAULTS: list[str] = []  # sentences about mods that failed while the program ran
 PANELS: list[Callable[[Context], Sequence[Readout]]] = []  # panels of mods beside the model
 
 
-class Context:
+class Context(Workspace):
     """The open documents, what is seen of them, and what a person is doing with them.
 
-    schedule: all systems. scenes: the mode, and its transitions. gesture: what is being drawn or dragged.
-    notice: the last sentence said. copied: what was put on the clipboard last, as text and as data.
-    window, autosave, preparation: what a window gives, see host.py; None without one. performing: a script is
-    shown in the window, so input is not for the scenes and no time passes by itself. footer: the strip below
-    the picture meanwhile. lesson: the script that a person asked for. awaited: the simulation that is too large
-    to go on before its step program is compiled. faults_seen: how many faults of mods were shown and taken away.
+    scenes: the mode, and its transitions. gesture: what is being drawn or dragged. performing: a script is shown in the
+    window, so input is not for the scenes and no time passes by itself. footer: the strip below the picture meanwhile.
+    lesson: the script that a person asked for. faults_seen: how many faults of mods were shown and taken away.
     """
 
     def __init__(
         self, model: Model, schedule: Schedule, pull: Pull, scenes: Sequence[Scene], view: View, file: ModelFile
     ) -> None:
-        self.schedule = schedule
-        self.pull = pull
-        self.documents = OpenDocuments(model, schedule, pull, file)
+        super().__init__(model, schedule, pull, file)
         self.scenes = Scenes(scenes)
         self.view = view
         self.gesture: Gesture | None = None
-        self._clipboard = ""
-        self.copied: tuple[str, Part] | None = None
-        self.notice = ""
-        self.window: Window | None = None
-        self.autosave: Autosave | None = None
-        self.preparation: ProgramPreparation | None = None
         self.performing = False
         self.footer: View | None = None
         self.lesson: Script | None = None
-        self.awaited: Simulation | None = None
         self.faults_seen = len(FAULTS)
 
     # --- documents ---------------------------------------------------------------------------------
-
-    @property
-    def document(self) -> OpenDocument:
-        """The document that is open, with its run, its log and its file."""
-        return self.documents.current
-
-    @property
-    def file(self) -> ModelFile:
-        """Where the model is saved again, and its name."""
-        return self.document.file
-
-    def save(self, path: str | Path) -> None:
-        """Write the model, with its present state, to a file."""
-        self.simulation.account_for_edits()
-        models.save(self.model, Path(path))
-
-    def save_as(self, path: str | Path) -> None:
-        """Write the model to a file that is its own from now on. Raises ModelError."""
-        path = Path(path)
-        self.save(path)
-        self.document.file = ModelFile.at(path)
-        self.document.saved = self.model.revision
-        self.notice = f"Saved as '{path.stem}'."
 
     def open_here(self, source: Source | None) -> None:
         """Open another model, an empty one if None; undo goes back to this one. Raises ModelError."""
@@ -342,61 +290,6 @@ class Context:
         self._go_on()
 
     @property
-    def model(self) -> Model:
-        """The model that is open."""
-        return self.document.model
-
-    @property
-    def simulation(self) -> Simulation:
-        """The run of the open document."""
-        return self.document.simulation
-
-    @property
-    def timeline(self) -> Timeline:
-        """The checkpoints of the run, to step back through."""
-        return self.document.timeline
-
-    @property
-    def history(self) -> History:
-        """The undo log of the open document."""
-        return self.document.history
-
-    @property
-    def settings(self) -> Settings:
-        """How the model is computed and drawn."""
-        return self.model.settings
-
-    @property
-    def time(self) -> float:
-        """Simulated time (s)."""
-        return self.model.clock.time
-
-    @property
-    def clock(self) -> TimeScale:
-        """How fast time passes in the window."""
-        return self.document.live.clock
-
-    @property
-    def energy(self) -> Energy:
-        """The energy account of the run."""
-        return self.simulation.energy
-
-    @property
-    def impacts(self) -> Impacts:
-        """The impacts of the run so far, in columns."""
-        return self.simulation.impacts
-
-    @property
-    def remarks(self) -> tuple[Event, ...]:
-        """Events of the run, once it is at rest, that a slowly growing load would not have caused."""
-        return self.document.assessment.remarks
-
-    @property
-    def events(self) -> tuple[Happening, ...]:
-        """What happened in the run so far, in order of time: rods that yield, cables that go slack, collapse, rest."""
-        return self.document.chronicle.happenings
-
-    @property
     def fault(self) -> str:
         """The mod that failed last and why, until Escape is pressed; "" if none did."""
         return FAULTS[-1] if len(FAULTS) > self.faults_seen else ""
@@ -407,26 +300,6 @@ class Context:
     def time_passes(self) -> bool:
         """True while frames let time pass in the document that is open."""
         return self.schedule.is_active(_TIME, self.scene)
-
-    @property
-    def at_beginning(self) -> bool:
-        """True if no time has passed, or restarting took it back."""
-        return self.document.at_beginning
-
-    @property
-    def pace(self) -> float:
-        """Simulated seconds per second shown that suit the model as it is now, whatever a person chose."""
-        return natural_pace(self.model)  # found anew: the clock's may be from any earlier frame
-
-    def settle(self, factors: Sequence[float] | float = (1.0,)) -> str:
-        """Go to the static equilibrium at each load factor in turn, without letting time pass.
-
-        Can be undone. Returns "equilibrium", "neutral equilibrium" or "unstable equilibrium"; or "mechanism",
-        "collapse" or "limit reached" with the last good state; `message` says more. Time moves on to the end of the
-        last load history. Raises ValueError.
-        """
-        status, self.notice = self.document.settle(factors)
-        return status
 
     def restart(self) -> None:
         """Go back to before it was run or settled, keeping all edits. Can be undone."""
@@ -488,26 +361,7 @@ class Context:
             self.document.live.frame(elapsed)
         self.document.chronicle.look()
 
-    def has_program(self, simulation: Simulation) -> bool:
-        """False while a large model waits for another process to compile its step program (see `awaited`)."""
-        self.awaited = None if self.waited_for(simulation) is None else simulation
-        return self.awaited is None
-
-    def waited_for(self, simulation: Simulation) -> Waiting | None:
-        """What a simulation waits for; None if it can go on."""
-        return self.preparation.waits_for(simulation) if self.preparation is not None else None
-
     # --- editing -----------------------------------------------------------------------------------
-
-    @property
-    def can_undo(self) -> bool:
-        """True if there is something to take back."""
-        return self.history.can_undo or self.documents.can_move(-1)
-
-    @property
-    def can_redo(self) -> bool:
-        """True if there is something to repeat."""
-        return self.history.can_redo or self.documents.can_move(1)
 
     def undo(self) -> str:
         """Take back the last edit or run, or the opening of the document; returns what it was, or ""."""
@@ -527,29 +381,6 @@ class Context:
         if opening:
             self.begin_document()
         return opening
-
-    @property
-    def selected(self) -> list[Handle]:
-        """The selected elements, in order of creation."""
-        return self.model.tagged(Selected)
-
-    def selected_of(self, *kinds: type[H]) -> list[H]:
-        """Those of the selected elements that are of these kinds."""
-        return [handle for handle in self.selected if isinstance(handle, kinds)]
-
-    @property
-    def has_selected(self) -> bool:
-        """True if anything is selected."""
-        return self.model.any_tagged(Selected)
-
-    def select(self, *handles: Handle) -> None:
-        """Select exactly these elements; none: deselect."""
-        self.model.tag_only(handles, Selected)
-
-    def name(self, handle: Handle) -> str:
-        """An element as a sentence begins with it, such as "Rod AB"."""
-        described = self.model.describe(handle)
-        return described[:1].upper() + described[1:]
 
     def leave_gesture(self) -> None:
         """End what is being drawn or dragged before something else begins."""
@@ -572,17 +403,6 @@ class Context:
         """Let clicks use a tool from now on; if they use it already, put it away."""
         self.leave_gesture()
         self.view.tool = "" if self.view.tool == tool else tool
-
-    @property
-    def clipboard(self) -> str:
-        """The text that was copied last, here or, with a window, in any program."""
-        return self.window.copied() if self.window is not None else self._clipboard
-
-    @clipboard.setter
-    def clipboard(self, text: str) -> None:
-        self._clipboard = text
-        if self.window is not None:
-            self.window.copy(text)
 
     # --- scene and view ------------------------------------------------------------------------------
 

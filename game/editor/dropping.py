@@ -5,7 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 
 from game.documents import models
-from game.documents.document import ModelError
+from game.documents.format import ModelError
 from game.documents.open_documents import file_of
 from game.editor.context import Context
 from game.scripts.script import Script

@@ -18,12 +18,13 @@ from systems.input.bindings import ADDED_BUTTONS, ADDED_TOOLS, FORCE_METHOD, LIV
 Entry = str | tuple[str, str]  # an action, or an action and the title that suits the place
 Groups = Sequence[Sequence[Entry]]
 
+# They keep it open.
 IN_MENU = (
     "open menu",
     "more tools",
     "choose entry",
     *(f"menu {way}" for way in ("up", "down", "left", "right")),
-)  # keep it open
+)
 
 _PLOT = "probes.plot"  # offered where the mod that plots is there
 _RESULTS = (

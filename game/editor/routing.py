@@ -12,13 +12,7 @@ from systems.render.menu import menu_of
 from systems.render.picture import on_status_bar, panel_at
 from systems.render.theme import load_theme
 
-CLICKS = (
-    "click",
-    "ctrl+click",
-    "double click",
-    "drag",
-    "ctrl+drag",
-)  # the pointer may slip a little in a click
+CLICKS = ("click", "ctrl+click", "double click", "drag", "ctrl+drag")  # the pointer may slip in a click
 ONCE = tuple(click for click in CLICKS if click != "double click")  # a panel that moves up is not closed, too
 BUTTONS = (*CLICKS, "right click")
 AT_POINTER = (*BUTTONS, "wheel up", "wheel down")
@@ -45,11 +39,8 @@ def meaning(context: Context, key: str, pixel: Vector) -> Meaning:
     if for_tools(context, key, pixel):
         on_toolbar = view.strip.contains(pixel)
         return _on_toolbar(context, key, pixel) if on_toolbar else action_for(LIVE[0], key), pixel
-    if (
-        key in ONCE
-        and context.scene in LIVE
-        and (tool := card_button_at(context.model, view, pixel)) is not None
-    ):
+    tool = card_button_at(context.model, view, pixel) if key in ONCE and context.scene in LIVE else None
+    if tool is not None:
         return tool.action if tool.enabled else None, (view.strip.left, view.strip.top)  # as by the toolbar
     if key in AT_POINTER and context.slider_at(pixel):
         return ON_SLIDER.get(key), pixel

@@ -57,9 +57,7 @@ def check_declarations(system: Any) -> System:
         raise ModError(f"{type(system).__name__} is no System; derive it from one of systems.base.")
     for name, hint in get_type_hints(role).items():
         if get_origin(hint) is ClassVar:
-            if isinstance(
-                getattr_static(system, name), property
-            ):  # which might answer differently, or fail, later
+            if isinstance(getattr_static(system, name), property):  # might answer differently, or fail, later
                 raise ModError(f"{type(system).__name__}.{name} is a property; give the value itself.")
             as_declared(getattr(system, name), get_args(hint)[0], f"{type(system).__name__}.{name}")
     made: System = system

@@ -12,7 +12,7 @@ from typing import Any, TextIO
 
 from components.field import Vector
 from components.wording import as_json, cut, is_broken
-from game.documents.document import ModelError
+from game.documents.format import ModelError
 from game.editor.context import FAULTS
 from game.mods.loading import MODS
 from game.mods.mod import INCLUDED, ModError

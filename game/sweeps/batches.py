@@ -13,7 +13,7 @@ from components.field import Column, FieldError
 from components.rod import bends
 from components.settings import AUTOMATIC
 from game.commands.reports.results import reported
-from game.documents.document import ModelError
+from game.documents.format import ModelError
 from game.paths import ENERGIES, EVERY, PathError, Target, locate, settable
 from game.sweeps.batch import Batch
 from game.sweeps.batch_program import BatchProgram

@@ -73,21 +73,13 @@ def shows_card(model: Model, view: View) -> bool:
 def draw_card(view: View, theme: Theme) -> list[Mark]:
     """The card in the middle, the button under the pointer on a plate."""
     card, u = Card(view), view.pixel_ratio
-    left, top, width, height = card.place.left, card.place.top, card.place.width, card.place.height
+    left, top, width, height = card.place.box
     middle = left + width / 2
-    title = Text(
-        "An empty model",
-        middle,
-        top + card.emblem + 28.0 * u,
-        font_size(20.0, u),
-        theme.text,
-        "semibold",
-        "centre",
-    )
+    y, size = top + card.emblem + 28.0 * u, font_size(20.0, u)
     marks: list[Mark] = [
         Panel(left, top, width, height, 12.0 * u, theme.background, theme.line),
         *(_emblem(middle, top + 24.0 * u, u, theme) if card.emblem else []),
-        title,
+        Text("An empty model", middle, y, size, theme.text, "semibold", "centre"),
     ]
     for button in card.buttons:
         marks += _row(button, card.size, view, theme)
@@ -96,7 +88,7 @@ def draw_card(view: View, theme: Theme) -> list[Mark]:
 
 def _row(button: Button, size: int, view: View, theme: Theme) -> list[Mark]:
     """Icon, title and key of a tool."""
-    u, tool, y = view.pixel_ratio, button.tool, button.top + button.height / 2
+    u, tool, y = view.pixel_ratio, button.tool, button.middle[1]
     left, right = button.left + 12.0 * u, button.right - 12.0 * u
     at = np.array([[left + 10.0 * u, y]])
     key = written_key(tool.key) if tool.key else ""

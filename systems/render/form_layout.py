@@ -15,11 +15,7 @@ from components.form import Form, Reading, Tile
 from systems.render.typography import font_size, in_rows, wrapped
 
 WIDEST = 1500.0  # points that tiles spread over
-EDGE, CLOSE_EDGE, SLIM = (
-    16.0,
-    10.0,
-    325.0,
-)  # points around everything; of a viewport less wide than the last, less
+EDGE, CLOSE_EDGE, SLIM = 16.0, 10.0, 325.0  # points around all; in a viewport less wide than the last, less
 LOW = 330.0  # points: a viewport less high does without explanations
 
 TITLE, BOX, BELOW = 18.0, 26.0, 10.0  # points: title above a box, the box, to what follows
@@ -35,10 +31,7 @@ CLOSE, ACCEPT = 24.0, 64.0  # points, side of the button that leaves; width of t
 NARROW, NARROWEST = 140.0, 120.0  # points, a box less wide does not share its row; one of a vector
 TILE, TILE_GAP, CAPTION, PROPORTION = 172.0, 16.0, 38.0, 0.6
 PILL, PILL_WIDTH, PILL_GAP = 40.0, 184.0, 10.0  # points: tiles of a section without pictures
-BESIDE, SEARCH = (
-    985.0,
-    340.0,
-)  # points of width from which the name stands beside the heading, and that it takes there
+BESIDE, SEARCH = 985.0, 340.0  # points of width from which the name stands beside the heading; that it takes
 LOWEST = 0.65  # share of a picture's height that it keeps where one more row fits then
 LEAST_PICTURE = 30.0  # points
 SECTIONS_SEEN = 2  # with pictures, that begin in sight in any window

@@ -26,7 +26,7 @@ from systems.render.marks import (
     Text,
     owners,
 )
-from systems.render.symbols import LARGEST_STAMP, SUPPORT_DEPTH, SYMBOLS, circle, symbol_parts
+from systems.render.symbols import LARGEST_STAMP, SUPPORT_DEPTH, SYMBOLS, circle, turned_parts
 from systems.render.theme import Colour
 from systems.render.typography import WEIGHTS
 
@@ -179,11 +179,9 @@ def _stamps(mark: Stamps, viewport: Viewport) -> Iterator[Mark]:
     if reach <= 4.0 * LARGEST_STAMP:
         yield mark
         return
-    turn = np.array([[1, 0], [0, 1], [-1, 0], [0, -1]])[mark.turns % 4]
-    rotation = np.array([[turn[0], -turn[1]], [turn[1], turn[0]]], dtype=np.float64)
-    for role, corners in symbol_parts(mark.symbol, mark.size, mark.unit):
+    for role, corners in turned_parts(mark):
         colour = mark.ink if role == "ink" else mark.hollow
-        yield from _fills(mark.at[:, None] + corners @ rotation.T, colour, viewport, mark.of)
+        yield from _fills(mark.at[:, None] + corners, colour, viewport, mark.of)
 
 
 def _discs(mark: Discs, viewport: Viewport, unit: float) -> Iterator[Mark]:

@@ -107,7 +107,7 @@ class _Card:
     def marks(self, theme: Theme, heading: str, says: str) -> list[Mark]:
         """The card, its heading, how to go on, and its lines."""
         u, pad, large = self.u, self.pad, font_size(16.0, self.u)
-        left, top, y = self.place.left, self.place.top, self.close.top + self.close.height / 2
+        left, top, y = self.place.left, self.place.top, self.close.middle[1]
         marks: list[Mark] = [
             Panel(left, top, self.width, self.height, 10.0 * u, theme.panel, theme.line),
             Text(heading, left + pad, y, large, theme.text, "semibold"),

@@ -16,14 +16,9 @@ from systems.render.occupancy import FAINT, Occupancy
 ANCHORS = np.array([0.5, 0.35, 0.65, 0.2, 0.8])  # shares of a line where one that leads to it may end
 TRIED = 32  # values of a picture
 _MOST = 16  # lines, since more would confuse
-_TURNS = np.array([0, 1, -1, 2, -2, 3, -3, 4, -4, 5, -5, 6, -6, 7, -7, 8]) * (
-    np.pi / 8.0
-)  # from the best direction
+_TURNS = np.array([0, 1, -1, 2, -2, 3, -3, 4, -4, 5, -5, 6, -6, 7, -7, 8]) * np.pi / 8.0  # from the best way
 _LENGTHS = (14.0, 26.0, 40.0, 58.0, 80.0)  # points
-_STEP, _HALF = (
-    4.0,
-    1.5,
-)  # points between the places where a line is tested, and half the room that it needs there
+_STEP, _HALF = 4.0, 1.5  # points between the places where a line is tested; half the room it needs there
 _FEW = 4  # places of a line that are tested first
 _CLEAR, _OFF_DIAGRAMS = 3.0, 1.0  # points between a value and all else
 
@@ -68,12 +63,10 @@ def lead(
     start = np.clip(end, middle - half[of], middle + half[of])
     order = np.lexsort((place != np.array(former)[of], of))  # stable
     lines = 0
-    for index in order[
-        _are_clear(start[order], end[order], own[of[order]], kin[of[order]], occupancy)
-    ].tolist():
-        if found[of[index]] is None and _take(
-            middle[index], half[of[index]], start[index], end[index], occupancy
-        ):
+    clear = _are_clear(start[order], end[order], own[of[order]], kin[of[order]], occupancy)
+    for index in order[clear].tolist():
+        line = start[index], end[index]
+        if found[of[index]] is None and _take(middle[index], half[of[index]], *line, occupancy):
             (x, y), (from_x, from_y), (to_x, to_y) = (p[index].tolist() for p in (middle, start, end))
             found[of[index]] = Leader(int(place[index]), (x, y), (from_x, from_y), (to_x, to_y))
             lines += 1

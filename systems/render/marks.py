@@ -139,7 +139,7 @@ class Text(NamedTuple):
 
 def cross(place: Rectangle, unit: float, colour: Colour) -> Strokes:
     """The sign on a button that closes something."""
-    x, y, reach = place.left + place.width / 2, place.top + place.height / 2, 4.5 * unit
+    (x, y), reach = place.middle, 4.5 * unit
     start = np.array([[x - reach, y - reach], [x - reach, y + reach]])
     end = np.array([[x + reach, y + reach], [x + reach, y - reach]])
     return Strokes(start, end, 1.6 * unit, colour)

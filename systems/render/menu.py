@@ -20,15 +20,15 @@ _BETWEEN, _EDGE = 7.0, 4.0  # points between groups; above, below, and to the ed
 _RADIUS = 6.0  # points
 
 
-def lay_out_menu(menu: Menu, window: Viewport, unit: float) -> MenuLayout:
-    """The menu beside the place where it opened, inside the window; with the largest type that fits."""
-    layouts = (MenuLayout(menu, window, unit, *size) for size in _SIZES)
-    return next((layout for layout in layouts if layout.fits), MenuLayout(menu, window, unit, *_SIZES[-1]))
-
-
 def menu_of(view: View) -> MenuLayout | None:
-    """The layout of the menu that is open in a view."""
-    return None if view.menu is None else lay_out_menu(view.menu, view.camera.viewport, view.pixel_ratio)
+    """The menu that is open in a view: beside the place where it opened, with the largest type that fits."""
+    if view.menu is None:
+        return None
+    for size in _SIZES:
+        layout = MenuLayout(view.menu, view.camera.viewport, view.pixel_ratio, *size)
+        if layout.fits:
+            break
+    return layout
 
 
 class MenuLayout:
@@ -124,19 +124,15 @@ def draw_menu(view: View, theme: Theme) -> list[Mark]:
     if layout is None:
         return []
     u, size, frame, menu = layout.unit, layout.size, layout.frame, layout.menu
-    marks: list[Mark] = [Panel(*_box(frame), _RADIUS * u, theme.background, theme.line)]
+    marks: list[Mark] = [Panel(*frame.box, _RADIUS * u, theme.background, theme.line)]
     if menu.title:
         title = shortened(menu.title, frame.width - 2 * _PAD * u, size, "semibold")
         y = frame.top + _EDGE * u + layout.head / 2
         marks.append(Text(title, frame.left + _PAD * u, y, size, theme.muted, "semibold"))
     for rule in layout.rules:
         thin = max(round(u), 1)
-        marks.append(
-            boxes(
-                theme.line,
-                (round(rule.left + _PAD * u), round(rule.top), round(rule.width - 2 * _PAD * u), thin),
-            )
-        )
+        left, width = round(rule.left + _PAD * u), round(rule.width - 2 * _PAD * u)
+        marks.append(boxes(theme.line, (left, round(rule.top), width, thin)))
     now = layout.pointed_at(view.pointer)
     for number, (tool, place) in enumerate(zip(menu.entries, layout.entries, strict=True)):
         if number == now:
@@ -146,29 +142,17 @@ def draw_menu(view: View, theme: Theme) -> list[Mark]:
     return marks
 
 
-def _box(place: Rectangle) -> tuple[float, float, float, float]:
-    return place.left, place.top, place.width, place.height
-
-
 def _entry(layout: MenuLayout, tool: Tool, place: Rectangle, theme: Theme) -> list[Mark]:
     """A check mark if it is on, its title, and its key at the right if there is room."""
-    u, size, y = layout.unit, layout.size, place.top + place.height / 2
+    u, size, y = layout.unit, layout.size, place.middle[1]
     ink = theme.text if tool.enabled else faded(theme.muted, 0.5)
     left = place.left + (_PAD + _CHECK) * u
     room = place.right - _PAD * u - left
     title, key = titled(tool), written_key(tool.key) if tool.key else ""
     marks: list[Mark] = [Text(shortened(title, room, size), left, y, size, ink)]
     if key and text_width(title, size) + text_width(key, size) + 0.5 * _GAP * u <= room:
-        marks.append(
-            Text(
-                key,
-                place.right - _PAD * u,
-                y,
-                size,
-                faded(theme.muted, 1.0 if tool.enabled else 0.5),
-                anchor="right",
-            )
-        )
+        paler = faded(theme.muted, 1.0 if tool.enabled else 0.5)
+        marks.append(Text(key, place.right - _PAD * u, y, size, paler, anchor="right"))
     if tool.pressed:
         x = place.left + _PAD * u
         corners = np.array([[x, y], [x + 3.5 * u, y + 3.5 * u], [x + 9.5 * u, y - 4.0 * u]])

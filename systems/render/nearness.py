@@ -22,7 +22,6 @@ _FARTHEST = 80.0  # points from its own, beyond which no label stands by itself
 _MOST_PIECES = 1000  # of one part
 _ROWS = 40  # bits of a code that are left for rows
 _FACTOR, _MARGIN = 1.25, 2.0  # by how much, in points, all else is further away than the own element
-_NEAR, _MANY = 6.0, 200  # points within which parts of places are tested first, and of how many places
 _LEAST_MARGIN = 0.1  # points
 
 Numbers = NDArray[np.float64]
@@ -100,12 +99,8 @@ class Parts:
         factor, margin = np.where(clearly, _FACTOR, 1.0), np.where(clearly, _MARGIN, _LEAST_MARGIN) * self.unit
         limits = np.stack([away * factor + margin for away in (to_line, to_any, to_any)])
         left = np.flatnonzero(to_line < _FARTHEST * self.unit)
-        for most in (
-            (_NEAR * self.unit, np.inf) if len(left) > _MANY else (np.inf,)
-        ):  # what is near rules most out
-            clear = self.are_clear(boxes.some(left), own, kin, np.minimum(limits[:, left], most))
-            left = left[clear]
-        nearest[some[left]] = True
+        clear = self.are_clear(boxes.some(left), own, kin, limits[:, left])
+        nearest[some[left[clear]]] = True
         return nearest
 
     def are_clear(self, boxes: Boxes, own: Codes, kin: Codes, limits: Numbers) -> Truths:

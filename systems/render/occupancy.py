@@ -80,9 +80,7 @@ class Occupancy:
         left, top, right, bottom = cells.T
         free: NDArray[np.bool_] = np.ones(len(cells), dtype=bool)
         blocked = self.taken | (self.lined > covering)
-        wide, tall = (
-            np.frexp(size)[1] - 1 for size in (right - left, bottom - top)
-        )  # -1: nothing of it is seen
+        wide, tall = (np.frexp(size)[1] - 1 for size in (right - left, bottom - top))  # -1: it is not seen
         for columns in range(wide.max(initial=-1) + 1):
             blocked = _doubled(blocked, columns)
             there = blocked.T

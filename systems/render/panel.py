@@ -89,8 +89,7 @@ class _Writer:
             if under or title:
                 marks.append(_grown(place, 0.0, 4.0 * u, faded(theme.text, 0.22 if under else 0.12)))
             if title:
-                x, y = place.left + place.width / 2, place.top + place.height / 2
-                marks.append(Text(title, x, y, self.font(_TEXT), theme.text, "semibold", "centre"))
+                marks.append(Text(title, *place.middle, self.font(_TEXT), theme.text, "semibold", "centre"))
             else:
                 marks.append(cross(place, u, theme.muted))
         return marks
@@ -151,7 +150,7 @@ class _Writer:
 
     def _reading(self, place: Place, reading: Reading) -> list[Mark]:
         """What it is at the left, its value at the right."""
-        theme, size, y = self.theme, self.font(12.0), place.top + place.height / 2
+        theme, size, y = self.theme, self.font(12.0), place.middle[1]
         value = shortened(reading.text, 0.65 * place.width, size, "semibold")
         room = place.width - text_width(value, size, "semibold") - 8.0 * self.unit
         return [
@@ -191,7 +190,7 @@ class _Writer:
     def _contents(self, place: Place, box: Box) -> list[Mark]:
         """Text with its unit, caret or mark, and the note at the right while nothing was typed."""
         u, theme, size = self.unit, self.theme, self.font(_TEXT)
-        left, middle = place.left + _PAD * u, place.top + place.height / 2
+        left, middle = place.left + _PAD * u, place.middle[1]
         room, small = self._room(place, box), self.font(_SMALL)
         marks: list[Mark] = []
         text = written(box)
@@ -236,22 +235,15 @@ class _Writer:
     def _pill(self, place: Place, tile: Tile) -> list[Mark]:
         """A tile without a picture: its symbol, and beside it its title and its caption."""
         u, theme, size, small = self.unit, self.theme, self.font(12.5), self.font(11.0)
-        middle, left = place.top + place.height / 2, place.left + 40.0 * u
+        middle, left = place.middle[1], place.left + 40.0 * u
         room = place.right - left - 6.0 * u
-        x = place.left + 21.0 * u
+        x, title = place.left + 21.0 * u, shortened(tile.title, room, size, "semibold")
         at = np.array([[x, middle]])
         return [
             *self._card(place, tile, 8.0 * u),
             Stamps("disc", at, 12.0 * u, u, faded(theme.focus, 0.14), theme.background),
             Text(tile.symbol, x, middle, self.font(15.0), theme.focus, anchor="centre"),
-            Text(
-                shortened(tile.title, room, size, "semibold"),
-                left,
-                middle - 7.5 * u,
-                size,
-                theme.text,
-                "semibold",
-            ),
+            Text(title, left, middle - 7.5 * u, size, theme.text, "semibold"),
             Text(shortened(tile.caption, room, small), left, middle + 8.5 * u, small, theme.muted),
         ]
 
@@ -276,8 +268,7 @@ class _Writer:
             viewport = Viewport(round(card.left), round(card.top), round(card.width), round(card.height))
             marks += thumbnail(tile.picture, viewport, u, theme)
         elif tile.symbol:
-            middle = card.left + card.width / 2, card.top + card.height / 2
-            marks.append(Text(tile.symbol, *middle, self.font(32.0), theme.muted, anchor="centre"))
+            marks.append(Text(tile.symbol, *card.middle, self.font(32.0), theme.muted, anchor="centre"))
         return [*marks, *self._legend(tile, place.left, card.bottom, place.width)]
 
     def _legend(self, tile: Tile, left: float, top: float, width: float) -> list[Mark]:

@@ -19,7 +19,7 @@ from systems.program.compiler import Choice, Compile
 from systems.render.coverage import stroke_coverage, stroke_pixels_estimate
 from systems.render.marks import Bars, Discs, Fills, Panel, Picture, Rectangles, Stamps, Strokes, Text
 from systems.render.raster import Clip, Pixels, Raster
-from systems.render.symbols import RIM, symbol_parts
+from systems.render.symbols import RIM, turned_parts
 from systems.render.theme import Colour
 from systems.render.typography import WEIGHTS, capital_height
 
@@ -55,7 +55,7 @@ class Canvas:
         """Draw a picture into its viewport of a surface of 32 bits per pixel."""
         v = picture.viewport
         before = surface.get_clip()
-        surface.set_clip(pygame.Rect(v.left, v.top, v.width, v.height).clip(before))
+        surface.set_clip(pygame.Rect(*v.box).clip(before))
         self.sketch = False
         if picture.background is not None:
             surface.fill(picture.background)
@@ -222,9 +222,7 @@ def _blend(
 
 def _rendered(mark: Stamps, phase_x: float, phase_y: float) -> tuple[pygame.Surface, int, int]:
     """A symbol's image, and where its top left pixel lies relative to the pixel of its origin."""
-    turn = [(1, 0, 0, 1), (0, -1, 1, 0), (-1, 0, 0, -1), (0, 1, -1, 0)][mark.turns % 4]
-    rotation = np.array(turn, dtype=np.float64).reshape(2, 2)
-    parts = [(role, corners @ rotation.T) for role, corners in symbol_parts(mark.symbol, mark.size, mark.unit)]
+    parts = turned_parts(mark)
     phase = np.array([phase_x, phase_y])
     everything = np.concatenate([corners for _, corners in parts])
     low = np.floor(everything.min(axis=0)).astype(int) - 1

@@ -106,7 +106,7 @@ def _titles(sheet: Sheet, rows: Sequence[ShownPanel], box: Box) -> list[Mark]:
         left, right = row.place.left + _PAD * u, row.close.left if row.close else row.place.right
         room = right - 4.0 * u - left
         title = shortened(row.readout.title, room, size)
-        marks.append(Text(title, left, row.place.top + row.place.height / 2, size, theme.muted))
+        marks.append(Text(title, left, row.place.middle[1], size, theme.muted))
         marks += _closing(sheet, row.close) if row.close else []
     return marks
 
@@ -156,14 +156,14 @@ def _closing(sheet: Sheet, close: Rectangle) -> list[Mark]:
     """The button that closes a panel, which shows that it is one under the pointer."""
     u, theme, pointer = sheet.unit, sheet.theme, sheet.view.pointer
     under = pointer is not None and close.contains(pointer)
-    paper = [Panel(close.left, close.top, close.width, close.height, 4.0 * u, faded(theme.text, 0.12))]
+    paper = [Panel(*close.box, 4.0 * u, faded(theme.text, 0.12))]
     return [*(paper if under else []), cross(close, 0.75 * u, theme.muted)]
 
 
 def _panel(sheet: Sheet, readout: Readout, panel: ShownPanel) -> list[Mark]:
     u, theme, size = sheet.unit, sheet.theme, sheet.font(12.0)
     place, close = panel.place, panel.close
-    left, top, width, height = box = place.left, place.top, place.width, place.height
+    left, top, width, height = box = place.box
     sheet.occupancy.block(*box)
     inner, room = left + _PAD * u, width - 2 * _PAD * u
     y = top + _PAD * u + _line(sheet) / 2

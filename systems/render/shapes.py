@@ -5,8 +5,6 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator
 from typing import NamedTuple
 
-import numpy as np
-
 from systems.render.marks import (
     Bars,
     Discs,
@@ -22,10 +20,8 @@ from systems.render.marks import (
     Strokes,
     Text,
 )
-from systems.render.symbols import RIM, symbol_parts
+from systems.render.symbols import RIM, turned_parts
 from systems.render.theme import Colour
-
-_QUARTERS = np.array([[[1, 0], [0, 1]], [[0, -1], [1, 0]], [[-1, 0], [0, -1]], [[0, 1], [-1, 0]]], dtype=float)
 
 
 class Line(NamedTuple):
@@ -118,9 +114,8 @@ def _stamped(mark: Stamps, at: Points) -> Iterator[Shape]:
             (x, y), mark.size, mark.ink, mark.hollow, RIM * mark.unit if mark.symbol == "ring" else 0.0
         )
         return
-    turn = _QUARTERS[mark.turns % 4].T
-    for role, corners in symbol_parts(mark.symbol, mark.size, mark.unit):
-        yield Polygon((at + corners @ turn).tolist(), mark.ink if role == "ink" else mark.hollow)
+    for role, corners in turned_parts(mark):
+        yield Polygon((at + corners).tolist(), mark.ink if role == "ink" else mark.hollow)
 
 
 Name = Callable[[Owner], str]  # the path of an element, such as "rods.AB"

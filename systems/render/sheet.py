@@ -191,9 +191,7 @@ def _visible(lines: Lines, rods: Rows, view: View, within: tuple[Points, Points]
         start, end, kept = clip_segments(start, end, low, high)
         of = of[kept]
     way = end - start
-    overlap = (
-        0.5 * way / np.maximum(np.hypot(way[:, 0], way[:, 1]), 1e-9)[:, None]
-    )  # pixel, so that pieces close
+    overlap = 0.5 * way / np.maximum(np.hypot(*way.T), 1e-9)[:, None]  # pixel, so that pieces close
     return Lines(start - overlap, end + overlap, of)
 
 

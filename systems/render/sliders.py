@@ -20,7 +20,7 @@ def draw_sliders(sheet: Sheet) -> list[Mark]:
     hovered = under(places, pointer) if pointer is not None else None
     marks: list[Mark] = []
     for place in places:
-        sheet.occupancy.block(place.left, place.top, place.width, place.height)
+        sheet.occupancy.block(*place.box)
         marks += _slider(sheet, place, hovered=place is hovered)
     return marks
 
@@ -32,7 +32,7 @@ def _slider(sheet: Sheet, place: Place, *, hovered: bool) -> list[Mark]:
     value = shortened(control.value, right - left, size, "semibold")
     room = right - left - text_width(value, size, "semibold") - _GAP * u
     marks: list[Mark] = [
-        Panel(place.left, place.top, place.width, place.height, 6.0 * u, faded(theme.panel, 0.94), theme.line),
+        Panel(*place.box, 6.0 * u, faded(theme.panel, 0.94), theme.line),
         Text(shortened(control.title, room, size), left, line, size, theme.muted),
         Text(value, right, line, size, theme.text, "semibold", "right"),
         boxes(theme.muted, (round(left), round(middle - u), round(right - left), max(round(2 * u), 1))),

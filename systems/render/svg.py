@@ -49,7 +49,7 @@ def as_svg(pictures: Sequence[tuple[Picture, Name]], size: tuple[int, int], titl
         drawn = root if len(pictures) == 1 else _frame(root, picture)
         v = picture.viewport
         if picture.background is not None:
-            ET.SubElement(drawn, "rect", _box(v.left, v.top, v.width, v.height) | _fill(picture.background))
+            ET.SubElement(drawn, "rect", _box(*v.box) | _fill(picture.background))
         groups = grouped(picture)
         number += any(owner is not None for owner, _ in groups)
         for owner, parts in groups:
@@ -74,7 +74,7 @@ def _frame(root: ET.Element, picture: Picture) -> ET.Element:
     """A part of the drawing outside of which nothing of a picture is seen."""
     v = picture.viewport
     view = {"viewBox": f"{v.left} {v.top} {v.width} {v.height}"}
-    return ET.SubElement(root, "svg", _box(v.left, v.top, v.width, v.height) | view)
+    return ET.SubElement(root, "svg", _box(*v.box) | view)
 
 
 def _look(shape: Shape) -> tuple[float, Colour] | None:

@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from systems.render.icons import STROKE, icon
-from systems.render.marks import Points
+from systems.render.marks import Points, Stamps
 
 Parts = list[tuple[str, Points]]  # ("ink" or "hollow", corners (k, 2)), in painter's order
 
@@ -33,6 +33,13 @@ def symbol_parts(symbol: str, size: float, unit: float) -> Parts:
     if symbol in SYMBOLS:
         return SYMBOLS[symbol](size, unit)
     return [("ink", polygon * size) for polygon in _icon(symbol)]
+
+
+def turned_parts(stamp: Stamps) -> Parts:
+    """The polygons of a stamp about its place, by its quarter turns clockwise."""
+    across, down = ((1, 0), (0, 1), (-1, 0), (0, -1))[stamp.turns % 4]
+    turn = np.array([[across, down], [-down, across]], dtype=np.float64)
+    return [(role, corners @ turn) for role, corners in symbol_parts(stamp.symbol, stamp.size, stamp.unit)]
 
 
 @cache

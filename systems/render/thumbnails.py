@@ -19,20 +19,14 @@ from systems.render.members import draw_distributed_forces, draw_hinges, draw_mo
 from systems.render.sheet import BELOW, measure
 from systems.render.structure import draw_particles, draw_rods
 from systems.render.supports import draw_supports, support_sides
-from systems.render.symbols import symbol_parts
+from systems.render.symbols import turned_parts
 from systems.render.theme import Colour, Theme, faded
 
-_SMALLER, _USUAL = (
-    0.6,
-    84.0,
-)  # symbols in a thumbnail, compared with those in a model; points of height, or smaller yet
+_SMALLER, _USUAL = 0.6, 84.0  # symbols, compared with those in a model; in less high ones (points) smaller yet
 _EDGE = 4.0  # points that stay free within the card
 _MARGIN = 12.0  # points around a model to begin with
 _TRIES = 4  # at which what is drawn is fitted into the card; arrows and symbols keep their size
-_SAFE, _ENOUGH = (
-    0.99,
-    1.12,
-)  # of the scale that seems to fit, the one to try; how much larger a good one could be
+_SAFE, _ENOUGH = 0.99, 1.12  # of the scale that seems to fit, the one to try; how much larger it could be
 _DENSE = 0.4  # opacity of force diagrams
 _TINT = 0.16  # share of the colour of loads in the paper of discs
 
@@ -82,11 +76,8 @@ def _corners(mark: Mark) -> Points:
             reach = mark.radius[:, None]
             return np.concatenate([mark.at - reach, mark.at + reach])
         case Stamps():
-            parts = symbol_parts(mark.symbol, mark.size, mark.unit)
-            shape = np.concatenate([polygon.reshape(-1, 2) for _, polygon in parts])
-            across, down = np.array([[1, 0], [0, 1], [-1, 0], [0, -1]])[mark.turns % 4]
-            turned = shape @ np.array([[across, down], [-down, across]], dtype=np.float64)
-            placed: Points = (mark.at[:, None] + turned).reshape(-1, 2)
+            shape = np.concatenate([polygon for _, polygon in turned_parts(mark)])
+            placed: Points = (mark.at[:, None] + shape).reshape(-1, 2)
             return placed
         case Rectangles():
             return np.concatenate([mark.boxes[:, :2], mark.boxes[:, :2] + mark.boxes[:, 2:]]).astype(np.float64)

@@ -39,7 +39,7 @@ class _Writer:
         if not self.buttons:
             return []
         s, thin = self.view.strip, max(round(self.unit), 1)
-        marks: list[Mark] = [boxes(self.theme.panel, (s.left, s.top, s.width, s.height))]
+        marks: list[Mark] = [boxes(self.theme.panel, s.box)]
         marks.append(boxes(self.theme.line, (s.right - thin, s.top, thin, s.height)))
         for button in self.buttons:
             marks += self._button(button)
@@ -48,7 +48,7 @@ class _Writer:
     def _button(self, button: Button) -> list[Mark]:
         """The icon, on a plate if it is pressed or would be by a click."""
         u, tool, theme = self.unit, button.tool, self.theme
-        middle = np.array([[button.left + button.width / 2, button.top + button.height / 2]])
+        middle = np.array([button.middle])
         ink = faded(theme.muted, 0.4) if not tool.enabled else theme.focus if tool.pressed else theme.text
         icon = Stamps(tool.icon, middle, _ICON * u, u, ink, ink)
         if not tool.pressed and not (button == self.hovered and tool.enabled):
@@ -67,7 +67,7 @@ class _Writer:
         key = written_key(button.tool.key) if button.tool.key else ""
         title_width, key_width = text_width(title, size), text_width(key, size, "semibold")
         pad, gap, height = 10.0 * u, 14.0 * u if key else 0.0, line_height(size) + 10.0 * u
-        width, middle = title_width + gap + key_width + 2 * pad, button.top + button.height / 2
+        width, middle = title_width + gap + key_width + 2 * pad, button.middle[1]
         left, top = self._free_place(middle - height / 2, width, height, below)
         y = top + height / 2
         return [

@@ -77,13 +77,11 @@ def _label(sheet: Sheet, share: Values) -> None:
         text = _said(sheet.model, row, float(share[row])) if row == first else written.share(share[row])
         half = half_size(text, size, "semibold", sheet.unit)
         rank, key = (-1e11 if row == first else -share[row]), ("rods.utilisation", row)
-        places = [
-            place for number, place in enumerate(beside_rod(sheet, index, half)) if number % 4 < 2
-        ]  # the nearest
+        nearest = [at for number, at in enumerate(beside_rod(sheet, index, half)) if number % 4 < 2]
         along = sheet.end[index] - sheet.start[index]
         across = along[::-1] * [1.0, -1.0] / max(float(np.hypot(*along)), 1e-9)
         of, anchors = ("rods", row), sheet.start[index] + ANCHORS[:, None] * along
-        label = Label(text, places, size, sheet.theme.text, rank, "semibold", backing, "spare", key, of, of)
+        label = Label(text, nearest, size, sheet.theme.text, rank, "semibold", backing, "spare", key, of, of)
         sheet.labels.append(label._replace(anchors=anchors, outward=across))
         sheet.values["rods.utilisation"] += 1
 

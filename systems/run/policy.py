@@ -31,13 +31,8 @@ DOUBTFUL_STEP = 1e-2  # times 1/ω, for an integrator that is stable at no step
 EIGENVALUE_ERROR = 1e-9  # of the highest frequency, and so of the largest stable step
 TOLD_SHARE = 0.1  # of all energy ever supplied; smaller: warns of lattices by automatic steps of Verlet
 
-ERROR_CONTROL = (
-    "step_error",
-    "largest_displacement",
-    "largest_speed",
-    "largest_rotation",
-    "largest_spin",
-)  # columns of the clock; 0 where error control begins anew
+# Columns of the clock; 0 where error control begins anew.
+ERROR_CONTROL = ("step_error", "largest_displacement", "largest_speed", "largest_rotation", "largest_spin")
 
 # Steps between reviews of islands; fewer: asleep sooner, but a review costs as much as ten steps.
 SLEEP_INTERVAL = 1024

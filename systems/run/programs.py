@@ -198,10 +198,8 @@ class Programs:
             raise ProgramError(f"{integrator.name} makes no step program: {said}.", integrator) from error
 
     def _key(self, plan: list[StepSystem]) -> Key:
-        parts = {
-            "rods.misfit": is_warm,
-            "rods.distributed_force": bears_between,
-        }  # that are written only where needed
+        # Written only where needed.
+        parts = {"rods.misfit": is_warm, "rods.distributed_force": bears_between}
         written = (name for name, is_needed in parts.items() if is_needed(self._model))
         names = (system.name for system in plan)
         return (*names, self.integrator.name, form_of(self._model, self.integrator, plan), *written)

@@ -13,7 +13,7 @@ import numpy as np
 from components.model import Model
 from systems.statics.assembly import Matrix
 from systems.statics.bending import needed_parts
-from systems.statics.equations import Array, Structure, normalised, upright
+from systems.statics.equations import Array, Rows, Structure, normalised, upright
 from systems.statics.events import NoEquilibrium
 from systems.statics.explain import describe_motion, divide_named, rod_names
 from systems.statics.factor import (
@@ -49,6 +49,8 @@ class Buckling:
 
     dead, live: first-order axial forces (kN) of what acts in full, and of forces and loads at the factor 1, (rods,).
     effective_length: π √(EI/−N) of compressed rods with a bending stiffness at the lowest factor (m), else NaN, (rods,).
+    leading: rows of the rods whose compression does most of the work in each mode, (k,), and leading_length, their effective
+    lengths at its factor (m), NaN without bending stiffness, (k,).
     notes: sentences about what the factors leave out. message: why there is none; "" if there are some.
     """
 
@@ -57,6 +59,8 @@ class Buckling:
     dead: Array
     live: Array
     effective_length: Array
+    leading: Rows
+    leading_length: Array
     notes: tuple[str, ...] = ()
     message: str = ""
 
@@ -79,6 +83,8 @@ def buckling(model: Model, count: int = MODES, start: Start | None = None) -> Bu
     factors = _factors(structure, vectors, _geometric(structure, dead, 0.0), softening)
     fields = structure.fields(vectors)
     modes = np.array([upright(normalised(field)) for field in fields]).reshape(fields.shape)
+    leading = np.array([int(_work(structure, field, -live).argmax()) for field in fields], dtype=np.intp)
+    lengths = [_effective_length(model, dead + factor * live) for factor in factors]
     lowest = dead + factors[0] * live if len(factors) else np.zeros(len(dead))
     return Buckling(
         factors,
@@ -86,6 +92,8 @@ def buckling(model: Model, count: int = MODES, start: Start | None = None) -> Bu
         dead,
         live,
         _effective_length(model, lowest),
+        leading,
+        np.array([length[row] for length, row in zip(lengths, leading, strict=True)]),
         tuple(_notes(model, factors, lowest)),
         "" if len(factors) else _why_none(model, live),
     )
@@ -184,6 +192,17 @@ def _factors(structure: Structure, vectors: Array, steady: Matrix, softening: Ma
         energy += float(vector @ (steady @ vector))
         found.append(-energy / float(vector @ (softening @ vector)))
     return np.array(found)
+
+
+def _work(structure: Structure, mode: Array, compression: Array) -> Array:
+    """The work of compression (rods,) on what each rod's ends approach each other in a mode, to second order."""
+    unmoved, change = structure.unmoved, structure.relative(mode)
+    aside = unmoved.axis[:, 0] * change[:, 1] - unmoved.axis[:, 1] * change[:, 0]
+    nearer = 0.5 * aside**2 / np.where(unmoved.length > 0.0, unmoved.length, np.inf)
+    if structure.bending is not None:
+        nearer += structure.bending.bow(structure.slope_rates(mode, unmoved))[1]
+    work: Array = compression * nearer
+    return work
 
 
 def _effective_length(model: Model, axial_force: Array) -> Array:

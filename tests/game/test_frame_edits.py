@@ -8,7 +8,8 @@ import numpy as np
 import pytest
 
 from game import Session
-from game.documents.document import ModelError, document
+from game.documents.document import document
+from game.documents.format import ModelError
 from game.documents.models import load, save
 from game.editor.clipboard import as_text, part_in, paste, selected_rows
 from tests.reference.models import model, particle, rod

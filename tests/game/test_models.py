@@ -20,7 +20,7 @@ from components.model import Model
 from game.commands.command_line import main
 from game.documents import document as documents
 from game.documents import models
-from game.documents.document import gathered
+from game.documents.facts import gathered
 from game.documents.models import ModelError
 from tests.benchmarks.models import mesh
 from tests.reference.lines import lines_run

@@ -9,7 +9,7 @@ import pytest
 from components.camera import Viewport
 from components.slider import Place, Slider
 from game.documents import models
-from game.documents.document import gathered
+from game.documents.facts import gathered
 from game.editor.sliders import add_slider
 from game.session import Session
 from systems.edit import Refusal

@@ -13,7 +13,7 @@ from components.camera import Viewport
 from components.view import Preview
 from game import Session
 from game.documents import models
-from game.documents.document import ModelError
+from game.documents.format import ModelError
 from systems.collision.system import normals
 from systems.render.marks import Strokes
 from systems.render.picture import compose

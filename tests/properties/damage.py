@@ -24,7 +24,7 @@ from game import Session
 from game.commands.command_line import main
 from game.documents import library, models, preferences
 from game.documents.autosave import Autosave
-from game.documents.document import gathered
+from game.documents.facts import gathered
 from systems import cache
 from systems.program import compiler
 from tests.properties.limits import within

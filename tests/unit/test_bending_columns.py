@@ -9,7 +9,8 @@ import pytest
 from components.field import FieldError
 from components.model import Model
 from game import Session
-from game.documents.document import ModelError, document, parse
+from game.documents.document import document, parse
+from game.documents.format import ModelError
 from game.paths import PathError, apply_override, locate_one
 
 EI, EA, LENGTH, DENSITY = 10.0, 2e4, 2.0, 6.15

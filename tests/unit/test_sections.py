@@ -11,7 +11,8 @@ from components.particle import Particle
 from components.rod import Rod
 from components.section import MATERIALS, SECTIONS, section_named
 from game import Session
-from game.documents.document import ModelError, document, parse
+from game.documents.document import document, parse
+from game.documents.format import ModelError
 from game.documents.models import load
 from game.paths import PathError, apply_override
 from tests.reference.models import model, particle, rod

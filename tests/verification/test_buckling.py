@@ -306,6 +306,7 @@ def test_the_command_prints_factors_modes_and_effective_lengths(
     assert found["modes"][0]["P0"] == [0.0, 0.0, 0.0]
     assert len(found["modes"][0]["P2"]) == 3
     assert found["effective_length"]["R0"] == pytest.approx(20.0, rel=1e-3)
+    assert found["leading"][0] == {"rod": "R1", "effective_length": pytest.approx(20.0, rel=1e-3)}
     assert found["effective_length_factor"]["R0"] == pytest.approx(4.0, rel=1e-3)
     assert found["axial_force"]["R0"] == pytest.approx(
         {"steady": 0.0, "factor 1": -1.0, "critical": -found["factors"][0]}, abs=1e-9

@@ -46,9 +46,8 @@ class History:
     def _before_change(self) -> None:
         # Of the changes of a transaction only the first finds all earlier edits accounted for.
         if self._clock is None or self._simulation.armed:
-            through_time = (
-                self._run is not None and self._key is not None
-            )  # undone together with time between them
+            # Undone together with time between them.
+            through_time = self._run is not None and self._key is not None
             self._clock = self._simulation.checkpoint(*(() if through_time else ("clock",)))
         self._simulation.before_change()
 

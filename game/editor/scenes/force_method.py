@@ -34,11 +34,7 @@ LEAST_WIDTH, LEAST_HEIGHT, LEAST_LOW = 140.0, 160.0, 90.0  # points of a set; be
 HIGH = 340.0  # points of a set in which a slider has room below supports and reactions
 MOVED = 0.08  # of the size of a structure: about what drawn displacements add to it
 LEAST_EXPLAINED = 300.0  # points of a window; lower ones have no legend
-CAPTION, SCALE, MARGIN = (
-    66.0,
-    48.0,
-    40.0,
-)  # points above, below (its slider) and at most about a structure in its set
+CAPTION, SCALE, MARGIN = 66.0, 48.0, 40.0  # points above, below (its slider), at most about a structure
 
 
 @dataclass

@@ -125,11 +125,8 @@ class Flight:
         particles, now = self.model.particles, self.model.clock.time
         count = particles.count + len(obstacles(self.model))
         inside = (saved.contacts < count).all() and len(saved.pile) == len(PILE_COUNTS) + len(PILE_NUMBERS)
-        whole = saved.motion.shape in (
-            (particles.count, Disc.BX),
-            (particles.count, FLIGHT.stop),
-        )  # the former once
-        if not whole or not inside:
+        shapes = (particles.count, Disc.BX), (particles.count, FLIGHT.stop)  # the former once
+        if saved.motion.shape not in shapes or not inside:
             return False
         place, velocity = state_on(saved.motion, now)
         return bool((place == particles.displacement).all() and (velocity == particles.velocity).all())
@@ -255,9 +252,7 @@ class Flight:
     def commit(self) -> None:
         """Do nothing: free particles have no history."""
 
-    @np.errstate(
-        over="ignore", invalid="ignore"
-    )  # forces too large to compute with are reported by the check of the model
+    @np.errstate(over="ignore", invalid="ignore")  # the check of the model reports forces that are too large
     def observe(self) -> None:
         """Bring forces, reactions and measures up to date."""
         particles = self.model.particles

@@ -12,7 +12,8 @@ import pytest
 
 from game import Session
 from game.commands.command_line import main
-from game.documents.document import ModelError, document, parse
+from game.documents.document import document, parse
+from game.documents.format import ModelError
 from game.scripts.playing import Recorder, play
 from game.scripts.script import Script
 from systems.base import StopReason

@@ -1,0 +1,78 @@
+"""Format: what documents consist of, by their keys, and what cannot stand in one."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping, Sequence
+from types import MappingProxyType
+from typing import Any, NoReturn
+
+from components.clock import Clock
+from components.environment import Environment
+from components.field import SAVED, Field
+from components.grid import Grid
+from components.handle import Handle
+from components.load import Load
+from components.mistake import Mistake
+from components.model import ADDED, Model
+from components.particle import Particle
+from components.rod import Rod
+from components.settings import Settings
+from components.table import fields_of
+from components.wording import is_broken, quoted
+
+FORMAT = "pinjoint model"
+VERSION = 1
+BY_COLUMNS = "pinjoint model by columns"
+SECTIONS: Mapping[str, type[Handle]] = MappingProxyType(
+    {
+        "environment": Environment,
+        "settings": Settings,
+        "particles": Particle,
+        "rods": Rod,
+        "loads": Load,
+        "grids": Grid,
+        "state": Clock,
+    }
+)
+REQUIRED: Mapping[str, tuple[str, ...]] = MappingProxyType(
+    {"particles": ("name", "position"), "rods": ("name", "between"), "loads": ("on",)}
+)
+
+
+class ModelError(Mistake, ValueError):
+    """A model that cannot be read or written; the message says where, what is wrong and the remedy."""
+
+
+def fail(path: str, problem: str) -> NoReturn:
+    raise ModelError(f"{path}: {problem}")
+
+
+def required(kind: type[Handle]) -> Sequence[str]:
+    """The keys that every element of a kind must have."""
+    if kind.table in REQUIRED or kind not in ADDED.values():
+        return REQUIRED.get(kind.table, ())
+    return [field.key for field in fields_of(kind) if field.name in kind.points or field.references]
+
+
+def saved_fields(kind: type[Handle]) -> list[Field[Any]]:
+    return [field for field in fields_of(kind) if field.role in SAVED]
+
+
+def copied(value: Any, where: str) -> Any:
+    """A copy of a value that JSON can hold."""
+    if isinstance(value, Mapping) and all(isinstance(key, str) and not is_broken(key) for key in value):
+        return {key: copied(item, where) for key, item in value.items()}
+    if isinstance(value, list | tuple):
+        return [copied(item, where) for item in value]
+    if isinstance(value, str) and is_broken(value):
+        fail(where, f"{value!a} holds half of a character, which cannot be kept in a file.")
+    if value is None or isinstance(value, str | int) or (isinstance(value, float) and math.isfinite(value)):
+        return value
+    fail(where, f"{quoted(value)} cannot be kept in a model file.")
+
+
+def missing_mods(model: Model) -> list[str]:
+    """Names of the mods, not loaded, whose data a model keeps."""
+    kept = [*model.foreign.values(), model.foreign_kinds]
+    return sorted({name.partition(".")[0] for part in kept for name in part})
