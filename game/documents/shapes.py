@@ -187,5 +187,22 @@ def numbered(model: Model, kind: str, number: int) -> Shape:
 def _shape(
     model: Model, title: str, motion: NDArray[np.float64], about: NDArray[np.float64] | None = None
 ) -> Shape:
-    drawn = DRAWN_SHARE * extent(model) * motion
+    drawn = DRAWN_SHARE * extent(model) / max(1.0, _bulge(model, motion)) * motion
     return Shape(title, drawn[:, :2], about, drawn[:, 2] if drawn.shape[1] > 2 else None)
+
+
+def _bulge(model: Model, motion: NDArray[np.float64]) -> float:
+    """How far members deflect at most from the lines between their ends, in the unit of the motion.
+
+    A cubic that leaves the line by the angle θ at one end deflects by 4/27 θ L, and both ends add up.
+    """
+    rods = model.rods
+    if motion.shape[1] < 3 or rods.count == 0:
+        return 0.0
+    ends = motion[rods.between]  # (m, 2, 3)
+    along = np.diff(model.particles.position[rods.between], axis=1)[:, 0]
+    length = np.maximum(np.hypot(*along.T), 1e-300)
+    moved = ends[:, 1, :2] - ends[:, 0, :2]
+    chord = (along[:, 0] * moved[:, 1] - along[:, 1] * moved[:, 0]) / length**2
+    angles = np.where(rods.turning_shares > 0.0, np.abs(ends[:, :, 2] - chord[:, None]), 0.0)
+    return float((4.0 / 27.0 * length * angles.sum(axis=1)).max())

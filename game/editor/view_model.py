@@ -88,7 +88,7 @@ def _unsettled(context: Context) -> str:
     document = context.document
     if context.scene not in STILL or document.is_undeformed or document.assessment.balanced:
         return ""
-    return "Edited: no longer in equilibrium. E settles it again."
+    return "Edited: no longer in equilibrium. E (right click: settle) goes to the new one."
 
 
 def _gone(context: Context) -> str:

@@ -10,7 +10,9 @@ import pytest
 from components.camera import Viewport
 from game import Session
 from game.commands.command_line import main
-from game.documents.shapes import PERIOD, NoShape, buckling_shapes
+from game.documents import models
+from game.documents.shapes import DRAWN_SHARE, PERIOD, NoShape, buckling_shapes, mode_shapes
+from systems.edit.arrows import extent
 from systems.render.marks import Text
 from systems.render.picture import compose
 from systems.render.theme import load_theme
@@ -131,3 +133,25 @@ def test_labels_stay_where_they_are_while_a_shape_swings() -> None:
         picture = compose(session.model, session.view, load_theme(), placed)
         pictures.append({mark.text: (mark.x, mark.y) for mark in picture.marks if isinstance(mark, Text)})
     assert all(picture == pictures[0] for picture in pictures)
+
+
+def test_a_mode_within_a_member_is_drawn_no_larger_than_one_of_joints() -> None:
+    """Its joints hardly move: drawn by their displacements it would reach far beyond the picture."""
+    model = models.load("portal")
+    for shape in (*buckling_shapes(model), *mode_shapes(model)):
+        bulge = 0.0 if shape.rotation is None else _deflection(model, shape)
+        assert max(np.abs(shape.displacement).max(), bulge) <= 1.01 * DRAWN_SHARE * extent(model), shape.title
+
+
+def _deflection(model, shape) -> float:
+    """The largest deflection of members from the lines between their ends, on their cubics."""
+    largest, share = 0.0, np.linspace(0.0, 1.0, 101)
+    for rod in model.rods:
+        start, end = (shape.displacement[row] for row in rod.between)
+        along = np.subtract(*(model.particles.position[row] for row in rod.between[::-1]))
+        length = float(np.hypot(*along))
+        chord = (along[0] * (end - start)[1] - along[1] * (end - start)[0]) / length**2
+        first, last = (shape.rotation[row] - chord for row in rod.between)
+        cubic = length * (first * share * (1 - share) ** 2 - last * share**2 * (1 - share))
+        largest = max(largest, float(np.abs(cubic).max()))
+    return largest

@@ -12,6 +12,7 @@ from components.tags import DiagramShown
 from game import Session
 from game.documents import library, models
 from game.editor.scenes.form import FormScene
+from game.editor.scenes.properties import Properties
 from game.scripts.playing import Recorder, play, session_of
 from game.scripts.script import Script
 from systems.input.bindings import ADDED_TOOLS, TOOLBAR, offers
@@ -452,3 +453,21 @@ def test_a_recorded_session_that_is_dropped_is_played(session: Session, tmp_path
     assert session.lesson is not None
     assert session.lesson.title == "T"
     assert (session.scene, session.file.name) == ("pause", "tower")
+
+
+def test_properties_stand_where_they_cover_nothing(session: Session) -> None:
+    """A person who zoomed or drew in part of the window has no picture that is fitted anew beside them."""
+    session.resize(1280, 800)
+    session.update_view()
+    camera, rod = session.view.camera, session.rods["CD"]
+    camera.zoom(0.5, (0.0, 0.0))
+    camera.pan((850.0 - camera.to_pixels(session.particles["C"].position)[0], 0.0))
+    session.view.fitted = False
+    session.select(rod)
+    session.press("return")
+    assert isinstance(session.scenes.active, Properties)
+    assert session.scenes.active.viewport(session).left > 850.0
+    session.press("escape")
+    session.act("fit")
+    session.press("return")
+    assert session.scenes.active.viewport(session).left < 100.0
