@@ -115,7 +115,8 @@ def _of_canvas(context: Context) -> Groups:
         ["toggle theory", "toggle energy", "toggle events", "next shape"],
         [binding.action for binding in ADDED_BUTTONS],
         ["fit", "zoom in", "zoom out", "new grid", "next grid", "toggle legend", "next theme"],
-        ["environment", "screenshot", "toggle full screen", "toggle help"],
+        ["environment", "toggle full screen", "toggle help"],
+        ["screenshot", "picture as svg", "picture as pdf"],
     ]
     if context.view.strip.width == 0:
         known = {entry if isinstance(entry, str) else entry[0] for group in groups for entry in group}

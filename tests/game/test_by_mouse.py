@@ -90,6 +90,8 @@ def test_a_right_click_selects_what_it_hits_and_opens_its_menu(session: Session)
         "new grid",
         "walls.wall",
         "screenshot",
+        "picture as svg",
+        "picture as pdf",
     }
     assert wanted <= {*actions(menu(session).menu)}
 
