@@ -369,7 +369,10 @@ def test_what_was_settled_and_edited_is_said_to_be_out_of_equilibrium() -> None:
         session.rods["AB"].stiffness *= 2.0
     session.notice = ""
     session.update_view()
-    assert session.view.status.notice == "Edited: no longer in equilibrium. E (right click: settle) goes to the new one."
+    assert (
+        session.view.status.notice
+        == "Edited: no longer in equilibrium. E (right click: settle) goes to the new one."
+    )
     session.undo()
     session.notice = ""
     session.update_view()
