@@ -147,12 +147,13 @@ def _label_row(sheet: Sheet, row: int, tails: Points, along: Points, size: float
         out = out if out[1] <= 0.0 else -out
     reach = abs(out[0]) * half[0] + abs(out[1]) * half[1] + 2.0 * sheet.unit
     shares = np.array([0.5, 0.35, 0.65, 0.2, 0.8])
-    at = shares * (len(tails) - 1.0)
-    base = np.stack([np.interp(at, np.arange(len(tails)), part) for part in tails.T], axis=1)
+    base = tails[0] + shares[:, None] * way
     places = np.concatenate([base + out * reach, base + out * (reach + 12.0 * sheet.unit)])
     backing, of = faded(sheet.theme.background, 0.86), ("rods", row)
     label = Label(text, places, font, sheet.theme.load, -1e9 - size, "semibold", backing, "spare", key, of, of)
-    sheet.labels.append(label._replace(anchors=base, outward=out))
+    at = shares * (len(tails) - 1.0)
+    anchors = np.stack([np.interp(at, np.arange(len(tails)), part) for part in tails.T], axis=1)
+    sheet.labels.append(label._replace(anchors=anchors, outward=out))
     sheet.values["rods.distributed_force"] += 1
 
 

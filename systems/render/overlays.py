@@ -185,7 +185,8 @@ def draw_notice(sheet: Sheet, ends: tuple[float, float]) -> list[Mark]:
     most = max(int((bottom - top - 60.0 * u) / line_height(size)), 1)
     lines = at_most(lines, most, room, size)
     height = len(lines) * line_height(size) + 2 * pad - 4.0 * u
-    left, upper = _freest_of(sheet, _for_notice(sheet, v, width, height, (top, bottom)), width, height)
+    places = _for_notice(sheet, v, width, height, (top, bottom))
+    left, upper = min(places, key=lambda at: _hidden(sheet, at, width, height))
     sheet.occupancy.block(left, upper, width, height)
     first = upper + height / 2 - (len(lines) - 1) * line_height(size) / 2
     at = np.array([[left + pad + icon / 2, first]])
@@ -329,16 +330,8 @@ def _swatch(sheet: Sheet, name: str, x: float, y: float, width: float) -> list[M
     u, theme = sheet.unit, sheet.theme
     if name == "utilisation":
         return scale_bar(theme, x, y, width, u)
-    role = {
-        "slack": "ink",
-        "hinge": "ink",
-        "moment": "ink",
-        "shear": "ink",
-        "velocity": "ink",
-        "inertia": "ink",
-        "first": "yielding",
-    }.get(name, name)
-    colour = getattr(theme, role)
+    in_ink = ("slack", "hinge", "moment", "shear", "velocity", "inertia")
+    colour = getattr(theme, "yielding" if name == "first" else "ink" if name in in_ink else name)
     ends = np.array([[x, y]]), np.array([[x + width, y]])
     if name == "hinge":
         return [Stamps("ring", ends[0] + [width / 2, 0.0], 4.0 * u, u, theme.ink, theme.hollow)]
@@ -436,13 +429,6 @@ def _freest(sheet: Sheet, width: float, room: tuple[float, float]) -> tuple[floa
     )
     sheet.scales[_SCALE] = best
     return places[best]
-
-
-def _freest_of(
-    sheet: Sheet, places: list[tuple[float, float]], width: float, height: float
-) -> tuple[float, float]:
-    """Left and top of the first of the places where a box lies on nothing else, if possible, and hides least."""
-    return min(places, key=lambda at: _hidden(sheet, at, width, height))
 
 
 def _hidden(sheet: Sheet, at: tuple[float, float], width: float, height: float) -> tuple[bool, int]:

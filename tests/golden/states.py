@@ -284,6 +284,7 @@ STATES: dict[str, Scene] = {
     "all-panels-of-discs": _panels("hard_disc_gas", "j", "m"),
     "impacts": _panels("newtons_cradle", time=1.0),
     "mode": lambda window: pressed(window, "b", source="warren_bridge"),
+    "buckling": lambda window: pressed(window, "b", source="eulers_columns"),
     "cables": lambda window: pressed(window, "e", source="hanging_net"),
     "lesson": _lesson,
     "drawing-a-rod": _drawn("l", (0.0, 0.0), (1.2, 0.3)),
