@@ -10,8 +10,9 @@ from collections.abc import Iterable, Sequence
 from systems.entries import ACCOUNTS
 from systems.program.binding import Bound, StepRole
 from systems.program.loops import RodLoop
+from systems.program.names import PREDICTED, RESISTED, TRIAL_STATE
 from systems.program.pasting import indented
-from systems.program.writer import PREDICTED, RESISTED, TRIAL_STATE, Writer, accounts_of
+from systems.program.writer import Writer, accounts_of
 
 _RODS = "block_rods[block], block_rods[block + 1]"
 _PARTICLES = "first, last"

@@ -10,9 +10,10 @@ from systems.base import Integrator, StepSystem
 from systems.entries import Mark
 from systems.program.binding import Bound, StepRole, bind
 from systems.program.loops import RodLoop
+from systems.program.names import NO_POWER, POWER_RETURNED, TRIAL_STATE
 from systems.program.pasting import fragment, pasted
 from systems.program.templates import driven, events, forces, implicit, rods
-from systems.program.writer import NO_POWER, POWER_RETURNED, TRIAL_STATE, Writer, sides_of
+from systems.program.writer import Writer, sides_of
 
 _AHEAD = 1e-3  # of a step, over which the slope of a margin is taken
 _STEADY = 1e-8  # a margin that changes less in a step is not watched

@@ -21,10 +21,10 @@ from systems.program.binding import Bound, ProgramError, StepRole, bind, by_role
 from systems.program.compiler import Choice, Compile, generated
 from systems.program.faults import failure_of, form_of
 from systems.program.loops import RodLoop
+from systems.program.names import DRIFT, SHIFT, SPUN, TURNED
 from systems.program.near_pairs import pairs_within
 from systems.program.pasting import fragment
 from systems.program.templates import rods
-from systems.program.writer import DRIFT, SHIFT, SPUN, TURNED
 
 Numbers = NDArray[np.float64]
 

@@ -14,8 +14,8 @@ from components.model import Model
 from systems.base import Integrator, StepSystem, StopReason
 from systems.program.binding import bind, read_only
 from systems.program.blocks import Layout, Numbers
+from systems.program.names import PUSHED
 from systems.program.program import OBSERVED, Program
-from systems.program.writer import PUSHED
 
 
 class ReorderedProgram(Program):

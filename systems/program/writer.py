@@ -15,9 +15,8 @@ import numpy as np
 
 from components.model import Model
 from components.rod import bears_between, bends, is_warm
-from systems.base import REVIEW_INTERVAL, Event, Integrator, StepSystem, StopReason
-from systems.collision.driven.columns import Order, Real, Whole
-from systems.entries import ACCOUNTS, Account, Control, Mark, Measure, Search, Side
+from systems.base import REVIEW_INTERVAL, Event, Integrator, StepSystem
+from systems.entries import ACCOUNTS
 from systems.interpreter import plain_function
 from systems.physics.automatic import SMALL
 from systems.physics.kernels import conserved, judge
@@ -35,6 +34,40 @@ from systems.program.binding import (
     written_row,
 )
 from systems.program.loops import RodLoop
+from systems.program.names import (
+    ALWAYS,
+    BENT_STATE,
+    BOTH_BLOCKS,
+    DRIFT,
+    DRIVEN_ENTRIES,
+    ENTRIES,
+    EVERY,
+    FIRST_BLOCK,
+    IN_BLOCK,
+    KEPT,
+    LARGEST,
+    LEAST,
+    LEAST_TURN,
+    NO_POWER,
+    NORMS,
+    NOW,
+    OBSERVED,
+    OF_BENDING,
+    OF_PAIR,
+    POWER_RETURNED,
+    PREDICTED,
+    PUSHED,
+    RESISTED,
+    SECOND_BLOCK,
+    SECOND_PARTS,
+    SHIFT,
+    SPUN,
+    STATE,
+    TRIAL_STATE,
+    TURNED,
+    TURNED_STATE,
+    TURNING_OBSERVED,
+)
 from systems.program.near_pairs import ARRAYS
 from systems.program.pasting import expanded, fragment, indented, pasted, projected, source_of
 from systems.program.templates import driven, events, fixed_steps, forces, observing, pairs, rods, turning
@@ -42,114 +75,7 @@ from systems.program.templates import driven, events, fixed_steps, forces, obser
 ROUND_OFF = 2.220446049250313e-16  # of forces, relative to stiffness × displacement
 
 _AT_STRENGTH = 1.0 - 1e-9  # share of its strength from which on a rod is said to yield
-_ALWAYS = (
-    "particles_mobility",
-    "particles_mass",
-    "particles_constant_force",
-    "rods_between",
-    "rods_difference",
-    "rods_original_length",
-    "rods_rest_length",
-    "rods_stiffness",
-)
-_OBSERVED = (
-    *("rods_axial_force", "rods_length", "rods_strain", "yielding"),  # written
-    *("fixed", "tension", "compression", "yields"),  # read
-)
-_TURNING = (  # columns of models that bend
-    *("particles_turning", "particles_inertia", "particles_constant_moment", "lever"),
-    *("rods_turning_shares", "rods_bowing", "rods_end_stiffness"),
-)
-_TURNING_OBSERVED = ("reaction_moment", "rods_end_moment", "clamped")
-_ENTRIES = (Account, Control, Mark, Measure, Search, Side, StopReason)
-_KEPT = ("kept_force", "kept_resisting", "kept_power", "own_acceleration", "own_support", "every")
-_DRIVEN_ENTRIES = (Order, Real, Whole)
-PUSHED = ("support", "unpushed")  # arrays of programs whose particles may meet
-
 _OF_PAIRS = pairs.list_pairs, pairs.sort_along_x, pairs.sweep, pairs.sort_row
-
-STATE = ("displacement", "velocity", "force", "resisting", "direction")
-BENT_STATE = (
-    *("displacement", "rotation", "velocity", "angular_velocity"),
-    *("force", "moment", "resisting", "twisting", "direction"),
-)
-SECOND_BLOCK = {  # what coordinates are called there, by what they are called in the first
-    "displacement": "rotation",
-    "velocity": "angular_velocity",
-    "force": "moment",
-    "resisting": "twisting",
-    "predicted": "predicted_spin",
-    "particles_mobility": "particles_turning",
-}
-TURNED_STATE = (*SECOND_BLOCK.values(),)[:4]
-_SECOND_PARTS = ("push", "extrapolate", "accelerate", "combine")  # functions that are written for both blocks
-# Groups of arguments that have one more entry for every one where there are rotations.
-_FIRST_BLOCK = {
-    "placed": ("displacement",),
-    "moving": ("velocity",),
-    "pulled": ("force",),
-    "resisted": ("resisting",),
-    "unpressed": ("unpushed",),
-    "acting": ("applied",),
-    "foreseen": ("predicted",),
-    "tried": ("trial", "speed"),
-    "reached": ("work[STAGES]", "work[STAGES + 1]"),
-    "accelerating": ("acceleration",),
-    "correcting": ("correction", "work"),
-    "sizing": ("acceleration",),
-    "strung": ("along", "across"),
-    "diagonals": ("diagonal", "beside"),
-    "inverses": ("straight", "skew"),
-    "mobilities": ("particles_mobility",),
-    "residuals": ("residual", "solved"),
-    "vectors": ("vector", "product"),
-    "multiplied": ("search", "product"),
-}
-_BOTH_BLOCKS = {
-    "placed": ("displacement", "rotation"),
-    "moving": ("velocity", "angular_velocity"),
-    "pulled": ("force", "moment"),
-    "resisted": ("resisting", "twisting"),
-    "unpressed": ("unpushed", "moment"),
-    "acting": ("applied", "applied_moment"),
-    "foreseen": ("predicted", "predicted_spin"),
-    "tried": ("trial", "trial_rotation", "speed", "trial_spin"),
-    "reached": ("work[STAGES]", "turns[STAGES]", "work[STAGES + 1]", "turns[STAGES + 1]"),
-    "accelerating": ("acceleration", "turning_acceleration"),
-    "correcting": ("correction", "turning_correction", "work", "turns"),
-    "sizing": ("acceleration", "turning_acceleration", "reach"),
-    "strung": ("along", "across", "tangents"),
-    "diagonals": ("diagonal", "beside", "turning_diagonal"),
-    "inverses": ("straight", "skew", "turning_straight"),
-    "mobilities": ("particles_mobility", "particles_turning"),
-    "residuals": ("residual", "solved", "turning_residual", "turning_solved"),
-    "vectors": ("vector", "product", "turning_vector", "turning_product"),
-    "multiplied": ("search", "product", "turning_search", "turning_product"),
-}
-_LEAST_TURN = (
-    1e-3  # share of what displacements amount to by the longest rod, below which no error of rotations counts
-)
-EVERY = "displacement.shape[0]"  # particles
-_IN_BLOCK = "{0}[block], {0}[block + 1]"
-
-# What functions take before the columns.
-TRIAL_STATE = "time, dt, *state"
-PREDICTED = "time, dt, *placed, *foreseen, *forces"
-RESISTED = "time, dt, *placed, *moving, *resisted, direction"
-_NOW = "control[Control.TIME], control[Control.STEP_SIZE]"
-
-SHIFT = {f"s{d}": f"displacement[b, {i}] - displacement[a, {i}]" for i, d in enumerate("xy")}
-TURNED = {f"turn_{end}": f"rotation[{end}, 0]" for end in "ab"}
-SPUN = {f"spin_{end}": f"angular_velocity[{end}, 0]" for end in "ab"}
-DRIFT = {f"drift_{d}": f"velocity[b, {i}] - velocity[a, {i}]" for i, d in enumerate("xy")}
-
-_OF_PAIR = {  # what kernels of pairs are provided with
-    "apart": "(x, y)",
-    "drift": "(velocity[j, 0] - velocity[i, 0], velocity[j, 1] - velocity[i, 1])",
-}
-
-NO_POWER = tuple(f"power_{name} = 0.0" for name in ACCOUNTS)
-POWER_RETURNED = tuple(f"power[Account.{name.upper()}] = power_{name}" for name in ACCOUNTS)
 
 FEW, MANY, VERY_MANY = "few", "many", "very many"  # rods: what is quickest for some is not for others
 BLOCKS_FROM = 20_000  # rods: below, cores wait for each other longer than they help
@@ -216,7 +142,7 @@ class Writer:
         self.branching = [b.system for b in self.bound if getattr(b.system, "margin", "")]
         self.names: dict[str, Callable[..., Any]] = {b.call: b.function for b in self.bound}
         self.names |= {"conserved": conserved, "judge": judge}
-        kinds = (*_ENTRIES, *(_DRIVEN_ENTRIES if self.collides else ()))
+        kinds = (*ENTRIES, *(DRIVEN_ENTRIES if self.collides else ()))
         self.names |= {kind.__name__: kind for kind in kinds}
         self.pairs = [*self.of[StepRole.PAIR_FORCE], *self.of[StepRole.PAIR_RESISTANCE]]
         self.ends = [*self.of[StepRole.ENDS], *self.of[StepRole.RATE_OF_ENDS]]
@@ -237,7 +163,7 @@ class Writer:
         pushing = bool(self.of[StepRole.PARTICLE_FORCE]) or stored < len(self.pairs)
         self.powers = self.rates or pushing or bool(self.working) or bool(self.working_ends)
         # All arrays that the functions read or write besides the integrator's own.
-        self.columns = [*_ALWAYS, *(["rods_misfit"] if self.warm else []), *(_TURNING if self.bends else ())]
+        self.columns = [*ALWAYS, *(["rods_misfit"] if self.warm else []), *(OF_BENDING if self.bends else ())]
         self.columns += ["rods_distributed_force", "rods_load_shares"] if self.loaded else []
         self._add_columns([*self.bound, *self.potentials.values()])
         if self.pairs:
@@ -269,7 +195,7 @@ class Writer:
     def _argument(self, b: Bound, parameter: str, index: str) -> str:
         """How a kernel's parameter is written inside the loop over its rows, or over pairs of particles i and j."""
         if parameter in PROVIDED:
-            return _OF_PAIR.get(parameter, parameter)
+            return OF_PAIR.get(parameter, parameter)
         name, single = TRIAL.get(parameter, parameter), False
         if name in TURNING and self.bends:
             return f"{name}[{index}, 0]"
@@ -312,9 +238,7 @@ class Writer:
     @property
     def _parts_of_both(self) -> list[str]:
         """Parts of the integrator that are written for both blocks of coordinates, if there are two."""
-        return [
-            part for part in self.integrator.parts if self.bends and part.partition(":")[2] in _SECOND_PARTS
-        ]
+        return [part for part in self.integrator.parts if self.bends and part.partition(":")[2] in SECOND_PARTS]
 
     @property
     def groups(self) -> dict[str, Sequence[str]]:
@@ -326,8 +250,8 @@ class Writer:
             "scratch": self.scratch,
             "bounds": ("breaks", "until", "landing"),
             "limits": self._limits,
-            "kept": (*_KEPT, *(f"kept_{name}" for name in self.kept)),
-            "observed": (*_OBSERVED, *(_TURNING_OBSERVED if self.bends else ())),
+            "kept": (*KEPT, *(f"kept_{name}" for name in self.kept)),
+            "observed": (*OBSERVED, *(TURNING_OBSERVED if self.bends else ())),
             "columns": self.columns,
         }
 
@@ -339,7 +263,7 @@ class Writer:
     @property
     def blocks(self) -> Mapping[str, tuple[str, ...]]:
         """Groups of arguments of one block of coordinates, or of both."""
-        return _BOTH_BLOCKS if self.bends else _FIRST_BLOCK
+        return BOTH_BLOCKS if self.bends else FIRST_BLOCK
 
     @property
     def scratch(self) -> tuple[str, ...]:
@@ -386,7 +310,7 @@ class Writer:
     def _driven_steps(self) -> dict[str, Sequence[str]]:
         """How `drive` evaluates forces, takes steps, and what follows from other contact forces."""
         resist = [f"resist({RESISTED}, power, *columns)"] if self.powers else []
-        resist = [line.replace("time, dt", _NOW) for line in resist]
+        resist = [line.replace("time, dt", NOW) for line in resist]
         return {
             "evaluate": fragment(driven.evaluate_fixed, resist=resist),
             "take": fragment(driven.take_fixed),
@@ -412,7 +336,7 @@ class Writer:
             "CHECK_INTERVAL": self.integrator.check_interval,
             "REVIEW_INTERVAL": REVIEW_INTERVAL,
             **self.integrator.constants,
-            **({"LEAST_TURN": _LEAST_TURN} if self.bends else {}),
+            **({"LEAST_TURN": LEAST_TURN} if self.bends else {}),
         }
 
     @property
@@ -431,15 +355,15 @@ class Writer:
         """What templates insert where rotations are treated beside displacements; nothing without bending."""
         names = [name for name in vars(turning) if name.endswith("_turns")]
         lines = {name: fragment(getattr(turning, name)) if self.bends else [] for name in names}
-        return {**lines, **_NORMS}
+        return {**lines, **NORMS}
 
     def _second_part(self, where: str) -> str:
         """A function that treats coordinates one by one, for those of the second block."""
         function = find(where, self.integrator)
-        text = pasted(function, "inlined", f"{function.__name__}_of_turns", **(self.second_block | _LEAST))
+        text = pasted(function, "inlined", f"{function.__name__}_of_turns", **(self.second_block | LEAST))
         head, body = text.split(":\n", 1)
         lines = projected(dedent(body).splitlines(), {})
-        for first, second in _LARGEST.items():
+        for first, second in LARGEST.items():
             lines = [line.replace(first, second) for line in lines]
         return "\n".join([f"{head}:", *indented(lines)])
 
@@ -505,7 +429,7 @@ class Writer:
     @staticmethod
     def _each_load(b: Bound, *lines: str, within: str = "") -> list[str]:
         """Lines for every load `k` on a particle `i`, in a block of them or in all."""
-        acting = _IN_BLOCK.format(within) if within else f"{b.prefix}_on.shape[0]"
+        acting = IN_BLOCK.format(within) if within else f"{b.prefix}_on.shape[0]"
         return [
             f"for k in range({acting}):",
             f"    i = {b.prefix}_on[k]",
@@ -882,20 +806,6 @@ def _scatter(target: str, name: str) -> list[str]:
         f"{target}[b, 0] -= {name}_x",
         f"{target}[b, 1] -= {name}_y",
     ]
-
-
-# In `combine` for rotations: their own scales, at least a small share of those of displacements.
-_NORMS = {f"norm_{d}": f"math.sqrt(size_{d})" for d in "xv"}
-_LEAST = {
-    f"norm_{d}": f"math.sqrt(size_{d}), LEAST_TURN * FIRST_{scale} / search[Search.REACH]"
-    for d, scale in {"x": "DISPLACEMENT", "v": "SPEED"}.items()
-}
-_LARGEST = {
-    "LARGEST_DISPLACEMENT": "LARGEST_ROTATION",
-    "LARGEST_SPEED": "LARGEST_SPIN",
-    "FIRST_DISPLACEMENT": "search[Search.LARGEST_DISPLACEMENT]",
-    "FIRST_SPEED": "search[Search.LARGEST_SPEED]",
-}
 
 
 def _literal(value: Any) -> str:

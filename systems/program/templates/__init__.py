@@ -14,7 +14,7 @@ program. It runs only there.
     *observed   rods_axial_force, rods_length, rods_strain, yielding; fixed, tension, compression, yields
     *placed, *moving, *pulled, *resisted, …
                 displacement, velocity, force, resisting, …; of models that bend each with the array of rotations after it:
-                rotation, angular_velocity, moment, twisting, … (`_BOTH_BLOCKS` in writer.py)
+                rotation, angular_velocity, moment, twisting, … (`BOTH_BLOCKS` in names.py)
     insert(x)   the lines, or the expression, that the writer made for `x`
 
 In the head of a function, where Python allows one star only, the same words stand without it. Arrays are handed over
