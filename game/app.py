@@ -44,6 +44,7 @@ from systems.input.pygame_input import PygameInput
 from systems.render.pygame_images import encoded
 from systems.render.pygame_render import PygameRender
 from systems.render.raster import load_raster
+from systems.render.symbol_at import symbol_at
 
 FRAME_RATE = 60  # Hz
 FIRST_SIZE = (1000, 720)  # points
@@ -102,7 +103,13 @@ def _autosave() -> tuple[Autosave | None, str]:
 
 def window_systems(folder: Path) -> list[System]:
     """The systems that a window adds to a session, without a window; unsaved work would go to the folder."""
-    return [PygameInput(), Hover(), Autosave(folder), Preparation(), PygameRender(pygame.Surface((1, 1)))]
+    return [
+        PygameInput(),
+        Hover(symbol_at),
+        Autosave(folder),
+        Preparation(),
+        PygameRender(pygame.Surface((1, 1))),
+    ]
 
 
 def _find_display() -> None:
@@ -171,7 +178,7 @@ class App:
         raster = preparation.raster if preparation else load_raster
         self.render = PygameRender(self.window.get_surface(), raster)
         further = [system for system in (autosave, preparation) if system is not None]
-        systems: list[System] = [self.input, Hover(), *further, self.render]
+        systems: list[System] = [self.input, Hover(symbol_at), *further, self.render]
         self.session = Session(model, systems, View(theme=theme), file)
         self.session.window = self
         self.session.faults_seen = 0  # so that mods that were left out are shown

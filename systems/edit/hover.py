@@ -1,11 +1,13 @@
-"""Hover: marks the element that a click would hit."""
+"""Hover: marks the element under the pointer, or that whose arrow or support is."""
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import replace
 from typing import Any
 
 from components.field import Vector
+from components.handle import Handle
 from components.kind import outlines
 from components.model import Model
 from components.tags import Hovered
@@ -13,9 +15,11 @@ from components.view import View
 from systems.base import Phase, System
 from systems.edit.picking import pick
 
+Picked = Callable[[Model, View, Vector], Handle | None]  # what lies under a pixel
+
 
 class Hover(System):
-    """Marks the element under the pointer."""
+    """Marks the element under the pointer; beside all elements the one that `beside` finds there."""
 
     name = "edit.hover"
     phase = Phase.EDIT
@@ -25,7 +29,8 @@ class Hover(System):
     unneeded = "the model has nothing to point at"
     scenes = ("simulation", "pause", "properties", "force method")
 
-    def __init__(self) -> None:
+    def __init__(self, beside: Picked = lambda *where: None) -> None:
+        self._beside = beside
         self._looked: Any = None  # context, revision, camera and pointer of the last frame
 
     def needs(self, model: Model) -> bool:
@@ -44,5 +49,5 @@ class Hover(System):
     def _mark(self, model: Model, view: View, pointer: Vector | None) -> None:
         hit = None
         if pointer is not None and view.menu is None and view.camera.viewport.contains(pointer):
-            hit = pick(model, view, pointer)
+            hit = pick(model, view, pointer) or self._beside(model, view, pointer)
         model.tag_only([] if hit is None else [hit], Hovered)

@@ -14,10 +14,11 @@ from game.editor.gestures.drawing import Drawing
 from game.editor.menu import menu_at
 from game.editor.scenes.force_method import ForceMethod
 from systems.edit import Refusal
-from systems.edit.picking import pick, pick_line, pick_particle
+from systems.edit.picking import pick
 from systems.edit.supports import SUPPORTS, Held, support
 from systems.input.bindings import LIVE
 from systems.render.menu import menu_of
+from systems.render.symbol_at import symbol_at
 
 
 @action("open menu", while_drawing=True)
@@ -27,7 +28,7 @@ def _open_menu(context: Context, pixel: Vector) -> None:
         return
     if context.scene in LIVE:
         model, view = context.model, context.view
-        hit = pick_particle(model, view, pixel) or pick_line(model, view, pixel)
+        hit = pick(model, view, pixel) or symbol_at(model, view, pixel)
         if hit is None:
             context.select()
         elif hit not in context.selected:
@@ -81,7 +82,9 @@ def _open(context: Context, pixel: Vector) -> None:
         context.gesture = None
     elif isinstance(context.gesture, Drawing) or context.view.tool:
         ACTIONS["select"](context, pixel)
-    elif (hit := pick(context.model, context.view, pixel)) is not None:
+    elif (
+        hit := pick(context.model, context.view, pixel) or symbol_at(context.model, context.view, pixel)
+    ) is not None:
         if hit not in context.selected:
             context.select(hit)
         ACTIONS["properties"](context, pixel)
