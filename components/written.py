@@ -13,6 +13,7 @@ from components.field import CM
 
 DIGITS = 4  # significant ones of a result
 GIVEN_DIGITS = 6  # of a number that a person set, without zeros at its end
+MORE_DIGITS = 2  # that a sum may take so that it adds up as written
 ROUNDING = 1e-9  # of the largest of its kind: a result below is written as 0
 
 _LENGTH, _PER_METRE = CM
@@ -73,23 +74,28 @@ def vector(values: Iterable[float], digits: int = GIVEN_DIGITS) -> str:
 def total(terms: Iterable[float]) -> str:
     """A sum with its numbers filled in, to the digits of the largest: "20.1 − 140.1 + 120.0 = 0".
 
-    Terms that are 0 to these digits are left out; the sum is of all.
+    Terms that are 0 to these digits are left out; the sum is of all. Where what is written does not add up by rounding,
+    there are MORE_DIGITS at most so that it does, or else the sign is "≈".
     """
     known = list(terms)
     largest = max(map(abs, known), default=0.0)
     if largest == 0.0:
         return "0"
-    decimals = max(DIGITS - 1 - math.floor(math.log10(largest)), 0)
-    found, least = sum(known), 0.5 * 10.0**-decimals
-    shown = [term for term in known if abs(term) >= least]
+    usual = max(DIGITS - 1 - math.floor(math.log10(largest)), 0)
+    found = sum(known)
+    found = 0.0 if abs(found) <= ROUNDING * largest else found
+    sign = "="
+    for decimals in range(usual, usual + MORE_DIGITS + 1):
+        rounded = [round(term, decimals) for term in known]
+        if abs(sum(rounded) - round(found, decimals)) < 0.5 * 10.0**-decimals:
+            break
+    else:
+        decimals, sign = usual, "≈"
+    shown = [term for term in known if round(term, decimals)]
     first, *others = (f"{abs(term):.{decimals}f}" for term in shown)
     signed = [f"{'−' if term < 0.0 else '+'} {text}" for term, text in zip(shown[1:], others, strict=True)]
-    result = (
-        "0"
-        if abs(found) <= ROUNDING * largest
-        else f"{round(found, decimals) + 0.0:.{decimals}f}".replace("-", "−")
-    )
-    return " ".join([f"{'−' * (shown[0] < 0.0)}{first}", *signed, "=", result])
+    result = f"{round(found, decimals) + 0.0:.{decimals}f}".replace("-", "−") if found else "0"
+    return " ".join([f"{'−' * (shown[0] < 0.0)}{first}", *signed, sign, result])
 
 
 def strain(value: float, *, nothing: float = 0.0) -> str:

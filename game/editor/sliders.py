@@ -9,7 +9,7 @@ from typing import Any
 from components.box import Box
 from components.field import Field
 from components.handle import Handle
-from components.load import Load
+from components.load import Load, factor_at
 from components.model import Model
 from components.numeric_range import incomputable
 from components.particle import Particle
@@ -75,8 +75,19 @@ def _control(model: Model, key: int, slider: Slider) -> Control | None:
     field, value = model.tables[aim.table].fields[aim.field], _value(aim, handle)
     unit, factor = field.shown
     text = field.absent if value is None else _written(value * factor, unit)
+    text += _now(handle, aim.field, model.clock.time)
     share = None if value is None else slider.share_of(value)
     return Control(key, slider.title or _title(model, aim, handle, field), text, share, "×")
+
+
+def _now(handle: Handle, field: str, time: float) -> str:
+    """How much of a load acts at a time (s), where that is not all of it."""
+    if not isinstance(handle, Load) or field not in (Load.force.name, Load.moment.name):
+        return ""
+    factor = factor_at(handle.history, time)
+    if not math.isfinite(factor) or f"{factor:.0%}" == "100%":
+        return ""
+    return f", now {100.0 * factor:.0f} %".replace("-", "−")
 
 
 def _written(value: float, unit: str) -> str:

@@ -107,7 +107,7 @@ _BY_PURPOSE: dict[str, tuple[Binding, ...]] = {
     "Results": (
         Binding("i", "toggle diagrams", LIVE, "force diagrams on / off; in frames N, M, V"),
         Binding("x", "toggle free bodies", LIVE, "free bodies: rods and joints apart, on / off"),
-        Binding("a", "toggle utilisation", LIVE, "share of the strength in colours, on / off"),
+        Binding("a", "toggle utilisation", LIVE, "utilisation in colours, on / off"),
         Binding("m", "toggle theory", LIVE, "theory beside the run, on / off"),
         Binding("j", "toggle energy", LIVE, "energy account on / off"),
         Binding("ctrl+h", "toggle events", LIVE, "what happened, on / off"),

@@ -207,7 +207,7 @@ def _draw_others(sheet: Sheet, row: int, forces: list[Force], largest: float) ->
             sheet.marks += arc_marks(
                 sheet, ("particles", rows), at, around, np.array([force.moment]), colour, key
             )
-            sheet.legend.append(force.kind)
+            sheet.legend.append(f"{force.kind} moment")
             label_moment(sheet, centre, float(around[0]), force.moment, colour, (key, row))
         size = math.hypot(force.x, force.y)
         if size <= SMALLEST_FORCE:

@@ -93,7 +93,7 @@ def draw_distributed_forces(sheet: Sheet) -> None:
             sheet.marks.append(Strokes(tails[:-1], tails[1:], 1.25 * u, colour, (of[0], of[1][1:])))
             sheet.occupancy.line(tails[:-1], tails[1:], STRONG, (of[0], of[1][1:]))
         sheet.marks += arrows(sheet, owners, tails, np.tile(along, (len(tips), 1)), level, colour, of, 1.25)
-        sheet.explain("load", tails, tips)
+        sheet.explain("load per length", tails, tips)
         if index in told:
             _label_row(sheet, row, tails, along, float(size[index]), shifted)
 
@@ -196,7 +196,7 @@ def _draw_arcs(sheet: Sheet, name: str, moment: Values) -> None:
     key = "particles.applied_moment" if name == "load" else "particles.reaction_moment"
     colour, of = getattr(sheet.theme, name), ("particles", rows)
     sheet.marks += arc_marks(sheet, of, sheet.centres[rows], radius, moment[rows], colour, key)
-    sheet.explain(name, sheet.centres[rows], sheet.centres[rows])
+    sheet.explain(f"{name} moment", sheet.centres[rows], sheet.centres[rows])
     for at, size, row, value in zip(
         sheet.centres[rows], radius.tolist(), rows.tolist(), moment[rows].tolist(), strict=True
     ):

@@ -112,7 +112,7 @@ def heading_height(text: str, width: float, unit: float, explained: Sequence[str
     if not explained:
         return height
     right = _EDGE * unit + max(text_width(line, size, "semibold") for line in lines)
-    legend = _arranged(explained, width, right, unit)
+    legend = _arranged(meanings_of(explained), width, right, unit)
     rows = len(legend.rows) * _ROW * unit
     return max(height, rows + 2 * _ABOVE * unit - 4.0 * unit) if legend.beside else height + rows
 
@@ -240,16 +240,35 @@ MEANINGS = {
     "moment": "M on the tension side (kN·m)",
     "shear": "shear V (kN)",
     "yielding": "yielding",
-    "utilisation": "0 to 100 % of the strength",
+    "utilisation": "utilisation 0 to 100 %",
     "first": "first at its strength",
     "slack": "slack cable",
-    "load": "load (kN)",
-    "reaction": "reaction (kN)",
-    "inertia": "inertia −m a (kN)",
+    "load": "load",
+    "reaction": "reaction",
+    "inertia": "inertia −m a",
     "velocity": "velocity",
     "hinge": "hinge",
     "ghost": "undeformed",
 }
+UNITS = {
+    "load": "kN",
+    "load per length": "kN/m",
+    "load moment": "kN·m",
+    "reaction": "kN",
+    "reaction moment": "kN·m",
+    "inertia": "kN",
+    "inertia moment": "kN·m",
+}  # by what occurs of a colour
+
+
+def meanings_of(legend: Sequence[str]) -> dict[str, str]:
+    """The colours of a legend, in order, and what they mean, with the units that occur."""
+    found = {}
+    for name, meaning in MEANINGS.items():
+        units = [unit for of, unit in UNITS.items() if of.split(" ")[0] == name and of in legend]
+        if units or name in legend:
+            found[name] = f"{meaning} ({', '.join(units)})" if units else meaning
+    return found
 
 
 def _legend(sheet: Sheet, heading_end: tuple[float, float]) -> tuple[list[Mark], float]:
@@ -258,10 +277,10 @@ def _legend(sheet: Sheet, heading_end: tuple[float, float]) -> tuple[list[Mark],
     They stand beside the heading if one or two rows have room there, else below it.
     """
     v, u, theme, size = sheet.viewport, sheet.unit, sheet.theme, sheet.font(11.0)
-    names = [name for name in MEANINGS if name in sheet.legend] if sheet.view.legend else []
-    if not names or v.width < 240.0 * u:
+    meanings = meanings_of(sheet.legend) if sheet.view.legend else {}
+    if not meanings or v.width < 240.0 * u:
         return [], heading_end[1]
-    legend = _arranged(names, v.width, heading_end[0] - v.left, u)
+    legend = _arranged(meanings, v.width, heading_end[0] - v.left, u)
     if not legend.beside and v.height < _SMALL * u and not sheet.view.explains_all:
         return [], heading_end[1]
     top = v.top + _ABOVE * u if legend.beside else heading_end[1] + 8.0 * u
@@ -276,7 +295,7 @@ def _legend(sheet: Sheet, heading_end: tuple[float, float]) -> tuple[list[Mark],
         for entry in row:
             marks += _swatch(sheet, entry.name, x, top + height / 2, entry.swatch)
             says = x + entry.swatch + 6.0 * u
-            marks.append(Text(MEANINGS[entry.name], says, top + height / 2, size, theme.text))
+            marks.append(Text(meanings[entry.name], says, top + height / 2, size, theme.text))
             x += entry.width + _BETWEEN * u
         top += _ROW * u
     return marks, max(top - 4.0 * u, heading_end[1])
@@ -297,12 +316,12 @@ class _Legend(NamedTuple):
     beside: bool
 
 
-def _arranged(names: Sequence[str], width: float, heading: float, u: float) -> _Legend:
+def _arranged(meanings: dict[str, str], width: float, heading: float, u: float) -> _Legend:
     """A legend in a viewport that is so wide, of which the heading takes the left up to `heading`."""
     entries = []
-    for name in names:
+    for name, meaning in meanings.items():
         swatch = (_BAR_WIDTH if name == "utilisation" else 16.0) * u
-        entries.append(_Entry(name, swatch, swatch + 6.0 * u + text_width(MEANINGS[name], font_size(11.0, u))))
+        entries.append(_Entry(name, swatch, swatch + 6.0 * u + text_width(meaning, font_size(11.0, u))))
     whole = width - 2 * (_ABOVE + _PAD) * u
     room = width - heading - (_ABOVE + _BETWEEN + 2 * _PAD) * u
     beside = max(entry.width for entry in entries) <= room

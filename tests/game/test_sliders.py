@@ -92,6 +92,19 @@ def test_the_wheel_moves_a_slider_and_does_not_zoom() -> None:
     assert len(session.history._done) == 1
 
 
+def test_the_slider_of_a_load_that_grows_says_how_much_of_it_acts_now() -> None:
+    session = Session.open("portal")
+    session.resize(1024, 640)
+    session.update_view()
+    assert place(session, "wind").control.value == "35 kN, now 0 %"
+    session.run(time=0.75)
+    session.update_view()
+    assert place(session, "wind").control.value == "35 kN, now 50 %"
+    session.run(time=0.3)
+    session.update_view()
+    assert place(session, "wind").control.value == "35 kN"
+
+
 # --- any property --------------------------------------------------------------------------------------------
 
 

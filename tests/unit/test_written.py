@@ -83,3 +83,17 @@ def test_the_pace_and_rulers() -> None:
     assert written.pace(1.0) == "real time"
     assert written.pace(20.0) == "1 s shown = 20 s simulated"
     assert [written.length(x) for x in (0.005, 1000.0, 1e5)] == ["0.5 cm", "100000 cm", "1·10⁷ cm"]
+
+
+@pytest.mark.parametrize(
+    ("terms", "text"),
+    [
+        ([20.1, -140.1, 120.0], "20.1 − 140.1 + 120.0 = 0"),
+        ([10.3441, -10.3481, 0.004], "10.344 − 10.348 + 0.004 = 0"),  # not 10.34 − 10.35 = 0
+        ([2.0, 1e-9], "2.000 = 2.000"),
+        ([100.0 / 3.0, 100.0 / 3.0, -200.0 / 3.0], "33.33 + 33.33 − 66.67 ≈ 0"),  # whatever its digits
+        ([0.0, 0.0], "0"),
+    ],
+)
+def test_a_sum_adds_up_as_it_is_written(terms: list[float], text: str) -> None:
+    assert written.total(terms) == text

@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 
 from systems.render.theme import load_theme, theme_from, theme_names
+from systems.render.utilisation import LEVELS, shade
 from tests.systems.render.pictures import (
     LIGHT,
 )
@@ -90,6 +91,19 @@ def test_red_and_blue_mean_forces_and_nothing_else(name: str) -> None:
             assert apart > 30, (meaning, other)
     for halo in (theme.selected, theme.hover):
         assert np.hypot(*lab(halo, np.eye(3))[1:]) < 15, "a* and b* of grey are 0"
+
+
+@pytest.mark.parametrize("name", theme_names())
+def test_no_colour_of_utilisation_looks_like_a_reaction_or_a_load(name: str) -> None:
+    theme = load_theme(name)
+    for level in range(LEVELS):
+        shown = shade(theme, level / (LEVELS - 1))
+        for meaning in ("reaction", "load"):
+            arrow = getattr(theme, meaning)
+            assert np.linalg.norm(lab(shown, np.eye(3)) - lab(arrow, np.eye(3))) > 25, (level, meaning)
+            if "colour-blind" in name:
+                for vision in VISIONS.values():
+                    assert np.linalg.norm(lab(shown, vision) - lab(arrow, vision)) > 18, (level, meaning)
 
 
 @pytest.mark.parametrize("vision", VISIONS)
