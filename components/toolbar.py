@@ -8,6 +8,7 @@ from dataclasses import dataclass
 from components.camera import Rectangle, Viewport
 
 BUTTON = 30.0, 26.0  # points, width and height
+LEAST_HEIGHT = 23.5  # points of a button in a low window, before another column begins
 EDGE = 4.0  # points around all buttons
 GAP = 6.0  # points between groups
 LEAST_WIDTH = 420.0  # points: a window less wide does without
@@ -63,16 +64,19 @@ class Toolbar:
     def buttons(self, window: Viewport, unit: float) -> list[Button]:
         """Where the buttons are; none where it is hidden."""
         columns, groups = self._shown(window, unit)
-        (width, height), buttons = BUTTON, []
-        top = EDGE
+        buttons, top = [], EDGE
+        width, height = BUTTON
+        if columns:
+            height = min(height, (window.height / unit - _gaps(groups)) / _rows_of(groups, columns))
         for number, group in enumerate(groups):
             if number == len(groups) - 1:
                 top = window.height / unit - EDGE - _rows(group, columns) * height
             for index, tool in enumerate(group):
                 row, column = divmod(index, columns)
-                place = EDGE + column * width, top + row * height, width, height
-                left, upper, wide, high = (round(points * unit) for points in place)
-                buttons.append(Button(window.left + left, window.top + upper, wide, high, tool))
+                left, right = (round((EDGE + at * width) * unit) for at in (column, column + 1))
+                upper, lower = (round((top + at * height) * unit) for at in (row, row + 1))
+                place = window.left + left, window.top + upper, right - left, lower - upper
+                buttons.append(Button(*place, tool))
             top += _rows(group, columns) * height + GAP
         return buttons
 
@@ -87,7 +91,8 @@ class Toolbar:
             return 0, ()
         for groups in self._kept():
             for columns in range(1, MOST_COLUMNS + 1):
-                if _height(groups, columns) * unit <= window.height:
+                least = _rows_of(groups, columns) * LEAST_HEIGHT + _gaps(groups)
+                if least * unit <= window.height:
                     return columns, groups
         return 0, ()
 
@@ -99,10 +104,13 @@ class Toolbar:
                 yield (*self.groups[:count], (self.more, *self.groups[-1]))
 
 
-def _height(groups: Groups, columns: int) -> float:
-    """Points that groups take in that many columns."""
-    rows = sum(_rows(group, columns) for group in groups)
-    return rows * BUTTON[1] + (len(groups) - 1) * GAP + 2 * EDGE
+def _gaps(groups: Groups) -> float:
+    """Points above, between and below groups."""
+    return (len(groups) - 1) * GAP + 2 * EDGE
+
+
+def _rows_of(groups: Groups, columns: int) -> int:
+    return sum(_rows(group, columns) for group in groups)
 
 
 def _rows(group: tuple[Tool, ...], columns: int) -> int:

@@ -68,7 +68,8 @@ def handles(session: Session) -> Iterator[tuple[str, Vector]]:
                 yield f"panel {panel.readout.title} {panel.readout.plot}", middle(panel.close)
         for place in view.slider_places:
             left, right, y = place.track
-            yield f"slider {place.control.title}", (0.75 * left + 0.25 * right, y)
+            elsewhere = 0.75 if place.control.share < 0.5 else 0.25
+            yield f"slider {place.control.title}", (left + elsewhere * (right - left), y)
             yield f"button {place.control.title} {place.control.button}", middle(place.button)
 
 
