@@ -385,17 +385,6 @@ class _SettlingWithDiscs(_Settling):
             slack, places = start.response.slack, map(self._particles, (start.displacement, found.displacement))
             self.events.append(first_order_mechanism(self.model, self.factor, fields, slack, *places))
 
-    def _note_slender(self, factor: float) -> None:
-        """Report, once, the rods that bend more than one cubic follows."""
-        response, rods = self.point.response, slice(self.model.rods.count)
-        if response.bent is None:
-            return
-        parts = needed_parts(self.model, response.axial_force[rods], response.bent.slopes[rods])
-        rows = np.flatnonzero((parts > 1) & ~self.slender)
-        if len(rows):
-            self.slender[rows] = True
-            self.events.append(Event("note", factor, divide_named(self.model, rows, parts)))
-
     def _check_bodies(self, target: Array, factor: float) -> None:
         """None: loose bodies move until something is in their way."""
 

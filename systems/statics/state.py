@@ -11,8 +11,9 @@ import numpy as np
 from components.diagrams import diagrams
 from components.model import Model
 from components.rod import bends
-from systems.statics.equations import Array, Flags, Response, Rows, Structure
+from systems.statics.equations import Array, Flags, Rows, Structure
 from systems.statics.events import Event
+from systems.statics.response import Response
 
 STABLE, NEUTRAL, UNSTABLE = EQUILIBRIA = ("equilibrium", "neutral equilibrium", "unstable equilibrium")
 

@@ -8,11 +8,12 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from components.model import Model
-from systems.statics.equations import ROUND_OFF, Array, Response, Structure, largest, normalised
+from systems.statics.equations import ROUND_OFF, Array, Structure, largest, normalised
 from systems.statics.events import NoEquilibrium
 from systems.statics.explain import cables_named, describe_motion
 from systems.statics.external import external_forces, loose_bodies, loose_event
 from systems.statics.factor import SOFT, pseudo_random, regular, soft_count, soft_modes, unresisted
+from systems.statics.response import Response
 from systems.statics.state import STABLE, Start, StaticState, state_of
 
 REFINEMENTS = 4  # of a linear solution

@@ -10,9 +10,10 @@ from scipy.sparse import csc_matrix, diags
 from scipy.sparse.linalg import LinearOperator, eigsh
 
 from components.model import Model
-from systems.statics.equations import ROUND_OFF, Array, Response, Structure, largest, normalised
+from systems.statics.equations import ROUND_OFF, Array, Structure, largest, normalised
 from systems.statics.external import external_forces
 from systems.statics.factor import Factor, pseudo_random
+from systems.statics.response import Response
 from systems.statics.state import Start, StaticState
 
 FULL = 600  # unknowns up to which all modes are computed

@@ -42,10 +42,11 @@ class Properties(FormScene):
     def enter(self, context: Context) -> None:
         super().enter(context)
         self._at_left = _is_right(context, context.selected)
-        for at_left in (True, False):  # where nothing is covered, in the right column rather
-            aside = context.view.beside(at_left=at_left)
-            if aside is not None and replace(context.view, aside=aside).shows(context.model):
-                self._at_left = at_left
+        if not context.view.fitted:  # it is not fitted anew beside the boxes
+            for at_left in (True, False):  # where nothing is covered, in the right column rather
+                aside = context.view.beside(at_left=at_left)
+                if aside is not None and replace(context.view, aside=aside).shows(context.model):
+                    self._at_left = at_left
         self._looked = ()
 
     def make_form(self, context: Context) -> Form:
