@@ -65,9 +65,9 @@ _SLIDES = (
     (-0.5, 1.0),
     (1.0, 2.0),
     (-1.0, -1.0),
-    (1.5, 3.0),
-    (-1.5, 4.0),
+    (1.5, 4.0),
 )  # of a value: between ends, and at one
+_NEAR = 42.0  # points along a rod, or two steps: so far from its end stands a value, but for the last place
 _PLACES = 3  # of values of a rod: start, end, between
 
 Values = NDArray[np.float64]
@@ -411,11 +411,15 @@ def _places(
         np.where(fits, beside, -beside),
     ]
     step = extent + 3.0 * u
+    near = np.maximum(_NEAR * u, 2.0 * step)
     slides = [
-        np.where(inward == 0.0, share * step, inward * other * step)
-        for share, other in (_SLIDES if len(at) <= FEW_VALUES else _SLIDES[:3])
+        np.where(inward == 0.0, share * step, inward * np.minimum(other * step, near))
+        for share, other in _SLIDES
     ]
+    slides.append(inward * 3.0 * step)
+    slides = slides if len(at) <= FEW_VALUES else slides[:3]
     offset = np.stack(across, axis=1)[:, :, None, None] * normal[:, None, None, :]
     slide = np.stack(slides, axis=1)[:, None, :, None] * along[:, None, None, :]
-    places: Points = (at[:, None, None, :] + offset + slide).reshape(len(at), -1, 2)
-    return places
+    places = at[:, None, None, :] + offset + slide
+    parts = [part.reshape(len(at), -1, 2) for part in (places[:, :, :5], places[:, :, 5:])]  # far ones last
+    return np.concatenate(parts, axis=1)
