@@ -14,6 +14,7 @@ from components.field import Vector
 from components.kind import all_points
 from components.menu import Menu
 from components.model import Model
+from components.rod import bends
 from components.slider import ARROW, SUPPORT, Place, SliderStack, under
 from components.toolbar import Button, Toolbar
 
@@ -23,6 +24,7 @@ COMFORTABLE = 1080.0  # points: on displays higher than this, type and symbols g
 COMFORTABLE_HEIGHT, LEAST_HEIGHT = 480.0, 240.0  # points that are left in a window by itself, and at all
 BETWEEN = " " * 5  # the steps of a hint
 MARGIN = 110.0  # points around a fitted model, room for supports, diagrams and labels
+ABOVE = 102.0  # points above members that bend, for a legend in two rows and diagrams
 COVERED = 0.75  # of this margin, what arrows and the legend may take
 COLUMN, COLUMN_SHARE, WIDEST_COLUMN = 306.0, 0.34, 340.0  # points, share of the canvas: the column of panels
 SIDE, LEAST_SIDE, SIDE_SHARE = 332.0, 286.0, 0.54  # points, and share of the canvas: boxes to type into
@@ -206,11 +208,16 @@ class View:
     aside: Viewport | None = None
 
     def fit(self, model: Model) -> None:
-        """Let the camera show the whole model, clear of the sliders."""
-        self.camera.fit(drawn_places(model), MARGIN, self.room, self.pixel_ratio)
+        """Let the camera show the whole model, clear of the sliders, and with room for diagrams below the legend."""
+        room = self.room
+        if self.legend and bends(model):
+            missing = min(ABOVE * self.pixel_ratio - LEAST_MARGIN * room.height, LEAST_MARGIN / 2 * room.height)
+            top, kept = round(max(missing, 0.0)), 1.0 - LEAST_MARGIN  # the margin shrinks with the room
+            room = replace(room, top=room.top + top, height=max(room.height - round(top / kept), 1))
+        self.camera.fit(drawn_places(model), MARGIN, room, self.pixel_ratio)
         if self._meets_sliders(model):
             more = self._reserve(arrows=True) - self._reserve(arrows=False)
-            room = replace(self.room, height=max(self.room.height - more, 1))
+            room = replace(room, height=max(room.height - more, 1))
             self.camera.fit(drawn_places(model), MARGIN, room, self.pixel_ratio)
         self.fitted = True
 

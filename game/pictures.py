@@ -15,7 +15,7 @@ from components.camera import Camera, Viewport
 from components.model import Model
 from components.slider import SliderStack
 from components.toolbar import Toolbar
-from components.view import MARGIN, Plot, Status, View, drawn_places
+from components.view import MARGIN, Plot, Status, View
 from game.documents import models
 from game.session import Session
 from systems.render.labels import Placed
@@ -39,7 +39,7 @@ def render(
     session.exaggerate()
     session.update_view()
     view = on_paper(session.view, Camera(viewport=Viewport(0, 0, *size)))
-    view.camera.fit(drawn_places(session.model), MARGIN, view.room, view.pixel_ratio)
+    view.fit(session.model)
     write([(session.model, view)], path, size, theme, background)
 
 

@@ -22,6 +22,7 @@ from components.bent import (
 from components.tags import DiagramShown, Selected
 from components.view import MARGIN
 from systems.render.arrows import steady
+from systems.render.clip import bounds
 from systems.render.diagrams import (
     FEW_VALUES,
     GAP,
@@ -38,11 +39,14 @@ from systems.render.labels import half_size
 from systems.render.marks import Discs, Fills, Points, Strokes
 from systems.render.nearness import ranges
 from systems.render.occupancy import FAINT
+from systems.render.overlays import heading_height
 from systems.render.sheet import Rows, Sheet, typical_length
 from systems.render.theme import Colour, faded
 
 NAMES = {AXIAL: "axial force N", MOMENT: "bending moment M", SHEAR: "shear force V"}
 UNITS = {AXIAL: "kN", MOMENT: "kN·m", SHEAR: "kN"}
+_MEANT = {AXIAL: ("tension", "compression"), MOMENT: ("moment",), SHEAR: ("shear",)}  # in the legend
+_LEAST = 24.0  # points that diagrams have towards the legend and the rim, where there is less room
 _LARGEST, _FAR = 1e100, 1e6  # kN or kN·m, pixels: what is beyond is left out
 _MANY = 300  # rods, above which diagrams are outlines
 _PIECES = ((24, 24), (120, 12), (_MANY, 8), (np.inf, 4))  # of a diagram, by how many rods have one at most
@@ -61,7 +65,9 @@ _SLIDES = (
     (-0.5, 1.0),
     (1.0, 2.0),
     (-1.0, -1.0),
+    (1.5, 4.0),
 )  # of a value: between ends, and at one
+_NEAR = 42.0  # points along a rod, or two steps: so far from its end stands a value, but for the last place
 _PLACES = 3  # of values of a rod: start, end, between
 
 Values = NDArray[np.float64]
@@ -129,8 +135,8 @@ def _measured(sheet: Sheet, rows: Rows, quantity: str, room: float) -> _Diagram 
         largest = max(largest, _SHARE * float(shear[shear < _LARGEST].max(initial=0.0)))
     if largest <= SMALLEST_FORCE:
         return None
-    height = room * model.settings.diagram_scale
-    scale = height / steady(sheet, (f"diagrams.{quantity}", 0), largest)
+    fitting = max(largest, room * _crowding(sheet, every, quantity))
+    scale = room * model.settings.diagram_scale / steady(sheet, (f"diagrams.{quantity}", 0), fitting)
     base, polynomials = _baseline(sheet, rows), every[rows]
     shares = np.linspace(0.0, 1.0, _pieces(sheet, rows) + 1)
     points, normals = _stations(sheet, base, shares, quantity)
@@ -138,6 +144,21 @@ def _measured(sheet: Sheet, rows: Rows, quantity: str, room: float) -> _Diagram 
     found = _Diagram(rows, base, polynomials, scale, largest, points, normals, heights)
     near = (np.abs(points) < _FAR) & np.isfinite(normals)
     return found.some(np.asarray(near.all(axis=(1, 2))))
+
+
+def _crowding(sheet: Sheet, every: Values, quantity: str) -> float:
+    """The value per pixel up to which diagrams of all rods keep off the legend and the rim; 0 if somebody looks closer."""
+    view = sheet.view
+    if not view.shows(sheet.model):
+        return 0.0
+    shares, names = np.linspace(0.0, 1.0, 5), _MEANT[quantity]
+    points, normals = _stations(sheet, _baseline(sheet, np.arange(len(every))), shares, quantity)
+    explained = (*names, "load", "reaction", "ghost") if view.legend else ()
+    low, high = bounds(view.room)
+    low[1] += heading_height(view.heading, sheet.viewport.width, sheet.unit, explained)
+    reach = normals * values(every, shares)[..., None]
+    free = np.maximum(np.where(reach < 0.0, points - low, high - points), _LEAST * sheet.unit)
+    return float(np.nan_to_num(np.abs(reach) / free).max(initial=0.0))
 
 
 def _pieces(sheet: Sheet, rows: Rows) -> int:
@@ -172,8 +193,7 @@ def _draw(sheet: Sheet, quantity: str, diagram: _Diagram) -> None:
     """Areas with an outline, hatched but for moments; axial forces in the colours of tension and compression."""
     if quantity != AXIAL:
         _draw_areas(sheet, quantity, diagram, diagram.heights, np.ones(len(diagram.rows), dtype=bool))
-        name = "moment" if quantity == MOMENT else "shear"
-        sheet.explain(name, diagram.points[:, 0], diagram.points[:, -1])
+        sheet.explain(_MEANT[quantity][0], diagram.points[:, 0], diagram.points[:, -1])
         return
     for name, heights in (
         ("tension", np.maximum(diagram.heights, 0.0)),
@@ -391,11 +411,15 @@ def _places(
         np.where(fits, beside, -beside),
     ]
     step = extent + 3.0 * u
+    near = np.maximum(_NEAR * u, 2.0 * step)
     slides = [
-        np.where(inward == 0.0, share * step, inward * other * step)
-        for share, other in (_SLIDES if len(at) <= FEW_VALUES else _SLIDES[:3])
+        np.where(inward == 0.0, share * step, inward * np.minimum(other * step, near))
+        for share, other in _SLIDES
     ]
+    slides.append(inward * 3.0 * step)
+    slides = slides if len(at) <= FEW_VALUES else slides[:3]
     offset = np.stack(across, axis=1)[:, :, None, None] * normal[:, None, None, :]
     slide = np.stack(slides, axis=1)[:, None, :, None] * along[:, None, None, :]
-    places: Points = (at[:, None, None, :] + offset + slide).reshape(len(at), -1, 2)
-    return places
+    places = at[:, None, None, :] + offset + slide
+    parts = [part.reshape(len(at), -1, 2) for part in (places[:, :, :5], places[:, :, 5:])]  # far ones last
+    return np.concatenate(parts, axis=1)

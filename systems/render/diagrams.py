@@ -39,6 +39,7 @@ _ROD_VALUE = "rods.axial_force"  # keys by which labels keep places
 _ARROW_VALUES = {"load": "particles.applied_force", "reaction": "particles.reaction"}
 _MOST_COVERED = 0.15  # of a picture, by values
 _SLIDES = np.array([0.0, 0.3, -0.3, 0.6, -0.6, 0.9, -0.9])  # of how far a label can go along a rod
+_OFF_ARCS = 6.0  # points between the arrow of a moment and that of a force
 GAP = 1.0  # points between a rod or an arrow and a value beside it
 BACKING = 0.86  # opacity behind a value
 
@@ -343,8 +344,9 @@ def _arrow_places(
 ) -> tuple[Points, NDArray[np.int64]]:
     """Tails of the arrows, and on which side of its particle each stands.
 
-    An arrow starts at the rim, or ends at it where the side that it comes from is freer; there it stands
-    beyond the support, if there is one. taken: the side of another arrow along the same axis, or NO_SUPPORT.
+    An arrow starts at the rim, or ends at it where the side that it comes from is freer; there it stands beyond
+    the support, if there is one, and beyond the arrow of a moment. taken: the side of another arrow along the
+    same axis, or NO_SUPPORT.
     """
     u = sheet.unit
     opposite, crowd = (direction + 2) % 4, crowding(sheet, rows)
@@ -354,6 +356,8 @@ def _arrow_places(
     pushes = ((busy_behind < busy_ahead - 0.1) & (taken != opposite)) | (taken == direction)
     side = np.where(pushes, opposite, direction)
     gap = sheet.radii[rows] + 2.0 * u + np.where(supported & (sides[rows] == side), SUPPORT_DEPTH * u, 0.0)
+    around = np.where(DIRECTIONS[side, 1] > 0.0, 0.0, sheet.arcs[rows])  # they are open below
+    gap = np.maximum(gap, around + np.where(around > 0.0, _OFF_ARCS * u, 0.0))
     outward = DIRECTIONS[side]
     start = sheet.centres[rows] + outward * gap[:, None]
     return start + outward * np.where(pushes, length, 0.0)[:, None], side

@@ -193,6 +193,7 @@ def _draw_arcs(sheet: Sheet, name: str, moment: Values) -> None:
     if not len(rows):
         return
     radius = sheet.radii[rows] + (_ARC[name] - 4.0) * sheet.unit
+    sheet.arcs[rows] = np.maximum(sheet.arcs[rows], radius)
     key = "particles.applied_moment" if name == "load" else "particles.reaction_moment"
     colour, of = getattr(sheet.theme, name), ("particles", rows)
     sheet.marks += arc_marks(sheet, of, sheet.centres[rows], radius, moment[rows], colour, key)

@@ -36,7 +36,7 @@ def draw_overlays(sheet: Sheet) -> tuple[list[Mark], tuple[float, float]]:
     marks, bottom = _status_bar(sheet)
     heading, heading_end = _heading(sheet)
     legend, top = _legend(sheet, heading_end)
-    caption, top = _caption(sheet, top)
+    caption, top = _caption(sheet, heading_end[1], top)
     return marks + heading + legend + caption, (top, bottom)
 
 
@@ -133,8 +133,11 @@ def _heading(sheet: Sheet) -> tuple[list[Mark], tuple[float, float]]:
     return marks, (right, top + len(lines) * line_height(size) - 4.0 * u)
 
 
-def _caption(sheet: Sheet, top: float) -> tuple[list[Mark], float]:
-    """The caption of the viewport and the title of a shape, at the top between hairlines; and their lower end."""
+def _caption(sheet: Sheet, heading_end: float, top: float) -> tuple[list[Mark], float]:
+    """The caption of the viewport and the title of a shape, at the top between hairlines; and the lower end of all there.
+
+    They stand below the legend, which ends at `top`; a title alone beside it where it has room there.
+    """
     v, u, theme, size = sheet.viewport, sheet.unit, sheet.theme, sheet.font(13.0)
     shape = (sheet.view.shape.title,) if sheet.view.shape is not None else ()
     marks: list[Mark] = []
@@ -145,19 +148,24 @@ def _caption(sheet: Sheet, top: float) -> tuple[list[Mark], float]:
         return [], top
     left, room = v.left + _EDGE * u, v.width - 2 * _EDGE * u
     paper = faded(theme.background, 0.85)  # keeps lines of a grid out of the text
-    number = 0
+    number, upper = 0, top
+    if not sheet.view.caption:
+        alone = [text for line in shape for text in wrapped(line, room, size, "semibold")]
+        width = max(text_width(text, size, "semibold") for text in alone) + 8.0 * u
+        if not sheet.occupancy.is_taken(left, heading_end + 8.0 * u, width, len(alone) * line_height(size)):
+            upper = heading_end
     for line in (*sheet.view.caption, *shape):
         weight, colour = ("semibold", theme.text) if number == 0 else ("regular", theme.muted)
         if line in shape:
             weight, colour = "semibold", theme.sketch
         for text in wrapped(line, room, size, weight):
-            y = top + 8.0 * u + (number + 0.5) * line_height(size)
+            y = upper + 8.0 * u + (number + 0.5) * line_height(size)
             width = text_width(text, size, weight)
             sheet.occupancy.block(left, y - size / 2, width, size)
             marks.append(Panel(left - 4.0 * u, y - 0.7 * size, width + 8.0 * u, 1.4 * size, 3.0 * u, paper))
             marks.append(Text(text, left, y, size, colour, weight))
             number += 1
-    return marks, top + 8.0 * u + number * line_height(size)
+    return marks, max(top, upper + 8.0 * u + number * line_height(size))
 
 
 def _beside_panels(sheet: Sheet, said: str, size: int, around: float) -> tuple[Viewport, float, list[str]]:

@@ -80,6 +80,11 @@ class Sheet:
         """The typical length of rods in pixels, as far as they are seen."""
         return typical_length(self.start, self.end)
 
+    @cached_property
+    def arcs(self) -> NDArray[np.float64]:
+        """The radius in pixels of the arrow of a moment around each particle, where one is drawn; else 0."""
+        return np.zeros(len(self.centres))
+
     @property
     def viewport(self) -> Viewport:
         return self.occupancy.viewport

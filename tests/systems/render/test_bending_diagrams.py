@@ -1,6 +1,7 @@
 """Diagrams of N, M and V along members that bend."""
 
 import itertools
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -10,7 +11,8 @@ from components.bent import AXIAL, MOMENT, QUANTITIES, SHEAR
 from components.tags import DiagramShown
 from components.view import View
 from game import Session
-from systems.render.marks import Bars, Discs, Fills, Picture, Strokes
+from systems.render.marks import Bars, Discs, Fills, Picture, Strokes, Text
+from systems.render.overlays import MEANINGS
 from systems.render.picture import compose
 from systems.render.theme import faded
 from tests.systems.render.frame_models import (
@@ -176,6 +178,53 @@ def test_one_scale_for_all_which_is_steady() -> None:
     after = areas(compose(session.model, session.view, LIGHT, placed), session, "CD")
     assert before.shape == after.shape
     assert ("diagrams.M", 0) in placed
+
+
+SIZES = [(640, 480), (1024, 640), (1280, 800), (1920, 1080)]
+
+
+def bundled_at_rest(width: int, height: int) -> Session:
+    session = Session.open("portal")
+    session.resize(width, height)
+    session.press("e")
+    session.update_view()
+    assert session.view.all_diagrams
+    session.view.status = replace(session.view.status, notice="")  # it goes by itself
+    return session
+
+
+@pytest.mark.parametrize("size", SIZES)
+def test_all_values_of_a_portal_are_told(size: tuple[int, int]) -> None:
+    session = bundled_at_rest(*size)
+    for session.view.quantity in QUANTITIES:
+        said = [mark.text for mark in picture_of(session).marks if isinstance(mark, Text)]
+        assert not [text for text in said if "hidden" in text], session.view.quantity
+        assert {"2.600 kN", "32.40 kN", "20.58 kN·m"} <= set(said)
+
+
+@pytest.mark.parametrize("size", SIZES)
+def test_diagrams_keep_off_the_legend(size: tuple[int, int]) -> None:
+    session = bundled_at_rest(*size)
+    for session.view.quantity in QUANTITIES:
+        picture = picture_of(session)
+        rows = {mark.y for mark in picture.marks if isinstance(mark, Text) and mark.text in MEANINGS.values()}
+        tops = [
+            float(mark.corners[..., 1].min())
+            for mark in picture.marks
+            if isinstance(mark, Fills) and mark.of is not None and mark.of[0] == "rods" and len(mark.corners)
+        ]
+        assert min(tops) > max(rows) + 12.0, session.view.quantity
+
+
+def picture_of(session: Session) -> Picture:
+    return compose(session.model, session.view, LIGHT)
+
+
+def test_diagrams_grow_as_a_person_wants() -> None:
+    session = bundled_at_rest(1280, 800)
+    far = np.ptp(areas(picture_of(session), session, "CD")[:, 0])
+    session.settings.diagram_scale *= 2.0
+    assert np.ptp(areas(picture_of(session), session, "CD")[:, 0]) > 1.5 * far
 
 
 def test_only_tagged_rods_if_only_these_are_wanted() -> None:

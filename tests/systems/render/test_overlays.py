@@ -6,6 +6,7 @@ import itertools
 
 import pytest
 
+from components.model import Model
 from components.view import Status, drawn_positions
 from game import Session
 from systems.render.empty_card import Card
@@ -138,3 +139,20 @@ def test_a_long_notice_stands_beside_a_structure_that_fills_the_height(size: tup
     covered = (x > box.left - reach) & (x < box.left + box.width + reach)
     covered &= (y > box.top - reach) & (y < box.top + box.height + reach)
     assert not covered.any()
+
+
+def test_the_title_of_a_mode_stands_beside_a_legend_of_several_rows_off_the_structure() -> None:
+    session = Session.open("hyperstatic")
+    session.resize(1024, 640)
+    for key in ("e", "i", "b"):
+        session.press(key)
+    session.select(session.rods["AC"])
+    session.press("return")
+    session.update_view()
+    model, view = session.stages[0]
+    assert isinstance(model, Model)
+    texts = [mark for mark in compose(model, view, LIGHT).marks if isinstance(mark, Text)]
+    (heading,) = [text for text in texts if text.text == "Properties"]
+    (title,) = [text for text in texts if text.text.startswith("Mode 1 of 5")]
+    (lowest,) = [text for text in texts if text.text == "undeformed"]
+    assert heading.y < title.y < lowest.y + 20.0
