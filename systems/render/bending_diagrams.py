@@ -46,6 +46,14 @@ from systems.render.theme import Colour, faded
 NAMES = {AXIAL: "axial force N", MOMENT: "bending moment M", SHEAR: "shear force V"}
 UNITS = {AXIAL: "kN", MOMENT: "kN·m", SHEAR: "kN"}
 _MEANT = {AXIAL: ("tension", "compression"), MOMENT: ("moment",), SHEAR: ("shear",)}  # in the legend
+_BESIDE = (
+    "load",
+    "load per length",
+    "load moment",
+    "reaction",
+    "reaction moment",
+    "ghost",
+)  # in the legend, at most
 _LEAST = 24.0  # points that diagrams have towards the legend and the rim, where there is less room
 _LARGEST, _FAR = 1e100, 1e6  # kN or kN·m, pixels: what is beyond is left out
 _MANY = 300  # rods, above which diagrams are outlines
@@ -153,7 +161,7 @@ def _crowding(sheet: Sheet, every: Values, quantity: str) -> float:
         return 0.0
     shares, names = np.linspace(0.0, 1.0, 5), _MEANT[quantity]
     points, normals = _stations(sheet, _baseline(sheet, np.arange(len(every))), shares, quantity)
-    explained = (*names, "load", "reaction", "ghost") if view.legend else ()
+    explained = (*names, *_BESIDE) if view.legend else ()
     low, high = bounds(view.room)
     low[1] += heading_height(view.heading, sheet.viewport.width, sheet.unit, explained)
     reach = normals * values(every, shares)[..., None]
