@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from components.derived import chord_rotation
-from components.diagrams import all_slopes
+from components.diagrams import all_slopes, cubic, moments_along, rigid_slopes
 from components.model import Model
 from components.settings import DIAGRAMS
 
@@ -126,8 +126,7 @@ def moved_axes(model: Model, rows: Rows, places: Array, displacement: Array, rot
 
 def _cubic(start: Array, end: Array) -> Array:
     """The deflection (n, 5) between ends with slopes × length (n,)."""
-    zero = np.zeros(len(start))
-    return np.stack([zero, start, -2.0 * start - end, start + end, zero], axis=1)
+    return np.pad(cubic(start, end), ((0, 0), (0, 1)))
 
 
 class _State(NamedTuple):
@@ -149,9 +148,7 @@ def _state(model: Model, rows: Rows) -> _State:
     left = np.stack([-along[:, 1], along[:, 0]], axis=1)
     force = rods.distributed_force
     across = (force * left).sum(axis=1)
-    rigid = np.where(
-        rods.turning_shares > 0.0, particles.rotation[rods.between] - chord_rotation(model)[:, None], 0.0
-    )
+    rigid = rigid_slopes(rods, particles.rotation[rods.between], chord_rotation(model))
     start, end = (length[:, None] * all_slopes(rods, rigid, across))[rows].T
     bent = rods.bending_stiffness > 0.0
     sag = np.divide(
@@ -167,17 +164,15 @@ def _state(model: Model, rows: Rows) -> _State:
 def inner_forces(model: Model, rows: Rows, quantity: str) -> Array:
     """N, V (kN) or M (kN·m) along some rods as polynomials; at their ends the computed columns.
 
-    M(ξ) = M_s (1 − ξ) + M_e ξ − ½ q L₀ L ξ (1 − ξ) + N v(ξ), with the force q across and the cubic deflection v.
+    M as in `moments_along`, with the force q across and the cubic deflection v.
     """
     rods, state = model.rods, _state(model, rows)
     name = {AXIAL: "end_axial_force", SHEAR: "shear", MOMENT: "bending_moment"}[quantity]
-    start, end = getattr(rods, name)[rows].T
+    ends = getattr(rods, name)[rows]
     if quantity != MOMENT:
-        return np.stack([start, end - start], axis=1)
-    sag = 0.5 * state.across * rods.rest_length[rows] * state.length
-    found: Array = rods.axial_force[rows, None] * state.cubic[:, :4]
-    found[:, :3] += np.stack([start, end - start - sag, sag], axis=1)
-    return found
+        return np.stack([ends[:, 0], ends[:, 1] - ends[:, 0]], axis=1)
+    load = state.across * rods.rest_length[rows] * state.length
+    return moments_along(ends, load, rods.axial_force[rows, None] * state.cubic[:, :4])
 
 
 def zeros(polynomials: Array) -> tuple[Rows, Array]:

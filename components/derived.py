@@ -12,6 +12,8 @@ from components.particle import DEFAULT_MASS
 from components.rod import DEFAULT_STIFFNESS
 from components.world import Derivation, World
 
+FULL_TURN = 2.0 * np.pi  # rad
+
 
 def derive_lengths(world: World) -> None:
     """Original difference and length of every rod, its rest length, and its misfit at its temperature."""
@@ -140,8 +142,13 @@ def chord_rotation(world: World) -> Column:
     difference = rods.difference
     sine = difference[:, 0] * relative[:, 1] - difference[:, 1] * relative[:, 0]
     chord = np.arctan2(sine, (difference * (difference + relative)).sum(axis=1))
-    mean = (rods.turning_shares * particles.rotation[rods.between]).sum(axis=1)
-    turned: Column = chord + 2.0 * np.pi * np.rint((mean - chord) / (2.0 * np.pi))
+    return with_full_turns(chord, rods.turning_shares, particles.rotation[rods.between])
+
+
+def with_full_turns(chord: Column, turning_shares: Column, rotation: Column) -> Column:
+    """Rotations of chords (rods,) with those full turns that bring them nearest to the mean of their rigid ends."""
+    mean = (turning_shares * rotation).sum(axis=1)
+    turned: Column = chord + FULL_TURN * np.rint((mean - chord) / FULL_TURN)
     return turned
 
 

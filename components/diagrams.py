@@ -35,7 +35,7 @@ def diagrams(
     left = np.stack([-axis[:, 1], axis[:, 0]], axis=1)
     force = share * rods.distributed_force
     transverse, tangential = (force * left).sum(axis=1), (force * axis).sum(axis=1)
-    slopes = np.where(rods.turning_shares > 0.0, rotation - chord[:, None], 0.0)
+    slopes = rigid_slopes(rods, rotation, chord)
     couple = -bent * tangential * (rods.load_shares * slopes).sum(axis=1)
     with np.errstate(divide="ignore", invalid="ignore"):
         shear = np.where(length > 0.0, (moment.sum(axis=1) + couple) / length, 0.0)
@@ -53,6 +53,14 @@ def diagrams(
     }
 
 
+def rigid_slopes(rods: Table[Any], rotation: Column, chord: Column) -> Column:
+    """Slopes to the chords of those ends that are joined rigidly, 0 at others; likewise of rates; (rods, 2).
+
+    rotation: of the particles at both ends, (rods, 2). chord: (rods,).
+    """
+    return np.where(rods.turning_shares > 0.0, rotation - chord[:, None], 0.0)
+
+
 def all_slopes(rods: Table[Any], slopes: Column, transverse: Column) -> Column:
     """Slopes of both ends of every rod, those at hinges by M = 0 of its cubic and a transverse force (kN/m)."""
     length, stiffness = rods.rest_length, rods.bending_stiffness
@@ -67,22 +75,30 @@ def all_slopes(rods: Table[Any], slopes: Column, transverse: Column) -> Column:
     return np.where(rigid, slopes, hinged)
 
 
-def _largest_moment(ends: Column, slopes: Column, thrust: Column, load: Column, length: Column) -> Column:
-    """The bending moment of largest size, and its distance from the start (m), of every rod.
+def cubic(start: Column, end: Column) -> Column:
+    """The deflection φ_s ξ (1 − ξ)² − φ_e ξ² (1 − ξ) between ends with these slopes, lowest coefficient first, (rods, 4)."""
+    return np.stack([np.zeros(len(start)), start, -(2.0 * start + end), start + end], axis=1)
 
-    M(ξ) = M_s (1 − ξ) + M_e ξ − ½ q L₀ L ξ (1 − ξ) + N v(ξ), v/L = φ_s ξ (1 − ξ)² − φ_e ξ² (1 − ξ).
-    thrust: N L; load: q L₀ L.
+
+def moments_along(ends: Column, load: Column, by_thrust: Column) -> Column:
+    """M(ξ) = M_s (1 − ξ) + M_e ξ − ½ q L₀ L ξ (1 − ξ) + N v(ξ) of rods, lowest coefficient first, (rods, 4).
+
+    ends: M_s and M_e, (rods, 2). load: q L₀ L, (rods,). by_thrust: N v, (rods, 4).
     """
-    (start, end), (first, last) = ends.T, slopes.T
-    linear = end - start - 0.5 * load + thrust * first
-    square = 0.5 * load - thrust * (2.0 * first + last)
-    cube = thrust * (first + last)
+    start, end = ends.T
+    straight = np.stack([start, end - start - 0.5 * load, 0.5 * load, np.zeros(len(start))], axis=1)
+    return straight + by_thrust
+
+
+def _largest_moment(ends: Column, slopes: Column, thrust: Column, load: Column, length: Column) -> Column:
+    """The bending moment of largest size, and its distance from the start (m), of every rod; thrust: N L; load: q L₀ L."""
     with np.errstate(divide="ignore", invalid="ignore", over="ignore"):
+        start, linear, square, cube = moments_along(ends, load, thrust[:, None] * cubic(*slopes.T)).T
         root = np.sqrt(np.maximum(square**2 - 3.0 * cube * linear, 0.0))
         both = -(square + np.copysign(root, square))
         found = np.stack([np.zeros_like(start), np.ones_like(start), both / (3.0 * cube), linear / both])
     found = np.where((found > 0.0) & (found <= 1.0), found, 0.0)
     values = start + found * (linear + found * (square + found * cube))
-    values[1] = end
+    values[1] = ends[:, 1]
     chosen, rows = np.abs(values).argmax(axis=0), np.arange(len(start))
     return np.stack([values[chosen, rows], found[chosen, rows] * length], axis=1)

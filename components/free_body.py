@@ -14,6 +14,7 @@ from numpy.typing import NDArray
 
 from components.bent import distributed_shares, is_frame
 from components.derived import chord_rotation
+from components.diagrams import rigid_slopes
 from components.load import factor_at
 from components.model import Model
 from components.rod import rigid_joints
@@ -87,7 +88,7 @@ def _of_bending(model: Model, along: Vectors) -> Vectors:
     left = np.stack([-along[:, 1], along[:, 0]], axis=1)
     length = np.maximum(rods.length, 1e-300)
     turning = ((particles.velocity[last] - particles.velocity[first]) * left).sum(axis=1) / length
-    rate = np.where(rods.turning_shares > 0.0, particles.angular_velocity[rods.between] - turning[:, None], 0.0)
+    rate = rigid_slopes(rods, particles.angular_velocity[rods.between], turning)
     start, mixed, end = rods.end_damping.T
     damper = np.stack([start * rate[:, 0] + mixed * rate[:, 1], mixed * rate[:, 0] + end * rate[:, 1]], axis=1)
     shear = rods.shear + (damper.sum(axis=1) / length)[:, None]

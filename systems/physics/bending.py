@@ -6,6 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from components.derived import chord_rotation
+from components.diagrams import rigid_slopes
 from components.model import Model
 from components.rod import bends
 
@@ -14,10 +15,8 @@ Array = NDArray[np.float64]
 
 def slopes(model: Model) -> Array:
     """Slopes of the rigid ends of every rod to its chord (rad), 0 at others; shape (rods, 2)."""
-    rods = model.rods
-    rotation = model.particles.rotation[rods.between]
-    found: Array = np.where(rods.turning_shares > 0.0, rotation - chord_rotation(model)[:, None], 0.0)
-    return found
+    rotation = model.particles.rotation[model.rods.between]
+    return rigid_slopes(model.rods, rotation, chord_rotation(model))
 
 
 def bending_energy(model: Model) -> Array:

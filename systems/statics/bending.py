@@ -12,11 +12,11 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
+from components.derived import FULL_TURN
 from components.model import Model
 
 Array = NDArray[np.float64]
 
-FULL_TURN = 2.0 * np.pi
 WITHIN = 2.5  # −N L₀²/EI of one rod, up to which its cubic bends as compression makes it
 
 
@@ -80,12 +80,6 @@ class Bending:
         return replace(self, **more | {"rest_length": np.concatenate([self.rest_length, rest_length])})
 
     # --- states ------------------------------------------------------------------------------------
-
-    def with_full_turns(self, chord: Array, rotation: Array) -> Array:
-        """Rotations of chords (rods,) with those full turns that bring them nearest to the mean of their rigid ends."""
-        mean = (self.turning_shares * rotation).sum(axis=1)
-        turned: Array = chord + FULL_TURN * np.rint((mean - chord) / FULL_TURN)
-        return turned
 
     def bow(self, slopes: Array) -> tuple[Array, Array]:
         """L₀ B φ (rods, 2), and the elongation of the axis by bowing, ½ L₀ φᵀ B φ (rods,)."""

@@ -16,6 +16,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
+from components.derived import with_full_turns
 from components.model import Model
 from components.rod import bends
 from components.table import flags
@@ -349,8 +350,10 @@ class Structure:
             squared: Array = np.where(self.original_length > 0.0, self.original_length, np.inf) ** 2
             return sine / squared
         cosine = (difference * (difference + change)).sum(axis=1)
-        chord = np.arctan2(sine, cosine)
-        return chord if self.bending is None else self.bending.with_full_turns(chord, self.turns(displacement))
+        chord: Array = np.arctan2(sine, cosine)
+        if self.bending is None:
+            return chord
+        return with_full_turns(chord, self.bending.turning_shares, self.turns(displacement))
 
     def _slopes(self, displacement: Array) -> Array:
         """Slopes of the rigid ends to the chord, (rods, 2)."""

@@ -7,7 +7,6 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from components.camera import Viewport
 from game import Session
 from game.commands.command_line import main
 from game.documents import models
@@ -16,19 +15,12 @@ from systems.edit.arrows import extent
 from systems.render.marks import Text
 from systems.render.picture import compose
 from systems.render.theme import load_theme
+from tests.game.test_shapes import session_of, shown
 from tests.verification.test_buckling import CLAMPED, HEADS, column
 
 
 def opened(parts: int = 4) -> Session:
-    session = Session.open(column(parts, CLAMPED, HEADS["free"]))
-    session.view.camera.viewport = Viewport(0, 0, 800, 600)
-    session.view.fit(session.model)
-    return session
-
-
-def shown(session: Session) -> str:
-    session.update_view()
-    return session.view.shape.title if session.view.shape is not None else ""
+    return session_of(column(parts, CLAMPED, HEADS["free"]))
 
 
 def test_buckling_modes_come_before_natural_modes() -> None:
