@@ -1,0 +1,140 @@
+"""Language: sentences in the language of the person, looked up in gettext catalogues.
+
+Sentences are written in English where they are said, with names for what is filled in:
+
+>>> tr("{rod} carries {force:.1f} kN.", rod="AB", force=-70.71)
+'AB carries -70.7 kN.'
+
+What is kept until it is shown, such as the titles of a table, is `marked` there and translated where it is shown.
+Files, scripts and names of elements are the same in every language.
+"""
+
+from __future__ import annotations
+
+import gettext
+from collections.abc import Iterable, Iterator, Sequence
+from contextlib import contextmanager
+from pathlib import Path
+from string import Formatter
+from typing import Any
+
+DOMAIN = "pinjoint"
+LOCALE = Path(__file__).parents[1] / "assets" / "locale"
+ENGLISH = "en"
+LANGUAGES = {ENGLISH: "English", "pt": "Português"}  # by code, as they call themselves
+_COMMA = ("pt",)  # languages that write 0,5
+
+
+class Said(str):
+    """A sentence in another language than English, and the same in English, which scripts compare."""
+
+    __slots__ = ("english",)
+    english: str
+
+    def __str__(self) -> str:
+        """The sentence itself: errors and text streams pass it on with its English."""
+        return self
+
+
+class _Spoken:
+    """The present language, and its catalogue."""
+
+    def __init__(self) -> None:
+        self.code = ENGLISH
+        self.catalogue = gettext.NullTranslations()
+
+
+_SPOKEN = _Spoken()
+
+
+def language() -> str:
+    """The code of the present language: "en"."""
+    return _SPOKEN.code
+
+
+def speak(code: str) -> None:
+    """Say everything in a language from now on. Raises ValueError if there is no such language."""
+    if code not in LANGUAGES:
+        raise ValueError(f"There is no language '{code}'; use one of {', '.join(LANGUAGES)}.")
+    english = code == ENGLISH
+    _SPOKEN.catalogue = (
+        gettext.NullTranslations() if english else gettext.translation(DOMAIN, LOCALE, languages=[code])
+    )
+    _SPOKEN.code = code
+
+
+@contextmanager
+def spoken(code: str) -> Iterator[None]:
+    """Say everything in a language for a while. Raises ValueError if there is no such language."""
+    before = _SPOKEN.code, _SPOKEN.catalogue
+    speak(code)
+    try:
+        yield
+    finally:
+        _SPOKEN.code, _SPOKEN.catalogue = before
+
+
+def marked(message: str) -> str:
+    """A text as it is, for catalogues to hold: it is translated where it is shown."""
+    return message
+
+
+def tr(message: str, /, **values: Any) -> str:
+    """A message in the present language, with values filled in as by `str.format`; without values, braces stay."""
+    return _filled(message, _SPOKEN.catalogue.gettext(message), values)
+
+
+def tr_in(context: str, message: str, /, **values: Any) -> str:
+    """As `tr`, for a word that has several meanings: the context, such as "support", tells them apart."""
+    return _filled(message, _SPOKEN.catalogue.pgettext(context, message), values)
+
+
+def plural(one: str, many: str, count: int, /, **values: Any) -> str:
+    """As `tr`, of two messages that which suits a number; {count} is filled in, too."""
+    shown = _SPOKEN.catalogue.ngettext(one, many, count)
+    return _filled(one if count == 1 else many, shown, {"count": count, **values})
+
+
+def english(said: object) -> Any:
+    """What was said, or an error says, in English, as scripts read it; other values as they are."""
+    return getattr(str(said) if isinstance(said, BaseException) else said, "english", said)
+
+
+def joined(parts: Iterable[str], separator: str = " ") -> str:
+    """Sentences that are said one after the other, without those that are empty."""
+    known = [part for part in parts if part]
+    said = Said(separator.join(known))
+    said.english = separator.join(map(english, known))
+    return said if said != said.english else said.english
+
+
+def listed(names: Sequence[str]) -> str:
+    """Names as a sentence lists them: "A, B and C"."""
+    if len(names) < 2:
+        return "".join(names)
+    return tr("{names} and {last}", names=", ".join(names[:-1]), last=names[-1])
+
+
+def decimals(text: str) -> str:
+    """A number as it is written in the present language: with a comma for the point, or as it is."""
+    return text.replace(".", ",") if _SPOKEN.code in _COMMA else text
+
+
+class _Filling(Formatter):
+    """Fills in values; numbers are written as in the present language."""
+
+    def format_field(self, value: Any, format_spec: str) -> str:
+        text = format(value, format_spec)
+        return decimals(text) if isinstance(value, float) else text
+
+
+_FILLING = _Filling()
+
+
+def _filled(message: str, shown: str, values: dict[str, Any]) -> str:
+    if _SPOKEN.code == ENGLISH:
+        return message.format(**values) if values else message
+    said = Said(_FILLING.vformat(shown, (), values) if values else shown)
+    same = {name: english(value) for name, value in values.items()}
+    said.english = message.format(**same) if values else message
+    return said

@@ -1,0 +1,67 @@
+"""Sentences in the language of the person, and the same in English for scripts."""
+
+import pytest
+
+from components import language
+from components.language import Said, english, joined, listed, plural, tr, tr_in
+from components.mistake import Mistake
+
+HELD = {
+    "{rod} carries {force:.1f} kN.": "A barra {rod} suporta {force:.1f} kN.",
+    "free\x04support": "livre",
+    "It says: {error}": "Diz: {error}",
+    "{names} and {last}": "{names} e {last}",
+}
+
+
+class _Held:
+    """A catalogue of four messages."""
+
+    def gettext(self, message: str) -> str:
+        return HELD.get(message, message)
+
+    def pgettext(self, context: str, message: str) -> str:
+        return HELD.get(f"{message}\x04{context}", message)
+
+    def ngettext(self, one: str, many: str, count: int) -> str:
+        return "{count} barras" if count > 1 else "uma barra"
+
+
+@pytest.fixture
+def portuguese(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(language._SPOKEN, "code", "pt")
+    monkeypatch.setattr(language._SPOKEN, "catalogue", _Held())
+
+
+def test_in_english_messages_are_filled_in_as_they_are() -> None:
+    assert tr("{rod} carries {force:.1f} kN.", rod="AB", force=-70.71) == "AB carries -70.7 kN."
+    assert tr("a set {1, 2}") == "a set {1, 2}"
+    assert [plural("one rod", "{count} rods", count) for count in (1, 3)] == ["one rod", "3 rods"]
+    assert listed(["A", "B", "C"]) == "A, B and C"
+
+
+@pytest.mark.usefixtures("portuguese")
+def test_messages_are_translated_numbers_with_commas_names_as_they_are() -> None:
+    said = tr("{rod} carries {force:.1f} kN.", rod="A.B", force=-70.71)
+    assert said == "A barra A.B suporta -70,7 kN."
+    assert english(said) == "A.B carries -70.7 kN."
+    assert tr_in("support", "free") == "livre"
+    assert plural("one rod", "{count} rods", 3) == "3 barras"
+    assert listed(["A", "B", "C"]) == "A, B e C"
+
+
+@pytest.mark.usefixtures("portuguese")
+def test_errors_and_sentences_in_a_row_keep_their_english() -> None:
+    error = Mistake(tr("{rod} carries {force:.1f} kN.", rod="AB", force=1.0))
+    said = tr("It says: {error}", error=error)
+    assert said == "Diz: A barra AB suporta 1,0 kN."
+    assert english(said) == "It says: AB carries 1.0 kN."
+    both = joined([said, "", "More."])
+    assert isinstance(both, Said)
+    assert both.english == "It says: AB carries 1.0 kN. More."
+
+
+def test_an_unknown_language_is_refused_and_nothing_changes() -> None:
+    with pytest.raises(ValueError, match="'xx'"), language.spoken("xx"):
+        pass
+    assert language.language() == "en"
