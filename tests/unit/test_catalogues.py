@@ -54,7 +54,8 @@ def test_what_the_program_reads_is_what_translators_wrote(domain, language):
         if not message.id or message.fuzzy or not is_translated(message):
             continue
         if isinstance(message.id, tuple):
-            got = tuple(compiled.ngettext(*message.id, number) for number in (1, 2))
+            one, many = message.id
+            got = tuple(compiled.ngettext(one, many, number) for number in (1, 2))
         elif message.context is not None:
             got = compiled.pgettext(message.context, message.id)
         else:
