@@ -9,7 +9,7 @@ import sys
 
 import pytest
 
-from components.language import ENGLISH, language, speak
+from components.language import language
 from game import __main__ as program
 from game.commands import language as choice
 from game.documents.preferences import CONFIG_VARIABLE, preferred_language, remember
@@ -27,7 +27,6 @@ def person(tmp_path, monkeypatch):
     domain = gettext.textdomain()
     yield monkeypatch
     gettext.textdomain(domain)
-    speak(ENGLISH)
 
 
 @pytest.mark.parametrize(
