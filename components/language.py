@@ -116,8 +116,22 @@ def listed(names: Sequence[str]) -> str:
 
 
 def decimals(text: str) -> str:
-    """A number as it is written in the present language: with a comma for the point, or as it is."""
-    return text.replace(".", ",") if _SPOKEN.code in _COMMA else text
+    """A number in English as it is written in the present language: with a comma for the point, or as it is."""
+    if _SPOKEN.code not in _COMMA or "." not in text:
+        return text
+    said = Said(text.replace(".", ","))
+    said.english = text
+    return said
+
+
+def several(numbers: Iterable[str]) -> str:
+    """Numbers one after the other: "120, −160", or "120,5; −160" where commas are decimal signs."""
+    parts = list(numbers)
+    if _SPOKEN.code not in _COMMA:
+        return ", ".join(parts)
+    said = Said("; ".join(parts))
+    said.english = ", ".join(map(english, parts))
+    return said
 
 
 class _Filling(Formatter):

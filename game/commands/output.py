@@ -14,6 +14,7 @@ from typing import Any, Literal
 
 import numpy as np
 
+from components.language import decimals
 from components.mistake import Mistake
 from components.wording import printable
 from game.commands.arguments import UsageError
@@ -139,7 +140,7 @@ def as_written(value: Any) -> str:
         return "–"
     if isinstance(value, bool):
         return "yes" if value else "no"
-    return value if isinstance(value, str) else f"{value + 0.0:.7g}"  # + 0.0: no minus before a zero
+    return value if isinstance(value, str) else decimals(f"{value + 0.0:.7g}")  # + 0.0: no minus before a zero
 
 
 def plain(value: Any, where: str) -> Any:

@@ -9,6 +9,7 @@ from typing import Any
 from components.box import Box
 from components.field import Field
 from components.handle import Handle
+from components.language import decimals
 from components.load import Load, factor_at
 from components.model import Model
 from components.numeric_range import incomputable
@@ -57,7 +58,7 @@ def scale_control(settings: Settings) -> Control:
     """The control of the displacement scale."""
     scale, automatic = settings.displacement_scale, settings.prescribed_displacement_scale is None
     share = scales(settings).share_of(max(scale, 1.0))
-    return Control(SCALE, "displacements", f"× {scale:.4g}", share, "auto", pressed=automatic)
+    return Control(SCALE, "displacements", decimals(f"× {scale:.4g}"), share, "auto", pressed=automatic)
 
 
 def scales(settings: Settings) -> Slider:
@@ -92,7 +93,7 @@ def _now(handle: Handle, field: str, time: float) -> str:
 
 def _written(value: float, unit: str) -> str:
     """A number to four digits with its unit."""
-    return f"{float(f'{value:.4g}'):.10g} {unit}".strip().replace("-", "−")
+    return decimals(f"{float(f'{value:.4g}'):.10g} {unit}".strip().replace("-", "−"))
 
 
 def _title(model: Model, aim: Aim, handle: Handle, field: Field[Any]) -> str:

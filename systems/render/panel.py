@@ -7,6 +7,7 @@ import numpy as np
 from components.box import NAME, NUMBER, WORD, Box, number_and_unit
 from components.camera import Rectangle, Viewport
 from components.form import Form, Reading, Tile
+from components.language import decimals
 from components.view import BETWEEN, View
 from systems.render.form_layout import (
     CAPTION,
@@ -312,9 +313,9 @@ def _window(text: str, caret: int, room: float, size: int) -> tuple[int, str]:
 
 
 def written(box: Box) -> str:
-    """The text of a box as it is shown, with as many characters: numbers with a real minus sign."""
+    """The text of a box as it is shown, with as many characters: numbers with the signs of the language."""
     text: str = box.text
-    return text.replace("-", "−") if box.accepts == NUMBER else text
+    return decimals(text.replace("-", "−")) if box.accepts == NUMBER else text
 
 
 def caret_at(place: Place, box: Box, x: float, unit: float) -> int:
