@@ -103,9 +103,13 @@ def english(said: object) -> Any:
 def joined(parts: Iterable[str], separator: str = " ") -> str:
     """Sentences that are said one after the other, without those that are empty."""
     known = [part for part in parts if part]
-    said = Said(separator.join(known))
-    said.english = separator.join(map(english, known))
-    return said if said != said.english else said.english
+    return _said(separator.join(known), separator.join(map(english, known)))
+
+
+def capitalised(said: str) -> str:
+    """A sentence, or a name, with a capital at its start."""
+    same: str = english(said)
+    return _said(said[:1].upper() + said[1:], same[:1].upper() + same[1:])
 
 
 def listed(names: Sequence[str]) -> str:
@@ -113,6 +117,15 @@ def listed(names: Sequence[str]) -> str:
     if len(names) < 2:
         return "".join(names)
     return tr("{names} and {last}", names=", ".join(names[:-1]), last=names[-1])
+
+
+def _said(text: str, same: str) -> str:
+    """A text, which is `same` in English."""
+    if text == same:
+        return same
+    said = Said(text)
+    said.english = same
+    return said
 
 
 def decimals(text: str) -> str:
