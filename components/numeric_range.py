@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 
 from components.field import LARGEST, SMALLEST, Column, Field, Role
-from components.language import capitalised, joined, tr
+from components.language import begun, joined, marked, tr
 from components.model import Model
 from components.obstacles import obstacles
 from components.wording import cut
@@ -74,9 +74,9 @@ def _sentence(element: str, field: Field[float], value: float) -> str:
     def amount(number: float) -> str:
         return joined([tr("{number:g}", number=number), field.unit])
 
-    values = {"element": capitalised(element), "title": field.named(), "amount": amount(value)}
+    values = {"element": begun(element), "title": field.named(), "amount": amount(value)}
     if abs(value) < SMALLEST:
-        message = "{element}: {title} is {amount}, too small to compute with; make it at least {limit}."
+        message = marked("{element}: {title} is {amount}, too small to compute with; make it at least {limit}.")
         return tr(message, **values, limit=amount(SMALLEST))
-    message = "{element}: {title} is {amount}, too large to compute with; make it at most {limit}."
+    message = marked("{element}: {title} is {amount}, too large to compute with; make it at most {limit}.")
     return tr(message, **values, limit=amount(LARGEST))

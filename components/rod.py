@@ -11,7 +11,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from components.field import CM, ENDS, Column, Field, FieldError, Vector, derived, state
 from components.handle import Handle
-from components.language import capitalised, tr
+from components.language import begun, tr
 from components.particle import Particle, rods_without_length
 from components.section import (
     MATERIALS,
@@ -451,7 +451,7 @@ def idle_moment(world: World) -> str:
         return tr(
             "{particle}: a moment of {moment:g} kN·m acts on it, but no rod is rigidly joined to it, so the moment turns"
             " nothing. Join a rod rigidly or remove the moment.",
-            particle=capitalised(world.describe(particles[row])),
+            particle=begun(world.describe(particles[row])),
             moment=moment[row],
         )
     return ""

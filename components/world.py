@@ -250,7 +250,7 @@ class World:
         table = self.tables[handle.table]
         if "name" not in table.fields:
             return tr(handle.noun)
-        return _called(handle.noun, table._columns["name"][self.row(handle)])
+        return called(handle.noun, table._columns["name"][self.row(handle)])
 
     # --- columns for systems -------------------------------------------------------------------------
 
@@ -324,7 +324,7 @@ class World:
         checked: dict[str, Column] = {}
 
         def where(row: int) -> str:
-            return _called(kind.noun, checked["name"][row]) if "name" in checked else tr(kind.noun)
+            return called(kind.noun, checked["name"][row]) if "name" in checked else tr(kind.noun)
 
         for field in table.fields.values():
             if field.references is not None and field.name not in columns:
@@ -631,7 +631,8 @@ class World:
         self.row_of_entity[entities] = np.arange(first, table.count)
 
 
-def _called(noun: str, name: Any) -> str:
+def called(noun: str, name: Any) -> str:
+    """An element as a person calls it, such as "rod AB"; a name such as "rod 7" says it all."""
     name = cut(str(name))
     return name if name.startswith(noun + " ") else joined([tr(noun), name])
 
