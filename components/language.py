@@ -128,9 +128,7 @@ def decimals(text: str) -> str:
     """A number in English as it is written in the present language: with a comma for the point, or as it is."""
     if _SPOKEN.code not in _COMMA or "." not in text:
         return text
-    said = Said(text.replace(".", ","))
-    said.english = text
-    return said
+    return _said(text.replace(".", ","), text)
 
 
 def several(numbers: Iterable[str]) -> str:
@@ -138,9 +136,7 @@ def several(numbers: Iterable[str]) -> str:
     parts = list(numbers)
     if _SPOKEN.code not in _COMMA:
         return ", ".join(parts)
-    said = Said("; ".join(parts))
-    said.english = ", ".join(map(english, parts))
-    return said
+    return _said("; ".join(parts), ", ".join(map(english, parts)))
 
 
 class _Filling(Formatter):
