@@ -13,6 +13,7 @@ import numpy as np
 from components.camera import Viewport
 from components.environment import Environment
 from components.field import FieldError, Vector
+from components.language import joined
 from components.load import Load
 from components.model import Model
 from components.particle import Particle
@@ -150,7 +151,7 @@ class Session(Context):
         remarks on a run at rest.
         """
         said = self.fault or self.scenes.active.message or self.simulation.said or self.notice
-        return " ".join([*filter(None, [said]), *(remark.message for remark in self.remarks)])
+        return joined([said, *(remark.message for remark in self.remarks)])
 
     # --- time --------------------------------------------------------------------------------------
 
