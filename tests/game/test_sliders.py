@@ -384,7 +384,7 @@ def test_what_was_settled_and_edited_is_said_to_be_out_of_equilibrium() -> None:
     session.update_view()
     assert (
         session.view.status.notice
-        == "Edited: no longer in equilibrium. E (right click: settle) goes to the new one."
+        == "The model was edited and is no longer in equilibrium. Press E for the new equilibrium (right click: settle)."
     )
     session.undo()
     session.notice = ""
