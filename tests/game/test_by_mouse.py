@@ -437,7 +437,7 @@ def test_files_that_are_dropped_are_opened_and_wrong_ones_explained(session: Ses
     assert "gone.json" in session.message
     session.open_files([tmp_path / "isostatic.json", tmp_path / "photo.png", tmp_path / "tower.json"])
     assert (session.scene, session.file.name) == ("pause", "tower")
-    assert session.notice.endswith("Opened isostatic and tower; Ctrl+Z goes back.")
+    assert session.notice.endswith("Opened isostatic and tower. Ctrl+Z goes back.")
     assert "photo.png" in session.notice
     session.press("ctrl+z")
     assert session.file.name == "isostatic"

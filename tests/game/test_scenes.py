@@ -453,7 +453,7 @@ def test_a_key_that_acts_in_pause_only_says_so_while_time_passes() -> None:
     session.press("space")
     session.press("k")
     assert session.scene == "simulation"
-    assert session.notice == "Force method: pause first, with Space."
+    assert session.notice == "Force method: press Space to pause first."
     session.press("i")
     assert session.notice == ""
     session.press("space")
