@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from components.bent import AXIAL, QUANTITIES, is_frame
 from components.field import Vector
-from components.language import plural, tr
+from components.language import begun, plural, tr
 from components.particle import Particle
 from components.rod import Rod
 from components.tags import DiagramShown
@@ -136,5 +136,5 @@ def _following(context: Context, shown: bool) -> bool:
     if shown and view.quantity == last:
         return False
     view.quantity = QUANTITIES[QUANTITIES.index(view.quantity) + 1] if shown else AXIAL
-    context.notice = tr("Diagrams: {quantity}. I shows the next ones.", quantity=tr(NAMES[view.quantity]))
+    context.notice = tr("{quantity}. Press I for the next.", quantity=begun(tr(NAMES[view.quantity])))
     return True
