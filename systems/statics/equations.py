@@ -415,9 +415,14 @@ class Structure:
     def held_kinks(self, slopes: Array, pull: Array | None = None) -> Array:
         """Forces (n, 3) that hold the particles against rods with small slopes (rods, 2) at their ends, and axial forces."""
         assert self.bending is not None
-        response, moment = self.unmoved, self.bending.moments(slopes)
+        moment = self.bending.moments(slopes)
+        return self.held(np.zeros_like(self.difference) if pull is None else pull, moment)
+
+    def held(self, pull: Array, moment: Array) -> Array:
+        """The same against rods with these axial forces, as vectors (rods, 2), and moments on their ends (rods, 2)."""
+        response = self.unmoved
         shear = moment.sum(axis=1) / np.where(response.length > 0.0, response.length, np.inf)
-        return self._sheared(response, np.zeros_like(response.axis) if pull is None else pull, moment, shear)
+        return self._sheared(response, pull, moment, shear)
 
     def carried(self, response: Response) -> Array:
         """What the whole distributed forces would add to the particles' forces, besides halves of them on both ends."""
