@@ -4,7 +4,20 @@ from __future__ import annotations
 
 import math
 
-from game.api import App, Component, Context, Environment, Field, Law, Model, Particle, Readout, compiled
+from game.api import (
+    App,
+    Component,
+    Context,
+    Environment,
+    Field,
+    Law,
+    Model,
+    Particle,
+    Readout,
+    compiled,
+    marked,
+    tr,
+)
 
 DENSITY = 1.2  # kg/m³, of air
 
@@ -12,13 +25,15 @@ DENSITY = 1.2  # kg/m³, of air
 class Air(Component):
     of = Environment
     velocity: Field[tuple[float, float]] = Field(
-        "m/s", shape=(2,), title="wind velocity", doc="Of the air, everywhere."
+        "m/s", shape=(2,), title=marked("wind velocity"), doc=marked("Of the air, everywhere.")
     )
 
 
 class Sail(Component):
     of = Particle
-    area: Field[float] = Field("m²", minimum=0.0, title="sail area", doc="Drag coefficient × area in the wind.")
+    area: Field[float] = Field(
+        "m²", minimum=0.0, title=marked("sail area"), doc=marked("Its drag coefficient × area.")
+    )
 
 
 @compiled
@@ -42,7 +57,7 @@ class Push(Law):
 
 def panel(session: Context) -> Readout:
     speed = math.hypot(*session.environment.wind_velocity)
-    return Readout("Wind", (("speed", f"{speed:.3g} m/s"),))
+    return Readout(marked("Wind"), ((marked("speed"), tr("{speed:.3g} m/s", speed=speed)),))
 
 
 def plugin(app: App) -> None:
