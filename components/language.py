@@ -80,8 +80,14 @@ def marked(message: str) -> str:
 
 
 def tr(message: str, /, **values: Any) -> str:
-    """A message in the present language, with values filled in as by `str.format`; without values, braces stay."""
-    return _filled(message, _SPOKEN.catalogue.gettext(message), values)
+    """A message in the present language, with values filled in as by `str.format`; without values, braces stay.
+
+    What was said already stays as it is.
+    """
+    if isinstance(message, Said):
+        return message
+    shown = _SPOKEN.catalogue.gettext(message) if message else ""  # a catalogue's "" is its header
+    return _filled(message, shown, values)
 
 
 def tr_in(context: str, message: str, /, **values: Any) -> str:

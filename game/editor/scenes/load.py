@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import Any
 
 from components.form import Form, Tile
+from components.language import tr
 from game.documents import library, models
 from game.documents.autosave import recovered_name
 from game.documents.open_documents import ModelFile
@@ -108,7 +109,7 @@ class Load(FileScene):
         self._asked = False
         words = self.box.text.lower().split()
         tiles = list(self.form.tiles)
-        told = [f"{tile.title} {tile.file}".lower() for tile in tiles]
+        told = [f"{tr(tile.title)} {tile.title} {tile.file}".lower() for tile in tiles]
         hidden = [
             bool(words) and (tile.rest or not all(word in text for word in words))
             for tile, text in zip(tiles, told, strict=True)
