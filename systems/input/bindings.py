@@ -170,6 +170,7 @@ _BY_PURPOSE: dict[str, tuple[Binding, ...]] = {
         Binding("home", "fit", (*LIVE, FORCE_METHOD), marked("show the whole model")),
         Binding("tab", "toggle legend", (*LIVE, FORCE_METHOD), marked("show or hide legend and toolbar")),
         Binding("t", "next theme", (*LIVE, FORCE_METHOD), marked("change the colours")),
+        Binding("f2", "next language", EVERY, marked("change the language: English, Português")),
         Binding("ctrl++", "larger", EVERY, marked("make text larger or smaller"), repeats=True),
         Binding("ctrl+shift++", "larger", EVERY, "", repeats=True),
         Binding("ctrl+-", "smaller", EVERY, marked("make text larger or smaller"), repeats=True),
