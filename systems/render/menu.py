@@ -6,7 +6,7 @@ import numpy as np
 
 from components.camera import Rectangle, Viewport
 from components.field import Vector
-from components.language import tr
+from components.language import begun, tr
 from components.menu import Menu
 from components.toolbar import Tool
 from components.view import View
@@ -116,8 +116,7 @@ class MenuLayout:
 
 def titled(tool: Tool) -> str:
     """The title of an entry or a button in the present language, as a sentence begins."""
-    title = tr(tool.title)
-    return title[:1].upper() + title[1:]
+    return begun(tr(tool.title))
 
 
 def draw_menu(view: View, theme: Theme) -> list[Mark]:

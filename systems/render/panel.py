@@ -7,7 +7,7 @@ import numpy as np
 from components.box import NAME, NUMBER, WORD, Box, number_and_unit
 from components.camera import Rectangle, Viewport
 from components.form import Form, Reading, Tile
-from components.language import tr, tr_in
+from components.language import begun, tr, tr_in
 from components.view import BETWEEN, View
 from systems.render.form_layout import (
     CAPTION,
@@ -71,9 +71,7 @@ class _Writer:
         """The heading, and the message below the boxes that stay."""
         layout, heading = self.layout, self.form.heading
         size, small, u = self.font(19.0), self.font(MESSAGE), self.unit
-        text = tr(heading.text)
-        text = text[:1].upper() + text[1:]
-        text = shortened(text, layout.heading_width, size, "semibold")
+        text = shortened(begun(tr(heading.text)), layout.heading_width, size, "semibold")
         marks: list[Mark] = [Text(text, layout.left, layout.header, size, self.theme.text, "semibold")]
         for number, line in enumerate(message_lines(self.form, layout.right - layout.left, u)):
             y = layout.message + number * MESSAGE_LINE * u
