@@ -217,7 +217,9 @@ def bad(particles_position, particles_velocity, time):
     with pytest.raises(mods.ModError, match="The run stopped at t = "):
         made.run(time=0.01)
     assert 0.0 <= made.time < 0.006
-    check_switched_off(made, before, "apple.bad gave nan for particle A, which is not finite (apple/__init__.py, line 7)")
+    check_switched_off(
+        made, before, "apple.bad gave nan for particle A, which is not finite (apple/__init__.py, line 7)"
+    )
     assert made.run(time=0.01 - made.time) == "time reached"  # without the mod
 
 
