@@ -4,20 +4,7 @@ from __future__ import annotations
 
 import math
 
-from game.api import (
-    App,
-    Component,
-    Context,
-    Environment,
-    Field,
-    Law,
-    Model,
-    Particle,
-    Readout,
-    compiled,
-    marked,
-    tr,
-)
+from game.api import App, Component, Context, Environment, Field, Law, Model, Particle, Readout, compiled, tr
 
 DENSITY = 1.2  # kg/m³, of air
 
@@ -25,15 +12,13 @@ DENSITY = 1.2  # kg/m³, of air
 class Air(Component):
     of = Environment
     velocity: Field[tuple[float, float]] = Field(
-        "m/s", shape=(2,), title=marked("wind velocity"), doc=marked("Of the air, everywhere.")
+        "m/s", shape=(2,), title="wind velocity", doc="Of the air, everywhere."
     )
 
 
 class Sail(Component):
     of = Particle
-    area: Field[float] = Field(
-        "m²", minimum=0.0, title=marked("sail area"), doc=marked("Its drag coefficient × area.")
-    )
+    area: Field[float] = Field("m²", minimum=0.0, title="sail area", doc="Drag coefficient × area in the wind.")
 
 
 @compiled
@@ -57,7 +42,7 @@ class Push(Law):
 
 def panel(session: Context) -> Readout:
     speed = math.hypot(*session.environment.wind_velocity)
-    return Readout(marked("Wind"), ((marked("speed"), tr("{speed:.3g} m/s", speed=speed)),))
+    return Readout(tr("Wind"), ((tr("speed"), tr("{speed:.3g} m/s", speed=speed)),))
 
 
 def plugin(app: App) -> None:
