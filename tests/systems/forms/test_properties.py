@@ -291,7 +291,7 @@ def test_a_length_may_be_typed_with_its_unit(
 @pytest.mark.parametrize(
     ("element", "title", "typed", "problem"),
     [
-        ("B", "radius", "3 kN", "must be in m or cm or mm, not in kN"),
+        ("B", "radius", "3 kN", "must be in one of m, cm, mm, not in kN"),
         ("B", "radius", "-70 mm", "must be greater than 0 cm"),
     ],
 )
