@@ -109,4 +109,4 @@ def plugin(app: App) -> None:
     app.kind(Wall)
     app.shape(Wall, as_pieces)
     app.layer(draw, below=True)
-    app.tool(Wall, key="w", title=marked("wall or floor, from point to point"), icon=ICON)
+    app.tool(Wall, key="w", title=marked("draw a wall or floor"), icon=ICON)
