@@ -145,8 +145,8 @@ def begun(text: str) -> str:
 def listed(names: Sequence[str]) -> str:
     """Names as a sentence lists them: "A, B and C"."""
     if len(names) < 2:
-        return "".join(names)
-    return tr("{names} and {last}", names=", ".join(names[:-1]), last=names[-1])
+        return names[0] if names else ""
+    return tr("{names} and {last}", names=joined(names[:-1], ", "), last=names[-1])
 
 
 def decimals(text: str) -> str:

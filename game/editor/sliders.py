@@ -104,7 +104,7 @@ def _title(model: Model, aim: Aim, handle: Handle, field: Field[Any]) -> str:
         if aim.element is None
         else getattr(handle, "name", model.describe(handle))
     )
-    number = f"{tr(field.title)} {aim.axis}".rstrip()
+    number = joined([tr(field.title), aim.axis])
     return tr("{element}: {value}", element=whose, value=number)
 
 
