@@ -264,7 +264,7 @@ def run(words: list[str]) -> int:
     if output.suffix not in (".csv", ".png"):
         raise UsageError(f"--output {output}: write a file that ends with .csv or .png.")
     record(session, probe, options.until, options.samples)
-    with writing(output, "--output"):
+    with writing(output):
         (write_png if output.suffix == ".png" else write_csv)(probe, output)
     return 0
 

@@ -339,7 +339,7 @@ RIGHT = {
 @pytest.mark.parametrize(
     ("change", "said"),
     [
-        ({}, "apple 1.0: all is well"),
+        ({}, "apple 1.0: no problems"),
         ({"parameter": "particles_positon"}, "has a parameter 'particles_positon', but there is no column"),
         ({"parameter": "particles_mass"}, "does not declare that it reads 'particles.mass'"),
         ({"result": "0.0"}, "it must return a pair, the force (fx, fy) in kN"),
