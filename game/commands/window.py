@@ -8,7 +8,7 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
-from components.language import tr
+from components.language import LANGUAGES, tr
 from components.model import Model
 from components.suggestions import nearest
 from game.commands import COMMANDS
@@ -36,8 +36,9 @@ def _epilog() -> str:
     width = max(map(len, COMMANDS))
     paragraphs = [
         tr(
-            "Every command also takes --mods DIR, to load the mods in a folder; --no-mods, to leave out your mods; and"
-            " --cores N, to use at most N processor cores."
+            "Every command also takes --mods DIR, to load the mods in a folder; --no-mods, to leave out your mods;"
+            " --cores N, to use at most N processor cores; and --language {languages}.",
+            languages="|".join(LANGUAGES),
         ),
         tr("Bundled models: {names}", names=", ".join(models.bundled())),
     ]

@@ -10,6 +10,7 @@ import numpy as np
 
 from components import written
 from components.camera import Viewport
+from components.language import begun, tr
 from components.round_numbers import round_down
 from components.view import BETWEEN
 from systems.render.marks import Mark, Panel, Stamps, Strokes, Text, boxes
@@ -59,7 +60,7 @@ def _status_bar(sheet: Sheet) -> tuple[list[Mark], float]:
         dot = np.array([[x + 3.5 * u, middle]])
         marks.append(Stamps("disc", dot, 3.5 * u, u, _state_colour(sheet), _state_colour(sheet)))
         x += 13.0 * u
-        state = status.state[0].upper() + status.state[1:]
+        state = begun(tr(status.state))
         x = _append(sheet, marks, state, x, middle, theme.text, "semibold")
         time = "" if status.time is None else f"t = {written.time(status.time)}"
         for text in (time, written.pace(status.speed)):
@@ -97,7 +98,7 @@ def _state_colour(sheet: Sheet) -> Colour:
     if status.problem:
         return theme.problem
     return {"running": theme.running, "paused": theme.halted, "halted": theme.halted}.get(
-        status.state.lower(), theme.resting
+        status.state.partition(" ")[0], theme.resting
     )
 
 

@@ -7,6 +7,7 @@ from dataclasses import dataclass, replace
 
 from components.camera import Rectangle
 from components.field import Vector
+from components.language import english
 from components.view import Readout
 from systems.render.marks import Mark, Panel, Text, cross
 from systems.render.plots import Box, draw_plot
@@ -63,7 +64,7 @@ def draw_readouts(sheet: Sheet, room: tuple[float, float]) -> tuple[list[Mark], 
 
 def _heights(sheet: Sheet, readouts: Sequence[Readout], width: float, room: float) -> dict[int, float]:
     """Heights in pixels of the panels for which there is room, by index; the newest panels come first."""
-    since = [sheet.view.since.get(readout.title, 0) for readout in readouts]
+    since = [sheet.view.since.get(english(readout.title), 0) for readout in readouts]
     newest = sorted(range(len(readouts)), key=since.__getitem__, reverse=True)
     gap, shown = _BETWEEN * sheet.unit, dict[int, float]()
     left = room

@@ -374,7 +374,7 @@ def test_a_model_is_saved_and_replaced_by_mouse(session: Session, data: Path) ->
         session.press("ctrl+shift+s")
         click_button(session, "accept")
         if stiffness == 2000.0:
-            assert "There is a model 'hyperstatic' already" in session.message
+            assert "There is already a model 'hyperstatic'" in session.message
             click_button(session, "accept")
         assert session.scene == "pause"
         saved = models.load(data / "models" / "hyperstatic.json")
@@ -429,7 +429,7 @@ def test_files_that_are_dropped_are_opened_and_wrong_ones_explained(session: Ses
     session.press("files " + str(tmp_path / "photo.png"))
     assert session.scene == "save"
     assert session.message == (
-        "'photo.png' is no model: Pinjoint opens model files (.json) and recorded sessions (.jsonl)."
+        "'photo.png' is not a model: Pinjoint opens model files (.json) and recorded sessions (.jsonl)."
     )
     session.open_files([tmp_path / "broken.json", tmp_path, tmp_path / "gone.json"])
     assert "rodz" in session.message
@@ -437,7 +437,7 @@ def test_files_that_are_dropped_are_opened_and_wrong_ones_explained(session: Ses
     assert "gone.json" in session.message
     session.open_files([tmp_path / "isostatic.json", tmp_path / "photo.png", tmp_path / "tower.json"])
     assert (session.scene, session.file.name) == ("pause", "tower")
-    assert session.notice.endswith("Opened isostatic and tower; Ctrl+Z goes back.")
+    assert session.notice.endswith("Opened isostatic and tower. Ctrl+Z goes back.")
     assert "photo.png" in session.notice
     session.press("ctrl+z")
     assert session.file.name == "isostatic"

@@ -152,7 +152,7 @@ def test_escape_drops_the_selection_and_never_runs(session: Session) -> None:
     assert (session.scene, session.selected) == ("pause", [])
     session.press("escape")
     assert (session.scene, session.time) == ("pause", 0.0)
-    assert "Space runs" in session.notice
+    assert "Space starts it" in session.notice
 
 
 def test_a_click_selects_particle_or_rod_and_never_the_grid(session: Session) -> None:
@@ -453,7 +453,7 @@ def test_a_key_that_acts_in_pause_only_says_so_while_time_passes() -> None:
     session.press("space")
     session.press("k")
     assert session.scene == "simulation"
-    assert session.notice == "Force method: pause first, with Space."
+    assert session.notice == "Force method: press Space to pause first."
     session.press("i")
     assert session.notice == ""
     session.press("space")

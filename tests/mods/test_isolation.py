@@ -425,7 +425,7 @@ def test_where_a_run_diverges_the_laws_of_mods_are_named(write_mod: Write) -> No
     )
     session = Session.open(PULLED, mods=[write_mod("apple", law)])
     assert session.run(time=1.0) == "diverged"
-    assert "Laws of mods act in it: apple.harder; see whether it runs without them." in session.message
+    assert "Laws of mods act in the model: apple.harder; see whether it runs without them." in session.message
 
 
 PAIRS = """

@@ -126,7 +126,7 @@ def test_messages_name_element_value_and_remedy(key: str, value: Any, says: str)
 
 def test_a_clamped_particle_does_not_spin() -> None:
     model = rod()
-    with pytest.raises(FieldError, match="angular velocity is 2 rad/s but its rotation is constrained; set it"):
+    with pytest.raises(FieldError, match="angular velocity is 2 rad/s, but it is clamped; set the"):
         model.particles["A"].angular_velocity = 2.0
     model.particles["B"].angular_velocity = 2.0
     model.particles["B"].fixed_rotation = True
@@ -138,5 +138,5 @@ def test_paths_name_ends() -> None:
     apply_override(model, "rods.AB.hinged.end=true")
     assert model.rods["AB"].hinged == (False, True)
     assert locate_one(model, "rods.AB.bending_moment.start").axis == "start"
-    with pytest.raises(PathError, match=r"write hinged\.start or hinged\.end"):
+    with pytest.raises(PathError, match=r"write one of hinged\.start, hinged\.end"):
         apply_override(model, "rods.AB.hinged.x=true")

@@ -107,9 +107,9 @@ def test_menus_and_scripts_divide() -> None:
     session = beam()
     session.select(session.rods["AB"])
     session.act("divide in two")
-    assert session.notice == "Rod AB: divided into 2"
+    assert session.notice == "Rod AB: divided into 2 parts"
     session.act("divide in four")
-    assert session.notice == "2 rods: each divided into 4"
+    assert session.notice == "2 rods: each divided into 4 parts"
     assert session.model.rods.count == 8
     assert "AB 2 4" in session.rods
     again = beam()

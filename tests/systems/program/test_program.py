@@ -404,7 +404,10 @@ def test_what_changes_with_time_does_not_let_a_model_rest() -> None:
     assert session.particles["A"].displacement[0] == pytest.approx(1.0 / 6.0, rel=1e-6)  # t³/6 of 1 kg
     session = Session.open(alone, [Later()])
     assert session.run(until="rest", limit=0.4) == "limit reached"
-    assert "mod.later changes with time, so it never will be; run to a time instead." in session.message
+    assert (
+        "mod.later changes with time, so the model never comes to rest; run to a time instead."
+        in session.message
+    )
 
 
 # --- mistakes --------------------------------------------------------------------------------------------
