@@ -115,7 +115,7 @@ class Field(Generic[T]):
     maximum: float | None = None
     above: float | None = None
     nullable: bool = False
-    absent: str = "automatic"
+    absent: str = marked("automatic")
     references: str | None = None
     overrides: str | None = None
     overridden_by: str | None = None
@@ -302,7 +302,7 @@ class Field(Generic[T]):
             raise self._refusal(marked("{where}: {title} is {value}; it must be a text."), where, value)
         if is_broken(value):
             message = marked(
-                "{where}: {title} is {value}; it holds half of a character, which no file can store. Type it again."
+                "{where}: {title} is {value}; half of a character cannot be kept in a file. Type it again."
             )
             raise self._refusal(message, where, value)
         return str(value)  # numpy's texts are of another type
@@ -384,7 +384,7 @@ class Field(Generic[T]):
         return np.asarray(ok.all(axis=1)) if self.shape else ok
 
 
-ENDS = ("start", "end")  # of rods: the parts of what each end has of its own
+ENDS = (marked("start"), marked("end"))  # of rods: the parts of what each end has of its own
 
 # Fields that say how a model is drawn, that time makes, and that are computed from others.
 look = partial(Field, role=Role.LOOK)

@@ -107,7 +107,7 @@ class Session(Context):
 
     def __reduce_ex__(self, protocol: object) -> NoReturn:
         raise TypeError(
-            tr("A session cannot be copied or pickled; save its model, and open that in another session.")
+            tr("A session cannot be copied or pickled. Save its model, and open that in another session.")
         )
 
     def __repr__(self) -> str:

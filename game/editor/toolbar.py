@@ -13,6 +13,7 @@ from components.tags import DiagramShown
 from components.toolbar import Tool, Toolbar
 from game.editor.context import Context
 from game.editor.gestures.drawing import Drawing
+from game.force_method import PARTS
 from systems.edit.dividing import DIVISIONS
 from systems.edit.rods import is_rigid
 from systems.edit.supports import SUPPORTS, Held, held
@@ -129,6 +130,8 @@ _NEEDS: dict[str, Condition] = {
     "next grid": lambda context: context.model.grids.count > 0,
     "force method": lambda context: context.model.rods.count > 0,
     **dict.fromkeys(("release x", "release y"), _guided(lambda guide: guide.axis_wanted is not None)),
+    "release moment": _guided(lambda guide: guide.clamp_wanted),
+    "report": _guided(lambda guide: guide.part == PARTS),
     "pick unknown": _guided(lambda guide: guide.part == 2),
     "release another": _guided(lambda guide: guide.can_release_another),
 }

@@ -15,7 +15,7 @@ import numpy as np
 
 from components import Model, Particle, Plot, Readout, Rod, Vector, written
 from components.field import ENDS
-from components.language import english, listed, marked, tr
+from components.language import english, joined, listed, marked, tr
 from game.documents.models import replace
 from game.editor.context import Context
 from game.mods import App
@@ -27,7 +27,12 @@ from systems.render.theme import load_theme
 
 MOST = 20_000  # samples; beyond, every second one is dropped
 FEW = 3  # plots at a time
-ENERGIES = ("energy.kinetic", "energy.elastic", "energy.dissipated_damping", "energy.dissipated_plastic")
+ENERGIES = {  # by path, as legends name them
+    "energy.kinetic": marked("kinetic"),
+    "energy.elastic": marked("elastic"),
+    "energy.dissipated_damping": marked("damping"),
+    "energy.dissipated_plastic": marked("yielding"),
+}
 OF_ROD = (("axial_force", TIME), ("axial_force", "strain"))
 OF_BENDING_ROD = (*((f"bending_moment.{end}", TIME) for end in ENDS), ("shear.start", TIME))
 OF_PARTICLE = (
@@ -91,7 +96,7 @@ class Probe:
 
 def _short(read: Quantity) -> str:
     """A name for the legend of a plot."""
-    return read.path.partition(".")[2].replace("dissipated_", "").replace(".", " ").replace("_", " ")
+    return tr(ENERGIES.get(read.path, read.name))
 
 
 @dataclass(eq=False)
@@ -155,7 +160,7 @@ def choices(session: Context) -> list[tuple[tuple[str, ...], str]]:
             pairs = (*pairs, ("rotation", TIME))
         start = f"{handle.table}.{getattr(handle, 'name', '')}."
         found = [((start + y,), x if x == TIME else start + x) for y, x in pairs]
-    return found or [(ENERGIES, TIME)]
+    return found or [(tuple(ENERGIES), TIME)]
 
 
 def plot_next(session: Context, pixel: Vector) -> None:
@@ -249,7 +254,9 @@ def _names(readout: Readout) -> tuple[str, ...]:
 
 def _heading(probe: Probe) -> str:
     energies = all(read.path.startswith("energy.") for read in probe.read)
-    return tr("Energies") if energies else ", ".join(map(_short, probe.read))
+    if energies:
+        return tr("Energies")
+    return tr("Plot of {quantities}", quantities=joined(map(_short, probe.read), ", "))
 
 
 def run(words: list[str]) -> int:
@@ -300,12 +307,12 @@ def plugin(app: App) -> None:
     app.panel(panels)
     app.command("plot", run, marked("write or draw what a run does, against time or another quantity"))
     live = ("simulation", "pause")
-    app.action("probes.plot", key="o", scenes=live, title=marked("plot of the selection"), icon=ICON)(plot_next)
-    app.action("probes.save", key="ctrl+e", scenes=live, title=marked("plots as CSV and PNG"))(save)
+    app.action("probes.plot", key="o", scenes=live, title=marked("plot the selection"), icon=ICON)(plot_next)
+    app.action("probes.save", key="ctrl+e", scenes=live, title=marked("save plots as CSV and PNG"))(save)
     app.action("probes.close", while_drawing=True)(close)
     for name, key, factor, title in (
-        ("longer", "[", 2.0, marked("longer plots")),
-        ("shorter", "]", 0.5, marked("shorter plots")),
+        ("longer", "[", 2.0, marked("show a longer time in plots")),
+        ("shorter", "]", 0.5, marked("show a shorter time in plots")),
     ):
         app.action(f"probes.{name}", key=key, scenes=live, title=title, while_drawing=True)(
             lambda session, pixel, factor=factor: zoom(factor, session)  # type: ignore[misc]

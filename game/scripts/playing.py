@@ -11,7 +11,7 @@ from dataclasses import dataclass
 from typing import Any, TextIO
 
 from components.field import Vector
-from components.language import joined, tr
+from components.language import ENGLISH, joined, language, spoken, tr
 from components.wording import as_json, cut, is_broken
 from game.documents.format import ModelError
 from game.editor.context import FAULTS
@@ -89,9 +89,12 @@ def _loaded_mods() -> dict[str, str]:
 def play(script: Script, session: Session | None = None) -> list[Failure]:
     """Play all lines in a session (None: that of the header); returns failed expectations. Raises ScriptError."""
     session = session or session_of(script)
-    return [
-        failure for number, entry in script.lines[1:] for failure in play_line(script, number, entry, session)
-    ]
+    with spoken(script.language or language()):
+        return [
+            failure
+            for number, entry in script.lines[1:]
+            for failure in play_line(script, number, entry, session)
+        ]
 
 
 def play_line(script: Script, number: int, entry: Mapping[str, Any], session: Session) -> list[Failure]:
@@ -226,7 +229,8 @@ class Recorder:
         self._file = file
         self._session = session
         session.on_press, session.on_resize = self._pressed, self._resized
-        self._write({**HEADER, "model": model, "mods": _loaded_mods()})
+        spoken = {"language": language()} if language() != ENGLISH else {}
+        self._write({**HEADER, "model": model, "mods": _loaded_mods(), **spoken})
         self._resized()
         self._write({"action": "fit"})
 

@@ -397,14 +397,14 @@ def test_the_pages_of_keys_are_turned_by_wheel_and_click_and_each_says_which_it_
         session.update_view()
         toolbar, view = session.stages[-1]
         [heading] = [
-            text for text in compose(toolbar, view, load_theme("light")).texts if text.startswith("Keys")
+            text for text in compose(toolbar, view, load_theme("light")).texts if text.startswith("Help")
         ]
-        assert heading == f"Keys, page {view.help} of {count}"
+        assert heading == f"Help, page {view.help} of {count}"
         assert view.keys[0][0] == "", "a purpose stands above"
         return view.help
 
     middle = session.view.camera.middle
-    turned = [("wheel up", 1), ("wheel down", 2), ("wheel down", min(3, count)), ("wheel down", count)]
+    turned = [("wheel up", 1), *(("wheel down", min(there, count)) for there in range(2, count + 2))]
     for key, there in (*turned, ("wheel up", count - 1), ("click", count)):
         session.press(key, middle)
         assert page() == there

@@ -113,7 +113,7 @@ class Load(FileScene):
         self._asked = False
         words = self.box.text.lower().split()
         tiles = list(self.form.tiles)
-        told = [f"{tile.title} {tile.file}".lower() for tile in tiles]
+        told = [f"{tr(tile.title)} {tile.title} {tile.file}".lower() for tile in tiles]
         hidden = [
             bool(words) and (tile.rest or not all(word in text for word in words))
             for tile, text in zip(tiles, told, strict=True)

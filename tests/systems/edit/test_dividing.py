@@ -98,7 +98,7 @@ def test_a_wrong_number_of_parts_is_refused(parts: object) -> None:
 
 def test_a_pinned_bar_is_refused_with_the_remedy() -> None:
     session = beam(bending_stiffness=0.0)
-    with pytest.raises(Refusal, match=r"Rod AB does not bend.*make it rigid"):
+    with pytest.raises(Refusal, match=r"Rod AB does not bend.*join it rigidly"):
         session.divide("AB")
     assert session.model.particles.count == 2
 

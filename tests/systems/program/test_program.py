@@ -460,7 +460,7 @@ class WideArray(OwnArray):
 @pytest.mark.parametrize(
     ("system", "says"),
     [
-        (law(njit(lambda elongation, time: time), elastic=True), "drop `elastic` or the parameter"),
+        (law(njit(lambda elongation, time: time), elastic=True), "remove `elastic` or the parameter"),
         (WideArray(), "has 65 numbers in a row; a kernel takes 1 to 64"),
         (law(of_mass, each="particles"), "reads 'particles.mass'; add it to `reads`"),
         (law(of_charge, reads=("rods.charge",)), "no column rods.charge"),
@@ -474,8 +474,8 @@ class WideArray(OwnArray):
         (law(heated, reads=("rods.stiffness",), account="heat"), "choose one of work"),
         (law(failing, each="particles"), "name parameters <table>_<column>, time, dt or"),
         (commit(progressive, writes=("rods.yielding",)), "a parameter 'rate', but there is no column"),
-        (commit(remembered, writes=("rods.density",)), "no part of the document"),
-        (commit(remembered, writes=()), "writes nothing"),
+        (commit(remembered, writes=("rods.density",)), "not part of the document"),
+        (commit(remembered, writes=()), "has writes = []"),
         (OwnArray(), "has 3 rows for 2 particles"),
     ],
 )
