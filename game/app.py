@@ -24,6 +24,7 @@ from game.documents.autosave import Autosave, unkept
 from game.documents.open_documents import ModelFile, OpenDocument
 from game.documents.preferences import (
     DEFAULT_THEME,
+    preferred_convention,
     preferred_magnification,
     preferred_place,
     preferred_theme,
@@ -179,14 +180,14 @@ class App:
         self.render = PygameRender(self.window.get_surface(), raster)
         further = [system for system in (autosave, preparation) if system is not None]
         systems: list[System] = [self.input, Hover(symbol_at), *further, self.render]
-        self.session = Session(model, systems, View(theme=theme), file)
+        self.session = Session(model, systems, View(theme=theme, convention=preferred_convention()), file)
         self.session.window = self
         self.session.faults_seen = 0  # so that mods that were left out are shown
         self.session.autosave = self.autosave = autosave
         self.session.preparation = self.preparation = preparation
         if preparation is not None:
             preparation.open()
-        self._theme = theme
+        self._theme, self._convention = theme, self.session.view.convention
         self._magnification = magnification
         self._clock, self._before = pygame.time.Clock(), time.perf_counter()
         self._follow_size()
@@ -246,7 +247,7 @@ class App:
         self._follow_size()
         self._follow_title()
         frame = self.session.frame(elapsed)
-        self._follow_theme()
+        self._follow_choices()
         if self.render.drawn:
             self.window.flip()
         elif not self.session.busy:
@@ -310,11 +311,14 @@ class App:
         elif gc.get_count()[0] > MANY_NEW:
             gc.collect(0)
 
-    def _follow_theme(self) -> None:
+    def _follow_choices(self) -> None:
         """Keep what the person chooses for the next time."""
         if self.session.view.theme != self._theme:
             self._theme = self.session.view.theme
             remember("theme", self._theme)
+        if self.session.view.convention != self._convention:
+            self._convention = self.session.view.convention
+            remember("convention", self._convention)
 
     def point(self, pixel: Vector) -> None:
         """Take the pointer to a pixel."""
@@ -358,6 +362,12 @@ class App:
             return str(path)
         path = _unused(Path.cwd() / f"pinjoint{suffix}")
         write(drawn, path, self.render.surface.get_size(), self.session.view.theme)
+        return str(path)
+
+    def save(self, name: str, contents: bytes) -> str:
+        """Save a file in the working folder under this name, or one like it that is free; returns the path."""
+        path = _unused(Path.cwd() / name)
+        models.replace(path, contents)
         return str(path)
 
 

@@ -10,7 +10,7 @@ from typing import Any
 
 from platformdirs import user_config_path
 
-from components.view import MAGNIFICATIONS
+from components.view import CONVENTIONS, MAGNIFICATIONS, TEXTBOOK
 from game.documents import models
 from systems.render.theme import theme_names
 
@@ -31,6 +31,12 @@ def preferred_theme() -> str:
     """The name of the theme that was chosen last; the default where that cannot be read or is gone."""
     name = _read().get("theme")
     return name if isinstance(name, str) and name in theme_names() else DEFAULT_THEME
+
+
+def preferred_convention() -> str:
+    """The convention of the force method; the textbook's where it cannot be read."""
+    name = _read().get("convention")
+    return name if isinstance(name, str) and name in CONVENTIONS else TEXTBOOK
 
 
 def preferred_keys() -> list[tuple[str, str, str]]:
@@ -65,7 +71,7 @@ def preferred_place() -> tuple[int, int, int, int] | None:
 
 
 def remember(entry: str, choice: str | float | list[int]) -> None:
-    """Keep a choice: the "theme", the "magnification" or the place of the "window".
+    """Keep a choice: the "theme", the "convention" of the force method, the "magnification" or the place of the "window".
 
     Where nothing can be written, it is not kept. A file that cannot be read, such as one with a slip in keys written
     by hand, is put aside.
