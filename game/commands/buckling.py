@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from components.language import joined
 from components.model import Model
 from game.commands.arguments import Parser, UsageError, count
 from game.commands.options import ANSWERED, NOT_ANSWERED, add_model, session_of
@@ -42,7 +43,7 @@ def command(words: Sequence[str]) -> int:
     if laws:
         tell(f"Buckling leaves out the laws of mods: {', '.join(laws)}.")
     if options.format != "table":
-        tell(" ".join(filter(None, [found.message, *found.notes])))
+        tell(joined([found.message, *found.notes]))
     return ANSWERED if len(found.factors) and not laws else NOT_ANSWERED
 
 

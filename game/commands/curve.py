@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from components.field import ENDS
+from components.language import joined
 from components.model import Model
 from components.rod import bends
 from game.commands.arguments import Parser, UsageError, count, finite
@@ -58,7 +59,7 @@ def command(words: Sequence[str]) -> int:
         raise UsageError(str(error)) from None
     laws = session.schedule.left_out_of_statics(session.model)
     message = "" if found.complete else _why_it_ends(session.model, found, options.points)
-    message = " ".join(filter(None, [_what_is_missing(found, options.branch), message]))
+    message = joined([_what_is_missing(found, options.branch), message])
     said = {"complete": found.complete, "message": message, "left_out": laws}
     write_result(options, said | _data(session.model, found), _rows)
     if laws:

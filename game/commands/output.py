@@ -14,6 +14,7 @@ from typing import Any, Literal
 
 import numpy as np
 
+from components.language import ENGLISH, Said, decimals, spoken
 from components.mistake import Mistake
 from components.wording import printable
 from game.commands.arguments import UsageError
@@ -81,12 +82,15 @@ def write_result(
 def formatted(
     chosen: Format, data: Any, rows: Rows, lines: Callable[[Any], Iterable[str]] | None = None
 ) -> str:
-    """The text of a result in a format; see `write_result`. Raises ResultError."""
-    data = plain(data, "result")
-    if chosen == "json":
-        return laid_out(data, depth=4) + "\n"
-    if chosen == "csv":
-        return _as_csv(rows(data))
+    """The text of a result in a format; see `write_result`. Raises ResultError.
+
+    Tables are for people, in their language; JSON and CSV are the same in all.
+    """
+    if chosen != "table":
+        with spoken(ENGLISH):
+            data = plain(data, "result")
+            return laid_out(data, depth=4) + "\n" if chosen == "json" else _as_csv(rows(data))
+    data = plain(data, "result", as_said=True)
     made = lines(data) if lines else aligned([[as_written(value) for value in row] for row in rows(data)])
     return "".join(f"{line}\n" for line in made)
 
@@ -139,19 +143,24 @@ def as_written(value: Any) -> str:
         return "–"
     if isinstance(value, bool):
         return "yes" if value else "no"
-    return value if isinstance(value, str) else f"{value + 0.0:.7g}"  # + 0.0: no minus before a zero
+    return value if isinstance(value, str) else decimals(f"{value + 0.0:.7g}")  # + 0.0: no minus before a zero
 
 
-def plain(value: Any, where: str) -> Any:
-    """A value as JSON has them, numpy's included, every number finite. Raises ResultError, which names `where`."""
+def plain(value: Any, where: str, *, as_said: bool = False) -> Any:
+    """A value as JSON has them, numpy's included, every number finite. Raises ResultError, which names `where`.
+
+    as_said: sentences stay in their language; else they are English.
+    """
     if isinstance(value, np.ndarray | np.generic):
         value = value.tolist()
     if isinstance(value, float) and not math.isfinite(value):
         raise ResultError(f"{where} is {value}, not finite; report a state before it.")
+    if isinstance(value, Said):
+        return value if as_said else value.english
     if isinstance(value, str):
         return value.encode("utf-8", "replace").decode()  # names of files need not be UTF-8
     if isinstance(value, Mapping):
-        return {str(key): plain(item, f"{where}.{key}") for key, item in value.items()}
+        return {str(key): plain(item, f"{where}.{key}", as_said=as_said) for key, item in value.items()}
     if isinstance(value, list | tuple):
-        return [plain(item, f"{where}[{index}]") for index, item in enumerate(value)]
+        return [plain(item, f"{where}[{index}]", as_said=as_said) for index, item in enumerate(value)]
     return value

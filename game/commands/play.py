@@ -7,7 +7,9 @@ from contextlib import ExitStack
 from pathlib import Path
 from typing import Any
 
+from components.language import ENGLISH, spoken
 from game.commands.arguments import Parser
+from game.commands.language import asked_language
 from game.commands.options import ANSWERED, NOT_ANSWERED
 from game.commands.output import Row, add_output, write_result
 from game.commands.progress import follow
@@ -50,7 +52,8 @@ def command(words: Sequence[str]) -> int:
             tell(session.notice)
             if not loaded.has_data:  # so that it ends alike however often it is played
                 kept.enter_context(library.data_apart())
-            failures = playing.play(loaded, session)
+            with spoken(loaded.language or asked_language() or ENGLISH):
+                failures = playing.play(loaded, session)
     found = {
         "script": options.script,
         "lines": len(loaded.lines) - 1,

@@ -12,6 +12,7 @@ import numpy as np
 
 from components.collision_state import PersistentContacts
 from components.field import SAVED
+from components.language import joined
 from components.load import load_ends
 from components.model import Model
 from components.rod import bends, idle_moment
@@ -202,7 +203,7 @@ class OpenDocument:
                 else f"{rod[:1].upper()}{rod[1:]} has yielded at once."
             )
         status, note = without_mods(found.status, self._schedule.left_out_of_statics(model))
-        return status, " ".join(filter(None, [*account, note, idle_moment(model)]))
+        return status, joined([*account, note, idle_moment(model)])
 
     # --- edits and the file ------------------------------------------------------------------------
 

@@ -6,6 +6,7 @@ from collections.abc import Callable
 from typing import Any
 
 from components.bent import is_frame
+from components.language import tr
 from components.particle import Particle
 from components.rod import Rod
 from components.tags import DiagramShown
@@ -44,9 +45,9 @@ def tool(context: Context, binding: Binding, title: str = "") -> Tool:
     if action == "toggle diagrams" and pressed and is_frame(context.model):
         icon, title = (
             f"diagram {context.view.quantity}",
-            title or f"diagrams, now: {NAMES[context.view.quantity]}",
+            title or tr("diagrams, now: {quantity}", quantity=tr(NAMES[context.view.quantity])),
         )
-    return Tool(action, title or binding.title, binding.key, icon, pressed, enabled)
+    return Tool(action, tr(title or binding.title), binding.key, icon, pressed, enabled)
 
 
 def _in_hand(context: Context) -> str:

@@ -11,6 +11,7 @@ from typing import Any, TypeVar
 from components.component import Component, add_component
 from components.handle import Handle
 from components.kind import add_kind
+from components.language import add_catalogues, remove_catalogues
 from components.load import HISTORIES, HistoryKind, register_history
 from components.model import ADDED
 from components.obstacles import SHAPES, Shape
@@ -263,6 +264,17 @@ class App:
     def panel(self, read: Panel) -> None:
         """Show small panels beside the model: `read(session)` returns a Readout, several, or None."""
         self._add(PANELS, guarded_panel(self._mod, read))
+
+    def catalogues(self) -> None:
+        """Say what the mod says in the languages of its folder `locale`, if it has one; Pinjoint calls this itself."""
+        folder = self._mod.folder / "locale" if self._mod.folder is not None else None
+        if folder is None or not folder.is_dir():
+            return
+        try:
+            add_catalogues(self.name, folder)
+        except ValueError as error:
+            raise ModError(str(error)) from None
+        self._undo.append(lambda: remove_catalogues(self.name))
 
     def _icon(self, name: str, icon: Sequence[Part]) -> None:
         try:

@@ -20,6 +20,7 @@ from typing import Any, Literal, TypeVar, Union, get_args, get_origin, get_type_
 
 import numpy as np
 
+from components.language import Said, in_both
 from components.wording import quoted
 
 C = TypeVar("C")
@@ -141,6 +142,8 @@ def _number(kind: type) -> Made:
 def _text(value: Any, called: str) -> str:
     if type(value) is str:
         return value
+    if type(value) is Said:
+        return in_both(str.__str__(value), _text(value.english, called))
     if not isinstance(value, str):
         raise _refused(value, called, "a text")
     return str.__str__(value)  # of a class derived from it

@@ -9,6 +9,7 @@ from inspect import getattr_static
 from typing import Any
 
 from components.field import FieldError, Vector
+from components.language import tr
 from components.view import Plot, Readout, View
 from components.wording import printable
 from game.commands.arguments import BAD_INPUT, UsageError
@@ -100,11 +101,11 @@ def _checked_readout(readout: Readout) -> Readout:
     """A readout whose texts can be printed. Raises ValueError for curves that cannot be drawn, and for what closes it
     and is no action.
     """
-    rows = tuple((readable(name), readable(value)) for name, value in readout.rows)
+    rows = tuple((readable(tr(name)), readable(value)) for name, value in readout.rows)
     if readout.closes and readout.closes not in ACTIONS:
         raise ValueError(f"the panel '{readout.title}' closes by '{readout.closes}'; there is no such action")
     plot = readout.plot and _checked_plot(readout.plot)
-    return Readout(readable(readout.title), rows, plot, readout.closes)
+    return Readout(readable(tr(readout.title)), rows, plot, readout.closes)
 
 
 def _checked_plot(plot: Plot) -> Plot:
@@ -113,8 +114,8 @@ def _checked_plot(plot: Plot) -> Plot:
             raise ValueError(
                 f"the curve '{name}' has x of shape {x.shape} and y of {y.shape}; give (n,) and (n,)"
             )
-    curves = tuple((readable(name), x, y) for name, x, y in plot.curves)
-    return replace(plot, x_title=readable(plot.x_title), y_title=readable(plot.y_title), curves=curves)
+    curves = tuple((readable(tr(name)), x, y) for name, x, y in plot.curves)
+    return replace(plot, x_title=readable(tr(plot.x_title)), y_title=readable(tr(plot.y_title)), curves=curves)
 
 
 def readable(text: str) -> str:

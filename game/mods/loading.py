@@ -113,6 +113,7 @@ def _load(mod: Mod) -> None:
 
 def _plug_in(mod: Mod, app: App) -> None:
     """Import a mod and let it register what it has. Raises ModError, or whatever its code raises."""
+    app.catalogues()
     module = _import(mod)
     as_declared(check_plugin(getattr(module, "plugin", None))(app), None, "what plugin(app) returned")
     Schedule(all_systems())

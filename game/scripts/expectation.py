@@ -8,6 +8,7 @@ import re
 from collections.abc import Iterator, Mapping
 from typing import Any, Protocol
 
+from components.language import english
 from components.suggestions import missing
 from components.wording import quoted
 from game.paths import Readable, locate_one
@@ -51,7 +52,7 @@ def check(session: Shown, text: str) -> Iterator[tuple[str, Any]]:
     match = _EXPECTATION.match(text)
     if match is None:
         raise ValueError(f"'{text}' is no expectation; write it like rods.AB.axial_force ≈ -28.34 ± 0.01.")
-    got = read(session, match["path"])
+    got = english(read(session, match["path"]))
     if not _holds(got, match["relation"], match["value"], match["slack"]):
         yield text, got
 

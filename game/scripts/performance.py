@@ -8,6 +8,7 @@ from collections.abc import Mapping
 from typing import Any, Protocol
 
 from components.field import Vector
+from components.language import language, spoken, tr
 from components.view import Page, Status, View
 from game.documents import library
 from game.documents.open_documents import ModelFile
@@ -73,11 +74,15 @@ class Performance:
         return failures
 
     def _play(self) -> list[Failure]:
+        with spoken(self._script.language or language()):
+            return self._perform_all()
+
+    def _perform_all(self) -> list[Failure]:
         session, failures = self._screen.session, list[Failure]()
         session.performing, session.footer = True, View()
         grown = min(round(FOOTER), self._screen.room_below)
         self._grow(grown)
-        self._say(self._script.title)
+        self._say(tr(self._script.title))
         try:
             for number, entry in self._script.lines[1:]:
                 self._hurried = False
@@ -144,7 +149,7 @@ class Performance:
             width, height, ratio = (*entry["resize"], 1.0)[:3]
             self._screen.size = round(width / ratio), round(height / ratio + FOOTER)
         if "say" in entry:
-            self._say(str(entry["say"]))
+            self._say(tr(entry["say"]))
         elif not _UNSEEN & set(entry):
             self._wait(BEAT if "input" not in entry else 0.1 * BEAT)
 

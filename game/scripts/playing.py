@@ -11,6 +11,7 @@ from dataclasses import dataclass
 from typing import Any, TextIO
 
 from components.field import Vector
+from components.language import ENGLISH, joined, language, spoken
 from components.wording import as_json, cut, is_broken
 from game.documents.format import ModelError
 from game.editor.context import FAULTS
@@ -43,7 +44,7 @@ def session_of(script: Script) -> Session:
         session = Session.open(script.source)
     except ModelError as error:
         raise ScriptError(f"{script.path} line {script.lines[0][0]}: {error}") from None
-    session.notice = " ".join(filter(None, (session.notice, different)))
+    session.notice = joined((session.notice, different))
     return session
 
 
@@ -80,9 +81,12 @@ def _loaded_mods() -> dict[str, str]:
 def play(script: Script, session: Session | None = None) -> list[Failure]:
     """Play all lines in a session (None: that of the header); returns failed expectations. Raises ScriptError."""
     session = session or session_of(script)
-    return [
-        failure for number, entry in script.lines[1:] for failure in play_line(script, number, entry, session)
-    ]
+    with spoken(script.language or language()):
+        return [
+            failure
+            for number, entry in script.lines[1:]
+            for failure in play_line(script, number, entry, session)
+        ]
 
 
 def play_line(script: Script, number: int, entry: Mapping[str, Any], session: Session) -> list[Failure]:
@@ -201,7 +205,8 @@ class Recorder:
         self._file = file
         self._session = session
         session.on_press, session.on_resize = self._pressed, self._resized
-        self._write({**HEADER, "model": model, "mods": _loaded_mods()})
+        spoken = {"language": language()} if language() != ENGLISH else {}
+        self._write({**HEADER, "model": model, "mods": _loaded_mods(), **spoken})
         self._resized()
         self._write({"action": "fit"})
 

@@ -2,8 +2,8 @@
 
 The first line is a header, {"format": "pinjoint session", "version": 1, "model": "isostatic"} (a bundled
 name, a path relative to the script, or a whole document; left out: an empty model), perhaps with a "title" and
-a "description", and the "mods" that it was recorded with, {"wind": "1.0"}, without which it is not played. Every
-further line does one thing:
+a "description", the "mods" that it was recorded with, {"wind": "1.0"}, without which it is not played, and the
+"language" of a recording, "pt", unless that is English. Every further line does one thing:
 
     {"press": "space"}                          a key; "over": [x, y] first moves the pointer there (m)
     {"click": [1.0, 1.0]}                       at a point of the model (m); "button": "ctrl+click"
@@ -36,12 +36,13 @@ from importlib.resources.abc import Traversable
 from pathlib import Path
 from typing import Any
 
+from components.language import ENGLISH, LANGUAGES, tr
 from components.mistake import Mistake
 from components.suggestions import remedy
 from components.wording import as_json, cut
 
 HEADER = {"format": "pinjoint session", "version": 1}
-_HEADER_KEYS = (*HEADER, "model", "title", "description", "mods")
+_HEADER_KEYS = (*HEADER, "model", "title", "description", "mods", "language")
 EMPTY = {"format": "pinjoint model", "version": 1}
 
 
@@ -69,9 +70,10 @@ def _found(source: str | Path) -> Path | Traversable:
 class Script:
     """A script read from a file, or a lesson by its name, ready to be played in a session.
 
-    title, description: from its header, or "". mods: versions, by name, of those that it was recorded with; None: the
-    header says nothing of mods. has_data: whether a folder is chosen in which the script saves and
-    loads; else it must be kept away from the models that the person saved.
+    title, description: from its header, or "". language: in which it is played, since a recording says where panels and
+    menus were hit, which are as wide as their words; "": any. mods: versions, by name, of those that it was recorded with;
+    None: the header says nothing of mods. has_data: whether a folder is chosen in which the script saves and loads; else
+    it must be kept away from the models that the person saved.
     """
 
     has_data = False
@@ -98,6 +100,17 @@ class Script:
         if self.mods is not None and not _are_mods(self.mods):
             raise ScriptError(
                 f'{source} line 1: mods is {as_json(self.mods)}; write names and versions, {{"wind": "1.0"}}.'
+            )
+        recorded = any("pixel" in entry for _, entry in self.lines)
+        self.language = header.get("language", ENGLISH if recorded else "")
+        if self.language not in ("", *LANGUAGES):
+            raise ScriptError(
+                tr(
+                    "{script} line 1: the language is {code}; write one of {languages}.",
+                    script=source,
+                    code=as_json(self.language),
+                    languages=", ".join(LANGUAGES),
+                )
             )
         self.title, self.description = (str(header.get(key, "")) for key in ("title", "description"))
 

@@ -8,6 +8,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Any
 
+from components.language import ENGLISH, spoken
 from game.sweeps.batches import Batches
 from game.sweeps.plan import Outcome, Plan, Record
 from game.sweeps.variant_runner import VariantRunner
@@ -55,7 +56,11 @@ class Worker:
         return self._batches.size if self._batches is not None else 1
 
     def compute(self, numbers: Sequence[int]) -> Computed:
-        """Compute some variants; one that cannot be computed is a record that says why."""
+        """Compute some variants; one that cannot be computed is a record that says why, in English, as files are."""
+        with spoken(ENGLISH):
+            return self._compute(numbers)
+
+    def _compute(self, numbers: Sequence[int]) -> Computed:
         together: Mapping[int, list[Record]] = {}
         faults = Counter({self._fault: len(numbers)} if self._fault else {})
         if len(numbers) > 1:

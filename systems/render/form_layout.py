@@ -12,13 +12,15 @@ from components.box import Box
 from components.camera import Rectangle, Viewport
 from components.field import Vector
 from components.form import Form, Reading, Tile
-from systems.render.typography import font_size, in_rows, wrapped
+from components.language import marked, tr, tr_in
+from systems.render.typography import font_size, in_rows, text_width, wrapped
 
 WIDEST = 1500.0  # points that tiles spread over
 EDGE, CLOSE_EDGE, SLIM = 16.0, 10.0, 325.0  # points around all; in a viewport less wide than the last, less
 LOW = 330.0  # points: a viewport less high does without explanations
 
 TITLE, BOX, BELOW = 18.0, 26.0, 10.0  # points: title above a box, the box, to what follows
+BOX_TITLE = 11.5  # points, size of type
 PROBLEM = 14.0  # points that the reason for which a box is refused takes below it
 READING, MOST_READINGS = 20.0, 0.4  # points of a row; share of the height that they take without being scrolled
 MESSAGE, MESSAGE_LINE = 12.0, 16.0  # points, size of type and distance of lines of a message or explanation
@@ -26,8 +28,11 @@ HINT, EXPLAINED, MOST_EXPLAINED = 26.0, 2, 6  # points at the bottom; lines of e
 SMALL, LOW_TYPE = 560.0, (11.0, 14.0)  # points: a viewport less high explains in smaller type, and lines apart
 SECTION = 28.0
 COLUMN_GAP = 10.0
-HEADING = 104.0  # points, where a low viewport has the box beside the heading
-CLOSE, ACCEPT = 24.0, 64.0  # points, side of the button that leaves; width of that which does what Return does
+HEADING = 104.0  # points, at least, where a low viewport has the box beside the heading
+CLOSE, ACCEPT = (
+    24.0,
+    64.0,
+)  # points, side of the button that leaves; least width of that which does what Return does
 NARROW, NARROWEST = 140.0, 120.0  # points, a box less wide does not share its row; one of a vector
 TILE, TILE_GAP, CAPTION, PROPORTION = 172.0, 16.0, 38.0, 0.6
 PILL, PILL_WIDTH, PILL_GAP = 40.0, 184.0, 10.0  # points: tiles of a section without pictures
@@ -36,7 +41,7 @@ LOWEST = 0.65  # share of a picture's height that it keeps where one more row fi
 LEAST_PICTURE = 30.0  # points
 SECTIONS_SEEN = 2  # with pictures, that begin in sight in any window
 
-PROPERTIES = "Properties"  # the heading of an element's own boxes, where its results stand above them
+PROPERTIES = marked("Properties")  # the heading of an element's own boxes, where its results stand above them
 
 Row = str | list[Box] | list[Reading] | list[Tile]
 
@@ -109,7 +114,7 @@ def lay_out(form: Form, viewport: Viewport, unit: float) -> FormLayout:
         top = accept.bottom + 22.0 * u
         rows = list(_tile_rows(form, width / u))
     else:
-        rows = list(_box_rows(form, width / u))
+        rows = list(_box_rows(form, width / u, u))
     readings = list(_reading_rows(form))
     if len(readings) * READING * u > MOST_READINGS * (bottom - top):
         rows, readings = readings + rows, []
@@ -135,7 +140,7 @@ def explanation_type(v: Viewport, u: float) -> tuple[float, float]:
 def _lines_of_explanations(form: Form, width: float, v: Viewport, u: float) -> int:
     """How many lines the longest explanation of a tile takes, so that none is cut that is not very long."""
     size = font_size(explanation_type(v, u)[0], u)
-    lines = (_line_count(tile.explanation, width, size) for tile in form.tiles)
+    lines = (_line_count(tr(tile.explanation), width, size) for tile in form.tiles)
     return min(max(lines, default=EXPLAINED), MOST_EXPLAINED) if len(form.tiles) else EXPLAINED
 
 
@@ -151,17 +156,20 @@ def _name_place(
 
     They stand beside the heading where there is room or little height, else below it.
     """
-    button, closes, heading = (ACCEPT + 8.0) * u, (CLOSE + 8.0) * u, width - (CLOSE + 8.0) * u
+    said, head = tr(form.accept), tr(form.heading.text)
+    pressed = max(text_width(said, font_size(13.0, u), "semibold") + 16.0 * u, ACCEPT * u)
+    button, closes, heading = pressed + 8.0 * u, (CLOSE + 8.0) * u, width - (CLOSE + 8.0) * u
     x, top, room = left, v.top + 46.0 * u, 420.0 * u
     if v.height < LOW * u:
-        x, top, heading = left + HEADING * u, v.top + 6.0 * u, (HEADING - 8.0) * u
-        width -= HEADING * u + closes
+        taken = max(text_width(head, font_size(19.0, u), "semibold") + 9.0 * u, HEADING * u)
+        x, top, heading = left + taken, v.top + 6.0 * u, taken - 8.0 * u
+        width -= taken + closes
     elif width >= BESIDE * u:
         room, top = SEARCH * u, v.top + 13.0 * u
         x = left + width - closes - button - room
         heading = x - left - COLUMN_GAP * u
     room = max(min(width - button, room), 40.0 * u)
-    accept = Rectangle(x + room + 8.0 * u, top, ACCEPT * u, BOX * u)
+    accept = Rectangle(x + room + 8.0 * u, top, pressed, BOX * u)
     return [Place(x, top, room, BOX * u, box) for box in form.boxes], accept, heading
 
 
@@ -225,14 +233,25 @@ def _reading_rows(form: Form) -> Iterator[Row]:
         yield from in_rows(list(readings), 1)
 
 
-def _box_rows(form: Form, width: float) -> Iterator[Row]:
-    """Sections and boxes: the two components of a vector share a row, and so do single boxes."""
+def _box_rows(form: Form, width: float, u: float) -> Iterator[Row]:
+    """Sections and boxes: the two components of a vector share a row, and so do single boxes, if their titles fit."""
     half = (width - COLUMN_GAP) / 2
     for section, boxes in groupby(form.boxes, lambda box: box.section):
         if section != form.heading.text or len(form.readings):
             yield section if section != form.heading.text else PROPERTIES
-        for vector, partners in groupby(boxes, _partner):
-            yield from in_rows(list(partners), 2 if half >= (NARROWEST if vector else NARROW) else 1)
+        for (vector, short), partners in groupby(boxes, lambda box: (_partner(box), _is_short(box, half, u))):
+            yield from in_rows(list(partners), 2 if short and half >= (NARROWEST if vector else NARROW) else 1)
+
+
+def _is_short(box: Box, width: float, u: float) -> bool:
+    """True if the title of a box stands whole above it in so many points, with what is noted of its value."""
+    said = f"{box.said_title} {short_note(box.note)}".rstrip()
+    return text_width(said, font_size(BOX_TITLE, u)) + 8.0 * u * bool(box.note) <= width * u
+
+
+def short_note(note: str) -> str:
+    """What is noted of the value of a box, where there is little room."""
+    return note.replace(tr("automatic"), tr_in("note of a box", "auto"))
 
 
 def _partner(box: Box) -> str:
@@ -313,7 +332,8 @@ def _placed(
     elif isinstance(row[0], Box):
         gap = COLUMN_GAP * u
         half = (width - gap) / 2
-        each = half if len(row) > 1 or half >= NARROW * u else width
+        alone = half < NARROW * u or not _is_short(row[0], half / u, u)
+        each = width if alone and len(row) == 1 else half
         for column, box in enumerate(row):
             yield Place(left + column * (each + gap), top + TITLE * u, each, BOX * u, box)
     elif _are_pills(row):

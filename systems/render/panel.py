@@ -7,8 +7,10 @@ import numpy as np
 from components.box import NAME, NUMBER, WORD, Box, number_and_unit
 from components.camera import Rectangle, Viewport
 from components.form import Form, Reading, Tile
+from components.language import begun, tr
 from components.view import BETWEEN, View
 from systems.render.form_layout import (
+    BOX_TITLE,
     CAPTION,
     HINT,
     MESSAGE,
@@ -19,6 +21,7 @@ from systems.render.form_layout import (
     explanation_type,
     lay_out,
     message_lines,
+    short_note,
 )
 from systems.render.help import draw_help
 from systems.render.marks import Fills, Mark, Panel, Picture, Stamps, Text, boxes, cross
@@ -27,6 +30,7 @@ from systems.render.thumbnails import thumbnail
 from systems.render.typography import at_most, fitting, font_size, shortened, text_width, wrapped
 
 _TEXT = 13.0  # points, size of type in a box
+_HEADING = (19.0, 16.0, 14.0)  # points, the largest that fits
 _SMALL, _GAP = 11.0, 4.0  # points: size of type of units and notes, between a number and its unit
 _PAD = 8.0  # points between a box's edge and its text
 
@@ -69,9 +73,11 @@ class _Writer:
     def header(self) -> list[Mark]:
         """The heading, and the message below the boxes that stay."""
         layout, heading = self.layout, self.form.heading
-        size, small, u = self.font(19.0), self.font(MESSAGE), self.unit
-        text = heading.text[:1].upper() + heading.text[1:]
-        text = shortened(text, layout.heading_width, size, "semibold")
+        small, u, said = self.font(MESSAGE), self.unit, begun(tr(heading.text))
+        sizes = [self.font(points) for points in _HEADING]
+        fitting_sizes = (s for s in sizes if text_width(said, s, "semibold") <= layout.heading_width)
+        size = next(fitting_sizes, sizes[-1])
+        text = shortened(said, layout.heading_width, size, "semibold")
         marks: list[Mark] = [Text(text, layout.left, layout.header, size, self.theme.text, "semibold")]
         for number, line in enumerate(message_lines(self.form, layout.right - layout.left, u)):
             y = layout.message + number * MESSAGE_LINE * u
@@ -82,7 +88,7 @@ class _Writer:
         """The one that leaves the form, and the one that does what Return does."""
         layout, theme, u = self.layout, self.theme, self.unit
         marks: list[Mark] = []
-        for place, title in ((layout.close, ""), (layout.accept, self.form.accept)):
+        for place, title in ((layout.close, ""), (layout.accept, tr(self.form.accept))):
             if place is None or not (title or place is layout.close):
                 continue
             under = self.view.pointer is not None and place.contains(self.view.pointer)
@@ -114,9 +120,9 @@ class _Writer:
         name = next((box for box in self.form.boxes if box.target == "name"), None)
         for item in (self.hovered, self.chosen, self.selected, name):
             if isinstance(item, Box) and item.problem:
-                return f"{item.title}: {item.problem}", self.theme.problem
+                return f"{item.said_title}: {item.problem}", self.theme.problem
             if item is not None and item.explanation:
-                return item.explanation, self.theme.text
+                return tr(item.explanation), self.theme.text
         return "", self.theme.text
 
     def scroll_bar(self) -> list[Mark]:
@@ -139,7 +145,7 @@ class _Writer:
         for place in self.layout.places:
             if isinstance(place.item, str):
                 y = place.top + 0.5 * place.height
-                marks.append(Text(place.item, place.left, y, self.font(13.0), self.theme.text, "semibold"))
+                marks.append(Text(tr(place.item), place.left, y, self.font(13.0), self.theme.text, "semibold"))
             elif isinstance(place.item, Box):
                 marks += self._box(place, place.item)
             elif isinstance(place.item, Reading):
@@ -154,22 +160,22 @@ class _Writer:
         value = shortened(reading.text, 0.65 * place.width, size, "semibold")
         room = place.width - text_width(value, size, "semibold") - 8.0 * self.unit
         return [
-            Text(shortened(reading.title, room, size), place.left, y, size, theme.muted),
+            Text(shortened(tr(reading.title), room, size), place.left, y, size, theme.muted),
             Text(value, place.right, y, size, theme.text, "semibold", "right"),
         ]
 
     def _box(self, place: Place, box: Box) -> list[Mark]:
-        u, theme, size = self.unit, self.theme, self.font(11.5)
+        u, theme, size = self.unit, self.theme, self.font(BOX_TITLE)
         above, below = place.top - 9.0 * u, place.bottom + 9.0 * u
         marks = [*self._frame(place, box is self.selected, box is self.hovered), *self._contents(place, box)]
         if box.target != "name":
             unit = box.unit
             if self._has_room_for_unit(place, box):
                 unit = "" if box.changed or self._has_room_for_note(place, box) else box.note
-                if text_width(f"{box.title} {unit}", size) + 8.0 * u > place.width:
-                    unit = unit.replace("automatic", "auto")
+                if text_width(f"{box.said_title} {unit}", size) + 8.0 * u > place.width:
+                    unit = short_note(unit)
             taken = text_width(unit, size) + 8.0 * u if unit else 0.0
-            title = shortened(box.title, place.width - taken, size)
+            title = shortened(box.said_title, place.width - taken, size)
             marks.append(Text(title, place.left, above, size, theme.muted))
             if unit:
                 marks.append(Text(unit, place.right, above, size, theme.muted, anchor="right"))
@@ -237,7 +243,7 @@ class _Writer:
         u, theme, size, small = self.unit, self.theme, self.font(12.5), self.font(11.0)
         middle, left = place.middle[1], place.left + 40.0 * u
         room = place.right - left - 6.0 * u
-        x, title = place.left + 21.0 * u, shortened(tile.title, room, size, "semibold")
+        x, title = place.left + 21.0 * u, shortened(tr(tile.title), room, size, "semibold")
         at = np.array([[x, middle]])
         return [
             *self._card(place, tile, 8.0 * u),
@@ -274,7 +280,7 @@ class _Writer:
     def _legend(self, tile: Tile, left: float, top: float, width: float) -> list[Mark]:
         """The title in at most two lines, and the caption if one is enough."""
         u, theme, size, small = self.unit, self.theme, self.font(12.5), self.font(11.0)
-        lines = at_most(wrapped(tile.title, width, size, "semibold"), 2, width, size, "semibold")
+        lines = at_most(wrapped(tr(tile.title), width, size, "semibold"), 2, width, size, "semibold")
         marks: list[Mark] = [
             Text(line, left, top + (13.0 + 15.5 * number) * u, size, theme.text, "semibold")
             for number, line in enumerate(lines)
@@ -312,8 +318,8 @@ def _window(text: str, caret: int, room: float, size: int) -> tuple[int, str]:
 
 
 def written(box: Box) -> str:
-    """The text of a box as it is shown, with as many characters: numbers with a real minus sign."""
-    text: str = box.text
+    """The text of a box as it is shown: numbers with a real minus sign."""
+    text = box.said_text
     return text.replace("-", "−") if box.accepts == NUMBER else text
 
 

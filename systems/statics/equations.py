@@ -17,6 +17,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from components.derived import with_full_turns
+from components.language import tr
 from components.model import Model
 from components.rod import bends
 from components.table import flags
@@ -98,7 +99,7 @@ class Structure:
     def of(cls, model: Model, geometry: str = "exact") -> Structure:
         """The structure of a model in "exact" or "linear" geometry; without plasticity no rod yields."""
         if geometry not in ("exact", "linear"):
-            raise ValueError(f"Geometry is '{geometry}'; it must be 'exact' or 'linear'.")
+            raise ValueError(tr("Geometry is '{geometry}'; it must be 'exact' or 'linear'.", geometry=geometry))
         particles, rods = model.particles, model.rods
         yields = bool(model.settings.plasticity)
         ends = rods.between.astype(np.intp)

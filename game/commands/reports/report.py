@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from components.language import joined
 from components.mistake import Mistake
 from components.model import Model
 from components.rod import bends
@@ -89,7 +90,7 @@ class Analysis:
         unknown = "" if error is not None else _uncontrolled(session.simulation)
         return {
             **found,
-            "message": " ".join(filter(None, [session.message, unknown])),
+            "message": joined([session.message, unknown]),
             "events": [*happened, *_records(session.model, session.remarks)],
             "error_estimate": error.record(bent=bends(session.model)) if error is not None else None,
         }
@@ -157,7 +158,7 @@ def run_static(simulation: Simulation, name: str, factors: Sequence[float]) -> R
     states = [static_state(simulation.model, found) for found in settlement.states]
     status, note = without_mods(settlement.status, left_out)
     return _run(simulation, name, status, states, moves=False) | {
-        "message": " ".join(filter(None, [settlement.message, note])),
+        "message": joined([settlement.message, note]),
         "left_out": left_out,
         "wall_seconds": seconds,
         "events": _records(simulation.model, settlement.events),

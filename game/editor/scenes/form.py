@@ -6,10 +6,11 @@ from collections.abc import Sequence
 from dataclasses import replace
 from typing import ClassVar
 
-from components.box import NAME, WORD, Box
+from components.box import NAME, NUMBER, WORD, Box
 from components.camera import Camera, Viewport
 from components.field import Vector
 from components.form import Form, Tile
+from components.language import decimals, english, joined, tr
 from components.suggestions import missing
 from game.editor.context import Context, Scene
 from systems.forms import typing
@@ -41,7 +42,7 @@ class FormScene(Scene):
     @property
     def message(self) -> str:
         """The message of the heading, and why the text of a box is refused."""
-        return " ".join(filter(None, [self.form.heading.message, *(box.problem for box in self.form.boxes)]))
+        return joined([self.form.heading.message, *(box.problem for box in self.form.boxes)])
 
     def enter(self, context: Context) -> None:
         self.form = self.make_form(context)
@@ -92,6 +93,20 @@ class FormScene(Scene):
         else:
             typing.step_caret(self.form, 1 if direction == "right" else -1)
             self._reveal_selected(context)
+
+    def say_again(self, context: Context) -> None:
+        """Make the form again, with what was typed."""
+        before, typed = self.form, False
+        self.form = self.make_form(context)
+        for old, box in zip(before.boxes, self.form.boxes, strict=False):
+            if old is before.selected:
+                typing.select(self.form, box)
+            if old.text != box.text:
+                typing.put(self.form, box, old.text)
+                typed = True
+        if typed:
+            self.changed(context)
+        self.form.heading.first = before.heading.first
 
     # --- pictures ----------------------------------------------------------------------------------
 
@@ -168,18 +183,18 @@ class FormScene(Scene):
 
     @property
     def boxes(self) -> dict[str, str]:
-        return Texts((box.title, box.text) for box in self.form.boxes)
+        return Texts((english(box.title), box.text) for box in self.form.boxes)
 
     def click_box(self, context: Context, title: str) -> None:
-        """Select the box with that title, as a click on it does. Raises LookupError."""
+        """Select the box with that title, in English or as it is shown, as a click on it does. Raises LookupError."""
         wanted = title.strip().lower()
         wanted = FORMER.get(wanted, wanted)
         for box in self.form.boxes:
-            if box.title.lower() == wanted:
+            if wanted in (english(box.title).lower(), tr(box.title).lower()):
                 self.reveal(context, box)
                 typing.select(self.form, box)
                 return
-        titles = [box.title for box in self.form.boxes]
+        titles = [english(box.title) for box in self.form.boxes]
         raise LookupError(missing("boxes", title, titles))
 
     def scroll(self, context: Context, rows: int) -> None:
@@ -210,9 +225,9 @@ class FormScene(Scene):
     # --- clipboard ---------------------------------------------------------------------------------
 
     def copy(self, context: Context) -> None:
-        """Put the text of the selected box on the clipboard."""
-        if self.form.selected is not None:
-            context.clipboard = self.form.selected.text
+        """Put the text of the selected box on the clipboard, numbers as other programs of the language write them."""
+        if (box := self.form.selected) is not None:
+            context.clipboard = decimals(box.text) if box.accepts == NUMBER else box.text
 
     def cut(self, context: Context) -> None:
         """Copy, then empty the box."""
