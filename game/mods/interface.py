@@ -9,7 +9,7 @@ from inspect import getattr_static
 from typing import Any
 
 from components.field import FieldError, Vector
-from components.language import tr
+from components.language import english, in_both, tr
 from components.view import Plot, Readout, View
 from components.wording import printable
 from game.commands.arguments import BAD_INPUT, UsageError
@@ -126,7 +126,7 @@ def _checked_plot(plot: Plot) -> Plot:
 
 def readable(text: str) -> str:
     """A text of a mod as it can be shown."""
-    return printable(text[:LONGEST])
+    return in_both(printable(text[:LONGEST]), printable(str(english(text))[:LONGEST]))
 
 
 # --- scenes ------------------------------------------------------------------------------------------------
