@@ -76,7 +76,7 @@ class Script:
     it must be kept away from the models that the person saved.
     """
 
-    has_data = False
+    has_data, language = False, ""
 
     def __init__(self, source: str | Path) -> None:
         self.path = _found(source)
