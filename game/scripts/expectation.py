@@ -8,7 +8,7 @@ import re
 from collections.abc import Iterator, Mapping
 from typing import Any, Protocol
 
-from components.language import english, tr
+from components.language import english, marked, tr
 from components.suggestions import missing
 from components.wording import quoted
 from game.paths import Readable, locate_one
@@ -120,7 +120,9 @@ def read(session: Shown, path: str) -> Any:
     if head == "count":
         return len(_one_of(session.model.tables, rest, "tables"))
     if head not in session.model.tables:
-        raise LookupError(missing("quantities", head, [*_OF_SESSION, *_SECTIONS, *session.model.tables]))
+        raise LookupError(
+            missing(marked("quantities"), head, [*_OF_SESSION, *_SECTIONS, *session.model.tables])
+        )
     target = locate_one(session.model, path.strip())
     return target.part(getattr(target.handles[0], target.field.name))
 

@@ -347,7 +347,7 @@ def key_named(text: str) -> str:
     name = ALSO_CALLED.get(name, name)
     known = {binding.key.removeprefix("ctrl+").removeprefix("shift+") for binding in BINDINGS} | {*UNBOUND}
     if len(name) != 1 and name not in known:
-        raise ValueError(missing("keys", text, sorted(key for key in known if len(key) > 1)))
+        raise ValueError(missing(marked("keys"), text, sorted(key for key in known if len(key) > 1)))
     if len(name) == 1 and "ctrl+" not in held:
         held.clear()
     return "".join(sorted(held)) + name  # ctrl comes before shift
