@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from typing import overload
 
@@ -308,9 +308,9 @@ class Tables:
             return ()
         work, units = self.work, self.units
         ways = (work.of_bending, work.of_base, work.of_free, work.of_supports)
-        gap = written.total(units.factor * float(way[i].sum()) for way in ways)
+        gap = _sum(units.factor * float(way[i].sum()) for way in ways)
         flexibility = [work.of_unit_bending[i, i], work.of_units[i, i]]
-        own = written.total(units.factor * float(part.sum()) for part in flexibility)
+        own = _sum(units.factor * float(part.sum()) for part in flexibility)
         return (
             f"δ{index(i + 1, 0)} = {gap} {units.gap(i)},"
             f"  δ{index(i + 1, i + 1)} = {own} {units.flexibility(i, i)}",
@@ -392,6 +392,12 @@ class Tables:
             Column(tr("difference"), "", off, digits=1),
         ]
         return Table(tr("rod") if symbol != "R" else tr("support"), names, columns)
+
+
+def _sum(terms: Iterable[float]) -> str:
+    """A sum with its numbers, or the only one of them."""
+    text = written.total(terms)
+    return text.rpartition(" ")[2] if text.count(" ") == 2 else text
 
 
 def _pairs(which: Sequence[int]) -> list[tuple[int, int]]:
