@@ -35,7 +35,8 @@ from game.interrupts import closed_by_signals
 from game.pictures import on_paper, write
 from game.preparation import Preparation
 from game.scripts.performance import FOOTER, LARGER, Performance
-from game.scripts.playing import Failure, Recorder
+from game.scripts.lines import Failure
+from game.scripts.playing import Recorder
 from game.scripts.script import Script
 from game.session import Session
 from systems.base import System
