@@ -7,6 +7,7 @@ from contextlib import ExitStack
 from pathlib import Path
 from typing import Any
 
+from components.model import Model
 from game.commands.arguments import Parser
 from game.commands.options import ANSWERED, NOT_ANSWERED
 from game.commands.output import Row, add_output, write_result
@@ -14,7 +15,9 @@ from game.commands.progress import follow
 from game.commands.window import in_window
 from game.documents import library, models
 from game.documents.open_documents import file_of
+from game.lessons.checking import check_lesson
 from game.scripts import playing, script
+from game.session import Session
 from game.streams import tell
 
 
@@ -22,8 +25,9 @@ def command(words: Sequence[str]) -> int:
     """Do what the words after the command ask for; returns the exit status."""
     parser = Parser(
         prog="pinjoint play",
-        description="Play a recorded or written session, or a lesson, in the real program.",
-        epilog=f"lessons: {', '.join(script.lessons())}",
+        description="Play a recorded or written session, or a lesson, in the real program. Of a lesson with tasks, all"
+        " solutions and wrong answers are checked.",
+        epilog=f"lessons: {', '.join([*script.lessons_with_tasks(), *script.lessons()])}",
     )
     parser.add_argument("script", metavar="SCRIPT", help="a file of JSON lines, or the name of a lesson")
     parser.add_argument(
@@ -45,6 +49,10 @@ def command(words: Sequence[str]) -> int:
         if options.window:
             tell(playing.check_mods(loaded))
             failures = in_window(models.load(loaded.source), file_of(loaded.source), lesson=loaded)
+        elif loaded.has_tasks:
+            playing.check_mods(loaded)
+            kept.enter_context(library.data_apart())
+            failures = check_lesson(loaded, lambda: Session(Model()))
         else:
             session = follow(playing.session_of(loaded))
             tell(session.notice)

@@ -76,7 +76,7 @@ class OpenDocument:
 
     beginning: the state from which time began to pass. undeformed: that in which it was neither run nor settled yet;
     None until then, or if its file does not say. saved: the revision of what its file holds.
-    recovery: the file that keeps unsaved work against a crash.
+    recovery: the file that keeps unsaved work against a crash. practice: it belongs to a lesson, and asks for no saving.
     """
 
     def __init__(self, model: Model, schedule: Schedule, pull: Pull, file: ModelFile) -> None:
@@ -94,6 +94,7 @@ class OpenDocument:
         self.chronicle = Chronicle(model, self.simulation)
         self.file = file
         self.recovery: Path | None = None
+        self.practice = False
         self.saved = self._last_edit = model.revision
 
     def _changed(self, entry: Entry) -> None:
@@ -214,7 +215,7 @@ class OpenDocument:
     @property
     def unsaved(self) -> bool:
         """True if a person changed the model since it was opened or saved, or let time pass in one of theirs."""
-        return self.edited or (self.file.path is not None and self.newest > self.saved)
+        return (self.edited and not self.practice) or (self.file.path is not None and self.newest > self.saved)
 
     def leave(self) -> None:
         """End the run and the pull of a hand, and drop the checkpoints."""

@@ -25,6 +25,9 @@ def open_dropped(context: Context, path: Path) -> None:
             f"'{path.name}' is no model: Pinjoint opens model files ({MODEL}) and recorded sessions ({SCRIPT})."
         )
     script = Script(path) if path.suffix.lower() == SCRIPT else None
+    if script is not None and script.has_tasks:
+        context.lesson = script
+        return
     model = models.load(path if script is None else script.source)
     keep = context.model.particles.count > 0
     context.adopt(model, file_of(path if script is None else script.source), keep=keep)

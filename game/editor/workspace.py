@@ -71,7 +71,7 @@ class Workspace:
         """Write the model to a file that is its own from now on. Raises ModelError."""
         path = Path(path)
         self.save(path)
-        self.document.file = ModelFile.at(path)
+        self.document.file, self.document.practice = ModelFile.at(path), False
         self.document.saved = self.model.revision
         self.notice = f"Saved as '{path.stem}'."
 

@@ -65,6 +65,7 @@ _EXAMPLES: dict[str, Any] = {  # by key of a line: a value of the required shape
     "resize": [1280.0, 800.0, 1.0],
     "window": [1280.0, 800.0],
     "say": "Press Space.",
+    "answer": "Tension",
     "clipboard": "",
     "at": 128,
     "within": 0.5,
@@ -78,7 +79,7 @@ def _check_line(entry: Mapping[str, Any]) -> None:
         if key not in _EXAMPLES:
             raise ValueError(f"there is no '{cut(key)}'; use one of {', '.join(_EXAMPLES)}.")
         example = _EXAMPLES[key]
-        fits = _is_like(value, example) and not (key in _SIZES and min(value) <= 0)
+        fits = (_is_like(value, example) or key == "answer") and not (key in _SIZES and min(value) <= 0)
         if not fits and (key, value) != ("run", "rest"):
             raise ValueError(f"{key} is {as_json(value)}; write it like {json.dumps({key: example})}.")
 
@@ -132,5 +133,6 @@ _VERBS: dict[str, Callable[[Session, Any], Any]] = {
     "run": lambda session, time: session.run(until="rest") if time == "rest" else session.run(time=time),
     "steps": lambda session, count: session.run(steps=count),
     "say": lambda session, text: None,
+    "answer": lambda session, value: session.answer(value),
     "resize": lambda session, size: session.resize(int(size[0]), int(size[1]), float(size[2])),
 }

@@ -172,6 +172,13 @@ _BY_PURPOSE: dict[str, tuple[Binding, ...]] = {
         Binding("shift+f12", "picture as svg", EVERY, "save a picture as SVG"),
         Binding("ctrl+f12", "picture as pdf", EVERY, "save a picture as PDF"),
     ),
+    "Lessons": (
+        Binding("f2", "check answer", (*LIVE, FORCE_METHOD), "check the task of a lesson; then: the next one"),
+        Binding("f3", "hint", (*LIVE, FORCE_METHOD), "a hint"),
+        Binding("f4", "show solution", (*LIVE, FORCE_METHOD), "show how it is done"),
+        Binding("f5", "task again", (*LIVE, FORCE_METHOD), "begin the task again"),
+        Binding("f6", "leave lesson", (*LIVE, FORCE_METHOD), "leave the lesson"),
+    ),
     "Files": (
         Binding("s", "save", (PAUSE,), "save as"),
         Binding("ctrl+shift+s", "save", LIVE, "save as"),
