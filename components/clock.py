@@ -9,6 +9,7 @@ from components.collision_state import CollisionState, check_collision_state
 from components.departure import Departure, check_departure
 from components.field import Field, FieldError, state
 from components.handle import Handle
+from components.language import tr
 
 
 def check_events(value: Any, where: str) -> Mapping[str, tuple[str, ...]]:
@@ -17,7 +18,12 @@ def check_events(value: Any, where: str) -> Mapping[str, tuple[str, ...]]:
         found = {str(event): tuple(names) for event, names in value.items()}
         if all(isinstance(name, str) for names in found.values() for name in names):
             return found
-    raise FieldError(f'{where}: write the names of elements by event, such as {{"mymod.breaking": ["AB"]}}.')
+    raise FieldError(
+        tr(
+            '{where}: write a list of names of elements for each event, such as {{"mymod.breaking": ["AB"]}}.',
+            where=where,
+        )
+    )
 
 
 class Clock(Handle):

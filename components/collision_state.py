@@ -16,6 +16,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from components.field import FieldError
+from components.language import tr
 
 Floats = NDArray[np.float64]
 Pairs = NDArray[np.int64]
@@ -104,7 +105,11 @@ def check_collision_state(value: Any, where: str) -> CollisionState:
             raise ValueError
     except (TypeError, ValueError, KeyError, OverflowError):
         raise FieldError(
-            f"{where}: it is not what a saved run holds; remove it, and the run goes on to within round-off."
+            tr(
+                "{where}: this is not what Pinjoint saves here. Remove it: the run then goes on with"
+                " differences of round-off only.",
+                where=where,
+            )
         ) from None
     return found
 

@@ -6,6 +6,7 @@ from typing import ClassVar
 
 from components.field import Role
 from components.handle import Handle
+from components.language import tr
 from components.table import fields_of
 
 
@@ -32,12 +33,21 @@ def add_component(mod: str, component: type[Component]) -> list[str]:
     for field, name in zip(fields, names, strict=True):
         if hasattr(kind, name):
             raise ValueError(
-                f"{component.__name__}: {kind.table} have a '{name}' already; call this Field something else."
+                tr(
+                    "{component}: {table} have a '{name}' already; give this Field another name.",
+                    component=component.__name__,
+                    table=kind.table,
+                    name=name,
+                )
             )
         if field.references is not None or field.role is Role.DERIVED:
             raise ValueError(
-                f"{component.__name__}.{field.name}: a mod's Field holds values that a person or time made;"
-                " references and derived columns cannot be added."
+                tr(
+                    "{component}.{field}: a mod cannot add references or derived columns, only Fields with values of"
+                    " their own (document or state).",
+                    component=component.__name__,
+                    field=field.name,
+                )
             )
         field.check_default(component.__name__)
     for field, name in zip(fields, names, strict=True):

@@ -9,10 +9,13 @@ from typing import Any
 import numpy as np
 
 from components.field import FieldError, Role
+from components.language import marked, tr
 from components.snapshot import Snapshot
 from components.world import World
 
-_REMEDY = "it is not what a saved run holds; remove it, and the run goes on to within its accuracy."
+_REFUSAL = marked(
+    "{where}: this is not what Pinjoint saves here. Remove it: the run then goes on within its accuracy."
+)
 
 
 class Departure(Mapping[str, Any]):
@@ -36,11 +39,11 @@ class Departure(Mapping[str, Any]):
             for field in table.fields_in(Role.STATE):
                 column, key = field.allocate(table.count), f"{name}.{field.name}"
                 if key in saved and field.checker is check_departure:
-                    raise FieldError(f"{where}.{key}: {_REMEDY}")
+                    raise FieldError(tr(_REFUSAL, where=f"{where}.{key}"))
                 if key in saved:
                     values = saved[key]
                     if not isinstance(values, list | tuple) or len(values) != table.count:
-                        raise FieldError(f"{where}.{key}: {_REMEDY}")
+                        raise FieldError(tr(_REFUSAL, where=f"{where}.{key}"))
                     column = field.check_column(list(values), table.count, partial(_path, f"{where}.{key}"))
                 layout.append((name, (field.name,)))
                 arrays.append(column)
@@ -85,4 +88,4 @@ def check_departure(value: Any, where: str) -> Mapping[str, Any]:
     """A departure, or what a model file holds of one, until `of_file` makes it one. Raises FieldError."""
     if isinstance(value, Mapping):
         return value
-    raise FieldError(f"{where}: {_REMEDY}")
+    raise FieldError(tr(_REFUSAL, where=where))

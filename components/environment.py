@@ -12,8 +12,8 @@ class Environment(Handle):
     __slots__ = ()
     table, noun, single = "environment", "environment", True
 
-    force: Field[Vector] = Field("kN", shape=(2,), doc="On every particle.")
+    force: Field[Vector] = Field("kN", shape=(2,), doc="Constant force on every particle.")
     acceleration: Field[Vector] = Field(
-        "m/s²", shape=(2,), doc="Of every particle, such as gravity (0, -9.81)."
+        "m/s²", shape=(2,), doc="Acceleration of every particle, such as gravity (0, -9.81)."
     )
-    drag: Field[float] = Field("1/s", minimum=0.0, doc="Force −drag × mass × velocity.")
+    drag: Field[float] = Field("1/s", minimum=0.0, doc="Resistance to motion: force = −drag × mass × velocity.")

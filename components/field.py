@@ -12,6 +12,7 @@ from typing import Any, Generic, Protocol, TypeVar, overload
 import numpy as np
 from numpy.typing import NDArray
 
+from components.language import joined, marked, tr
 from components.mistake import Mistake
 from components.wording import is_broken, quoted
 
@@ -127,7 +128,10 @@ class Field(Generic[T]):
     def __post_init__(self) -> None:
         if self.nullable and (self.shape or self.dtype in (int, bool, "reference")):
             raise ValueError(
-                f"A Field that can be None must be one float, text or object ('{self.title or self.doc}' is not)."
+                tr(
+                    "A Field that can be None must be one float, text or object ('{field}' is not).",
+                    field=self.title or self.doc,
+                )
             )
         if self.dtype == "reference":
             self.minimum, self.maximum = 0, _LARGEST_REFERENCE
@@ -196,7 +200,7 @@ class Field(Generic[T]):
 
     def check_default(self, owner: str) -> None:
         """Raise FieldError if an element that is given no value could not be saved and read again."""
-        where = f"{owner}.{self.name}, its default"
+        where = tr("{owner}.{name}, its default", owner=owner, name=self.name)
         try:
             try:
                 column = self.allocate(1)
@@ -205,7 +209,7 @@ class Field(Generic[T]):
                 raise
             self.check_column(column, 1, lambda row: where)
         except FieldError as error:
-            raise FieldError(f"{error} With nullable=True, None can be its default.") from None
+            raise FieldError(joined([str(error), tr("With nullable=True, None can be its default.")])) from None
 
     def check(self, value: Any, where: str) -> Any:
         """Return `value` normalised, or raise FieldError naming `where` (such as "rod AB")."""
@@ -223,77 +227,95 @@ class Field(Generic[T]):
 
     def _check_numbers(self, value: Any, where: str) -> Any:
         if not self.shape:
-            return self._check_number(value, where, self.title)
-        values = self._components(value, where, "numbers")
-        return tuple(
-            self._check_number(v, where, f"{self.title} {axis}")
-            for v, axis in zip(values, self.axes, strict=True)
+            return self._check_number(value, where)
+        values = self._components(
+            value, where, marked("{where}: {title} is {value}; it must be a pair of numbers, {parts}.")
         )
+        return tuple(self._check_number(v, where, axis) for v, axis in zip(values, self.axes, strict=True))
+
+    def named(self, axis: str = "") -> str:
+        """What a person calls it, or its part along an axis: "velocity x"."""
+        return joined([tr(self.title), tr(axis) if axis else ""])
+
+    def _refusal(self, message: str, where: str, value: Any, axis: str = "", **more: Any) -> FieldError:
+        return FieldError(tr(message, where=where, title=self.named(axis), value=quoted(value), **more))
 
     def unit_of(self, axis: str) -> str:
         """The unit of the part called so, "" being the whole; where parts have several, they stand in order: "kN·m, m"."""
         units = self.unit.split(", ")
         return units[self.axes.index(axis)] if axis and len(units) > 1 else self.unit
 
-    def _check_number(self, value: Any, where: str, title: str) -> Any:
+    def _check_number(self, value: Any, where: str, axis: str = "") -> Any:
         if isinstance(value, bool | np.bool_) or not isinstance(value, int | float | np.integer | np.floating):
-            what = "the row of an element, as its .row tells" if self.dtype == "reference" else "a number"
-            raise FieldError(f"{where}: {title} is {quoted(value)}; it must be {what}.")
+            if self.dtype == "reference":
+                what = marked(
+                    "{where}: {title} is {value}; it must be the row of an element, such as its .row."
+                )
+            else:
+                what = marked("{where}: {title} is {value}; it must be a number.")
+            raise self._refusal(what, where, value, axis)
         try:
             number: Any = float(value)
         except OverflowError:  # 10**400
             number = math.inf
         if not math.isfinite(number):
-            raise FieldError(f"{where}: {title} is {number}; it must be a finite number.")
+            message = marked("{where}: {title} is {value}; it must be a finite number.")
+            raise self._refusal(message, where, number, axis)
         if self.dtype is not float and ((number := int(value)) != value or number.bit_length() > 63):
-            raise FieldError(f"{where}: {title} is {value}; it must be a whole number below 2^63.")
-        problem = self.limit_broken_by(number)
-        if problem:
-            unit = f" {self.unit}" if self.unit else ""
-            raise FieldError(f"{where}: {title} is {number:.15g}{unit}; it must be {problem}.")
+            message = marked("{where}: {title} is {value}; it must be a whole number below 2^63.")
+            raise self._refusal(message, where, value, axis)
+        limit = self.limit_broken_by(number)
+        if limit:
+            amount = joined([tr("{number:.15g}", number=number), self.unit])
+            message = marked("{where}: {title} is {amount}; it must be {limit}.")
+            raise self._refusal(message, where, number, axis, amount=amount, limit=limit)
         return number
 
     def limit_broken_by(self, number: float, *, shown: bool = False) -> str | None:
         """The limit that a number breaks, in words (in the unit on screen if `shown`), or None."""
         unit, factor = self.shown if shown else (self.unit, 1.0)
-        in_unit = f" {unit}" if unit else ""
+
+        def amount(limit: float) -> str:
+            return joined([tr("{number:g}", number=limit * factor), unit])
+
         if self.above is not None and not number > self.above:
-            return f"greater than {self.above * factor:g}{in_unit}"
+            return tr("greater than {limit}", limit=amount(self.above))
         if self.minimum is not None and number < self.minimum:
-            return f"at least {self.minimum * factor:g}{in_unit}"
+            return tr("at least {limit}", limit=amount(self.minimum))
         if self.maximum is not None and number > self.maximum:
-            return f"at most {self.maximum * factor:g}{in_unit}"
+            return tr("at most {limit}", limit=amount(self.maximum))
         return None
 
     def _check_flags(self, value: Any, where: str) -> Any:
-        values = self._components(value, where, "true or false") if self.shape else [value]
+        pair = marked("{where}: {title} is {value}; it must be a pair of true or false, {parts}.")
+        values = self._components(value, where, pair) if self.shape else [value]
         if not all(isinstance(v, bool | np.bool_) for v in values):
-            raise FieldError(f"{where}: {self.title} is {quoted(value)}; it must be true or false.")
+            raise self._refusal(marked("{where}: {title} is {value}; it must be true or false."), where, value)
         flags = tuple(bool(v) for v in values)
         return flags if self.shape else flags[0]
 
     def _check_text(self, value: Any, where: str) -> Any:
         if self.choices is not None and not (isinstance(value, str) and value in self.choices):
-            raise FieldError(
-                f"{where}: {self.title} is {quoted(value)}; choose one of {', '.join(self.choices)}."
-            )
+            message = marked("{where}: {title} is {value}; choose one of {choices}.")
+            raise self._refusal(message, where, value, choices=", ".join(self.choices))
         if not isinstance(value, str):
-            raise FieldError(f"{where}: {self.title} is {quoted(value)}; it must be a text.")
+            raise self._refusal(marked("{where}: {title} is {value}; it must be a text."), where, value)
         if is_broken(value):
-            raise FieldError(
-                f"{where}: {self.title} is {value!a}; half of a character cannot be kept in a file."
+            message = marked(
+                "{where}: {title} is {value}; it holds half of a character, which no file can store. Type it again."
             )
+            raise self._refusal(message, where, value)
         return str(value)  # numpy's texts are of another type
 
-    def _components(self, value: Any, where: str, of_what: str) -> list[Any]:
+    def _components(self, value: Any, where: str, refusal: str) -> list[Any]:
+        """The parts of a value. Raises FieldError, with this message if it has none."""
         parts = f"[{', '.join(self.axes)}]"
         if isinstance(value, str | bytes | Mapping | Set) or not np.iterable(value):
-            raise FieldError(
-                f"{where}: {self.title} is {quoted(value)}; it must be a pair of {of_what}, {parts}."
-            )
+            raise self._refusal(refusal, where, value, parts=parts)
         values = list(value)
         if len(values) != self.shape[0]:
-            raise FieldError(f"{where}: {self.title} has {len(values)} entries; it must have two, {parts}.")
+            message = marked("{where}: {title} has {count} entries; it must have two, {parts}.")
+            raise self._refusal(message, where, value, count=len(values), parts=parts)
         return values
 
     # --- checking a whole column at once ------------------------------------------------------------
@@ -316,7 +338,12 @@ class Field(Generic[T]):
         items = values if isinstance(values, list | tuple) else [values] * rows
         if len(items) != rows:
             raise FieldError(
-                f"{self.title}: {len(items)} values for {rows} elements; give each one, or all the same."
+                tr(
+                    "{title}: {count} values for {rows} elements; give one value for each element, or one for all.",
+                    title=self.named(),
+                    count=len(items),
+                    rows=rows,
+                )
             )
         any_text = self.dtype is str and self.choices is None and self.checker is None
         if any_text and set(map(type, items)) == {str} and not is_broken("".join(items)):

@@ -15,6 +15,7 @@ from numpy.typing import NDArray
 from components.bent import distributed_shares, is_frame
 from components.derived import chord_rotation
 from components.diagrams import rigid_slopes
+from components.language import tr
 from components.load import factor_at
 from components.model import Model
 from components.rod import rigid_joints
@@ -142,7 +143,7 @@ def on_joint(model: Model, row: int, known: Apart | None = None) -> list[Force]:
         found.append(Force(model.describe(loads[k]), "load", x, y, k, turn * turns))
     weight = particles.mass[row] * (particles.acceleration[row] + environment.acceleration) / 1000.0
     own = np.append(particles.force[row] + environment.force, particles.moment[row])
-    for name, part in (("force", own), ("weight", np.append(weight, 0.0))):
+    for name, part in ((tr("force"), own), (tr("weight"), np.append(weight, 0.0))):
         rest -= part
         if (part * [1.0, 1.0, turns]).any():
             x, y, turn = part.tolist()
@@ -150,17 +151,17 @@ def on_joint(model: Model, row: int, known: Apart | None = None) -> list[Force]:
     rest[2] *= turns
     if (np.abs(rest) > ROUNDING * np.array([*[np.abs(applied[:2]).max()] * 2, abs(applied[2])])).any():
         x, y, turn = rest.tolist()
-        found.append(Force("other", "load", x, y, moment=turn))  # drag, laws of mods, a hand
-    for part, name in ((np.array([1.0, 0.0]), "reaction x"), (np.array([0.0, 1.0]), "reaction y")):
+        found.append(Force(tr("other"), "load", x, y, moment=turn))  # drag, laws of mods, a hand
+    for part, name in ((np.array([1.0, 0.0]), tr("reaction x")), (np.array([0.0, 1.0]), tr("reaction y"))):
         if (reaction := particles.reaction[row] * part).any():
             found.append(Force(name, "reaction", *reaction.tolist()))
     if moment := float(particles.reaction_moment[row]):
-        found.append(Force("reaction moment", "reaction", 0.0, 0.0, moment=moment))
+        found.append(Force(tr("reaction moment"), "reaction", 0.0, 0.0, moment=moment))
     inertia, turning = -known.left_over[row], -float(known.left_over_moment[row])
     if inertia.any():
-        found.append(Force("inertia −m a", "inertia", *inertia.tolist()))
+        found.append(Force(tr("inertia −m a"), "inertia", *inertia.tolist()))
     if turning:
-        found.append(Force("inertia −J α", "inertia", 0.0, 0.0, moment=turning))
+        found.append(Force(tr("inertia −J α"), "inertia", 0.0, 0.0, moment=turning))
     return found
 
 
@@ -175,8 +176,8 @@ def on_rod(model: Model, row: int) -> list[Force]:
     lever = length * float(along[0] * far_y - along[1] * far_x)
     lever *= is_frame(model) or bool(pressed.any())  # of a bar's it is rounding only
     found = [
-        Force(f"at {names[first]}", "rod", x, y, moment=turn),
-        Force(f"at {names[last]}", "rod", far_x, far_y, moment=far_turn, lever=lever),
+        Force(tr("at {particle}", particle=names[first]), "rod", x, y, moment=turn),
+        Force(tr("at {particle}", particle=names[last]), "rod", far_x, far_y, moment=far_turn, lever=lever),
     ]
     if pressed.any():
         rigid = rods.turning_shares[row] > 0.0
@@ -185,5 +186,5 @@ def on_rod(model: Model, row: int) -> list[Force]:
         place = 0.5 * length * along + bow * np.array([-along[1], along[0]])
         lever = float(place[0] * pressed[1] - place[1] * pressed[0])
         x, y = pressed.tolist()
-        found.append(Force("distributed force", "load", x, y, lever=lever))
+        found.append(Force(tr("distributed force"), "load", x, y, lever=lever))
     return found

@@ -19,11 +19,11 @@ class Grid(Handle):
     __slots__ = ()
     table, noun = "grids", "grid"
 
-    name: Field[str] = Field(doc="Unique among the grids.", dtype=str)
+    name: Field[str] = Field(doc="Its name; no two grids have the same.", dtype=str)
     spacing: Field[Vector] = Field(
         "m", shape=(2,), default=0.5, above=0.0, doc="Distance between lines along x, along y.", shown=CM
     )
-    shown: Field[bool] = Field(dtype=bool, default=True, doc="Drawn now; at most one is.")
+    shown: Field[bool] = Field(dtype=bool, default=True, doc="Whether it is drawn; at most one grid is.")
 
     @classmethod
     def after_change(cls, table: Table[Any], rows: NDArray[np.intp], changed: Collection[str]) -> None:

@@ -12,6 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from components.field import Column
+from components.language import tr
 from components.suggestions import missing
 from components.table import Store, Table, refuse_orphans
 
@@ -33,7 +34,13 @@ class Handle:
     entity: int
 
     def __init__(self) -> None:
-        raise TypeError(f"A {self.noun} is part of a model; model.create({type(self).__name__}) makes one.")
+        raise TypeError(
+            tr(
+                "A {noun} is part of a model; model.create({name}) makes one.",
+                noun=tr(self.noun),
+                name=type(self).__name__,
+            )
+        )
 
     @classmethod
     def of_world(cls, world: Store, count: int) -> list[Self]:
@@ -48,8 +55,7 @@ class Handle:
             """Refuse an unknown name, and suggest the nearest."""
             inner = {*dir(Handle), *Handle.__annotations__}
             facts = [known for known in dir(type(self)) if known not in inner and not known.startswith("_")]
-            of = self.noun if self.single else f"a {self.noun}"
-            raise AttributeError(missing(f"facts of {of}", name, facts))
+            raise AttributeError(missing(tr("attributes of {table}", table=tr(self.table)), name, facts))
 
         def __setattr__(self, name: str, value: Any) -> None:
             """Set a Field; a misspelt one is refused, in kinds without __slots__ too."""
@@ -61,7 +67,7 @@ class Handle:
     def world(self) -> Store:
         """The world it belongs to. Raises LookupError if that is gone."""
         world = self._world()
-        return world if world is not None else refuse_orphans(f"this {self.noun}")
+        return world if world is not None else refuse_orphans(tr("this {noun}", noun=tr(self.noun)))
 
     @property
     def row(self) -> int:

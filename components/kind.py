@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 
 from components.field import Role
 from components.handle import Handle
+from components.language import tr
 from components.model import ADDED, KINDS, Model
 from components.table import Table, fields_of
 from components.wording import is_identifier
@@ -26,24 +27,55 @@ def add_kind(mod: str, kind: type[Handle]) -> str:
         word = getattr(kind, part, "")
         if not word or word in [getattr(other, part) for other in others]:
             raise ValueError(
-                f"{kind.__name__}: its {part} '{word}' is missing or taken; give it one of its own."
+                tr(
+                    "{name}: its {part} '{word}' is missing or already used; give it another.",
+                    name=kind.__name__,
+                    part=part,
+                    word=word,
+                )
             )
     if not is_identifier(kind.table) or hasattr(Model, kind.table):
-        raise ValueError(f"{kind.__name__}: '{kind.table}' cannot be the name of a table; use another plural.")
+        raise ValueError(
+            tr(
+                "{name}: '{table}' cannot be the name of a table; use another word.",
+                name=kind.__name__,
+                table=kind.table,
+            )
+        )
     if kind.single:
         raise ValueError(
-            f"{kind.__name__}: of a kind there may be any number; what belongs to the whole model is a component"
-            " of Settings or Environment."
+            tr(
+                "{name}: a mod's kind cannot be `single`. For facts about the whole model, add a component of"
+                " Settings or Environment.",
+                name=kind.__name__,
+            )
         )
     if "name" not in fields or fields["name"].dtype is not str:
-        raise ValueError(f"{kind.__name__} needs a Field 'name' of dtype str: what a person calls each.")
+        raise ValueError(
+            tr(
+                "{name} needs a Field 'name' of dtype str, by which people tell its elements apart.",
+                name=kind.__name__,
+            )
+        )
     for field in fields.values():
         if field.role is Role.DERIVED:
-            raise ValueError(f"{kind.__name__}.{field.name}: derived columns cannot be added by a mod.")
+            raise ValueError(
+                tr(
+                    "{name}.{field}: a mod cannot add derived columns.",
+                    name=kind.__name__,
+                    field=field.name,
+                )
+            )
         field.check_default(kind.__name__)
     for point in kind.points:
         if point not in fields or fields[point].shape != (2,) or fields[point].role is not Role.DOCUMENT:
-            raise ValueError(f"{kind.__name__}: its point '{point}' is no Field of shape (2,) of the document.")
+            raise ValueError(
+                tr(
+                    "{name}: its point '{point}' must be one of its Fields, of shape (2,) and with the role DOCUMENT.",
+                    name=kind.__name__,
+                    point=point,
+                )
+            )
     called = f"{mod}.{kind.__name__}"
     ADDED[called] = kind
     return called

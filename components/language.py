@@ -80,7 +80,12 @@ def marked(message: str) -> str:
 
 
 def tr(message: str, /, **values: Any) -> str:
-    """A message in the present language, with values filled in as by `str.format`; without values, braces stay."""
+    """A message in the present language, with values filled in as by `str.format`; without values, braces stay.
+
+    A text that was translated before stays as it is.
+    """
+    if not message or isinstance(message, Said):  # of "" catalogues hold their own heading
+        return message
     return _filled(message, _SPOKEN.catalogue.gettext(message), values)
 
 
@@ -103,9 +108,13 @@ def english(said: object) -> Any:
 def joined(parts: Iterable[str], separator: str = " ") -> str:
     """Sentences that are said one after the other, without those that are empty."""
     known = [part for part in parts if part]
-    said = Said(separator.join(known))
-    said.english = separator.join(map(english, known))
-    return said if said != said.english else said.english
+    return _said(separator.join(known), separator.join(map(english, known)))
+
+
+def begun(text: str) -> str:
+    """A text as a sentence begins with it: "Rod AB"."""
+    same = str(english(text))
+    return _said(text[:1].upper() + text[1:], same[:1].upper() + same[1:])
 
 
 def listed(names: Sequence[str]) -> str:
@@ -131,10 +140,19 @@ class _Filling(Formatter):
 _FILLING = _Filling()
 
 
+def _said(shown: str, same: str) -> str:
+    """What is shown, with what it is in English unless that is the same."""
+    if shown == same:
+        return same
+    said = Said(shown)
+    said.english = same
+    return said
+
+
 def _filled(message: str, shown: str, values: dict[str, Any]) -> str:
     if _SPOKEN.code == ENGLISH:
         return message.format(**values) if values else message
-    said = Said(_FILLING.vformat(shown, (), values) if values else shown)
     same = {name: english(value) for name, value in values.items()}
+    said = Said(_FILLING.vformat(shown, (), values) if values else shown)
     said.english = message.format(**same) if values else message
     return said

@@ -13,6 +13,7 @@ import numpy as np
 
 from components.field import LARGEST, Field, FieldError, Vector
 from components.handle import Handle
+from components.language import tr
 from components.particle import Particle
 from components.wording import cut, quoted
 from components.world import World
@@ -49,7 +50,9 @@ HISTORIES: dict[str, HistoryKind] = {}
 def register_history(kind: HistoryKind) -> None:
     """Make a kind of history known to model files, loads and statics."""
     if kind.name in HISTORIES:
-        raise ValueError(f"A history '{kind.name}' is registered already.")
+        raise ValueError(
+            tr("There is a kind of history '{name}' already; give this one another name.", name=kind.name)
+        )
     HISTORIES[kind.name] = kind
 
 
@@ -57,17 +60,33 @@ def check_history(value: Any, where: str) -> History:
     """A history with all its parameters, or FieldError."""
     if not isinstance(value, Mapping) or not isinstance(value.get("kind"), str):
         raise FieldError(
-            f'{where}: history is {quoted(value)}; it must be like {{"kind": "ramp", "duration": 0.5}}.'
+            tr(
+                '{where}: history is {value}; it must be like {{"kind": "ramp", "duration": 0.5}}.',
+                where=where,
+                value=quoted(value),
+            )
         )
     kind = HISTORIES.get(value["kind"])
     if kind is None:
         raise FieldError(
-            f"{where}: history kind is '{cut(value['kind'])}'; choose one of {', '.join(sorted(HISTORIES))}."
+            tr(
+                "{where}: there is no kind of history '{kind}'; choose one of {known}.",
+                where=where,
+                kind=cut(value["kind"]),
+                known=", ".join(sorted(HISTORIES)),
+            )
         )
     unknown = sorted(map(str, set(value) - {"kind", *kind.parameters}))
     if unknown:
-        allowed = ", ".join(kind.parameters) or "no parameters"
-        raise FieldError(f"{where}: a {kind.name} history has no '{cut(unknown[0])}'; it takes {allowed}.")
+        raise FieldError(
+            tr(
+                "{where}: a history of the kind '{kind}' has no '{unknown}'; it takes only: {allowed}.",
+                where=where,
+                kind=kind.name,
+                unknown=cut(unknown[0]),
+                allowed=", ".join(["kind", *kind.parameters]),
+            )
+        )
     full = {"kind": kind.name} | {
         name: _check_parameter(value.get(name, default), default, name, where)
         for name, default in kind.parameters.items()
@@ -81,19 +100,38 @@ def _check_parameter(value: Any, default: Any, name: str, where: str) -> Any:
         if isinstance(value, np.ndarray):
             value = value.tolist()
         if not isinstance(value, list | tuple):
-            raise FieldError(f"{where}: history {name} is {quoted(value)}; it must be a list of numbers.")
+            raise FieldError(
+                tr(
+                    "{where}: {name} of the history is {value}; it must be a list of numbers.",
+                    where=where,
+                    name=name,
+                    value=quoted(value),
+                )
+            )
         return tuple(_check_parameter(item, 0.0, name, where) for item in value)
     is_number = isinstance(value, int | float | np.integer | np.floating) and not isinstance(value, bool)
     if not is_number or not abs(value) <= LARGEST:
         raise FieldError(
-            f"{where}: history {name} is {quoted(value)}; it must be a number of at most {LARGEST:g} in size."
+            tr(
+                "{where}: {name} of the history is {value}; it must be a number between -{largest:g} and {largest:g}.",
+                where=where,
+                name=name,
+                value=quoted(value),
+                largest=LARGEST,
+            )
         )
     return float(value)
 
 
 def _check_ramp(history: History, where: str) -> None:
     if history["duration"] < 0.0:
-        raise FieldError(f"{where}: history duration is {history['duration']:g} s; it must be at least 0 s.")
+        raise FieldError(
+            tr(
+                "{where}: duration of the history is {duration:g} s; it must be at least 0 s.",
+                where=where,
+                duration=history["duration"],
+            )
+        )
 
 
 register_history(
@@ -120,15 +158,20 @@ class Load(Handle):
     __slots__ = ()
     table, noun = "loads", "load"
 
-    name: Field[str] = Field(doc="Unique among the loads.", dtype=str)
+    name: Field[str] = Field(doc="Its name; no two loads have the same.", dtype=str)
     on: Field[int] = Field(
         dtype="reference",
         references="particles",
         title="particle",
-        doc="The particle that it acts on: in files its name, in Python its row.",
+        doc="The particle that it acts on: its name in files, its row in Python.",
     )
-    force: Field[Vector] = Field("kN", shape=(2,), doc="Force at factor 1.")
-    moment: Field[float] = Field("kN·m", doc="Moment at factor 1, counter-clockwise, on rigid rod ends.")
+    force: Field[Vector] = Field(
+        "kN", shape=(2,), doc="Force on the particle while the factor of its history is 1."
+    )
+    moment: Field[float] = Field(
+        "kN·m",
+        doc="Moment on the particle while the factor is 1, counter-clockwise; only rods rigidly joined to it feel it.",
+    )
     history: Field[History] = Field(
         dtype=object, default=CONSTANT, doc="How its factor changes in time.", checker=check_history
     )
@@ -147,7 +190,9 @@ def factor_at(history: History, time: float) -> float:
     values = np.array(flattened(history[name] for name in kind.parameters), dtype=np.float64)
     if kind.mod is None:
         return float(factor(time, values, 0))
-    return float(kind.mod.call("a load's factor", factor, time, values, 0, otherwise=np.nan, declared=float))
+    return float(
+        kind.mod.call(tr("the factor of a load"), factor, time, values, 0, otherwise=np.nan, declared=float)
+    )
 
 
 def load_factor(world: World, time: float) -> float | None:

@@ -7,6 +7,7 @@ from typing import Any
 import numpy as np
 
 from components.field import LARGEST, SMALLEST, Column, Field, Role
+from components.language import begun, joined, marked, tr
 from components.model import Model
 from components.obstacles import obstacles
 from components.wording import cut
@@ -41,9 +42,12 @@ def _too_far(model: Model) -> str:
     far = np.maximum(np.abs(others.start), np.abs(others.start + others.span)).max(axis=1)
     least = UNKNOWN_SHARE * float(model.particles.radius.max())
     for row in np.flatnonzero(np.spacing(far) > least)[:1].tolist():
-        return (
-            f"The obstacle {cut(others.names[row])}: one of its ends is {far[row]:g} m away, where places are known to"
-            f" {np.spacing(far[row]):.1g} m only, too coarse for the radii of the particles; place it nearer."
+        return tr(
+            "The obstacle {name}: one of its ends is {far:g} m from the origin. So far away, places are known to"
+            " {spacing:.1g} m only, too coarse for the radii of the particles; place it nearer.",
+            name=cut(others.names[row]),
+            far=far[row],
+            spacing=np.spacing(far[row]),
         )
     return ""
 
@@ -67,10 +71,12 @@ def is_computed_with(field: Field[Any]) -> bool:
 
 
 def _sentence(element: str, field: Field[float], value: float) -> str:
-    unit = f" {field.unit}" if field.unit else ""
-    small = abs(value) < SMALLEST
-    limit = f"at least {SMALLEST:g}" if small else f"at most {LARGEST:g}"
-    return (
-        f"{element[:1].upper()}{element[1:]}: {field.title} is {value:g}{unit}, too"
-        f" {'small' if small else 'large'} to compute with; make it {limit}{unit}."
-    )
+    def amount(number: float) -> str:
+        return joined([tr("{number:g}", number=number), field.unit])
+
+    values = {"element": begun(element), "title": field.named(), "amount": amount(value)}
+    if abs(value) < SMALLEST:
+        message = marked("{element}: {title} is {amount}, too small to compute with; make it at least {limit}.")
+        return tr(message, **values, limit=amount(SMALLEST))
+    message = marked("{element}: {title} is {amount}, too large to compute with; make it at most {limit}.")
+    return tr(message, **values, limit=amount(LARGEST))

@@ -12,8 +12,10 @@ from numpy.typing import NDArray
 
 from components.field import Role
 from components.handle import Handle
+from components.language import tr
 from components.model import Model
 from components.table import Table
+from components.wording import quoted
 
 Floats = NDArray[np.float64]
 
@@ -52,19 +54,41 @@ class Obstacles:
 def check_pieces(table: Table[Any], pieces: Pieces, source: str) -> Pieces:
     """The pieces that a mod's shape returned. Raises TypeError or ValueError, naming `source`."""
     if not isinstance(pieces, Pieces):
-        raise TypeError(f"{source} returned {pieces!r}, not Pieces")
+        raise TypeError(
+            tr("{source} returned {value}; it must return Pieces.", source=source, value=quoted(pieces))
+        )
     ends, owner, count = np.asarray(pieces.ends, dtype=np.float64), np.asarray(pieces.owner), len(pieces.owner)
     if ends.shape != (count, 2, 2):
         raise ValueError(
-            f"{source}: ends of shape {ends.shape} for {count} pieces; give each two points [x, y]"
+            tr(
+                "{source}: `ends` has the shape {shape} for {count} pieces; give each piece two points [x, y].",
+                source=source,
+                shape=ends.shape,
+                count=count,
+            )
         )
     radius, restitution = (np.broadcast_to(values, count) for values in (pieces.radius, pieces.restitution))
     if not np.isfinite(ends).all() or not (radius >= 0.0).all() or not np.isfinite(radius).all():
-        raise ValueError(f"{source}: an end or a radius is not finite, or a radius below 0")
+        raise ValueError(
+            tr("{source}: an end or a radius is not finite, or a radius is below 0; correct it.", source=source)
+        )
     if ((restitution < 0.0) | (restitution > 1.0)).any():
-        raise ValueError(f"{source}: a restitution is not from 0 to 1; NaN stands for that of the settings")
+        raise ValueError(
+            tr(
+                "{source}: a restitution is not between 0 and 1; give such a number, or NaN for that of the settings.",
+                source=source,
+            )
+        )
     for row in owner[(owner < 0) | (owner >= table.count)][:1].tolist():
-        raise ValueError(f"{source}: a piece belongs to row {row} of {table.count} {table.name}")
+        raise ValueError(
+            tr(
+                "{source}: a piece belongs to row {row}, but there are only {count} {table}; rows count from 0.",
+                source=source,
+                row=row,
+                count=table.count,
+                table=tr(table.name),
+            )
+        )
     return pieces
 
 

@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 
 from components.field import CM, Field, FieldError, Vector, derived, state
 from components.handle import Handle
+from components.language import tr
 from components.table import Store, Table, flags
 
 DEFAULT_MASS = 1.0  # kg, of a particle without rods
@@ -21,33 +22,47 @@ class Particle(Handle):
     __slots__ = ()
     table, noun = "particles", "particle"
 
-    name: Field[str] = Field(doc="Unique among the particles.", dtype=str)
+    name: Field[str] = Field(doc="Its name; no two particles have the same.", dtype=str)
     position: Field[Vector] = Field(
-        "m", shape=(2,), title="original position", doc="Where it is undisplaced.", shown=CM
+        "m", shape=(2,), title="original position", doc="Where it was drawn, before any displacement.", shown=CM
     )
-    displacement: Field[Vector] = state("m", shape=(2,), doc="Present minus original position.", shown=CM)
-    velocity: Field[Vector] = state("m/s", shape=(2,), doc="Zero in a constrained direction.")
+    displacement: Field[Vector] = state(
+        "m", shape=(2,), doc="Present position minus original position.", shown=CM
+    )
+    velocity: Field[Vector] = state(
+        "m/s", shape=(2,), doc="How fast it moves; zero in a constrained direction."
+    )
     rotation: Field[float] = state(
-        "rad", doc="Of its rigid rod ends, counter-clockwise; it is not wrapped. 0 where there are none."
+        "rad",
+        doc="By how much it has turned with the rods rigidly joined to it, counter-clockwise; full turns are counted.",
     )
-    angular_velocity: Field[float] = state("rad/s", doc="Of the rotation; zero where that is held.")
+    angular_velocity: Field[float] = state(
+        "rad/s", doc="How fast it turns, counter-clockwise; zero where it is clamped."
+    )
     asleep: Field[bool] = state(
-        dtype=bool, doc="At rest with its island, which time passes by until something reaches it."
+        dtype=bool,
+        doc="At rest with all that is joined to it, and left out of the computation until something reaches it.",
     )
     fixed: Field[tuple[bool, bool]] = Field(
-        dtype=bool, shape=(2,), title="constrained", doc="Held by a support in x, in y."
+        dtype=bool, shape=(2,), title="constrained", doc="Held by a support along x, along y."
     )
     fixed_rotation: Field[bool] = Field(
-        dtype=bool, title="rotation constrained", doc="Clamped: its rigid rod ends keep their rotation."
+        dtype=bool,
+        title="rotation constrained",
+        doc="Clamped: the rods rigidly joined to it cannot turn there.",
     )
     force: Field[Vector] = Field("kN", shape=(2,), title="load", doc="Constant force on it.")
     moment: Field[float] = Field(
-        "kN·m", title="applied moment", doc="Constant moment on its rigid rod ends, counter-clockwise."
+        "kN·m",
+        title="applied moment",
+        doc="Constant moment on it, counter-clockwise; only rods rigidly joined to it feel it.",
     )
     acceleration: Field[Vector] = Field(
         "m/s²", shape=(2,), title="applied acceleration", doc="Adds mass × acceleration to its force."
     )
-    radius: Field[float] = Field("m", default=0.05, above=0.0, doc="Of the disc that collides.", shown=CM)
+    radius: Field[float] = Field(
+        "m", default=0.05, above=0.0, doc="Radius of its disc, with which it collides.", shown=CM
+    )
     prescribed_mass: Field[float | None] = Field(
         "kg",
         default=None,
@@ -55,7 +70,7 @@ class Particle(Handle):
         above=0.0,
         title="mass",
         key="mass",
-        doc="Of its own; automatic: half the mass of each attached rod, 1 kg without rods.",
+        doc="Its mass; automatic: half the mass of each attached rod, or 1 kg without rods.",
         overrides="mass",
     )
     prescribed_inertia: Field[float | None] = Field(
@@ -65,13 +80,13 @@ class Particle(Handle):
         above=0.0,
         title="inertia",
         key="inertia",
-        doc="Of its own, against turning; automatic: so much of each rigid rod end's that no smaller steps are needed.",
+        doc="Its moment of inertia; automatic: from the rods rigidly joined to it, so that no smaller steps are needed.",
         overrides="inertia",
     )
     mass: Field[float] = derived(
         "kg",
         default=DEFAULT_MASS,
-        doc="Prescribed, or half the mass of every attached rod, or 1 kg without rods.",
+        doc="As given, or half the mass of each attached rod, or 1 kg without rods.",
         overridden_by="prescribed_mass",
     )
     mobility: Field[Vector] = derived(
@@ -80,7 +95,7 @@ class Particle(Handle):
     inertia: Field[float] = derived(
         "kg·m²",
         title="rotational inertia",
-        doc="Prescribed, or ρL₀ min(1.5 EI/EA, L₀²/24) of every rigid rod end; 0 where there are none.",
+        doc="As given, or the sum of ρL₀ min(1.5 EI/EA, L₀²/24) over the rod ends rigidly joined to it.",
         overridden_by="prescribed_inertia",
     )
     turning: Field[float] = derived(
@@ -90,23 +105,23 @@ class Particle(Handle):
     constant_force: Field[Vector] = derived(
         "kN",
         shape=(2,),
-        doc="All external force that time does not change: own, environment's, mass × accelerations, loads.",
+        doc="All constant external force: its own, the environment's, mass × accelerations and constant loads.",
     )
     constant_moment: Field[float] = derived(
-        "kN·m", doc="All external moment that time does not change: own and of loads."
+        "kN·m", doc="All constant external moment: its own and that of constant loads."
     )
     applied_force: Field[Vector] = derived(
-        "kN", shape=(2,), title="sum of loads", doc="All loads and weights now, without reactions."
+        "kN", shape=(2,), title="sum of loads", doc="All loads and weights on it now, without reactions."
     )
     reaction: Field[Vector] = derived(
         "kN", shape=(2,), doc="The support's force on it in constrained directions, 0 elsewhere."
     )
 
     applied_moment: Field[float] = derived(
-        "kN·m", title="external moment", doc="All external moment now, without reactions."
+        "kN·m", title="external moment", doc="All external moment on it now, without reactions."
     )
     reaction_moment: Field[float] = derived(
-        "kN·m", doc="The clamp's moment on it, counter-clockwise; 0 where it can turn."
+        "kN·m", doc="The moment of its clamped support on it, counter-clockwise; 0 where it can turn."
     )
 
     @classmethod
@@ -135,16 +150,25 @@ def check_velocities(where: str, fixed: tuple[bool, bool], velocity: Vector) -> 
     for axis, held, speed in zip("xy", fixed, velocity, strict=True):
         if held and speed != 0.0:
             raise FieldError(
-                f"{where}: velocity {axis} is {speed:g} m/s but it is constrained in {axis};"
-                f" set it to 0 or free the direction."
+                tr(
+                    "{where}: velocity {axis} is {speed:g} m/s, but a support holds it along {axis}; set the velocity to 0"
+                    " or free the direction.",
+                    where=where,
+                    axis=axis,
+                    speed=speed,
+                )
             )
 
 
 def check_spin(where: str, angular_velocity: float) -> None:
     """Raise FieldError for the angular velocity of a clamped particle."""
     raise FieldError(
-        f"{where}: angular velocity is {angular_velocity:g} rad/s but its rotation is constrained;"
-        " set it to 0 or free the rotation."
+        tr(
+            "{where}: angular velocity is {angular_velocity:g} rad/s, but it is clamped; set the angular velocity to 0"
+            " or free the rotation.",
+            where=where,
+            angular_velocity=angular_velocity,
+        )
     )
 
 
@@ -158,8 +182,12 @@ def _check_rods(table: Table[Any], rows: NDArray[np.intp]) -> None:
         first, second = ends[row].tolist()
         particle = table[first if moved[first] else second]
         raise FieldError(
-            f"{world.describe(particle)}: at this position {world.describe(world.tables['rods'][row])} would"
-            " have no length; place it elsewhere or give the rod a rest length."
+            tr(
+                "{particle}: at this position {rod} would have no length; place the particle elsewhere or give the rod a"
+                " rest length.",
+                particle=world.describe(particle),
+                rod=world.describe(world.tables["rods"][row]),
+            )
         )
 
 

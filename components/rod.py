@@ -11,6 +11,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from components.field import CM, ENDS, Column, Field, FieldError, Vector, derived, state
 from components.handle import Handle
+from components.language import begun, tr
 from components.particle import Particle, rods_without_length
 from components.section import (
     MATERIALS,
@@ -35,13 +36,13 @@ class Rod(Handle):
     __slots__ = ()
     table, noun = "rods", "rod"
 
-    name: Field[str] = Field(doc="Unique among the rods.", dtype=str)
+    name: Field[str] = Field(doc="Its name; no two rods have the same.", dtype=str)
     between: Field[tuple[int, int]] = Field(
         dtype="reference",
         shape=(2,),
         references="particles",
         title="ends",
-        doc="The particles at its two ends: in files names, in Python rows.",
+        doc="The particles at its two ends: names in files, rows in Python.",
     )
     prescribed_stiffness: Field[float | None] = Field(
         "kN",
@@ -50,7 +51,7 @@ class Rod(Handle):
         above=0.0,
         title="stiffness",
         key="stiffness",
-        doc="EA: force per unit of strain; automatic: Young's modulus × area, 164640 kN where one is unknown.",
+        doc="EA, force per unit of strain; automatic: Young's modulus × area, or 164640 kN if either is unknown.",
         overrides="stiffness",
     )
     youngs_modulus: Field[float | None] = Field(
@@ -89,7 +90,7 @@ class Rod(Handle):
         absent="none",
         choices=SECTIONS,
         checker=check_section,
-        doc="IPE, HEA, HEB, CHS, SHS or rectangle 300×500: gives A, I, and with its material weight and strength.",
+        doc="IPE, HEA, HEB, CHS, SHS or rectangle 300×500: sets A and I and, by its material, weight and strength.",
     )
     material: Field[str | None] = Field(
         dtype=str,
@@ -98,7 +99,7 @@ class Rod(Handle):
         absent="none",
         choices=MATERIALS,
         checker=check_material,
-        doc="Gives E and thermal expansion, and with an area weight and strength.",
+        doc="Sets E and thermal expansion and, if the area is known, weight and strength.",
     )
     prescribed_rest_length: Field[float | None] = Field(
         "m",
@@ -112,7 +113,12 @@ class Rod(Handle):
         overrides="rest_length",
     )
     tensile_strength: Field[float | None] = Field(
-        "kN", default=None, nullable=True, absent="unlimited", minimum=0.0, doc="Largest tension; 0: unlimited."
+        "kN",
+        default=None,
+        nullable=True,
+        absent="unlimited",
+        minimum=0.0,
+        doc="Tension at which it yields; 0: unlimited.",
     )
     compressive_strength: Field[float | None] = Field(
         "kN",
@@ -120,20 +126,20 @@ class Rod(Handle):
         nullable=True,
         absent="unlimited",
         minimum=0.0,
-        doc="Largest compression; 0: unlimited.",
+        doc="Compression at which it yields; 0: unlimited.",
     )
     damping: Field[float] = Field(
         "kN·s/m",
         default=100.0,
         minimum=0.0,
         title="damping coefficient",
-        doc="Axial force per elongation rate.",
+        doc="Axial force of its damper per rate of elongation.",
     )
     density: Field[float] = Field(
         "kg/m", default=6.15, minimum=0.0, doc="Mass per length.", shown=("kg/cm", 0.01)
     )
     temperature_change: Field[float] = Field(
-        "K", doc="Warming since it had its rest length; it expands as it warms."
+        "K", doc="How much warmer it is than when it had its rest length; it expands as it warms."
     )
     thermal_expansion: Field[float] = Field(
         "1/K",
@@ -144,7 +150,7 @@ class Rod(Handle):
     )
     tension_only: Field[bool] = Field(
         dtype=bool,
-        doc="A cable: slack, without force, where its ends are nearer than its length without force.",
+        doc="A cable: it bears tension only, and is slack when its ends are closer than its rest length.",
     )
     prescribed_bending_stiffness: Field[float | None] = Field(
         "kN·m²",
@@ -153,49 +159,49 @@ class Rod(Handle):
         minimum=0.0,
         title="bending stiffness",
         key="bending_stiffness",
-        doc="EI: moment per curvature; 0: a bar, pinned; automatic: E × second moment, 0 where one is unknown.",
+        doc="EI, moment per curvature; 0: pinned at both ends; automatic: E × second moment, or 0 if either is unknown.",
         overrides="bending_stiffness",
     )
     hinged: Field[tuple[bool, bool]] = Field(
         dtype=bool,
         shape=(2,),
         axes=ENDS,
-        doc="Ends that turn freely; the others are rigidly joined. Without bending stiffness both do.",
+        doc="Ends that turn freely; the others are rigidly joined. Without bending stiffness both turn freely.",
     )
     distributed_force: Field[Vector] = Field(
         "kN/m",
         shape=(2,),
-        doc="Force per length that it had originally, all along it; its direction stays.",
+        doc="Force per unit of original length, all along it; its direction does not turn with the rod.",
     )
     temperature_gradient: Field[float] = Field(
         "K/m",
-        doc="How much warmer it is per metre across, towards its left, seen from start to end; added.",
+        doc="How much warmer it gets per metre of depth towards its left side, seen from start to end.",
     )
     bending_damping: Field[float | None] = Field(
         "kN·m·s",
         default=None,
         nullable=True,
         minimum=0.0,
-        doc="c of end moments c [4 2; 2 4] × rates of the slopes; automatic: damping × EI/EA.",
+        doc="c in the damping moments at its ends, c [4 2; 2 4] × rates of the end slopes; automatic: damping × EI/EA.",
     )
     plastic_strain: Field[float] = state(doc="Permanent part of the strain.")
     yielded_at: Field[float | None] = state(
-        "s", default=None, nullable=True, absent="not yet", doc="When the run first brought it to a strength."
+        "s", default=None, nullable=True, absent="not yet", doc="When it first yielded in this run."
     )
     stiffness: Field[float] = derived(
         "kN",
         default=DEFAULT_STIFFNESS,
-        doc="EA: prescribed, or Young's modulus × area, or 164640 kN where one is unknown.",
+        doc="EA: as given, or Young's modulus × area, or 164640 kN if either is unknown.",
         overridden_by="prescribed_stiffness",
     )
     bending_stiffness: Field[float] = derived(
         "kN·m²",
-        doc="EI: prescribed, or Young's modulus × second moment, or 0: a bar, pinned at both ends.",
+        doc="EI: as given, or Young's modulus × second moment, or 0: pinned at both ends.",
         overridden_by="prescribed_bending_stiffness",
     )
     rest_length: Field[float] = derived(
         "m",
-        doc="Prescribed, or the distance between the original positions.",
+        doc="As given, or the distance between the original positions.",
         shown=CM,
         overridden_by="prescribed_rest_length",
     )
@@ -243,11 +249,16 @@ class Rod(Handle):
     )
     tension_limit: Field[float] = derived("kN", doc="Tensile strength; infinite if unlimited.")
     compression_limit: Field[float] = derived("kN", doc="Compressive strength; infinite if unlimited.")
-    axial_force: Field[float] = derived("kN", doc="Without the damper's; tension positive.")
+    axial_force: Field[float] = derived(
+        "kN", doc="Positive in tension; the force of its damper is not included."
+    )
     length: Field[float] = derived("m", doc="Present distance between the ends.", shown=CM)
     strain: Field[float] = derived(doc="Elongation / rest length, without thermal expansion.")
     end_moment: Field[Vector] = derived(
-        "kN·m", shape=(2,), axes=ENDS, doc="Moments on its ends, counter-clockwise, without those of dampers."
+        "kN·m",
+        shape=(2,),
+        axes=ENDS,
+        doc="Moments on its ends, counter-clockwise; those of its dampers are not included.",
     )
     end_axial_force: Field[Vector] = derived(
         "kN", shape=(2,), axes=ENDS, doc="Axial force at its ends; the axial force is their mean."
@@ -256,13 +267,16 @@ class Rod(Handle):
         "kN",
         shape=(2,),
         axes=ENDS,
-        doc="At its ends: force of what is before a cut on what is beyond, to the left.",
+        doc="At its ends: force of the part before a cut on the part beyond it, positive to the left.",
     )
     bending_moment: Field[Vector] = derived(
         "kN·m", shape=(2,), axes=ENDS, doc="At its ends; positive: the side on its right is in tension."
     )
     end_rotation: Field[Vector] = derived(
-        "rad", shape=(2,), axes=ENDS, doc="Of its ends, counter-clockwise, also where they are hinged."
+        "rad",
+        shape=(2,),
+        axes=ENDS,
+        doc="By how much its ends have turned, counter-clockwise, also where they are hinged.",
     )
     largest_moment: Field[Vector] = derived(
         "kN·m, m",
@@ -270,7 +284,7 @@ class Rod(Handle):
         axes=("value", "distance"),
         doc="The bending moment of largest size, and how far from the start.",
     )
-    yielding: Field[bool] = derived(dtype=bool, doc="Axial force is at a strength.")
+    yielding: Field[bool] = derived(dtype=bool, doc="Its axial force has reached a strength.")
 
     @property
     def ends(self) -> tuple[Particle, Particle]:
@@ -301,8 +315,10 @@ class Rod(Handle):
         if "between" in changed or "prescribed_rest_length" in changed:
             for row in rods_without_length(table.world, rows)[:1].tolist():
                 raise FieldError(
-                    f"{table.world.describe(table[row])}: its ends are at the same place;"
-                    " place them apart or give it a rest length above 0."
+                    tr(
+                        "{rod}: its ends are at the same place; move one of them or give it a rest length above 0.",
+                        rod=table.world.describe(table[row]),
+                    )
                 )
         if "section" in changed or not _NUMBERS_OF_NAMES.isdisjoint(changed):
             _heed_names(table, rows, changed)
@@ -331,8 +347,14 @@ def _heed_names(table: Table[Any], rows: NDArray[np.intp], changed: Collection[s
                 field, value = table.fields[number], getattr(rod, number)
                 unit, factor = field.shown
                 raise FieldError(
-                    f"{world.describe(rod)}: {field.title} is {value * factor:.6g} {unit}, which is not that of"
-                    f" {getattr(rod, name)}; leave out one of the two."
+                    tr(
+                        "{rod}: {title} is {value:.6g} {unit}, but {name} has another value; leave out one of the two.",
+                        rod=world.describe(rod),
+                        title=field.named(),
+                        value=value * factor,
+                        unit=unit,
+                        name=getattr(rod, name),
+                    )
                 )
             world.assign([rod], name, None)
 
@@ -368,8 +390,12 @@ def _check_warmth(table: Table[Any], rows: NDArray[np.intp]) -> None:
     for row in rows[strain <= -1.0][:1].tolist():
         change = table.temperature_change[row]
         raise FieldError(
-            f"{table.world.describe(table[row])}: a temperature change of {change:g} K leaves it no length;"
-            " cool it less or lower its thermal expansion."
+            tr(
+                "{rod}: a temperature change of {change:g} K would leave it no length; cool it less or lower its"
+                " thermal expansion.",
+                rod=table.world.describe(table[row]),
+                change=change,
+            )
         )
 
 
@@ -383,12 +409,18 @@ def _check_ends(table: Table[Any], rows: NDArray[np.intp]) -> None:
     names = table.world.tables["particles"].column("name")
     ends = table.between[rows]
     for row in ends[ends[:, 0] == ends[:, 1], 0][:1].tolist():
-        raise FieldError(f"A rod needs two different particles; both ends are {names[row]}.")
+        raise FieldError(tr("A rod needs two different particles; both ends are {name}.", name=names[row]))
     first, second = table.between.astype(np.uint64).T
     codes = np.sort((np.minimum(first, second) << np.uint64(32)) | np.maximum(first, second))
     for code in codes[1:][codes[1:] == codes[:-1]][:1].tolist():
         one, other = names[[code >> 32, code & 0xFFFFFFFF]]
-        raise FieldError(f"There is a rod between {one} and {other} already; two particles share at most one.")
+        raise FieldError(
+            tr(
+                "There is a rod between {one} and {other} already; two particles share at most one.",
+                one=one,
+                other=other,
+            )
+        )
 
 
 def is_warm(world: World) -> bool:
@@ -416,10 +448,11 @@ def idle_moment(world: World) -> str:
     if not moment.any():
         return ""
     for row in np.flatnonzero((moment > 0.0) & ~rigid_joints(world))[:1].tolist():
-        named = world.describe(particles[row])
-        return (
-            f"{named[:1].upper()}{named[1:]}: a moment of {moment[row]:g} kN·m acts on it, but there are no rigid rod"
-            " ends that it could turn; make one rigid or take the moment away."
+        return tr(
+            "{particle}: a moment of {moment:g} kN·m acts on it, but no rod is rigidly joined to it, so the moment turns"
+            " nothing. Join a rod rigidly or remove the moment.",
+            particle=begun(world.describe(particles[row])),
+            moment=moment[row],
         )
     return ""
 

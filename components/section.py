@@ -15,6 +15,7 @@ from importlib.resources import files
 from typing import Any
 
 from components.field import LARGEST, FieldError
+from components.language import marked, tr
 from components.suggestions import missing
 from components.wording import cut, quoted
 
@@ -177,10 +178,23 @@ def check_section(value: Any, where: str) -> str:
     family = value.strip()[:3].upper()
     sizes = [name.removeprefix(f"{family} ") for name in SECTIONS if name.startswith(f"{family} ")]
     if sizes:
-        raise FieldError(f"{where}: There is no section '{cut(value)}'; {family} come in {', '.join(sizes)}.")
+        raise FieldError(
+            tr(
+                "{where}: there is no section '{value}'; {family} sections have these sizes: {sizes}.",
+                where=where,
+                value=cut(value),
+                family=family,
+                sizes=", ".join(sizes),
+            )
+        )
     raise FieldError(
-        f"{where}: There is no section '{cut(value)}'; write it like IPE 200, HEA 200, HEB 200, CHS 60.3×4,"
-        f" SHS 100×5 or {RECTANGLE} (mm)."
+        tr(
+            "{where}: there is no section '{value}'; write it like IPE 200, HEA 200, HEB 200, CHS 60.3×4,"
+            " SHS 100×5 or {rectangle} (mm).",
+            where=where,
+            value=cut(value),
+            rectangle=RECTANGLE,
+        )
     )
 
 
@@ -188,13 +202,20 @@ def check_material(value: Any, where: str) -> str:
     """The usual spelling of a material's name, or FieldError."""
     found = material_named(_text(value, where, "material"))
     if found is None:
-        raise FieldError(f"{where}: {missing('materials', value, MATERIALS)}")
+        raise FieldError(f"{where}: {missing(marked('materials'), value, MATERIALS)}")
     return found.name
 
 
 def _text(value: Any, where: str, what: str) -> str:
     if not isinstance(value, str):
-        raise FieldError(f"{where}: {what} is {quoted(value)}; it must be a name.")
+        raise FieldError(
+            tr(
+                "{where}: {title} is {value}; it must be a name.",
+                where=where,
+                title=tr(what),
+                value=quoted(value),
+            )
+        )
     return str(value)
 
 

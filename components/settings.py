@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from components.field import Field, derived, look
 from components.handle import Handle
+from components.language import marked
 
 AUTOMATIC = "automatic"
 NO_DIAGRAMS = "none"
@@ -12,7 +13,7 @@ DIAGRAMS = (
     "M",
     "V",
 )  # of axial forces, bending moments and shears, in the order in which they follow one another
-INTEGRATORS: dict[str, str] = {AUTOMATIC: "chosen for the model by a fixed rule"}
+INTEGRATORS: dict[str, str] = {AUTOMATIC: marked("chosen for the model by a fixed rule")}
 
 
 class Settings(Handle):
@@ -26,28 +27,30 @@ class Settings(Handle):
         minimum=0.0,
         maximum=1.0,
         title="coefficient of restitution",
-        doc="Of every impact: 0 inelastic, 1 elastic.",
+        doc="Share of the approach speed that an impact gives back: 0 inelastic, 1 elastic.",
     )
     time_step: Field[float | None] = Field(
         "s",
         default=None,
         nullable=True,
         above=0.0,
-        doc="Fixed; automatic: as small as stability and accuracy ask for.",
+        doc="A fixed time step; automatic: as small as stability and accuracy need.",
     )
     tolerance: Field[float] = Field(
         default=1e-9,
         minimum=1e-13,
         maximum=0.1,
-        doc="Error of one step, relative to the largest displacement and speed; for integrators that control it.",
+        doc="Error allowed in one step, relative to the largest displacement and speed; only some integrators heed it.",
     )
-    integrator: Field[str] = Field(default=AUTOMATIC, dtype=str, doc="How time advances.", choices=INTEGRATORS)
+    integrator: Field[str] = Field(
+        default=AUTOMATIC, dtype=str, doc="The method that advances time.", choices=INTEGRATORS
+    )
     collisions: Field[bool] = Field(dtype=bool, default=True, doc="Particles collide.")
     plasticity: Field[bool] = Field(dtype=bool, default=True, doc="Rods with a strength yield.")
     sleeping: Field[bool] = Field(
         dtype=bool,
         default=True,
-        doc="Islands of rods at rest are left out of the steps until something reaches them.",
+        doc="Parts of the model at rest are left out of the computation until something reaches them.",
     )
     prescribed_displacement_scale: Field[float | None] = look(
         default=None,
@@ -55,7 +58,7 @@ class Settings(Handle):
         minimum=0.0,
         title="displacement scale",
         key="displacement_scale",
-        doc="Displacements are drawn this much larger; automatic: as much as shows them, 1 for large motions.",
+        doc="Displacements are drawn this many times larger; automatic: enough to see them, 1 for large motions.",
         overrides="displacement_scale",
     )
     diagram_scale: Field[float] = look(
@@ -63,12 +66,12 @@ class Settings(Handle):
         default=1.0,
         minimum=0.0,
         title="force diagram scale",
-        doc="Size of the force diagrams; where rods bend, relative to what fits.",
+        doc="Size of the force diagrams; where rods bend, relative to the size that fits.",
     )
     original_diagrams: Field[bool] = look(
         dtype=bool,
         title="undeformed diagrams",
-        doc="Force diagrams of rods that bend stand on these as they were originally, not as they are.",
+        doc="Force diagrams of rods that bend are drawn on the undeformed rods.",
     )
     diagrams: Field[str] = look(
         default=NO_DIAGRAMS,
@@ -77,9 +80,9 @@ class Settings(Handle):
         doc="Which force diagrams are shown when the model is opened: axial forces N, bending moments M or shears V.",
         choices=(NO_DIAGRAMS, *DIAGRAMS),
     )
-    automatic_displacement_scale: Field[float] = derived(default=1.0, doc="The one that suits the model.")
+    automatic_displacement_scale: Field[float] = derived(default=1.0, doc="The scale that suits the model.")
     displacement_scale: Field[float] = derived(
         default=1.0,
-        doc="Prescribed, or the automatic one.",
+        doc="As given, or the automatic one.",
         overridden_by="prescribed_displacement_scale",
     )

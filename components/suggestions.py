@@ -5,6 +5,7 @@ from __future__ import annotations
 import difflib
 from collections.abc import Collection
 
+from components.language import tr
 from components.wording import LONGEST, cut
 
 _FEW = 50  # names; so few are listed: all keys of a rod are
@@ -21,12 +22,17 @@ def remedy(name: str, names: Collection[str]) -> str:
     """The end of a sentence about a name that is not among some: the nearest name, or all of them."""
     few = len(names) <= _FEW
     if near := nearest(name, names, cutoff=0.6 if few else 0.4):
-        return f"did you mean '{cut(near)}'?"
+        return tr("did you mean '{name}'?", name=cut(near))
     if not few:
-        return f"there are {len(names)} others."
-    return f"choose one of {', '.join(map(cut, names))}." if names else "there are none."
+        return tr("there are {count} others.", count=len(names))
+    return tr("choose one of {names}.", names=", ".join(map(cut, names))) if names else tr("there are none.")
 
 
 def missing(group: str, name: str, names: Collection[str]) -> str:
     """The sentence that says that a name is not in a group, and which one comes nearest."""
-    return f"There is no '{cut(name)}' among the {group}; {remedy(name, names)}"
+    return tr(
+        "There is no '{name}' among the {group}; {remedy}",
+        name=cut(name),
+        group=tr(group),
+        remedy=remedy(name, names),
+    )

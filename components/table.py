@@ -11,6 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from components.field import Column, Field, Role
+from components.language import tr
 from components.suggestions import missing
 
 _SMALLEST_CAPACITY = 8
@@ -106,15 +107,23 @@ class Table(Generic[H]):
     @property
     def world(self) -> Store:
         """The world it is part of. Raises LookupError if that is gone."""
-        return self._world() or refuse_orphans(f"these {self.name}")
+        return self._world() or refuse_orphans(tr("these {table}", table=tr(self.name)))
 
     def add_column(self, field: Field[Any]) -> None:
         """Add a column that holds the field's default in every row."""
         if field.name in self.fields:
-            raise ValueError(f"Table {self.name} already has a column '{field.name}'.")
+            raise ValueError(
+                tr("Table {table} already has a column '{name}'.", table=self.name, name=field.name)
+            )
         earlier = itertools.takewhile(self.name.__ne__, self.world.tables)
         if field.references is not None and field.references not in earlier:
-            raise ValueError(f"{self.name}.{field.name} must refer to a table declared before {self.name}.")
+            raise ValueError(
+                tr(
+                    "{table}.{name} must refer to a table declared before {table}.",
+                    table=self.name,
+                    name=field.name,
+                )
+            )
         self.fields[field.name] = field
         self.world.forget_layouts()
         self._columns[field.name] = field.allocate(len(self.entity))
@@ -143,13 +152,20 @@ class Table(Generic[H]):
         try:
             return self.handles[key]
         except IndexError:
-            raise IndexError(f"There is no row {key}; there are {self.count} {self.name}.") from None
+            raise IndexError(
+                tr(
+                    "There is no row {key}; there are {count} {table}, and rows count from 0.",
+                    key=key,
+                    count=self.count,
+                    table=tr(self.name),
+                )
+            ) from None
 
     def __getattr__(self, name: str) -> Column:
         if name in _OWN or name.startswith("_"):
             raise AttributeError(name)
         if name not in self.fields:
-            raise AttributeError(missing(f"columns of {self.name}", name, self.fields))
+            raise AttributeError(missing(tr("columns of {table}", table=self.name), name, self.fields))
         return self.column(name)
 
     def __setattr__(self, name: str, value: Any) -> None:
@@ -158,7 +174,7 @@ class Table(Generic[H]):
         elif name in self.fields:
             self.world.assign(self.handles, name, value)
         else:
-            raise AttributeError(missing(f"columns of {self.name}", name, self.fields))
+            raise AttributeError(missing(tr("columns of {table}", table=self.name), name, self.fields))
 
     def __repr__(self) -> str:
         few = ", ".join(self.names[:6]) if "name" in self.fields else ""
@@ -222,7 +238,13 @@ class Table(Generic[H]):
             first = known.index(names[0]) if names[0] in known else len(known)
             if known[first : first + len(names)] == tuple(names):
                 return block[first : first + len(names)]
-        raise ValueError(f"{', '.join(names)} of {self.name} are not declared one after the other.")
+        raise ValueError(
+            tr(
+                "{names} of {name} are not declared one after the other.",
+                names=", ".join(names),
+                name=self.name,
+            )
+        )
 
     def mark(self, names: Iterable[str], role: Role) -> None:
         """Mark columns, all with this role, and those stored with them as changed now."""
@@ -375,7 +397,12 @@ def _spread(column: Column, where: NDArray[np.bool_]) -> Column:
 
 def refuse_orphans(elements: str) -> NoReturn:
     """Raise LookupError, since the world of some elements, which do not keep it alive, is gone."""
-    raise LookupError(f"The model of {elements} is gone; keep the model while you use its elements.")
+    raise LookupError(
+        tr(
+            "The model of {elements} is gone; keep the model while you use its elements.",
+            elements=elements,
+        )
+    )
 
 
 def fields_of(kind: type) -> list[Field[Any]]:

@@ -9,6 +9,8 @@ from keyword import iskeyword
 from typing import Any
 from unicodedata import normalize
 
+from components.language import tr
+
 LONGEST = 60  # characters of a name or value in a sentence
 
 _HALVES = "\ud800-\udfff"  # of characters, alone
@@ -44,7 +46,7 @@ def quoted(value: Any) -> str:
     try:
         return printable(_VALUES.repr(value))
     except (ValueError, RecursionError):  # numbers of thousands of digits; what contains itself
-        return f"a value of type {type(value).__name__}"
+        return tr("a value of type {name}", name=type(value).__name__)
 
 
 def as_json(value: Any) -> str:
@@ -52,4 +54,4 @@ def as_json(value: Any) -> str:
     try:
         return cut(json.dumps(value, ensure_ascii=False))
     except RecursionError:
-        return "a value nested too deeply"
+        return tr("a value nested too deeply")

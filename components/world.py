@@ -17,6 +17,7 @@ from numpy.typing import NDArray
 from components.commands import Assign, Command, Create, Custom, Delete, Group, Removed, Restore
 from components.field import MADE, Column, Field, FieldError, Role, same
 from components.handle import Handle, set_entity
+from components.language import joined, tr
 from components.suggestions import missing
 from components.table import Table, flags, grown
 from components.tags import Rare
@@ -79,7 +80,9 @@ class World:
 
     def __reduce_ex__(self, protocol: object) -> NoReturn:
         raise TypeError(
-            "A model cannot be copied or pickled; save it, or open its document (game.documents.models) again."
+            tr(
+                "A model cannot be copied or pickled. Save it, or open its document (game.documents.models) a second time."
+            )
         )
 
     def activate(self) -> None:
@@ -135,7 +138,7 @@ class World:
         """The row of a handle. Raises LookupError if its entity is deleted."""
         row: int = self.row_of_entity.item(handle.entity)
         if row < 0:
-            raise LookupError(f"This {handle.noun} was deleted; undo brings it back.")
+            raise LookupError(tr("This {noun} was deleted; undo brings it back.", noun=tr(handle.noun)))
         return row
 
     def _ids(self, handles: Collection[Handle]) -> list[int]:
@@ -143,7 +146,13 @@ class World:
         ids = [handle.entity for handle in handles if handle._world() is self]
         if len(ids) < len(handles):
             other = next(handle for handle in handles if handle._world() is not self)
-            raise LookupError(f"{other!r} belongs to another model; take the {other.noun} of this one.")
+            raise LookupError(
+                tr(
+                    "{element} belongs to another model; use the {noun} of this one.",
+                    element=repr(other),
+                    noun=tr(other.noun),
+                )
+            )
         return ids
 
     def read(self, handle: Handle, field: Field[Any]) -> Any:
@@ -179,19 +188,21 @@ class World:
             self._check_names(table, column.tolist(), instead_of=table._columns["name"][rows].tolist())
         if same(table.current(field.name)[rows], column):
             return
-        with self.transaction(f"{field.title} of {first}"):
+        with self.transaction(tr("{title} of {element}", title=field.named(), element=first)):
             self.execute(Assign(table.name, field.name, tuple(ids), column))
             table.kind.after_change(table, rows, {field.name})
 
     def _settable(self, table: Table[Any], name: str, where: str) -> Field[Any]:
         """The Field that takes what is assigned to a Field. Raises FieldError."""
         if name not in table.fields:
-            raise FieldError(missing(f"Fields of {table.name}", name, table.fields))
+            raise FieldError(missing(tr("fields of {table}", table=table.name), name, table.fields))
         field = table.fields[name]
         if not field.derived:
             return field
         if field.overridden_by is None:
-            raise FieldError(f"{where}: {field.title} is computed and cannot be set.")
+            raise FieldError(
+                tr("{where}: {title} is computed and cannot be set.", where=where, title=field.named())
+            )
         return table.fields[field.overridden_by]
 
     def _checked(self, field: Field[Any], values: Any, count: int, where: Callable[[int], str]) -> Column:
@@ -201,8 +212,14 @@ class World:
             there = self.tables[field.references].count
             for row, *_ in np.argwhere(column >= there)[:1].tolist():
                 raise FieldError(
-                    f"{where(row)}: {field.title} is row {int(column[row].max())} of the {field.references},"
-                    f" but there are only {there}; rows count from 0."
+                    tr(
+                        "{where}: {title} is row {row} of the {table}, but there are only {count}; rows count from 0.",
+                        where=where(row),
+                        title=field.named(),
+                        row=int(column[row].max()),
+                        table=tr(field.references),
+                        count=there,
+                    )
                 )
         return column
 
@@ -215,17 +232,25 @@ class World:
             return
         for name in names:
             if not name.strip():
-                raise FieldError(f"The name of a {noun} is empty; type at least one character.")
+                raise FieldError(
+                    tr("The name of a {noun} is empty; type at least one character.", noun=tr(noun))
+                )
             if name in given or (name in table and name not in free):
-                raise FieldError(f"There is a {noun} '{cut(name)}' already; choose another name.")
+                raise FieldError(
+                    tr(
+                        "There is a {noun} '{name}' already; choose another name.",
+                        noun=tr(noun),
+                        name=cut(name),
+                    )
+                )
             given.add(name)
 
     def describe(self, handle: Handle) -> str:
         """A handle as a person calls it, such as "rod AB"."""
         table = self.tables[handle.table]
         if "name" not in table.fields:
-            return handle.noun
-        return _called(handle.noun, table._columns["name"][self.row(handle)])
+            return tr(handle.noun)
+        return called(handle.noun, table._columns["name"][self.row(handle)])
 
     # --- columns for systems -------------------------------------------------------------------------
 
@@ -238,7 +263,7 @@ class World:
         """A state or derived column as a writable view, marked as changed. Documents change by commands."""
         table, field = name.split(".")
         if self.tables[table].fields[field].role in MADE:
-            raise ValueError(f"Column {name} is part of the document; change it by a command.")
+            raise ValueError(tr("Column {name} is part of the document; change it by a command.", name=name))
         return self.tables[table].writable(field)
 
     def derive(self, derivation: Derivation) -> None:
@@ -247,7 +272,10 @@ class World:
         for other in replaced:
             if not set(other.targets) <= set(derivation.targets):
                 raise ValueError(
-                    f"Columns {', '.join(other.targets)} are derived together; derive all of them."
+                    tr(
+                        "Columns {targets} are derived together; derive all of them.",
+                        targets=", ".join(other.targets),
+                    )
                 )
         for other in replaced:
             del self._derived_at[other]
@@ -290,17 +318,24 @@ class World:
         """
         table = self.tables[kind.table]
         if kind.single:
-            raise ValueError(f"There is exactly one {kind.noun}; change the one there is.")
+            raise ValueError(tr("A model has exactly one {noun}; change that one.", noun=tr(kind.noun)))
         if count == 0:
             return []
         checked: dict[str, Column] = {}
 
         def where(row: int) -> str:
-            return _called(kind.noun, checked["name"][row]) if "name" in checked else kind.noun
+            return called(kind.noun, checked["name"][row]) if "name" in checked else tr(kind.noun)
 
         for field in table.fields.values():
             if field.references is not None and field.name not in columns:
-                raise FieldError(f"A new {kind.noun} needs '{field.name}': rows of the {field.references}.")
+                raise FieldError(
+                    tr(
+                        "A new {noun} needs '{name}': rows of the {table}.",
+                        noun=tr(kind.noun),
+                        name=field.name,
+                        table=tr(field.references),
+                    )
+                )
         names = columns.pop("name", None) if "name" in table.fields else None
         if "name" in table.fields:
             columns = {"name": table.free_names(count) if names is None else names, **columns}
@@ -309,7 +344,7 @@ class World:
             checked[field.name] = self._checked(field, values, count, where)
         if names is not None:
             self._check_names(table, checked["name"].tolist())
-        with self.transaction(f"new {kind.noun}"):
+        with self.transaction(tr("new {noun}", noun=tr(kind.noun))):
             self.execute(Create(kind, count, kind.completed(checked, count)))
             kind.after_change(table, np.arange(table.count - count, table.count), table.fields)
         handles: list[H] = table.handles[table.count - count :]
@@ -319,7 +354,8 @@ class World:
         """Execute the command that gives a whole column, named "table.field", computed values."""
         table, _, field = name.partition(".")
         entities = tuple(self.tables[table].entities.tolist())
-        with self.transaction(f"{self.tables[table].fields[field].title} of all {table}"):
+        title = self.tables[table].fields[field].named()
+        with self.transaction(tr("{title} of all {table}", title=title, table=tr(table))):
             self.execute(Assign(table, field, entities, np.asarray(values).copy()))
 
     def delete(self, handles: Iterable[Handle]) -> None:
@@ -328,10 +364,12 @@ class World:
         for name, rows in self.rows_of(handles).items():
             table = self.tables[name]
             if table.kind.single and len(rows):
-                raise ValueError(f"There is exactly one {table.kind.noun}; it cannot be deleted.")
+                raise ValueError(
+                    tr("A model has exactly one {noun}; it cannot be deleted.", noun=tr(table.kind.noun))
+                )
             doomed += table.entities[rows].tolist()
         if doomed:
-            with self.transaction("delete"):
+            with self.transaction(tr("delete")):
                 self.execute(Delete(tuple(doomed)))
 
     def execute(self, command: Command) -> None:
@@ -449,7 +487,9 @@ class World:
         table = self.tables[command.table]
         rows = self.row_of_entity[np.array(command.entities, dtype=np.int64)]
         if (rows < 0).any():
-            raise LookupError(f"A {table.kind.noun} to be changed was deleted; undo brings it back.")
+            raise LookupError(
+                tr("A {noun} that is to be changed was deleted; undo brings it back.", noun=tr(table.kind.noun))
+            )
         column = table.writable(command.field)
         old = column[rows]
         column[rows] = command.values
@@ -471,7 +511,11 @@ class World:
         for entity in range(1, last + 1):  # esper numbers them in order
             esper.create_entity(*([handles[entity]] if entity in handles else []))
         self.tags_revision = self.next_revision()
-        raise LookupError("elements were deleted through esper; use model.delete(handles), which can be undone")
+        raise LookupError(
+            tr(
+                "Elements were deleted through esper, so they were restored. Use model.delete(handles), which can be undone."
+            )
+        )
 
     # --- tags ------------------------------------------------------------------------------------------
     #
@@ -587,9 +631,10 @@ class World:
         self.row_of_entity[entities] = np.arange(first, table.count)
 
 
-def _called(noun: str, name: Any) -> str:
+def called(noun: str, name: Any) -> str:
+    """An element as a person calls it, such as "rod AB"; a name such as "rod 7" says it all."""
     name = cut(str(name))
-    return name if name.startswith(noun + " ") else f"{noun} {name}"
+    return name if name.startswith(noun + " ") else joined([tr(noun), name])
 
 
 def _delete_context(context: str) -> None:

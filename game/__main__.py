@@ -21,14 +21,17 @@ def main() -> int:
 
         prepare_streams()
         try:
+            from game.commands.language import speak_as_asked
+
+            words = speak_as_asked(sys.argv[1:])
             from game import included  # noqa: F401 (registers what is written as mods are)
             from game.commands import command_line
             from game.commands.progress import told
-        except Mistake as error:  # of a variable of the environment
+        except Mistake as error:  # of --language, or of a variable of the environment
             tell(str(error))
             return 2
     with told():
-        status = command_line.main()
+        status = command_line.main(words)
     return ended_with(status)
 
 

@@ -3,6 +3,8 @@
 >>> from game.api import Component, Law, Strokes
 >>> Law.each
 'rods'
+
+Everything is said in English unless a script says otherwise, by `speak("pt")` or `with spoken("pt")`.
 """
 
 from components import (
@@ -36,6 +38,7 @@ from components import (
     Vector,
     World,
 )
+from components.language import english, language, listed, marked, plural, speak, spoken, tr, tr_in
 from game import Context, Session, SystemCheckError, __version__, check_system
 from game.commands.arguments import Parser, UsageError, count, finite, numbers, positive, times
 from game.commands.options import ANSWERED, NOT_ANSWERED, add_analysis, add_model, analysis_of, session_of
@@ -172,12 +175,21 @@ __all__ = [
     "check_system",
     "compiled",
     "count",
+    "english",
     "faded",
     "finite",
+    "language",
+    "listed",
+    "marked",
     "numbers",
+    "plural",
     "positive",
     "runge_kutta_constants",
     "session_of",
+    "speak",
+    "spoken",
     "times",
+    "tr",
+    "tr_in",
     "write_result",
 ]

@@ -17,6 +17,7 @@ from numpy.typing import NDArray
 
 from components.camera import Viewport
 from components.field import Vector
+from components.language import language
 from components.model import Model
 from components.view import MAGNIFICATIONS, View, magnified
 from game.documents import library, models
@@ -187,7 +188,7 @@ class App:
         self.session.preparation = self.preparation = preparation
         if preparation is not None:
             preparation.open()
-        self._theme = theme
+        self._theme, self._language = theme, language()
         self._magnification = magnification
         self._clock, self._before = pygame.time.Clock(), time.perf_counter()
         self._follow_size()
@@ -248,7 +249,7 @@ class App:
         self._follow_size()
         self._follow_title()
         frame = self.session.frame(elapsed)
-        self._follow_theme()
+        self._follow_choices()
         if self.render.drawn:
             self.window.flip()
         elif not self.session.busy:
@@ -312,11 +313,14 @@ class App:
         elif gc.get_count()[0] > MANY_NEW:
             gc.collect(0)
 
-    def _follow_theme(self) -> None:
+    def _follow_choices(self) -> None:
         """Keep what the person chooses for the next time."""
         if self.session.view.theme != self._theme:
             self._theme = self.session.view.theme
             remember("theme", self._theme)
+        if language() != self._language and not self.session.performing:
+            self._language = language()
+            remember("language", self._language)
 
     def point(self, pixel: Vector) -> None:
         """Take the pointer to a pixel."""

@@ -10,6 +10,7 @@ from pathlib import Path
 import pytest
 from hypothesis import HealthCheck, settings
 
+from components.language import ENGLISH, spoken
 from systems.program.compiler import Choice
 
 ROOT = Path(__file__).resolve().parents[1]
@@ -26,6 +27,7 @@ def folder_of_the_tests(tmp_path_factory: pytest.TempPathFactory) -> Iterator[No
     """Tests run outside the repository, in which they leave nothing: keys and commands write where they are."""
     with pytest.MonkeyPatch.context() as patched, chdir(tmp_path_factory.mktemp("tests")):
         patched.setenv("PYTHONPATH", str(ROOT))  # for the processes that they start
+        patched.setenv("PINJOINT_LANGUAGE", ENGLISH)
         yield
 
 
@@ -35,6 +37,13 @@ def form_of_programs() -> Iterator[None]:
     before = Choice.compile
     yield
     assert Choice.compile is before, "close the window, or its Preparation, at the end of the test"
+
+
+@pytest.fixture(autouse=True)
+def in_english() -> Iterator[None]:
+    """Tests that speak another language do so for themselves only."""
+    with spoken(ENGLISH):
+        yield
 
 
 @pytest.fixture

@@ -25,7 +25,7 @@ def command(words: Sequence[str]) -> int:
     add_output(parser, default="json")
     options = parser.parse_args(words)
     session = session_of(options)
-    from systems.statics.force_method import ForceMethodError
+    from systems.statics.unknowns import ForceMethodError
 
     try:
         found = _solved(session.model, None if options.all else options.release)
@@ -45,7 +45,8 @@ def _solved(model: Model, release: str | None) -> dict[str, Any]:
     Raises ForceMethodError.
     """
     from game.force_method.guide import exact_forces
-    from systems.statics.force_method import find_unknown, redundants, solve
+    from systems.statics.force_method import solve
+    from systems.statics.unknowns import find_unknown, redundants
 
     unknowns = redundants(model) if release is None else [find_unknown(model, release)]
     solution = solve(model, unknowns)

@@ -33,7 +33,7 @@ def command(words: Sequence[str]) -> int:
     session = session_of(options)
     from game.commands.reports import verify
     from systems.statics.events import NoEquilibrium
-    from systems.statics.force_method import ForceMethodError
+    from systems.statics.unknowns import ForceMethodError
 
     try:
         if options.influence:

@@ -8,6 +8,7 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
+from components.language import LANGUAGES
 from components.model import Model
 from components.suggestions import nearest
 from game.commands import COMMANDS
@@ -34,8 +35,8 @@ def _epilog() -> str:
     """The commands, the options that all have, and the bundled models."""
     width = max(map(len, COMMANDS))
     paragraphs = [
-        "Every command takes --mods DIR, for mods in a folder, --no-mods, to leave yours out, and --cores N, to use"
-        " no more.",
+        "Every command takes --mods DIR, for mods in a folder, --no-mods, to leave yours out, --cores N, to use"
+        f" no more, and --language {'|'.join(LANGUAGES)}.",
         f"Bundled models: {', '.join(models.bundled())}",
     ]
     return "\n".join(

@@ -155,6 +155,9 @@ class Scene:
     def resized(self, context: Context) -> None:
         """The window has another size."""
 
+    def say_again(self, context: Context) -> None:
+        """The language is another one: make what was kept in words again."""
+
     def busy(self, context: Context) -> bool:
         """True while frames change something without a person's doing, as where time passes."""
         return context.time_passes and not context.simulation.halted

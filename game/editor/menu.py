@@ -114,7 +114,7 @@ def _of_canvas(context: Context) -> Groups:
         ["toggle diagrams", "toggle free bodies", "toggle utilisation"],
         ["toggle theory", "toggle energy", "toggle events", "next shape"],
         [binding.action for binding in ADDED_BUTTONS],
-        ["fit", "zoom in", "zoom out", "new grid", "next grid", "toggle legend", "next theme"],
+        ["fit", "zoom in", "zoom out", "new grid", "next grid", "toggle legend", "next theme", "next language"],
         ["environment", "toggle full screen", "toggle help"],
         ["screenshot", "picture as svg", "picture as pdf"],
     ]

@@ -27,15 +27,10 @@ from systems.run.simulation import Simulation
 from systems.schedule import Schedule
 from systems.statics.counting import counted
 from systems.statics.equations import largest
-from systems.statics.force_method import (
-    ForceMethodError,
-    SetState,
-    Solution,
-    Unknown,
-    solve,
-    unit_force,
-)
+from systems.statics.force_method import Solution, solve, unit_force
+from systems.statics.released import SetState
 from systems.statics.settle import settle
+from systems.statics.unknowns import ForceMethodError, Unknown
 
 DIAGRAM_HEIGHT = 34.0  # px of the largest force diagram
 SWING = 3.0  # s in which a mechanism is shown to move there and back

@@ -12,7 +12,8 @@ from game.force_method import PARTS
 
 if TYPE_CHECKING:  # they import scipy
     from game.force_method.guide import Guide
-    from systems.statics.force_method import Solution, Unknown
+    from systems.statics.force_method import Solution
+    from systems.statics.unknowns import Unknown
 
 Caption = tuple[str, ...]
 

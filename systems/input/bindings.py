@@ -162,6 +162,7 @@ _BY_PURPOSE: dict[str, tuple[Binding, ...]] = {
         Binding("home", "fit", (*LIVE, FORCE_METHOD), "fit the view"),
         Binding("tab", "toggle legend", (*LIVE, FORCE_METHOD), "legend and toolbar on / off"),
         Binding("t", "next theme", (*LIVE, FORCE_METHOD), "light, dark, colour-blind themes"),
+        Binding("f2", "next language", EVERY, "next language: English, Português"),
         Binding("ctrl++", "larger", EVERY, "larger or smaller type", repeats=True),
         Binding("ctrl+shift++", "larger", EVERY, "", repeats=True),
         Binding("ctrl+-", "smaller", EVERY, "larger or smaller type", repeats=True),

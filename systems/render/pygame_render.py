@@ -9,6 +9,7 @@ from typing import Any
 import pygame
 
 from components.form import Form
+from components.language import language
 from components.model import Model
 from components.toolbar import Toolbar
 from components.view import View
@@ -46,7 +47,7 @@ class PygameRender(System):
         """Draw every stage of the scene, unless the picture would be the same as the last."""
         stages = frame.session.stages
         looks = tuple(repr(view) for _, view in stages)
-        shown = (id(self.surface), looks, _revisions(stages))
+        shown = (id(self.surface), language(), looks, _revisions(stages))
         self.drawn = shown != self._shown or (self._sketch and self._canvas.draws_all)
         if self.drawn:
             theme = load_theme(frame.session.view.theme)
@@ -55,7 +56,7 @@ class PygameRender(System):
             for picture in compose_all(stages, theme, lambda *stage: self._placed[_looked_at(*stage)]):
                 self._canvas.draw(self.surface, picture)
                 self._sketch |= self._canvas.sketch
-            self._shown = (id(self.surface), looks, _revisions(stages))
+            self._shown = (id(self.surface), language(), looks, _revisions(stages))
 
 
 def draw_unseen(frame: Any, size: tuple[int, int]) -> None:

@@ -10,6 +10,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from components.language import plural, tr
 from components.model import Model
 from systems.statics.assembly import Matrix
 from systems.statics.bending import needed_parts
@@ -117,9 +118,9 @@ def _resisting(model: Model, structure: Structure, stiffness: Matrix, softening:
     if regular(stiffness, weight, -SOFT).definite:
         return stiffness
     if not regular(stiffness, weight, NO_STIFFNESS).definite:
-        message = (
-            "What acts in full (weight, lack of fit, warmth, moved supports) makes the structure give way by itself, so"
-            " that there is no factor of the other loads. Stiffen it, or let the weight act as forces on particles."
+        message = tr(
+            "The structure already buckles under what the load factor does not multiply: weight, lack of fit, temperature,"
+            " moved supports. Stiffen it, or let the weight act as forces on particles, which the factor multiplies."
         )
         raise NoEquilibrium("collapse", message)
     modes = soft_modes(stiffness, weight)
@@ -131,10 +132,10 @@ def _resisting(model: Model, structure: Structure, stiffness: Matrix, softening:
         held = stiffness + share * float(weight.max()) / size * softening
         if regular(held, weight, -SOFT * share).definite:
             return held
-    message = (
-        "A mechanism has no critical load: nothing resists moving"
-        f" {describe_motion(model, structure.fields(modes))}, and compression pushes it away at once. Add rods or supports"
-        " there, or join rods rigidly."
+    message = tr(
+        "The structure is a mechanism, which has no buckling load: nothing resists moving {motion}, and compression makes"
+        " it move at once. Add rods or supports there, or join rods rigidly.",
+        motion=describe_motion(model, structure.fields(modes)),
     )
     raise NoEquilibrium("mechanism", message)
 
@@ -218,13 +219,14 @@ def _effective_length(model: Model, axial_force: Array) -> Array:
 def _why_none(model: Model, live: Array) -> str:
     """Why no factor makes a structure give way."""
     if not live.any():
-        return "No force or load acts on the rods; apply one that a factor can multiply."
+        return tr("No force or load acts on the rods; apply one, which the load factor multiplies.")
     pressed = np.flatnonzero(live < 0.0)
     if not len(pressed):
-        return "Nothing is compressed by the forces and loads, so that no factor of them makes the structure give way."
-    return (
-        f"No factor makes the structure give way: what is compressed ({rod_names(model, pressed)}) cannot move aside at its"
-        " ends. Divide a rod that bends to see it buckle within itself."
+        return tr("The forces and loads compress no rod, so the structure buckles at no load factor.")
+    return tr(
+        "The structure buckles at no load factor: the ends of the compressed {rods} cannot move sideways. Divide a rod that"
+        " bends to see it buckle between its ends.",
+        rods=rod_names(model, pressed),
     )
 
 
@@ -237,16 +239,25 @@ def _notes(model: Model, factors: Array, lowest: Array) -> list[str]:
     if len(strain) and strain.max() > STRAINED:
         row = int(strain.argmax())
         notes.append(
-            f"At the factor {factors[0]:.4g} {model.describe(rods[row])} is shortened by {strain[row]:.0%} of its length:"
-            " what it is made of gives way long before."
+            tr(
+                "At the load factor {factor:.4g}, {rod} is shortened by {strain:.0%} of its length: a real material fails"
+                " long before.",
+                factor=factors[0],
+                rod=model.describe(rods[row]),
+                strain=strain[row],
+            )
         )
     pinned = (rods.bending_stiffness > 0.0) & ~(rods.turning_shares > 0.0).any(axis=1)
     struts = pinned & (-lowest * rods.rest_length**2 > np.pi**2 * rods.bending_stiffness)
     if struts.any():
         rows = np.flatnonzero(struts)
         notes.append(
-            f"Before, {rod_names(model, rows)} would buckle between {'its' if len(rows) == 1 else 'their'} hinges, at"
-            " π² EI/L². Divide what is to bend between hinges."
+            plural(
+                "At a lower load, {rods} would buckle between its hinges, at π² EI/L². Divide it to see that.",
+                "At a lower load, {rods} would buckle between their hinges, at π² EI/L². Divide them to see that.",
+                len(rows),
+                rods=rod_names(model, rows),
+            )
         )
     parts = needed_parts(model, lowest)
     if (parts > 1).any():

@@ -9,6 +9,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from components.language import joined, plural, tr
 from components.model import Model
 from components.rod import bends, nodes
 from components.table import flags
@@ -55,8 +56,10 @@ class Count:
         """What the rank says beside it, "" where the rule tells it all: there are no mechanisms."""
         if not mechanisms:
             return ""
-        stressed = f"{static or 'no'} self-stress{'es' * (static > 1)}"
-        return f"{stressed}, {mechanisms} mechanism{'s' * (mechanisms > 1)}"
+        stressed = plural("one state of self-stress", "{count} states of self-stress", static)
+        if not static:
+            stressed = tr("no state of self-stress")
+        return joined([stressed, plural("one mechanism", "{count} mechanisms", mechanisms)], ", ")
 
 
 def counted(model: Model) -> Count:

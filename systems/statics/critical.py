@@ -7,6 +7,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from components.language import marked, tr
 from components.model import Model
 from systems.statics.equations import Array, normalised, upright
 from systems.statics.events import Event
@@ -14,7 +15,7 @@ from systems.statics.explain import describe_motion
 from systems.statics.factor import nearest_mode, regular
 from systems.statics.follow import HALF, Path, Point, Step, Tangent
 
-LIMIT_POINT, BIFURCATION = "limit point", "bifurcation"
+LIMIT_POINT, BIFURCATION = marked("limit point"), marked("bifurcation")
 SHARPNESS = 1e-10  # of an increment, to which a critical point is found in it
 MOST_TRIALS = 200
 ALONG = 0.5  # of the first increment on a branch: one that goes less far along its mode fell back
@@ -37,13 +38,25 @@ class Critical:
         """It in words; sign: of the load factor along the path, number: that of the bifurcation."""
         factor, motion = sign * self.point.t, path.structure.spread(self.mode)
         if self.kind == LIMIT_POINT:
-            what, more = "the load turns back here", "under a dead load the structure would jump"
             if self.tangent.sense < 0.0:
-                more = "from here on it grows again"
+                message = tr(
+                    "Limit point at the load factor {factor:.6g}: from here on the load grows again.",
+                    factor=factor,
+                )
+            else:
+                message = tr(
+                    "Limit point at the load factor {factor:.6g}: the structure bears no more load here, and from here on"
+                    " the load falls; under a constant load the structure would jump.",
+                    factor=factor,
+                )
         else:
-            what = f"another branch leads away, moving {describe_motion(model, motion[None])}"
-            more = f"--branch {number} or {-number} follows it to either side"
-        message = f"{self.kind.capitalize()} at the load factor {factor:.6g}: {what}; {more}."
+            message = tr(
+                "Bifurcation at the load factor {factor:.6g}: another path of equilibria begins here, along which"
+                " {motion} can move; to follow it to one side or the other, give --branch {number} or --branch -{number}.",
+                factor=factor,
+                motion=describe_motion(model, motion[None]),
+                number=number,
+            )
         return Event(self.kind, factor, message, motion=motion)
 
 

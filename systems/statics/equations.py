@@ -17,6 +17,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from components.derived import with_full_turns
+from components.language import tr
 from components.model import Model
 from components.rod import bends
 from components.table import flags
@@ -98,7 +99,7 @@ class Structure:
     def of(cls, model: Model, geometry: str = "exact") -> Structure:
         """The structure of a model in "exact" or "linear" geometry; without plasticity no rod yields."""
         if geometry not in ("exact", "linear"):
-            raise ValueError(f"Geometry is '{geometry}'; it must be 'exact' or 'linear'.")
+            raise ValueError(tr("Geometry is '{geometry}'; it must be 'exact' or 'linear'.", geometry=geometry))
         particles, rods = model.particles, model.rods
         yields = bool(model.settings.plasticity)
         ends = rods.between.astype(np.intp)
@@ -414,9 +415,14 @@ class Structure:
     def held_kinks(self, slopes: Array, pull: Array | None = None) -> Array:
         """Forces (n, 3) that hold the particles against rods with small slopes (rods, 2) at their ends, and axial forces."""
         assert self.bending is not None
-        response, moment = self.unmoved, self.bending.moments(slopes)
+        moment = self.bending.moments(slopes)
+        return self.held(np.zeros_like(self.difference) if pull is None else pull, moment)
+
+    def held(self, pull: Array, moment: Array) -> Array:
+        """The same against rods with these axial forces, as vectors (rods, 2), and moments on their ends (rods, 2)."""
+        response = self.unmoved
         shear = moment.sum(axis=1) / np.where(response.length > 0.0, response.length, np.inf)
-        return self._sheared(response, np.zeros_like(response.axis) if pull is None else pull, moment, shear)
+        return self._sheared(response, pull, moment, shear)
 
     def carried(self, response: Response) -> Array:
         """What the whole distributed forces would add to the particles' forces, besides halves of them on both ends."""

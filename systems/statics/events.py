@@ -8,9 +8,12 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from components.language import marked
 from components.model import Model
 
 RESTS = 1e-9  # of the largest motion: a smaller one counts as none
+# How settling ends where there is no equilibrium.
+STATUSES = marked("mechanism"), marked("collapse"), marked("limit reached")
 
 
 @dataclass(frozen=True)

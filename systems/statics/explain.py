@@ -6,7 +6,8 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from components import written
+from components import language, written
+from components.language import begun, joined, plural, tr
 from components.model import Model
 from components.wording import cut
 from systems.statics.equations import TURNS_ONLY, Array, Flags, Rows, largest
@@ -21,13 +22,8 @@ def listed(names: Sequence[str]) -> str:
     """Up to NAMED names, as in "B, C and D", and the number of the others."""
     shown = [cut(name) for name in names[:NAMED]]
     if len(names) > NAMED:
-        return f"{', '.join(shown)} and {len(names) - NAMED} more"
-    return " and ".join(filter(None, [", ".join(shown[:-1]), *shown[-1:]]))
-
-
-def capitalised(text: str) -> str:
-    """A text as the beginning of a sentence."""
-    return text[:1].upper() + text[1:]
+        return tr("{names} and {count} more", names=", ".join(shown), count=len(names) - NAMED)
+    return language.listed(shown)
 
 
 def rod_names(model: Model, rows: Rows) -> str:
@@ -35,32 +31,43 @@ def rod_names(model: Model, rows: Rows) -> str:
     names = [str(model.rods.column("name")[row]) for row in rows.tolist()]
     if all(name.startswith("rod ") for name in names):
         return listed(names)
-    return ("rod " if len(names) == 1 else "rods ") + listed(names)
+    return plural("rod {names}", "rods {names}", len(names), names=listed(names))
 
 
 def cables_named(model: Model) -> str:
     """The subject and verb of a sentence about a model's cables: "Rods AC and BD act"."""
     rows = np.flatnonzero(model.rods.tension_only)
-    return f"{capitalised(rod_names(model, rows))} {'acts' if len(rows) == 1 else 'act'}"
+    return plural("{rods} acts", "{rods} act", len(rows), rods=begun(rod_names(model, rows)))
 
 
 def slack_named(model: Model, slack: Flags) -> str:
-    """A sentence that names the slack cables, to follow another; "" if there are none."""
+    """A sentence that names the slack cables; "" if there are none."""
     rows = np.flatnonzero(slack)
     if not len(rows):
         return ""
-    verb, them = ("is", "it") if len(rows) == 1 else ("are", "them")
-    return f" {capitalised(rod_names(model, rows))} {verb} slack; tension {them} if that is not meant."
+    return plural(
+        "{rods} is slack; tighten it if that is not intended.",
+        "{rods} are slack; tighten them if that is not intended.",
+        len(rows),
+        rods=begun(rod_names(model, rows)),
+    )
 
 
 def divide_named(model: Model, rows: Rows, parts: Rows) -> str:
     """A sentence about rods that bend within themselves, and into how many to divide each; parts: of all rods."""
     names = model.rods.column("name")
-    into = [f"{cut(str(names[row]))} into {parts[row]}" for row in rows.tolist()]
-    more = f" and {len(into) - NAMED} more" if len(into) > NAMED else ""
-    what = f"{capitalised(rod_names(model, rows))} {'bends within itself' if len(rows) == 1 else 'bend within themselves'}"
-    into_parts = f"Divide {', '.join(into[:NAMED])}{more}, by the menu of a rod or session.divide."
-    return f"{what}, more than one rod can follow. {into_parts}"
+    into = listed(
+        [tr("{rod} into {parts}", rod=str(names[row]), parts=int(parts[row])) for row in rows.tolist()]
+    )
+    return plural(
+        "{rods} bends more between its ends than one rod can follow. Divide {parts}, with"
+        " the menu of the rod or session.divide.",
+        "{rods} bend more between their ends than one rod can follow. Divide {parts},"
+        " with the menu of a rod or session.divide.",
+        len(rows),
+        rods=begun(rod_names(model, rows)),
+        parts=into,
+    )
 
 
 def describe_motion(model: Model, modes: Array) -> str:
@@ -72,46 +79,54 @@ def describe_motion(model: Model, modes: Array) -> str:
     turns, modes = modes[:, :, 2:], modes[:, :, :2]
     if largest(modes) <= TURNS_ONLY * largest(turns):
         turning = np.flatnonzero(np.abs(turns).max(axis=(0, 2)) > TAKES_PART * largest(turns))
-        return f"{listed([str(names[row]) for row in turning.tolist()])} round itself"
+        those = [str(names[row]) for row in turning.tolist()]
+        return plural("{names} about itself", "{names} about themselves", len(those), names=listed(those))
     size = np.sqrt((modes**2).sum(axis=(0, 2)))
     movers = np.flatnonzero(size > TAKES_PART * size.max())
     groups: dict[str, list[str]] = {}
     for row in movers.tolist():
         groups.setdefault(_direction(modes[:, row]), []).append(str(names[row]))
-    told = [f"{listed(group)} {direction}" for direction, group in list(groups.items())[:DIRECTIONS]]
+    told = joined(
+        (joined([listed(group), direction]) for direction, group in list(groups.items())[:DIRECTIONS]), ", "
+    )
     rest = sum(len(group) for group in list(groups.values())[DIRECTIONS:])
-    return ", ".join(told) + (f" and {rest} more" if rest else "")
+    return tr("{names} and {count} more", names=told, count=rest) if rest else told
 
 
 def _direction(motions: Array) -> str:
     """The direction of one particle's motions (k, 2)."""
     _, sizes, ways = np.linalg.svd(motions, full_matrices=False)
     if len(sizes) > 1 and sizes[1] > ONE_WAY * sizes[0]:
-        return "in any direction"
+        return tr("in any direction")
     x, y = ways[0]
     if abs(y) < ONE_WAY:
-        return "along x"
+        return tr("along x")
     if abs(x) < ONE_WAY:
-        return "along y"
+        return tr("along y")
     if x < 0.0:
         x, y = -x, -y
-    return f"along ({x:.2f}, {y:.2f})"
+    return tr("along ({x:.2f}, {y:.2f})", x=x, y=y)
 
 
-def describe_way(model: Model, motion: Array) -> str:
-    """The particles that move most in a motion (n, 2 or 3), and which way: "ball, which moves down"."""
+def nothing_stops(model: Model, motion: Array) -> str:
+    """The sentence about the particles that move most in a motion (n, 2 or 3), which nothing stops."""
     names = model.particles.column("name")
     size = np.hypot(*motion[:, :2].T)
     far = np.flatnonzero(size > 0.5 * size.max())
     x, y = motion[int(size.argmax()), :2] / size.max()
     if abs(x) < ONE_WAY:
-        way = "up" if y > 0.0 else "down"
+        way = tr("upwards") if y > 0.0 else tr("downwards")
     elif abs(y) < ONE_WAY:
-        way = "to the right" if x > 0.0 else "to the left"
+        way = tr("to the right") if x > 0.0 else tr("to the left")
     else:
-        way = f"along ({x:.2f}, {y:.2f})"
-    moves = "which moves" if len(far) == 1 else "which move"
-    return f"{listed([str(names[row]) for row in far])}, {moves} {way}"
+        way = tr("along ({x:.2f}, {y:.2f})", x=x, y=y)
+    return plural(
+        "{names} moves {way} and nothing stops it. Put something in its way, or hold it with a support.",
+        "{names} move {way} and nothing stops them. Put something in their way, or hold them with supports.",
+        len(far),
+        names=listed([str(names[row]) for row in far]),
+        way=way,
+    )
 
 
 def moved(model: Model, before: Array, after: Array) -> str:
@@ -120,7 +135,12 @@ def moved(model: Model, before: Array, after: Array) -> str:
     before, after = before[:, :2], after[:, :2]
     change = after - before
     row = int(np.hypot(change[:, 0], change[:, 1]).argmax())
-    return f"{names[row]} by {_pair(change[row])}, to the displacement {_pair(after[row])}"
+    return tr(
+        "{particle} moves by {change}, to the displacement {displacement}",
+        particle=names[row],
+        change=_pair(change[row]),
+        displacement=_pair(after[row]),
+    )
 
 
 def _pair(vector: Array) -> str:

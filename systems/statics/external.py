@@ -7,6 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from components import written
+from components.language import plural, tr
 from components.load import static_factor
 from components.model import Model
 from components.rod import bends
@@ -48,7 +49,13 @@ def external_forces(model: Model) -> External:
         np.add.at(scaled, load.on, factor * np.array(load.force))
         moment[load.on] += factor * load.moment
         if factor == 0.0:
-            notes.append(f"The {load.history['kind']} load on {load.particle.name} counts as 0 in statics.")
+            notes.append(
+                tr(
+                    "The {history} load on {particle} counts as 0 in statics.",
+                    history=load.history["kind"],
+                    particle=load.particle.name,
+                )
+            )
     acceleration = particles.acceleration + np.array(environment.acceleration)
     steady = particles.mass[:, None] * acceleration / 1000.0
     if bends(model):
@@ -88,10 +95,25 @@ def loose_event(model: Model, body: LooseBody, factor: float) -> Event:
     names = model.particles.column("name")
     who, along = listed([str(names[row]) for row in body.particles]), "xy"[body.axis]
     if body.pull:
-        what = f", where {written.force(body.pull)} pull {'it' if len(body.particles) == 1 else 'them'}"
+        message = plural(
+            "Free body: nothing holds {names} along {axis}, where {force} pull it. Hold it by a support along {axis}.",
+            "Free body: nothing holds {names} along {axis}, where {force} pull them. Hold one of them by a support along"
+            " {axis}.",
+            len(body.particles),
+            names=who,
+            axis=along,
+            force=written.force(body.pull),
+        )
     else:
-        what = ", but in all no force acts there"
-    message = f"Free body: nothing holds {who} along {along}{what}. Constrain one of them in {along}."
+        message = plural(
+            "Free body: nothing holds {names} along {axis}, but no force acts on it there in all. Hold it by a support"
+            " along {axis}.",
+            "Free body: nothing holds {names} along {axis}, but no force acts on them there in all. Hold one of them by a"
+            " support along {axis}.",
+            len(body.particles),
+            names=who,
+            axis=along,
+        )
     motion = np.zeros((model.particles.count, 2))
     motion[body.particles, body.axis] = np.sign(body.pull) or 1.0
     return Event("free body", factor, message, motion=motion)

@@ -7,10 +7,11 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from components import written
+from components.language import begun, joined, marked, plural, tr
 from components.model import Model
 from systems.statics.equations import Array, Flags, largest, normalised
 from systems.statics.events import Event, NoEquilibrium
-from systems.statics.explain import capitalised, describe_motion, moved, rod_names, slack_named
+from systems.statics.explain import describe_motion, moved, rod_names, slack_named
 from systems.statics.factor import SOFT, is_stable, regular, soft_modes, softest, unresisted
 from systems.statics.follow import Path, Point, Tangent
 from systems.statics.relax import RUNAWAY, STEPS, relax
@@ -126,23 +127,37 @@ class Loading:
         new = (found.response.flowing | following.flowing) & ~tangent.flowing
         if not new.any():
             return
-        force, parts = found.response.axial_force, []
-        for sign, way in [(1.0, "tension"), (-1.0, "compression")]:
-            rows = np.flatnonzero(new & (sign * force > 0.0))
-            if len(rows):
-                verb = "yields" if len(rows) == 1 else "yield"
-                parts.append(f"{rod_names(self.model, rows)} {verb} in {way}")
-        self._tell("yield", found.t, capitalised(f"{' and '.join(parts)} {self._at(found.t)}."), new)
+        force, at, parts = found.response.axial_force, self._at(found.t), []
+        if len(rows := np.flatnonzero(new & (force > 0.0))):
+            rods = begun(rod_names(self.model, rows))
+            said = plural(
+                "{rods} yields in tension {at}.", "{rods} yield in tension {at}.", len(rows), rods=rods, at=at
+            )
+            parts.append(said)
+        if len(rows := np.flatnonzero(new & (force < 0.0))):
+            rods = begun(rod_names(self.model, rows))
+            parts.append(
+                plural(
+                    "{rods} yields in compression {at}.",
+                    "{rods} yield in compression {at}.",
+                    len(rows),
+                    rods=rods,
+                    at=at,
+                )
+            )
+        self._tell("yield", found.t, joined(parts), new)
 
     def _note_cables(self, tangent: Tangent) -> None:
         """Report the cables that go slack, or tighten again."""
-        for kind, verbs, changed in [
-            ("slack", ("goes slack", "go slack"), tangent.slack & ~self.slack),
-            ("taut", ("tightens", "tighten"), self.slack & ~tangent.slack),
-        ]:
-            if len(rows := np.flatnonzero(changed)):
-                message = f"{rod_names(self.model, rows)} {verbs[len(rows) > 1]} {self._at(self.point.t)}."
-                self._tell(kind, self.point.t, capitalised(message), changed)
+        slack, taut = tangent.slack & ~self.slack, self.slack & ~tangent.slack
+        if len(rows := np.flatnonzero(slack)):
+            rods, at = begun(rod_names(self.model, rows)), self._at(self.point.t)
+            said = plural("{rods} goes slack {at}.", "{rods} go slack {at}.", len(rows), rods=rods, at=at)
+            self._tell("slack", self.point.t, said, slack)
+        if len(rows := np.flatnonzero(taut)):
+            rods, at = begun(rod_names(self.model, rows)), self._at(self.point.t)
+            said = plural("{rods} becomes taut {at}.", "{rods} become taut {at}.", len(rows), rods=rods, at=at)
+            self._tell("taut", self.point.t, said, taut)
         self.slack = tangent.slack
 
     def _note_plastic_mechanism(self, tangent: Tangent, following: Tangent) -> None:
@@ -155,9 +170,11 @@ class Loading:
             return
         self.mechanism = True
         motion = structure.spread(following.rate)
-        message = (
-            f"Plastic mechanism {self._at(self.point.t)}: so many rods yield that moving"
-            f" {describe_motion(self.model, motion[None])} is resisted only by the change of shape."
+        message = tr(
+            "Plastic mechanism {at}: so many rods yield that the stiffness of the others no longer resists moving {motion};"
+            " only the change of shape still does.",
+            at=self._at(self.point.t),
+            motion=describe_motion(self.model, motion[None]),
         )
         self._tell("plastic mechanism", self.point.t, message, following.flowing, motion)
 
@@ -192,9 +209,10 @@ class Loading:
 
     def _leap(self) -> None:
         """Relax a structure that hardly resists some motion under the whole load, off its path."""
-        message = (
-            f"From {self._at(self.point.t).removeprefix('at ')} on the structure hardly resists some motion, so that"
-            " its path is not followed: it is relaxed under the whole load."
+        message = tr(
+            "From the load factor {factor} on, the structure hardly resists some motion. The load is therefore no longer"
+            " increased step by step: the whole load acts at once, and the structure moves to equilibrium.",
+            factor=written.number(self.factor(self.point.t)),
         )
         self._tell("note", self.point.t, message)
         self._relax(1.0, None)
@@ -231,24 +249,39 @@ class Loading:
     def _note_jump(self, beyond: Tangent, critical: Point, mode: Array) -> None:
         push = self.path.push(critical.response)
         share = abs(float(mode @ push)) / (np.linalg.norm(mode) * np.linalg.norm(push))
-        kind, what, after = "snap-through", "the structure passed through its unstable position", ""
-        if beyond.sense > 0.0 and share < UNEXCITED:
-            kind, what = "bifurcation", "the equilibrium became unstable"
-            after = " It gave way to one side, and might as well have gone to the other."
         where = moved(self.model, critical.displacement, self.point.displacement)
+        if beyond.sense > 0.0 and share < UNEXCITED:
+            kind, message = (
+                "bifurcation",
+                marked(
+                    "Bifurcation: the equilibrium becomes unstable {at}, and the structure buckles to the next stable one:"
+                    " {where}. It moved to one side; it could just as well have moved to the other."
+                ),
+            )
+        else:
+            kind, message = (
+                "snap-through",
+                marked(
+                    "Snap-through: the structure becomes unstable {at} and snaps to the next stable equilibrium: {where}."
+                ),
+            )
         yielded = self.point.plastic_strain != critical.plastic_strain
         rows = np.flatnonzero(yielded)
-        rods = f" {capitalised(rod_names(self.model, rows))} yielded on the way." if len(rows) else ""
-        how = f"{kind.capitalize()}: {what} {self._at(critical.t)}"
-        message = f"{how} and went on to the next stable one, {where}.{after}{rods}"
-        self._tell(kind, critical.t, message, yielded, self.path.structure.spread(mode))
+        rods = tr("{rods} yielded on the way.", rods=begun(rod_names(self.model, rows))) if len(rows) else ""
+        said = joined([tr(message, at=self._at(critical.t), where=where), rods])
+        self._tell(kind, critical.t, said, yielded, self.path.structure.spread(mode))
 
     def _collapse(self, flowing: Flags, motion: Array) -> NoEquilibrium:
         rows = np.flatnonzero(flowing)
-        because = f"{rod_names(self.model, rows)} yield{'s' if len(rows) == 1 else ''}" if len(rows) else ""
-        message = (
-            f"Plastic collapse {self._at(self.point.t)}: {because} and nothing else resists moving"
-            f" {describe_motion(self.model, motion[None])}. Lower the load or strengthen these rods."
+        message = plural(
+            "Plastic collapse {at}: {rods} yields and nothing else resists moving {motion}. Lower the load or strengthen"
+            " this rod.",
+            "Plastic collapse {at}: {rods} yield and nothing else resists moving {motion}. Lower the load or strengthen"
+            " these rods.",
+            len(rows),
+            at=self._at(self.point.t),
+            rods=rod_names(self.model, rows),
+            motion=describe_motion(self.model, motion[None]),
         )
         self._tell("collapse", self.point.t, message, flowing, motion)
         return NoEquilibrium("collapse", message)
@@ -257,29 +290,34 @@ class Loading:
         """The end of a load that is still held, but by rods without length."""
         crushed = self.point.plastic_strain <= CRUSHED
         rows = np.flatnonzero(crushed)
-        message = (
-            f"Plastic collapse {self._at(self.point.t)}: {rod_names(self.model, rows)}"
-            f" {'is' if len(rows) == 1 else 'are'} crushed to a tenth of the length."
-            " Lower the load or strengthen what yields."
+        message = plural(
+            "Plastic collapse {at}: {rods} is crushed to a tenth of its length. Lower the load or strengthen this rod.",
+            "Plastic collapse {at}: {rods} are crushed to a tenth of their length. Lower the load or strengthen these rods.",
+            len(rows),
+            at=self._at(self.point.t),
+            rods=rod_names(self.model, rows),
         )
         self._tell("collapse", self.point.t, message, crushed, motion)
         return NoEquilibrium("collapse", message)
 
     def _mechanism(self, motion: Array, slack: Flags) -> NoEquilibrium:
         """The end of a load that moves a mechanism, which has no equilibrium in first-order theory."""
-        message = (
-            f"Mechanism: the load moves {describe_motion(self.model, motion[None])} and nothing resists."
-            " Add rods or supports there."
-        ) + slack_named(self.model, slack)
+        message = tr(
+            "Mechanism: the load moves {motion} and nothing resists. Add rods or supports there.",
+            motion=describe_motion(self.model, motion[None]),
+        )
+        message = joined([message, slack_named(self.model, slack)])
         self._tell("mechanism", self.point.t, message, motion=motion)
         return NoEquilibrium("mechanism", message)
 
     def _lost(self, point: Point | None = None) -> NoEquilibrium:
-        message = (
-            f"The equilibrium could not be followed beyond the load factor {written.number(self.factor(self.point.t))};"
-            " the last one is kept. Run the model through time, or apply the load in other steps."
-        ) + (slack_named(self.model, point.response.slack) if point is not None else "")
-        return NoEquilibrium("limit reached", message)
+        message = tr(
+            "No equilibrium was found beyond the load factor {factor}; the last one found is shown. Run the model in time,"
+            " or apply the load in other steps.",
+            factor=written.number(self.factor(self.point.t)),
+        )
+        slack = slack_named(self.model, point.response.slack) if point is not None else ""
+        return NoEquilibrium("limit reached", joined([message, slack]))
 
     # --- words -------------------------------------------------------------------------------------
 
@@ -290,8 +328,13 @@ class Loading:
 
     def _at(self, t: float) -> str:
         factor = self.factor(t)
-        load = f" ({written.force(abs(factor) * self.total)} in all)" if self.total > 0.0 else ""
-        return f"at the load factor {written.number(factor)}{load}"
+        if self.total <= 0.0:
+            return tr("at the load factor {factor}", factor=written.number(factor))
+        return tr(
+            "at the load factor {factor} ({force} in all)",
+            factor=written.number(factor),
+            force=written.force(abs(factor) * self.total),
+        )
 
     def _tell(
         self, kind: str, t: float, message: str, rods: Flags | None = None, motion: Array | None = None
@@ -307,9 +350,16 @@ def first_order_mechanism(
     model: Model, factor: float, fields: Array, slack: Flags, before: Array, after: Array
 ) -> Event:
     """Event of motions (k, n, 2) that nothing resists without load; displacements (n, 2) without and under load."""
-    message = f"First-order mechanism: without load nothing resists moving {describe_motion(model, fields)}."
+    message = tr(
+        "First-order mechanism: without load nothing resists moving {motion}.",
+        motion=describe_motion(model, fields),
+    )
     if np.array_equal(before, after):
-        message += " Add rods or supports there if that is not meant." + slack_named(model, slack)
+        advice = tr("Add rods or supports there if that is not intended.")
+        message = joined([message, advice, slack_named(model, slack)])
     else:
-        message += f" It gives way until the load is held in another shape: {moved(model, before, after)}."
+        change = moved(model, before, after)
+        message = joined(
+            [message, tr("Under load it moves until another shape holds the load: {where}.", where=change)]
+        )
     return Event("mechanism", factor, message, motion=normalised(fields[0]))

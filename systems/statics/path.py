@@ -8,8 +8,10 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from components.language import joined, tr
 from components.model import Model
 from components.suggestions import missing
+from components.wording import cut
 from systems.statics.critical import BIFURCATION, branch_off, passed
 from systems.statics.equations import Array, Structure
 from systems.statics.events import Event
@@ -64,7 +66,7 @@ def goal_of(model: Model, factor: float = 1.0, until: str | None = None) -> Goal
     """
     if until is None:
         if not math.isfinite(factor):
-            raise ValueError(f"The load factor is {factor}; give a finite number.")
+            raise ValueError(tr("The load factor is {factor}; give a finite number.", factor=str(factor)))
         return Goal(factor)
     place, _, amount = until.partition("=")
     name, _, axis = place.strip().rpartition(".")
@@ -74,17 +76,26 @@ def goal_of(model: Model, factor: float = 1.0, until: str | None = None) -> Goal
         value = math.nan
     if axis not in AXES or not math.isfinite(value):
         raise ValueError(
-            f"'{until}' is no displacement; write it like B.y=-2.5, in m, or B.rotation=1, in rad."
+            tr(
+                "'{until}' is no displacement; write it like B.y=-2.5, in m, or B.rotation=1, in rad.",
+                until=cut(until),
+            )
         )
     if name not in model.particles:
         raise ValueError(missing("particles", name, model.particles.names))
     particle, direction = model.particles[name], AXES.index(axis)
     if axis == "rotation":
         if model.particles.turning[particle.row] == 0.0:
-            raise ValueError(f"{name} does not turn: it is clamped, or no rod is joined rigidly there.")
+            raise ValueError(
+                tr("{particle} cannot turn: it is clamped, or no rod is rigidly joined to it.", particle=name)
+            )
     elif particle.fixed[direction]:
         raise ValueError(
-            f"{name} is constrained along {axis}, so it cannot move there; choose a free direction."
+            tr(
+                "{particle} is held along {axis}, so it cannot move that way; choose a free direction.",
+                particle=name,
+                axis=axis,
+            )
         )
     return Goal(value, (particle.row, direction))
 
@@ -100,11 +111,13 @@ def load_path(model: Model, goal: Goal, *, points: int = 500, detail: float = DE
     """
     unloaded = settle(model, (0.0,)).final
     if not unloaded.balanced:
-        raise ValueError(f"There is no equilibrium to start from. {unloaded.message}")
+        raise ValueError(joined([tr("There is no equilibrium to start from."), unloaded.message]))
     structure, external = Structure.of(model), external_forces(model)
     loaded = external.scaled + structure.carried(structure.unmoved)
     if not structure.gather(loaded).any():
-        raise ValueError("No force or load acts on a free direction; apply one that the factor can scale.")
+        raise ValueError(
+            tr("No force or load acts in a free direction; apply one, which the load factor multiplies.")
+        )
     search = _Search.towards(goal, structure, external, unloaded)
     found, complete, events = search.run(model, points, detail, branch)
     return Curve(

@@ -13,6 +13,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from components.field import LARGEST, FieldError
+from components.language import joined, plural, tr
 from components.model import Model
 from components.numeric_range import incomputable
 from components.wording import quoted
@@ -20,7 +21,7 @@ from systems.statics.bending import needed_parts
 from systems.statics.contacts import Discs, Sinking
 from systems.statics.equations import ROUND_OFF, Array, Structure, largest, normalised
 from systems.statics.events import Event, NoEquilibrium
-from systems.statics.explain import describe_motion, describe_way, divide_named, slack_named
+from systems.statics.explain import describe_motion, divide_named, nothing_stops, slack_named
 from systems.statics.external import external_forces, loose_bodies, loose_event
 from systems.statics.factor import SOFT, soft_modes, softest
 from systems.statics.follow import Path, Point
@@ -58,15 +59,17 @@ class Settlement:
     @property
     def message(self) -> str:
         """The messages of all states, each once; "" if there are none."""
-        return " ".join(dict.fromkeys(state.message for state in self.states if state.message))
+        return joined(dict.fromkeys(state.message for state in self.states))
 
     @property
     def account(self) -> str:
         """The message, or else the status, and the first of the other events."""
         others = [event.message for event in self.events if event.message not in self.message]
-        more = f"And {len(others) - MOST_TOLD} more events." if len(others) > MOST_TOLD else ""
-        said = [self.message or f"Settled: {self.status}.", *others[:MOST_TOLD], more]
-        return " ".join(filter(None, said))
+        more = len(others) - MOST_TOLD
+        said = [self.message or tr("Settled: {status}.", status=tr(self.status)), *others[:MOST_TOLD]]
+        return joined(
+            [*said, plural("And one more event.", "And {count} more events.", more) if more > 0 else ""]
+        )
 
     @property
     def events(self) -> tuple[Event, ...]:
@@ -126,11 +129,18 @@ def _factors(given: Sequence[float] | float) -> list[float]:
         factors = np.empty(0)
     if factors.ndim != 1 or len(factors) == 0 or not np.isfinite(factors).all():
         raise ValueError(
-            f"Load factors are {quoted(given)}; give at least one finite number, such as (1.0, 0.0)."
+            tr(
+                "Load factors are {value}; give at least one finite number, such as (1.0, 0.0).",
+                value=quoted(given),
+            )
         )
     for factor in factors[np.abs(factors) > LARGEST].tolist()[:1]:
         raise FieldError(
-            f"The load factor {factor:g} is too large to compute with; make it at most {LARGEST:g}."
+            tr(
+                "The load factor {factor:g} is too large to compute with; make it at most {largest:g}.",
+                factor=factor,
+                largest=LARGEST,
+            )
         )
     found: list[float] = factors.tolist()
     return found
@@ -238,18 +248,22 @@ class _Settling:
         known = any(event.kind in ("mechanism", "plastic mechanism") for event in self.events)
         if share < NEARLY_SOFT and not (known or self.soft):
             motion = structure.spread(mode)
-            moving = f"moving {describe_motion(self.model, motion[None])}"
+            moving = describe_motion(self.model, motion[None])
             if kind == NEUTRAL:
-                message = (
-                    f"Neutral equilibrium: nothing resists {moving}, so that this place is one of many."
-                    " Hold it if that is not meant."
+                message = tr(
+                    "Neutral equilibrium: nothing resists moving {motion}, so this is only one of many positions of rest."
+                    " Add a support or a rod there if that is not intended.",
+                    motion=moving,
                 )
             else:
-                message = (
-                    f"Nearly a mechanism: {moving} meets only {share:.1g} of the rods' stiffness, so that about"
-                    f" {int(np.log10(share / ROUND_OFF))} digits are certain."
+                message = tr(
+                    "Nearly a mechanism: only {share:.1g} of the stiffness of the rods resists moving {motion}, so only"
+                    " about {digits} digits of the results are certain.",
+                    share=share,
+                    motion=moving,
+                    digits=int(np.log10(share / ROUND_OFF)),
                 )
-            message += slack_named(self.model, self.point.response.slack)
+            message = joined([message, slack_named(self.model, self.point.response.slack)])
             self.events.append(Event("note", factor, message, motion=normalised(motion)))
         self.soft = self.soft or known or share < NEARLY_SOFT
         return kind
@@ -261,16 +275,21 @@ class _Settling:
             return
         springs, called = self.structure.stiffness / self.structure.rest_length, "EA/L₀"
         if self.structure.bending is not None:
-            rods, called = self.model.rods, "EA/L₀ or 12 EI/L₀³"
+            rods, called = self.model.rods, tr("EA/L₀ or 12 EI/L₀³")
             bent = rods.turning_shares.any(axis=1)
             across = 12.0 * rods.bending_stiffness / rods.rest_length**3
             springs = np.concatenate([springs, across[bent]])
-        message = (
-            f"Rounding leaves {residual:.1g} of the largest force unbalanced, because stiffnesses {called} from"
-            f" {springs.min():.3g} to {springs.max():.3g} kN/m act together. Make them less unequal."
+        message = tr(
+            "Rounding leaves {share:.1g} of the largest force unbalanced, because very soft and very stiff rods are joined"
+            " ({stiffness} from {least:.3g} to {most:.3g} kN/m). Make their stiffnesses less unequal.",
+            share=residual,
+            stiffness=called,
+            least=springs.min(),
+            most=springs.max(),
         )
         if residual > UNBALANCED:
-            raise NoEquilibrium("limit reached", f"Beyond double precision: {message}")
+            beyond = tr("The numbers of the computer have too few digits for this model.")
+            raise NoEquilibrium("limit reached", joined([beyond, message]))
         self.events.append(Event("note", factor, message))
 
     def _residual(self) -> float:
@@ -314,7 +333,7 @@ class _Settling:
             dissipated_plastic=self.point.dissipated,
             residual=self._residual(),
             status=status,
-            message=" ".join(told),
+            message=joined(told),
             events=tuple(self.events),
         )
         self.events.clear()
@@ -344,18 +363,23 @@ class _SettlingWithDiscs(_Settling):
         if alone > MOST_DISCS:
             raise NoEquilibrium(
                 "limit reached",
-                f"Settling follows at most {MOST_DISCS} particles without rods; here there are {alone}. Run until rest.",
+                tr(
+                    "Finding equilibrium takes at most {most} particles without rods; here there are {count}. Run the model"
+                    " until rest instead.",
+                    most=MOST_DISCS,
+                    count=alone,
+                ),
             )
         self._check_apart()
         target = self._all(target)
         sinking = Sinking(self.bare, self.discs, target, self.point, share)
         outcome = sinking.run()
         if outcome == "gave up":
-            message = "The discs found no rest within the steps that settling takes. Run the model until rest."
+            message = tr("No equilibrium of the particles was found. Run the model until rest instead.")
             raise NoEquilibrium("limit reached", message)
         if outcome == "falls":
             motion = self._particles(sinking.point.displacement - self.point.displacement)
-            message = f"Nothing stops {describe_way(self.model, motion)}. Put something in its way, or hold it."
+            message = nothing_stops(self.model, motion)
             self.events.append(Event("free body", factor, message, motion=normalised(motion)))
             raise NoEquilibrium("mechanism", message)
         if self.structure is self.bare:
@@ -372,8 +396,12 @@ class _SettlingWithDiscs(_Settling):
             names = [*self.model.particles.names, *self.discs.obstacles.names]
             raise NoEquilibrium(
                 "limit reached",
-                f"{names[first]} and {names[second]} are nearly in one place, so that nothing says which way to part"
-                " them. Move one of them, or run the model.",
+                tr(
+                    "{one} and {other} are nearly at the same place, so it is not clear which way they should move apart."
+                    " Move one of them, or run the model.",
+                    one=names[first],
+                    other=names[second],
+                ),
             )
 
     def _note_mechanism(self, found: Point) -> None:
@@ -393,9 +421,10 @@ class _SettlingWithDiscs(_Settling):
         if self.outcome != "unstable":
             return STABLE
         motion = self._particles(self.structure.spread(softest(self.structure, self.point.response)[1]))
-        message = (
-            f"An unstable balance: the slightest push moves {describe_motion(self.model, motion[None])}"
-            " further and further. Add something that holds it if that is not meant."
+        message = tr(
+            "Unstable equilibrium: the slightest push moves {motion} further and further. Add a support or an obstacle there"
+            " if that is not intended.",
+            motion=describe_motion(self.model, motion[None]),
         )
         self.events.append(Event("note", factor, message, motion=normalised(motion)))
         return UNSTABLE

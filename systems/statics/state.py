@@ -9,13 +9,18 @@ from typing import Any
 import numpy as np
 
 from components.diagrams import diagrams
+from components.language import marked
 from components.model import Model
 from components.rod import bends
 from systems.statics.equations import Array, Flags, Rows, Structure
 from systems.statics.events import Event
 from systems.statics.response import Response
 
-STABLE, NEUTRAL, UNSTABLE = EQUILIBRIA = ("equilibrium", "neutral equilibrium", "unstable equilibrium")
+STABLE, NEUTRAL, UNSTABLE = EQUILIBRIA = (
+    marked("equilibrium"),
+    marked("neutral equilibrium"),
+    marked("unstable equilibrium"),
+)
 
 
 @dataclass(frozen=True)

@@ -7,6 +7,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from components.language import tr
 from components.model import Model
 from systems.statics.equations import ROUND_OFF, Array, Structure, largest, normalised
 from systems.statics.events import NoEquilibrium
@@ -67,9 +68,10 @@ def _internal(structure: Structure, response: Response) -> Array:
 def _deflection(model: Model, structure: Structure, load: Array) -> Array:
     """Displacements (n, 2) of the free directions under a load (n, 2). Raises NoEquilibrium."""
     if structure.sense.any():
-        message = (
-            f"{cables_named(model)} in tension only, which is not linear; settle the model,"
-            " or let slack cables go and have taut ones bear compression too."
+        message = tr(
+            "{cables} in tension only, and linear theory needs rods that bear compression as well. Find the equilibrium"
+            " instead; or make cables that stay taut ordinary rods, and delete those that go slack.",
+            cables=cables_named(model),
         )
         raise NoEquilibrium("limit reached", message)
     matrix, right = structure.initial_tangent, structure.gather(load)
@@ -84,10 +86,11 @@ def _deflection(model: Model, structure: Structure, load: Array) -> Array:
         if structure.bending is not None and largest(step) <= ROUND_OFF * largest(solution):
             break
     if float(right @ solution) < SOFT * structure.effort(solution, structure.unmoved):
-        what = describe_motion(model, structure.spread(solution)[None])
-        message = (
-            f"Mechanism: the load moves {what}, which nothing resists by more than {SOFT:g} of the rods'"
-            " stiffness there. Add rods or supports, or make stiffnesses less unequal."
+        message = tr(
+            "Mechanism: the load moves {motion}, and the resistance is less than {share:g} of the stiffness of the rods"
+            " there. Add rods or supports there, or make the stiffnesses less unequal.",
+            motion=describe_motion(model, structure.spread(solution)[None]),
+            share=SOFT,
         )
         raise NoEquilibrium("mechanism", message)
     modes = soft_modes(matrix, structure.weight, factor, most=soft_count(matrix, structure.weight))
@@ -254,7 +257,13 @@ def influence_on_reaction(model: Model, particle: int, axis: int) -> Array:
     """Reaction of a constrained direction (row, 0 or 1; of a clamp 2) per unit force on each particle, (n, …)."""
     structure = Structure.of(model, "linear")
     if not structure.fixed[particle, axis]:
-        raise ValueError(f"{model.particles[particle].name} is not constrained along {'xy'[axis]}.")
+        raise ValueError(
+            tr(
+                "No support holds {particle} along {axis}, so there is no reaction.",
+                particle=model.particles[particle].name,
+                axis=("x", "y", "rotation")[axis],
+            )
+        )
     unit = _unit(structure, particle, axis)
     return _deflection(model, structure, structure.resistance(unit)) - unit
 

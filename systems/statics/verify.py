@@ -11,12 +11,14 @@ import numpy as np
 from components import written
 from components.diagrams import NAMES
 from components.field import ENDS
+from components.language import begun, joined, marked, tr
 from components.model import Model
 from components.suggestions import missing
 from components.table import flags
+from components.world import called
 from systems.statics.equations import ROUND_OFF, Array, Flags, largest
 from systems.statics.events import Event, NoEquilibrium
-from systems.statics.explain import capitalised, rod_names
+from systems.statics.explain import rod_names
 from systems.statics.settle import Settlement, settle
 from systems.statics.state import Start, StaticState
 from systems.statics.theory import linear
@@ -30,11 +32,10 @@ QUANTITIES = {
     "shear": ("rods", "kN"),
     "bending_moment": ("rods", "kN·m"),
 }
-
-JUMPS = ("snap-through", "bifurcation")
+JUMPS = (marked("snap-through"), marked("bifurcation"))
 DEPARTURES = {  # of a run from the path of a slowly growing load, by kind of event
-    "overshoot": "yielded in the overshoot",
-    "other equilibrium": "in another equilibrium",
+    "overshoot": marked("yielded in the overshoot"),
+    "other equilibrium": marked("in another equilibrium"),
 }
 ELSEWHERE = 1e-3  # of the largest value of its kind: a larger difference is no error of integration
 FURTHER = 1e-2  # of the plastic strain in statics: a larger excess is an overshoot
@@ -124,9 +125,16 @@ class Row:
     @property
     def title(self) -> str:
         """Quantity and element, such as "displacement y of particle B"."""
-        where = f"at the {self.component}" if self.component in ENDS else self.component
-        quantity = f"{self.quantity.replace('_', ' ')} {where}".rstrip()
-        return f"{quantity} of {self.element} {self.name.removeprefix(self.element + ' ')}"
+        quantity, element = tr(self.quantity.replace("_", " ")), called(self.element, self.name)
+        if self.component in ENDS:
+            at_start = self.component == ENDS[0]
+            message = (
+                marked("{quantity} at the start of {rod}")
+                if at_start
+                else marked("{quantity} at the end of {rod}")
+            )
+            return tr(message, quantity=quantity, rod=element)
+        return tr("{quantity} of {element}", quantity=joined([quantity, self.component]), element=element)
 
 
 @dataclass(frozen=True)
@@ -272,35 +280,41 @@ def remarks(model: Model, theory: Theories) -> list[Event]:
 
 def _elsewhere(worst: Row) -> Event:
     distance = abs((worst.simulation or 0.0) - (worst.exact or 0.0))
-    message = (
-        f"At rest in another equilibrium than the one that a slowly growing load leads to: the {worst.title}"
-        f" differs by {written.displacement(distance)}. The sudden load carried the structure past an unstable position."
+    message = tr(
+        "The model is at rest in another equilibrium than under a slowly growing load: the {quantity} differs by {distance}."
+        " The sudden load carried the structure past an unstable position.",
+        quantity=worst.title,
+        distance=written.displacement(distance),
     )
     return Event("other equilibrium", 1.0, message)
 
 
 def overshoots(model: Model, theory: Theories) -> list[Event]:
     """Rods that yielded, or yielded further, unlike under a slowly growing load."""
-    final, present, begun = theory.exact, model.rods.plastic_strain, theory.start.plastic_strain
+    final, present, before = theory.exact, model.rods.plastic_strain, theory.start.plastic_strain
     if final is None:
         return []
-    static, flowed = np.abs(final.plastic_strain - begun), np.abs(present - begun)
-    limit = np.where(present > begun, model.rods.tension_limit, model.rods.compression_limit)
+    static, flowed = np.abs(final.plastic_strain - before), np.abs(present - before)
+    limit = np.where(present > before, model.rods.tension_limit, model.rods.compression_limit)
     further = flowed - static > np.maximum(FURTHER * static, LEAST * limit / model.rods.stiffness)
     names, found = model.rods.column("name"), []
     for row in np.flatnonzero(np.isfinite(limit) & further).tolist():
-        who = rod_names(model, np.array([row]))
+        who = begun(rod_names(model, np.array([row])))
         if static[row] == 0.0:
-            force = written.given(abs(final.axial_force[row]), written.DIGITS)
-            what = (
-                f"{who} yielded only in the overshoot: static force {force} kN"
-                f" < strength {written.given(limit[row])} kN"
+            message = tr(
+                "{rod} yielded only because the sudden load overshot: in equilibrium its force is {force} kN, below its"
+                " strength of {strength} kN. Apply the load more slowly, or raise the damping.",
+                rod=who,
+                force=written.given(abs(final.axial_force[row]), written.DIGITS),
+                strength=written.given(limit[row]),
             )
         else:
-            what = (
-                f"{who} yielded further in the overshoot: plastic strain {written.strain(present[row])}, under a slowly"
-                f" growing load {written.strain(final.plastic_strain[row])}"
+            message = tr(
+                "{rod} yielded more because the sudden load overshot: its plastic strain is {strain}, under a slowly growing"
+                " load {static}. Apply the load more slowly, or raise the damping.",
+                rod=who,
+                strain=written.strain(present[row]),
+                static=written.strain(final.plastic_strain[row]),
             )
-        message = f"{capitalised(what)}. Load it more slowly, or raise the damping."
         found.append(Event("overshoot", 1.0, message, (str(names[row]),)))
     return found

@@ -171,7 +171,7 @@ REFUSED_ELEMENTS: dict[str, tuple[str, dict[Any, Any], str, str]] = {
         "particles",
         Z | {"fixed": [False, True], "velocity": [0, 3]},
         ".velocity",
-        "velocity y is 3 m/s but it is constrained in y",
+        "velocity y is 3 m/s, but a support holds it along y",
     ),
     "missing ends": ("rods", {"name": "r"}, "", "its 'between' is missing"),
     "computed key": ("rods", rod("A", "D", axial_force=1), "", "'axial_force' is computed"),

@@ -62,7 +62,7 @@ def test_what_theory_cannot_answer_is_said(name: str, title: str, said: str) -> 
     [
         ("isostatic", "3 + 3 − 2·3 = 0", None),
         ("hyperstatic", "6 + 3 − 2·4 = 1", None),
-        ("pendulum", "1 + 2 − 2·2 = −1", "no self-stress, 1 mechanism"),
+        ("pendulum", "1 + 2 − 2·2 = −1", "no state of self-stress, one mechanism"),
     ],
 )
 def test_the_degree_is_told_with_its_formula_and_the_rank_where_it_differs(

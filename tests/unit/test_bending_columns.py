@@ -126,7 +126,7 @@ def test_messages_name_element_value_and_remedy(key: str, value: Any, says: str)
 
 def test_a_clamped_particle_does_not_spin() -> None:
     model = rod()
-    with pytest.raises(FieldError, match="angular velocity is 2 rad/s but its rotation is constrained; set it"):
+    with pytest.raises(FieldError, match="angular velocity is 2 rad/s, but it is clamped; set the"):
         model.particles["A"].angular_velocity = 2.0
     model.particles["B"].angular_velocity = 2.0
     model.particles["B"].fixed_rotation = True

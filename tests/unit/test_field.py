@@ -113,7 +113,7 @@ def test_a_value_is_normalised(field: Field[Any], value: Any, expected: Any) -> 
         (
             number(dtype="reference"),
             "A",
-            "rod AB: push is 'A'; it must be the row of an element, as its .row tells.",
+            "rod AB: push is 'A'; it must be the row of an element, such as its .row.",
         ),
     ],
 )
@@ -130,16 +130,28 @@ def test_a_refusal_names_element_value_and_remedy(field: Field[Any], value: Any,
         (Settings.integrator, ["rk4"], "integrator is ['rk4']; choose one of automatic"),
         (Load.history, ["ramp"], "history is ['ramp']; it must be like"),
         (Load.history, {"kind": ["ramp"]}, "it must be like"),
-        (Load.history, {"kind": "wave"}, "history kind is 'wave'; choose one of constant, pulse, ramp"),
-        (Load.history, {"kind": "ramp", "durration": 1}, "a ramp history has no 'durration'; it takes start"),
-        (Load.history, {"kind": "ramp", "duration": -1}, "history duration is -1 s; it must be at least 0 s"),
+        (
+            Load.history,
+            {"kind": "wave"},
+            "there is no kind of history 'wave'; choose one of constant, pulse, ramp",
+        ),
+        (
+            Load.history,
+            {"kind": "ramp", "durration": 1},
+            "a history of the kind 'ramp' has no 'durration'; it takes only: kind, start",
+        ),
+        (
+            Load.history,
+            {"kind": "ramp", "duration": -1},
+            "duration of the history is -1 s; it must be at least 0 s",
+        ),
         (
             Load.history,
             {"kind": "ramp", "start": math.inf},
-            "history start is inf; it must be a number of at most 1e+30",
+            "start of the history is inf; it must be a number between -1e+30 and 1e+30",
         ),
-        (Load.history, {"kind": "ramp", "start": True}, "history start is True; it must be a number"),
-        (Load.history, {"kind": "ramp", "start": 10**400}, "it must be a number of at most 1e+30 in size"),
+        (Load.history, {"kind": "ramp", "start": True}, "start of the history is True; it must be a number"),
+        (Load.history, {"kind": "ramp", "start": 10**400}, "it must be a number between -1e+30 and 1e+30"),
     ],
 )
 def test_checkers_refuse_in_sentences(owner: Field[Any], value: Any, fragment: str) -> None:
@@ -354,7 +366,7 @@ def test_an_override_is_checked_and_a_computed_field_cannot_be_set() -> None:
 
 
 def test_a_misspelt_attribute_is_refused() -> None:
-    said = "There is no 'froce' among the facts of a particle; did you mean 'force'"
+    said = "There is no 'froce' among the attributes of particles; did you mean 'force'"
     with pytest.raises(AttributeError, match=said):
         triangle().particles["A"].froce = (1.0, 0.0)  # type: ignore[attr-defined]
     with pytest.raises(AttributeError, match=said):

@@ -151,7 +151,9 @@ def test_overrides_choose_sections_and_take_them_away() -> None:
     assert session.rods["AB"].bending_stiffness > 1e4
     apply_override(session.model, "rods.AB.section=none")
     assert session.rods["AB"].section is None
-    with pytest.raises(PathError, match=r"There is no section 'IPE 205'; IPE come in 80, 100, .*600\."):
+    with pytest.raises(
+        PathError, match=r"there is no section 'IPE 205'; IPE sections have these sizes: 80, 100, .*600\."
+    ):
         apply_override(session.model, "rods.AB.section=IPE 205")
 
 
@@ -160,13 +162,16 @@ def test_overrides_choose_sections_and_take_them_away() -> None:
     [
         (
             {"section": "IPE 205"},
-            r"\$.rods\[0\].section \(rod AB\): There is no section 'IPE 205'; IPE come in 80",
+            r"\$.rods\[0\].section \(rod AB\): there is no section 'IPE 205'; IPE sections have these sizes: 80",
         ),
         ({"section": 200}, r"section is 200; it must be a name\."),
         ({"section": "rectangle 0×500"}, "no section 'rectangle 0×500'; write it like IPE 200"),
         ({"material": "steal"}, r"There is no 'steal' among the materials; choose one of S235"),
         ({"material": ["S235"]}, "it must be a name"),
-        ({"section": "IPE 200", "area": 1e-2}, r"area is 100 cm², which is not that of IPE 200; leave out one"),
+        (
+            {"section": "IPE 200", "area": 1e-2},
+            r"area is 100 cm², but IPE 200 has another value; leave out one",
+        ),
     ],
 )
 def test_what_is_wrong_is_named_with_the_remedy(properties: dict[str, Any], told: str) -> None:

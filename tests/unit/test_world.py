@@ -105,9 +105,9 @@ def test_deleting_a_particle_deletes_its_rods_and_loads() -> None:
 
 def test_what_there_is_one_of_is_neither_created_nor_deleted() -> None:
     model = Model()
-    with pytest.raises(ValueError, match="There is exactly one environment; it cannot be deleted"):
+    with pytest.raises(ValueError, match="A model has exactly one environment; it cannot be deleted"):
         model.delete([model.environment])
-    with pytest.raises(ValueError, match="There is exactly one environment; change the one there is"):
+    with pytest.raises(ValueError, match="A model has exactly one environment; change that one"):
         model.create(Environment)
     assert len(model.tables["environment"]) == 1
 
@@ -128,13 +128,13 @@ def test_what_there_is_one_of_is_neither_created_nor_deleted() -> None:
         (
             Particle,
             {"raduis": [1.0]},
-            "There is no 'raduis' among the Fields of particles; did you mean 'radius'?",
+            "There is no 'raduis' among the fields of particles; did you mean 'radius'?",
         ),
         (Particle, {"position": [(5, 5)] * 3}, "original position: 3 values for 1 elements"),
         (
             Particle,
             {"fixed": [(False, True)], "velocity": [(1.0, 2.0)]},
-            "particle 1: velocity y is 2 m/s but it is constrained in y; set it to 0 or free the direction.",
+            "particle 1: velocity y is 2 m/s, but a support holds it along y; set the velocity to 0 or free the direction.",
         ),
         (Rod, {"between": [(0, 0)]}, "A rod needs two different particles; both ends are A."),
         (
@@ -149,7 +149,7 @@ def test_what_there_is_one_of_is_neither_created_nor_deleted() -> None:
         (
             Rod,
             {"between": [(0, 3)]},
-            "rod 1: its ends are at the same place; place them apart or give it a rest",
+            "rod 1: its ends are at the same place; move one of them or give it a rest",
         ),
         (Rod, {}, "A new rod needs 'between': rows of the particles."),
         (Load, {"on": [9]}, "load 1: particle is row 9 of the particles, but there are only 4"),
@@ -157,7 +157,7 @@ def test_what_there_is_one_of_is_neither_created_nor_deleted() -> None:
         (
             Load,
             {"on": [0], "history": [{"kind": "x"}]},
-            "load 1: history kind is 'x'; choose one of constant, ",
+            "load 1: there is no kind of history 'x'; choose one of constant, ",
         ),
     ],
 )
@@ -188,11 +188,11 @@ def test_a_creation_refused_leaves_nothing_behind(kind: Any, columns: dict[str, 
             "rods.AB",
             "between",
             ("A", "C"),
-            "rod AB: ends x is 'A'; it must be the row of an element, as its .row tells.",
+            "rod AB: ends x is 'A'; it must be the row of an element, such as its .row.",
         ),
         ("particles.A", "position", (1, 1), "particle A: at this position rod AB would have no length"),
         ("particles.C", "position", (1, 1), "particle C: at this position rod BC would have no length"),
-        ("particles.A", "velocity", (0, 1), "particle A: velocity y is 1 m/s but it is constrained in y"),
+        ("particles.A", "velocity", (0, 1), "particle A: velocity y is 1 m/s, but a support holds it along y"),
         ("particles.A", "radius", -1, "particle A: radius is -1 m; it must be greater than 0 m."),
     ],
 )

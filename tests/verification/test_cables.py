@@ -14,10 +14,11 @@ from game import Session
 from game.commands.command_line import main
 from game.documents import models
 from systems.statics.events import NoEquilibrium
-from systems.statics.force_method import ForceMethodError, solve
+from systems.statics.force_method import solve
 from systems.statics.path import Goal, load_path
 from systems.statics.settle import settle
 from systems.statics.theory import linear
+from systems.statics.unknowns import ForceMethodError
 from tests.reference import closed_forms, statics
 from tests.reference.elements import Model as Document
 from tests.reference.models import model, particle, random_truss, rod

@@ -16,8 +16,9 @@ from components.rod import spawn_rods
 from game import Session
 from game.documents import models
 from game.force_method.guide import exact_forces
-from systems.statics.force_method import ForceMethodError, find_unknown, redundants, solve
+from systems.statics.force_method import solve
 from systems.statics.theory import linear
+from systems.statics.unknowns import ForceMethodError, find_unknown, redundants
 from tests.reference.models import panel_truss
 from tests.reference.statics import direct_stiffness
 

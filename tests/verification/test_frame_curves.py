@@ -158,7 +158,7 @@ def test_the_command_tells_points_and_events(capsys: pytest.CaptureFixture[str],
 
 
 @pytest.mark.parametrize(
-    ("until", "said"), [("P0.rotation=1", "P0 does not turn"), ("P2.z=1", "or B.rotation=1, in rad")]
+    ("until", "said"), [("P0.rotation=1", "P0 cannot turn"), ("P2.z=1", "or B.rotation=1, in rad")]
 )
 def test_goals_are_checked(until: str, said: str) -> None:
     with pytest.raises(ValueError, match=said):

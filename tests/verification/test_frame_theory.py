@@ -13,10 +13,10 @@ from game.commands.reports.verify import influence
 from game.documents.models import parse
 from systems.statics.counting import counted
 from systems.statics.events import NoEquilibrium
-from systems.statics.force_method import ForceMethodError
 from systems.statics.settle import settle
 from systems.statics.state import StaticState
 from systems.statics.theory import indeterminacy, linear, mechanisms, self_stress
+from systems.statics.unknowns import ForceMethodError
 from systems.statics.vibration import vibrations
 from tests.reference import frame_theory
 from tests.reference.models import model

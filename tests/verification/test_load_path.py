@@ -83,10 +83,10 @@ def test_the_command_writes_a_table_to_plot(capsys: pytest.CaptureFixture[str]) 
 @pytest.mark.parametrize(
     ("words", "said"),
     [
-        (["isostatic", "--until", "C.x=1"], "C is constrained along x"),
+        (["isostatic", "--until", "C.x=1"], "C is held along x"),
         (["isostatic", "--until", "Z.x=1"], "Z"),
         (["isostatic", "--until", "B.y"], "write it like B.y=-2.5"),
-        (["collision_i"], "apply one that the factor can scale"),
+        (["collision_i"], "apply one, which the load factor multiplies"),
     ],
 )
 def test_what_has_no_curve_is_refused(words: list[str], said: str, capsys: pytest.CaptureFixture[str]) -> None:

@@ -311,7 +311,7 @@ def test_verify_points_out_a_rod_that_yielded_in_the_overshoot(capsys: pytest.Ca
     assert found["status"] == "differs from static theory"
     assert found["remarks"][0]["rods"] == ["AB"]
     assert found["message"].startswith(
-        "Rod AB yielded only in the overshoot: static force 9 kN < strength 10 kN"
+        "Rod AB yielded only because the sudden load overshot: in equilibrium its force is 9 kN, below its strength of 10 kN"
     )
 
 
@@ -379,7 +379,7 @@ def test_verify_prints_tables(capsys: pytest.CaptureFixture[str], words: tuple[s
     [
         ("isostatic", "g = m + r − 2n = 3 + 3 − 2·3 = 0"),
         ("hyperstatic", "g = m + r − 2n = 6 + 3 − 2·4 = 1"),
-        ("pendulum", "g = m + r − 2n = 1 + 2 − 2·2 = −1; by rank: no self-stress, 1 mechanism"),
+        ("pendulum", "g = m + r − 2n = 1 + 2 − 2·2 = −1; by rank: no state of self-stress, one mechanism"),
         ("snap_through", "g = m + r − 2n = 2 + 4 − 2·3 = 0"),
     ],
 )

@@ -19,7 +19,6 @@ from systems.statics.counting import Count, counted
 from systems.statics.equations import Array
 from systems.statics.events import NoEquilibrium, event_record
 from systems.statics.explain import describe_motion
-from systems.statics.force_method import ForceMethodError, find_unknown
 from systems.statics.theory import (
     indeterminacy,
     influence_on_displacement,
@@ -29,6 +28,7 @@ from systems.statics.theory import (
     mechanisms,
     self_stress,
 )
+from systems.statics.unknowns import ForceMethodError, find_unknown
 from systems.statics.verify import (
     DEPARTURES,
     ELSEWHERE,

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from components.field import Vector
+from components.language import LANGUAGES, language, speak, tr
 from components.rod import has_strength
 from game.documents.shapes import NoShape
 from game.editor.context import Action, Context, action
@@ -72,6 +73,15 @@ def _next_theme(context: Context, pixel: Vector) -> None:
     following = THEMES.index(theme) + 1 if theme in THEMES else 0
     context.view.theme = THEMES[following % len(THEMES)]
     context.notice = f"Theme: {load_theme(context.view.theme).title}"
+
+
+@action("next language", while_drawing=True)
+def _next_language(context: Context, pixel: Vector) -> None:
+    """The language after the present one, in which all is said from now on."""
+    codes = list(LANGUAGES)
+    speak(codes[(codes.index(language()) + 1) % len(codes)])
+    context.scenes.active.say_again(context)
+    context.notice = tr("Language: {language}", language=LANGUAGES[language()])
 
 
 @action("toggle help", while_drawing=True)

@@ -84,7 +84,7 @@ class ForceMethod(Scene):
     def _begin(self, context: Context, unknown: str) -> None:
         # Here only, since they import scipy.
         from game.force_method.guide import Guide, Mechanism, base_structure, view_like
-        from systems.statics.force_method import ForceMethodError
+        from systems.statics.unknowns import ForceMethodError
 
         try:
             self.shown_guide = Guide(context.model, context.schedule, context.view)

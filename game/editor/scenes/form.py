@@ -93,6 +93,20 @@ class FormScene(Scene):
             typing.step_caret(self.form, 1 if direction == "right" else -1)
             self._reveal_selected(context)
 
+    def say_again(self, context: Context) -> None:
+        """Make the form again, with what was typed."""
+        before, typed = self.form, False
+        self.form = self.make_form(context)
+        for old, box in zip(before.boxes, self.form.boxes, strict=False):
+            if old is before.selected:
+                typing.select(self.form, box)
+            if old.text != box.text:
+                typing.put(self.form, box, old.text)
+                typed = True
+        if typed:
+            self.changed(context)
+        self.form.heading.first = before.heading.first
+
     # --- pictures ----------------------------------------------------------------------------------
 
     def stages(self, context: Context) -> Sequence[Stage]:

@@ -1,0 +1,83 @@
+"""The language of the program: as --language says, PINJOINT_LANGUAGE, the person's choice, or else that of the system."""
+
+from __future__ import annotations
+
+import gettext
+import locale
+import os
+from collections.abc import Iterable, Sequence
+
+from components.language import DOMAIN, ENGLISH, LANGUAGES, LOCALE, language, marked, speak, tr
+from game.commands.arguments import Parser, UsageError
+from game.documents.preferences import preferred_language
+
+VARIABLE = "PINJOINT_LANGUAGE"
+_OF_SYSTEM = ("LANGUAGE", "LC_ALL", "LC_MESSAGES", "LANG")  # the first that is set counts, as for gettext
+
+OF_ARGPARSE = (  # its words, for the catalogues: it looks them up itself
+    marked("usage: "),
+    marked("positional arguments"),
+    marked("options"),
+    marked("show this help message and exit"),
+    marked("argument %(argument_name)s: %(message)s"),
+    marked("unrecognized arguments: %s"),
+    marked("not allowed with argument %s"),
+    marked("ignored explicit argument %r"),
+    marked("the following arguments are required: %s"),
+    marked("one of the arguments %s is required"),
+    marked("expected one argument"),
+    marked("expected at most one argument"),
+    marked("expected at least one argument"),
+    marked("ambiguous option: %(option)s could match %(matches)s"),
+    marked("invalid %(type)s value: %(value)r"),
+    marked("invalid choice: %(value)r (choose from %(choices)s)"),
+    marked("invalid choice: %(value)r, maybe you meant %(closest)r? (choose from %(choices)s)"),
+)
+
+
+def speak_as_asked(words: Sequence[str]) -> list[str]:
+    """Speak the language of the option --language CODE, which every command has, or else that of the person.
+
+    Returns the other words. Raises UsageError for a language that there is not.
+    """
+    speak(asked_language() or preferred_language() or language_of_system())
+    parser = Parser(prog="pinjoint", add_help=False, allow_abbrev=False)
+    parser.add_argument("--language", metavar="CODE")
+    options, others = parser.parse_known_args(list(words))
+    if options.language is not None:
+        if not (code := _known([options.language])):
+            raise UsageError(
+                tr(
+                    "--language {code}: there is no such language; write one of {languages}.",
+                    code=options.language,
+                    languages=", ".join(LANGUAGES),
+                )
+            )
+        os.environ[VARIABLE] = code  # for this process and those that it starts
+        speak(code)
+    if language() != ENGLISH:  # argparse asks gettext for its words, and gettext the environment
+        os.environ["LANGUAGE"] = language()
+        gettext.bindtextdomain(DOMAIN, LOCALE)
+        gettext.textdomain(DOMAIN)
+    return others
+
+
+def asked_language() -> str:
+    """The language that a person asked for this time, "" if none."""
+    return _known([os.environ.get(VARIABLE, "")])
+
+
+def language_of_system() -> str:
+    """The first language of the system that there is a catalogue for; English if there is none."""
+    said = next(filter(None, map(os.environ.get, _OF_SYSTEM)), None) or locale.getlocale()[0] or ""
+    return _known(said.split(":")) or ENGLISH
+
+
+def _known(codes: Iterable[str]) -> str:
+    """The first language of ours among codes such as "pt_BR.UTF-8" or, on Windows, "Portuguese_Brazil"; else ""."""
+    names = {"english": ENGLISH, "portuguese": "pt", "c": ENGLISH, "posix": ENGLISH}
+    for code in codes:
+        name = code.replace("-", "_").replace(".", "_").partition("_")[0].lower()
+        if (name := names.get(name, name)) in LANGUAGES:
+            return name
+    return ""

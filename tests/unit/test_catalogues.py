@@ -1,0 +1,159 @@
+"""The catalogues hold the sentences of the sources, and their translations can stand in their place."""
+
+from __future__ import annotations
+
+import ast
+import gettext
+from collections.abc import Iterator
+from pathlib import Path
+from string import Formatter
+
+import pytest
+
+from components.language import DOMAIN, ENGLISH, LANGUAGES
+from tests.catalogues import ROOT, extracted, folders, is_translated, path_of, texts, translations
+
+KEYWORDS = {"tr": 1, "marked": 1, "plural": 2, "tr_in": 2}  # the number of arguments that are literals
+SOURCES = [
+    path for folder in ("components", "systems", "game") for path in sorted((ROOT / folder).rglob("*.py"))
+]
+CATALOGUES = [
+    (domain, language)
+    for domain in folders()
+    for language in LANGUAGES
+    if language != ENGLISH and path_of(domain, language).is_file()
+]
+AGAIN = "run: python -m tests.catalogues update"
+
+
+def sentences(domain: str) -> set[tuple[str | None, object]]:
+    return {(message.context, message.id) for message in extracted(domain) if message.id}
+
+
+@pytest.fixture(scope="module")
+def present() -> dict[str, set[tuple[str | None, object]]]:
+    return {domain: sentences(domain) for domain in folders()}
+
+
+@pytest.mark.parametrize(("domain", "language"), CATALOGUES)
+def test_a_catalogue_holds_the_sentences_of_the_sources_and_no_others(domain, language, present):
+    held = {(message.context, message.id) for message in translations(domain, language) if message.id}
+    assert not held ^ present[domain], AGAIN
+
+
+def test_every_mod_with_sentences_has_its_catalogues(present):
+    missing = [d for d, said in present.items() if said and (d, "pt") not in CATALOGUES]
+    assert not missing, AGAIN
+
+
+@pytest.mark.parametrize(("domain", "language"), CATALOGUES)
+def test_what_the_program_reads_is_what_translators_wrote(domain, language):
+    with path_of(domain, language).with_suffix(".mo").open("rb") as file:
+        compiled = gettext.GNUTranslations(file)
+    for message in translations(domain, language):
+        if not message.id or message.fuzzy or not is_translated(message):
+            continue
+        if isinstance(message.id, tuple):
+            one, many = message.id
+            got = tuple(compiled.ngettext(one, many, number) for number in (1, 2))
+        elif message.context is not None:
+            got = compiled.pgettext(message.context, message.id)
+        else:
+            got = compiled.gettext(message.id)
+        assert got == message.string, AGAIN
+
+
+def fields(text: str) -> set[tuple[str, str, str]]:
+    return {(name, spec, kind or "") for _, name, spec, kind in Formatter().parse(text) if name is not None}
+
+
+@pytest.mark.parametrize(("domain", "language"), CATALOGUES)
+def test_translations_fill_in_the_same_values(domain, language):
+    for message in translations(domain, language):
+        if not message.id or not is_translated(message) or message.fuzzy:
+            continue
+        if isinstance(message.id, tuple):
+            for source, said in zip(message.id, message.string, strict=True):
+                assert fields(said) - {("count", "", "")} == fields(source) - {("count", "", "")}
+        elif placeholders(message.id):
+            assert fields(message.string) == fields(message.id)
+
+
+def placeholders(text: str) -> bool:
+    """True of a text that `format` fills in; others may contain braces, such as examples of JSON."""
+    try:
+        return bool(fields(text)) and all(name.isidentifier() for name, _, _ in fields(text))
+    except ValueError:
+        return False
+
+
+@pytest.mark.parametrize(("domain", "language"), CATALOGUES)
+def test_no_translation_waits_to_be_read_again(domain, language):
+    assert not [message.id for message in translations(domain, language) if message.id and message.fuzzy]
+
+
+def calls() -> Iterator[tuple[Path, ast.Call, str]]:
+    for path in SOURCES:
+        for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
+            if isinstance(node, ast.Call) and isinstance(node.func, ast.Name) and node.func.id in KEYWORDS:
+                yield path, node, node.func.id
+
+
+def test_sentences_are_literals_so_that_catalogues_hold_them(present):
+    """Babel finds literals only: no f-strings, no choices in the argument, no sentence within an f-string."""
+    held = {part for _, said in present[DOMAIN] for part in (said if isinstance(said, tuple) else (said,))}
+    wrong = []
+    for path, call, keyword in calls():
+        for argument in call.args[: KEYWORDS[keyword]]:
+            if isinstance(argument, ast.Constant):
+                known = argument.value in held or (keyword == "tr_in" and argument is call.args[0])
+            elif keyword in ("tr", "tr_in"):  # of what is marked elsewhere
+                within = (node for node in ast.walk(argument) if not isinstance(node, ast.Subscript))
+                known = not isinstance(argument, ast.JoinedStr | ast.IfExp | ast.BinOp) and any(within)
+            else:
+                known = path.name == "language.py"
+            if not known:
+                wrong.append(f"{path.relative_to(ROOT)}:{call.lineno}: {ast.unparse(argument)}")
+    assert not wrong, "\n".join(wrong)
+
+
+def test_nothing_is_translated_while_modules_are_imported():
+    """At import nobody has chosen a language yet."""
+    wrong = []
+    for path in SOURCES:
+        for statement in ast.parse(path.read_text(encoding="utf-8")).body:
+            wrong += [f"{path.relative_to(ROOT)}:{line}" for line in said_at_import(statement)]
+    assert not wrong, "\n".join(wrong)
+
+
+def said_at_import(node: ast.AST) -> Iterator[int]:
+    """Lines of calls of tr, tr_in and plural that run when a module is imported."""
+    if (
+        isinstance(node, ast.Call)
+        and isinstance(node.func, ast.Name)
+        and node.func.id in ("tr", "tr_in", "plural")
+    ):
+        yield node.lineno
+    if isinstance(node, ast.Lambda):
+        return
+    later = node.body if isinstance(node, ast.FunctionDef | ast.AsyncFunctionDef) else ()
+    for child in ast.iter_child_nodes(node):
+        if child not in later:
+            yield from said_at_import(child)
+
+
+def test_texts_of_data_are_extracted_by_their_keys(tmp_path):
+    (tmp_path / "film.jsonl").write_text(
+        '{"say": "Go."}\n# note\n{"hints": ["One", "Two"], "right": {"say": "Yes"}}\n'
+    )
+    (tmp_path / "data.json").write_text('{"materials": {"steel": {}, "oak": {"title": "Oak"}}}')
+    with (tmp_path / "film.jsonl").open("rb") as file:
+        assert [text for _, _, text, _ in texts(file, (), (), {"keys": ["say", "hints"]})] == [
+            "Go.",
+            "One",
+            "Two",
+            "Yes",
+        ]
+    with (tmp_path / "data.json").open("rb") as file:
+        options = {"keys": ["title"], "names_of": ["materials"]}
+        assert [text for _, _, text, _ in texts(file, (), (), options)] == ["steel", "oak", "Oak"]

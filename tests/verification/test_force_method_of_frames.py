@@ -1,0 +1,178 @@
+"""The force method where members bend, and its virtual work: closed forms, linear theory, Maxwell's reciprocity."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from components.model import Model
+from game.documents import models
+from game.documents.models import parse
+from systems.statics.force_method import Solution, solve
+from systems.statics.theory import indeterminacy, linear
+from systems.statics.unknowns import ForceMethodError, Unknown, find_unknown, redundants
+from systems.statics.virtual_work import virtual_work
+from tests.reference.models import model, random_truss
+from tests.verification.test_frame_theory import EA, EI, beam, free, held, random_frame
+
+SEEDS = st.integers(0, 2**32 - 1)
+L, Q = 4.0, 7.0
+
+
+def solved(made: Model, *names: str) -> Solution:
+    """The solution for these unknowns, which agrees with linear theory and with its table of virtual work."""
+    return checked(made, [find_unknown(made, name) for name in names])
+
+
+def checked(made: Model, unknowns: list[Unknown], within: float = 1e-9) -> Solution:
+    found, theory = solve(made, unknowns), linear(made)
+    work = virtual_work(made, found)
+    size = np.abs(found.flexibility).max()
+    assert np.abs(found.flexibility - found.flexibility.T).max() <= within * size
+    assert (np.diag(found.flexibility) > 0.0).all()
+    assert np.abs(work.flexibility - found.flexibility).max() <= within * size
+    reach = max(np.abs(found.gap).max(), size * np.abs(found.force).max())
+    assert np.abs(work.gap - found.gap).max() <= within * reach
+    whole = found.superposed
+    forces = max(np.abs(theory.axial_force).max(), np.abs(theory.reaction).max(), 1e-3)
+    assert np.abs(whole.axial_force - theory.axial_force).max() <= within * forces
+    assert np.abs(whole.reaction[:, :2] - theory.reaction).max() <= within * forces
+    if len(whole.end_moment):
+        moments = np.abs(theory.diagrams["bending_moment"]).max() + 1e-3
+        assert np.abs(whole.bending_moment - theory.diagrams["bending_moment"]).max() <= within * moments
+        assert np.abs(whole.reaction[:, 2] - theory.reaction_moment).max() <= within * moments
+        assert np.abs(whole.rotation - theory.rotation).max() <= within * (np.abs(theory.rotation).max() + 1e-9)
+    moved = np.abs(theory.displacement).max() + 1e-9
+    assert np.abs(whole.displacement - theory.displacement).max() <= within * moved
+    return found
+
+
+def propped(**facts: Any) -> Model:
+    """A cantilever AB on a prop at B, under a distributed load."""
+    clamp = held("A", 0.0, fixed_rotation=True)
+    prop = held("B", L, fixed=[False, True], **facts)
+    return parse(model([clamp, prop], [beam("AB", distributed_force=[0.0, -Q])]))
+
+
+def test_the_prop_of_a_cantilever_bears_three_eighths_of_its_load() -> None:
+    found = solved(propped(), "B.y")
+    assert found.gap[0] == pytest.approx(-Q * L**4 / (8.0 * EI), rel=1e-12)
+    assert found.flexibility[0, 0] == pytest.approx(L**3 / (3.0 * EI), rel=1e-12)
+    assert found.force[0] == pytest.approx(3.0 * Q * L / 8.0, rel=1e-12)
+
+
+@pytest.mark.parametrize("name", ["A.rotation", "AB.start"])
+def test_the_same_by_its_clamp(name: str) -> None:
+    """The reaction turns the beam up, which is tension at its top: a negative bending moment."""
+    found = solved(propped(), name)
+    sign = 1.0 if name == "A.rotation" else -1.0
+    assert found.gap[0] == pytest.approx(sign * -Q * L**3 / (24.0 * EI), rel=1e-12)
+    assert found.flexibility[0, 0] == pytest.approx(L / (3.0 * EI), rel=1e-12)
+    assert found.force[0] == pytest.approx(sign * Q * L**2 / 8.0, rel=1e-12)
+
+
+def test_a_released_support_that_has_moved_is_on_the_right_side_and_others_in_the_gap() -> None:
+    c = -0.003
+    found = solved(propped(displacement=[0.0, c]), "B.y")
+    assert found.prescribed[0] == c
+    assert found.gap[0] == pytest.approx(-Q * L**4 / (8.0 * EI), rel=1e-12)
+    assert found.force[0] == pytest.approx(3.0 * Q * L / 8.0 + 3.0 * EI * c / L**3, rel=1e-12)
+    found = solved(propped(displacement=[0.0, c]), "A.rotation")
+    assert found.prescribed[0] == 0.0
+    assert found.gap[0] == pytest.approx(-Q * L**3 / (24.0 * EI) + c / L, rel=1e-12)
+
+
+def test_a_beam_clamped_at_both_ends_with_three_unknowns() -> None:
+    particles = [held("A", 0.0, fixed_rotation=True), held("B", L, fixed_rotation=True)]
+    made = parse(model(particles, [beam("AB", distributed_force=[0.0, -Q])]))
+    found = solved(made, "B.x", "B.y", "B.rotation")
+    assert found.force == pytest.approx([0.0, Q * L / 2.0, -Q * L**2 / 12.0], rel=1e-12, abs=1e-11)
+
+
+def portal(load: float) -> Model:
+    """Feet A and D clamped, height h, span l, the beam under a distributed load; axially stiff."""
+    particles = [
+        held("A", 0.0, fixed_rotation=True),
+        free("B", 0.0, 3.0),
+        free("C", 5.0, 3.0),
+        held("D", 5.0, fixed_rotation=True),
+    ]
+    stiff = {"stiffness": 1e12}
+    rods = [beam("AB", **stiff), beam("BC", distributed_force=[0.0, -load], **stiff), beam("CD", **stiff)]
+    return parse(model(particles, rods))
+
+
+def test_a_portal_clamped_at_its_feet() -> None:
+    """Kleinlogel: thrust q l²/(4 h N₁), moment at the feet q l²/(12 N₁), N₁ = k + 2, k = h/l (equal EI)."""
+    height, span, load = 3.0, 5.0, 10.0
+    n = height / span + 2.0
+    made = portal(load)
+    found = solve(made, [find_unknown(made, name) for name in ("D.x", "D.y", "D.rotation")])
+    thrust, foot = load * span**2 / (4.0 * height * n), load * span**2 / (12.0 * n)
+    assert found.force == pytest.approx([-thrust, load * span / 2.0, foot], rel=1e-6)
+    corner = found.superposed.bending_moment[1, 0]
+    assert corner == pytest.approx(-load * span**2 / (6.0 * n), rel=1e-6)
+
+
+def test_warmth_across_a_beam_clamped_at_both_ends() -> None:
+    """M = EI α ΔT/h everywhere: the warmer lower side is pressed, tension above."""
+    particles = [held("A", 0.0, fixed_rotation=True), held("B", L, fixed_rotation=True)]
+    warm = {"temperature_gradient": -50.0, "thermal_expansion": 1.2e-5, "temperature_change": 20.0}
+    made = parse(model(particles, [beam("AB", **warm)]))
+    found = solved(made, "B.x", "B.y", "B.rotation")
+    assert found.superposed.bending_moment[0] == pytest.approx([-EI * 1.2e-5 * 50.0] * 2, rel=1e-9)
+    assert found.force[0] == pytest.approx(-EA * 1.2e-5 * 20.0, rel=1e-9)
+
+
+@settings(max_examples=60, deadline=None)
+@given(SEEDS)
+def test_random_frames_by_all_their_unknowns_and_by_some(seed: int) -> None:
+    made = parse(random_frame(seed))
+    degrees = indeterminacy(made)
+    if degrees.mechanisms or not degrees.static:
+        return
+    unknowns = redundants(made)
+    assert len(unknowns) == degrees.static
+    checked(made, unknowns)
+    lot = np.random.default_rng(seed)
+    some = [unknowns[i] for i in sorted(lot.permutation(len(unknowns))[: 1 + lot.integers(len(unknowns))])]
+    checked(made, some)
+
+
+@settings(max_examples=40, deadline=None)
+@given(SEEDS)
+def test_random_trusses_with_warm_and_misfitting_rods(seed: int) -> None:
+    made = parse(random_truss(seed))
+    degrees = indeterminacy(made)
+    if degrees.mechanisms or not degrees.static:
+        return
+    lot = np.random.default_rng(seed)
+    for rod in made.rods:
+        rod.temperature_change = float(lot.uniform(-30.0, 30.0))
+        rod.thermal_expansion = 1.2e-5
+    checked(made, redundants(made))
+
+
+@pytest.mark.parametrize(
+    ("name", "words"),
+    [
+        ("AB", r"AB bends\. Release the moment at one of its ends instead: AB\.start or AB\.end"),
+        ("AB.end", r"Without AB\.end the structure is a mechanism: B round itself can move"),
+        ("B.rotation", "B is not clamped"),
+        ("A.turn", "rods and supports"),
+    ],
+)
+def test_unknowns_that_are_none_are_explained(name: str, words: str) -> None:
+    made = propped()
+    with pytest.raises(ForceMethodError, match=words):
+        solve(made, [find_unknown(made, name)])
+
+
+@pytest.mark.parametrize("name", ["hyperstatic", "tower", "portal", "two_storey_frame", "vierendeel"])
+def test_bundled_models(name: str) -> None:
+    made = models.load(name)
+    checked(made, redundants(made))
