@@ -8,7 +8,7 @@ from typing import Any
 from components.language import tr
 from game.lessons import progress
 from game.lessons.course import Course
-from game.lessons.judging import filled
+from game.lessons.judging import filled, is_filled
 from game.lessons.tasks import CHOICES, UNTIL, Lesson
 from game.scripts.lines import Failure
 from game.scripts.script import Script
@@ -49,7 +49,7 @@ def _failures(lesson: Lesson, number: int, session: Any) -> Iterator[tuple[str, 
         course.check()
         if course.accepted:
             yield tr("a wrong answer that is refused: {say}", say=wrong.say), tr("it is accepted")
-        elif course.said != filled(wrong.say, session):
+        elif not is_filled(course.said, wrong.say):
             yield wrong.say, course.said
     for choice in task.choices if task.kind == CHOICES else ():
         course.again()

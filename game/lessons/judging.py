@@ -7,6 +7,8 @@ import re
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from typing import Any, NamedTuple
 
+import numpy as np
+
 from components import written
 from components.handle import Handle
 from components.language import decimals, joined, listed, marked, tr
@@ -221,10 +223,16 @@ def filled(text: str, session: Session, answer: float | None = None) -> str:
     return _PLACE.sub(value, tr(text)) if text else ""
 
 
+def is_filled(said: str, text: str) -> bool:
+    """True if what was said is a text with any values in its places."""
+    pattern = ".*".join(re.escape(part) for part in re.split(r"\{[^{}]*\}", tr(text)))
+    return re.fullmatch(pattern, said) is not None
+
+
 def shown(session: Session, path: str) -> str:
     """The present value at a path as a person reads it, with its unit."""
     value = read(session, path)
-    if isinstance(value, bool | str) or value is None:
+    if isinstance(value, int | str | np.integer) or value is None:
         return str(value)
     unit, _, _ = _said_of(session, path)
     return f"{_number(_shown_number(session, path))} {unit}".rstrip()
@@ -255,8 +263,8 @@ def _said_of(session: Session, path: str) -> tuple[str, float, str]:
 def _shown_number(session: Session, path: str) -> float:
     """The number at a path in the unit in which it is shown."""
     value = read(session, path)
-    if isinstance(value, str) or value is None:
-        raise ValueError(tr("{path} is {value}, not a number.", path=path, value=value))
+    if not isinstance(value, int | float):
+        raise ValueError(tr("{path} is {value}, not one number.", path=path, value=value))
     return float(value) * _said_of(session, path)[1]
 
 
