@@ -8,13 +8,12 @@ from typing import Any
 
 from components.card import Card, CardButton
 from components.language import decimals, marked, tr
-from components.mistake import Mistake
 from components.view import Shape
 from game.documents.document import document
 from game.documents.models import ModelError, load
 from game.documents.open_documents import ModelFile
 from game.lessons import progress
-from game.lessons.judging import Answer, Document, filled, judge, score_of, shown, unit_of
+from game.lessons.judging import Answer, Document, Verdict, filled, judge, unit_of
 from game.lessons.tasks import CHOICES, NUMBER, SELECT, UNTIL, Lesson, Line, Task
 from game.scripts.lines import perform
 from game.scripts.script import ScriptError
@@ -200,34 +199,31 @@ class Course:
         self._judge(answer)
 
     def _judge(self, answer: Answer, *, aloud: bool = True) -> None:
+        """Judge the task; aloud: say also why it is wrong."""
         try:
-            right, said = judge(self._session, self.task, self._begun, answer)
-        except Mistake as error:  # such as a rod that was removed
-            right, said = False, str(error)
-        except (ValueError, LookupError) as error:
-            right, said = False, str(error.args[0]) if error.args else str(error)
-        if right:
-            self._accept(said)
-        elif aloud:
-            self.mood, self.said, self.first = WRONG, said, 0
+            found = judge(self._session, self.task, self._begun, answer)
+        except (ValueError, LookupError) as error:  # such as of a rod that was removed
+            found = Verdict(False, str(error.args[0]) if error.args else str(error))
+        if found.right:
+            self._accept(found)
+        elif aloud or self.accepted:
+            self.mood, self.said, self._scored, self.first = WRONG, found.said, "", 0
 
-    def _accept(self, said: str) -> None:
-        self.accepted, self.mood, self.said, self.first = True, RIGHT, said, 0
-        if not self._shown:
-            self._keep()
-
-    def _keep(self) -> None:
-        """Note that the task is done, and its score."""
-        task = self.task
-        score = score_of(self._session, task) if task.score else None
-        progress.keep(self.lesson.name, self.at + 1, score)
-        self._done = progress.done(self.lesson.name)
-        if score is not None:
-            best, present = self._done.best.get(self.at + 1, score), shown(self._session, task.score)
+    def _accept(self, found: Verdict) -> None:
+        self.accepted, self.mood, self.said, self.first = True, RIGHT, found.said, 0
+        if self._shown:
+            return
+        number, name = self.at + 1, self.lesson.name
+        progress.keep(name, number, found.score[0] if found.score is not None else None)
+        self._done = progress.done(name)
+        if found.score is not None:
             self._scored = (
-                tr("Your score: {score}, your best so far. Less is better: try again, or go on.", score=present)
-                if best >= score
-                else tr("Your score: {score}. Your best score is better: less is better.", score=present)
+                tr(
+                    "Your score: {score}, your best so far. Less is better: try again, or go on.",
+                    score=found.score[1],
+                )
+                if found.score[0] <= self._done.best.get(number, math.inf)
+                else tr("Your score: {score}. Your best score is better: less is better.", score=found.score[1])
             )
 
     def hint(self) -> None:
@@ -260,18 +256,7 @@ class Course:
         seen = self._looks()
         if seen != self._seen:
             self._seen = seen
-            if self.accepted:
-                self._score_again()
-            else:
-                self._judge(None, aloud=False)
-
-    def _score_again(self) -> None:
-        """A task with a score goes on after it was done."""
-        right, said = judge(self._session, self.task, self._begun)
-        if right:
-            self._keep()
-        self.mood, self.said = (RIGHT, said) if right else (WRONG, said)
-        self._scored = self._scored if right else ""
+            self._judge(None, aloud=False)
 
     def _looks(self) -> object:
         """What changes whenever the task may have been done."""

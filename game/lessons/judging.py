@@ -63,10 +63,11 @@ _OVER_ALL = {
 
 
 class Verdict(NamedTuple):
-    """Whether a task is done, and what is said of it."""
+    """Whether a task is done, and what is said of it. score: of one that has one, and as it is written."""
 
     right: bool
     said: str
+    score: tuple[float, str] | None = None
 
 
 def judge(session: Session, task: Task, begun: Document, answer: Answer = None) -> Verdict:
@@ -100,11 +101,6 @@ def holds(session: Session, conditions: Iterable[str]) -> bool:
     return all(not list(check(session, condition)) for condition in conditions)
 
 
-def score_of(session: Session, task: Task) -> float:
-    """The score of a task that has one: the less, the better."""
-    return float(read(session, task.score))
-
-
 # --- the four kinds --------------------------------------------------------------------------------------
 
 
@@ -112,7 +108,8 @@ def _judge_state(session: Session, task: Task) -> Verdict:
     state = copy_of(session, document(session.model), task.after) if task.after else session
     failed = next((text for text in task.asked if not holds(state, (text,))), None)
     if failed is None:
-        return Verdict(True, filled(task.right, state))
+        score = (float(read(state, task.score)), shown(state, task.score)) if task.score else None
+        return Verdict(True, filled(task.right, state), score)
     return Verdict(False, _explained(task, state) or _lacking(state, failed))
 
 
