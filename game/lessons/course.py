@@ -179,13 +179,17 @@ class Course:
         if task.kind == CHOICES:
             return self.choice
         if task.kind == SELECT:
-            return tuple(str(getattr(handle, "name", "")) for handle in self._session.selected)
+            return self._selected()
         if not self.typed:
             return None
         number = float(self.typed.replace(",", ".").replace("−", "-"))
         if not math.isfinite(number):
             raise ValueError
         return number
+
+    def _selected(self) -> tuple[str, ...]:
+        """The names of the selected elements."""
+        return tuple(str(getattr(handle, "name", "")) for handle in self._session.selected)
 
     def check(self) -> None:
         """Judge the task, and say why it is right or wrong."""
@@ -245,24 +249,25 @@ class Course:
         self._shown = True
 
     def look(self) -> None:
-        """Accept a state as soon as it is reached and nobody is in the middle of something."""
+        """Accept a state as soon as it is reached and nobody is in the middle of something; take back what is said no more."""
         session, task = self._session, self.task
-        if task.kind != UNTIL or session.gesture is not None or session.performing:
-            return
-        if self.accepted and not task.score:
-            return
-        if session.busy and task.after:
+        if session.gesture is not None or session.performing or (session.busy and task.after):
             return
         seen = self._looks()
-        if seen != self._seen:
-            self._seen = seen
-            self._judge(None, aloud=False)
+        if seen == self._seen or (self.accepted and not task.score):
+            return
+        self._seen = seen
+        if task.kind == UNTIL:
+            self._judge(None, aloud=self.mood == WRONG)
+        elif task.kind == SELECT and self.mood == WRONG:
+            self.mood = self.said = ""
 
     def _looks(self) -> object:
         """What changes whenever the task may have been done."""
         session = self._session
         seen = [value for value in vars(session.view).values() if isinstance(value, bool | str | Shape | None)]
-        return id(session.document), session.model.revision, session.scene, session.simulation.halted, seen
+        chosen = self._selected() if self.task.kind == SELECT else ()
+        return id(session.document), session.model.revision, session.simulation.halted, seen, chosen
 
     # --- the card ----------------------------------------------------------------------------------
 
@@ -291,13 +296,12 @@ class Course:
         )
 
     def _entry(self) -> str | None:
+        """What was typed or selected so far."""
+        if self.task.kind == SELECT:
+            return tr("Selected: {names}", names=", ".join(self._selected()) or "–")
         if self.task.kind != NUMBER:
             return None
-        return (
-            f"{decimals(self.typed)}▏ {self._unit}".rstrip()
-            if not self.accepted
-            else f"{self.typed} {self._unit}"
-        )
+        return f"{decimals(self.typed)}{'' if self.accepted else '▏'} {self._unit}".rstrip()
 
     def _buttons(self, *, last: bool) -> tuple[CardButton, ...]:
         onward = tr("Next lesson") if last else tr("Next")

@@ -48,7 +48,15 @@ class Load(FileScene):
         self._asked = False
         new = Offer(LESSONS, NEW, "draw your own", "", None, "An empty plane to draw on.", "+")
         learn = _tasks()
-        rest = Offer(LESSONS, tr("All lessons"), tr("to do and to watch"), "", ALL, symbol="»", rest=True)
+        rest = Offer(
+            LESSONS,
+            tr("All lessons"),
+            tr("{tasks} to do, {films} to watch", tasks=len(learn), films=len(lessons())),
+            "",
+            ALL,
+            symbol="»",
+            rest=True,
+        )
         offers = [*learn[:1], new, *learn[1:], *_lessons(), rest, *_yours(context), *_examples()]
         form = self.new_form(WELCOME if self.welcome else "Open a model", "", offers, "Open")
         form.boxes[0].note = "type to search, or click a picture"
