@@ -8,6 +8,7 @@ from typing import Any
 
 from components.field import Field
 from components.handle import Handle
+from components.language import decimals, tr
 
 NUMBER, WORD, TEXT, FILE_NAME = "number", "word", "text", "file name"
 NAME = "name"  # one of some words, or a text of a form that is known
@@ -23,6 +24,14 @@ def number_and_unit(text: str) -> tuple[str, str]:
     """What was typed into a box for a length, such as "1.5 m", as its number and its unit, which may be ""."""
     found = _WITH_UNIT.fullmatch(text)
     return (found[1], found[2].rstrip()) if found else (text, "")
+
+
+def said_title(title: str, target: str) -> str:
+    """The title of a box in the present language; target: of which part, such as "particles.force.x"."""
+    part = target.split(".")[2:]
+    if not part or not title.endswith(f" {part[0]}"):
+        return tr(title)
+    return tr("{quantity} {part}", quantity=tr(title.removesuffix(f" {part[0]}")), part=tr(part[0]))
 
 
 class Box(Handle):
@@ -52,6 +61,18 @@ class Box(Handle):
     problem: Field[str] = Field(dtype=str, doc="Why its text is refused.")
     caret: Field[int] = Field(doc="Characters before the caret.", dtype=int)
     marked: Field[bool] = Field(doc="All of it is marked: typing replaces it.", dtype=bool)
+
+    @property
+    def said_title(self) -> str:
+        """Its title in the present language."""
+        return said_title(self.title, self.target)
+
+    @property
+    def said_text(self) -> str:
+        """What it contains in the present language: one of its words, or a number with the decimal sign of that."""
+        if self.text in (self.words or ()):
+            return tr(self.text)
+        return decimals(self.text) if self.accepts == NUMBER else self.text
 
     @property
     def changed(self) -> bool:

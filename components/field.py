@@ -115,7 +115,7 @@ class Field(Generic[T]):
     maximum: float | None = None
     above: float | None = None
     nullable: bool = False
-    absent: str = "automatic"
+    absent: str = marked("automatic")
     references: str | None = None
     overrides: str | None = None
     overridden_by: str | None = None
@@ -384,7 +384,7 @@ class Field(Generic[T]):
         return np.asarray(ok.all(axis=1)) if self.shape else ok
 
 
-ENDS = ("start", "end")  # of rods: the parts of what each end has of its own
+ENDS = (marked("start"), marked("end"))  # of rods: the parts of what each end has of its own
 
 # Fields that say how a model is drawn, that time makes, and that are computed from others.
 look = partial(Field, role=Role.LOOK)

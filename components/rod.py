@@ -11,7 +11,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from components.field import CM, ENDS, Column, Field, FieldError, Vector, derived, state
 from components.handle import Handle
-from components.language import begun, tr
+from components.language import begun, marked, tr
 from components.particle import Particle, rods_without_length
 from components.section import (
     MATERIALS,
@@ -281,7 +281,7 @@ class Rod(Handle):
     largest_moment: Field[Vector] = derived(
         "kN·m, m",
         shape=(2,),
-        axes=("value", "distance"),
+        axes=(marked("value"), marked("distance")),
         doc="The bending moment of largest size, and how far from the start.",
     )
     yielding: Field[bool] = derived(dtype=bool, doc="Its axial force has reached a strength.")

@@ -202,7 +202,8 @@ def check_material(value: Any, where: str) -> str:
     """The usual spelling of a material's name, or FieldError."""
     found = material_named(_text(value, where, "material"))
     if found is None:
-        raise FieldError(f"{where}: {missing(marked('materials'), value, MATERIALS)}")
+        problem = missing(marked("materials"), value, MATERIALS)
+        raise FieldError(tr("{where}: {problem}", where=where, problem=problem))
     return found.name
 
 

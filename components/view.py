@@ -19,6 +19,8 @@ from components.rod import bends
 from components.slider import ARROW, SUPPORT, Place, SliderStack, under
 from components.toolbar import Button, Toolbar
 
+CONVENTIONS = TEXTBOOK, THESIS = ("textbook", "thesis")  # of the force method
+
 # Sizes of type and symbols that a person can choose, relative to the usual one.
 MAGNIFICATIONS = (0.5, 0.65, 0.8, 0.9, 1.0, 1.1, 1.25, 1.5, 1.75, 2.0, 2.5, 3.0, 4.0)
 COMFORTABLE = 1080.0  # points: on displays higher than this, type and symbols grow
@@ -156,6 +158,7 @@ class View:
     sliders: what can be moved at the lower left; none with the legend hidden.
     menu: the list of what can be done somewhere, while it is open.
     theme: the name of its colours. readouts: panels at the right edge; hidden with the legend.
+    convention: of the force method. has_scale: a length to scale, and notes about what is hidden, are shown.
     pointed: what is said of the element under the pointer, beside it.
     shape: a mechanism or mode that is drawn over the model, with its title below the caption. swing: the share of it, from
     1 to −1, that is drawn now.
@@ -194,6 +197,8 @@ class View:
     sliders: SliderStack = field(default_factory=SliderStack)
     menu: Menu | None = None
     theme: str = "light"
+    convention: str = TEXTBOOK
+    has_scale: bool = True
     readouts: tuple[Readout, ...] = ()
     since: dict[str, int] = field(default_factory=dict)
     largest_force: float = 0.0

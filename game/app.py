@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 
 from components.camera import Viewport
 from components.field import Vector
-from components.language import language
+from components.language import language, tr
 from components.model import Model
 from components.view import MAGNIFICATIONS, View, magnified
 from game.documents import library, models
@@ -118,11 +118,11 @@ def _find_display() -> None:
     """Get ready for a window that somebody can see, or one as SDL_VIDEODRIVER says. Raises NoDisplay, pygame.error."""
     chosen = "SDL_VIDEODRIVER" in os.environ
     if not chosen and sys.platform.startswith("linux") and not any(map(os.environ.get, DISPLAYS)):
-        raise NoDisplay(f"neither {' nor '.join(DISPLAYS)} is set")
+        raise NoDisplay(tr("neither {first} nor {second} is set", first=DISPLAYS[0], second=DISPLAYS[1]))
     pygame.display.init()
     if not chosen and pygame.display.get_driver() in UNSEEN:  # the last resort of SDL
         pygame.display.quit()
-        raise NoDisplay("the display cannot be reached")
+        raise NoDisplay(tr("the display cannot be reached"))
 
 
 def place_on(
@@ -294,7 +294,7 @@ class App:
     def _follow_title(self) -> None:
         """Let the window's title name the model, after a dot while there is unsaved work."""
         session = self.session
-        name = session.file.name or ("Untitled" if session.document.unsaved else "")
+        name = session.file.name or (tr("Untitled") if session.document.unsaved else "")
         title = f"{'• ' if session.document.unsaved else ''}{name} – Pinjoint" if name else "Pinjoint"
         if title != self.window.title:
             self.window.title = title

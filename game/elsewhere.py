@@ -9,6 +9,7 @@ import sys
 import threading
 from collections.abc import Mapping, Sequence
 
+from components.language import tr
 from game.mods import MODS
 from game.prepare import LATER, NEXT, Job
 from systems.physics.integrators import INTEGRATORS
@@ -16,9 +17,13 @@ from systems.program.compiler import GeneratedModule, interpreted_here, tell
 from systems.program.writer import read_sources
 
 INTERVAL = 0.05  # s between two looks
-SLOWER = "Programs go on interpreted, and slower"
 
 Jobs = Mapping[Job, GeneratedModule]
+
+
+def slower(problem: str) -> str:
+    """The sentence that says why runs go on without machine code."""
+    return tr("Runs go on without machine code, and slower: {problem}.", problem=problem)
 
 
 class Elsewhere:
@@ -95,7 +100,7 @@ class Elsewhere:
                     return
             except Exception as error:  # such as a compiler that is damaged
                 self._can_load = False
-                tell(f"{SLOWER}: machine code cannot be loaded ({error}).")
+                tell(slower(tr("machine code cannot be loaded ({error})", error=error)))
                 return
 
     def _compile(self) -> None:
@@ -124,7 +129,7 @@ class Elsewhere:
     def _note_end(self, process: subprocess.Popen[str]) -> None:
         """Note what the other process did; a job at which it ended by itself is not tried again."""
         said = process.communicate()[0].splitlines()
-        status = f"the process that compiles ended with status {process.returncode}"
+        status = tr("the process that compiles ended with status {status}", status=process.returncode)
         self.ended |= dict(zip(self._at_work, [*said, *([status] if process.returncode else [])], strict=False))
 
 

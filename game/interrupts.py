@@ -109,8 +109,9 @@ def _threads() -> list[str]:
 
 def _end(status: int) -> None:
     """End the process if it still waits for threads after a while."""
+    from components.language import listed, tr  # this module is loaded before all that takes time
+
     time.sleep(LEFT_OVER)
-    print(
-        f"pinjoint: threads that did not end were left: {', '.join(_threads())}.", file=sys.stderr, flush=True
-    )
+    said = tr("These threads did not end and were left: {threads}.", threads=listed(_threads()))
+    print(f"pinjoint: {said}", file=sys.stderr, flush=True)
     os._exit(status)

@@ -10,10 +10,11 @@ from collections.abc import Iterable, Iterator, Sequence, Set
 from itertools import islice
 from typing import Any
 
+from components.language import tr
 from components.model import Model
 from components.rod import is_warm
 from game.editor.host import Waiting
-from game.elsewhere import SLOWER, Elsewhere
+from game.elsewhere import Elsewhere, slower
 from game.prepare import UNITS, WARM, Job, problem_of
 from systems import cache
 from systems.base import Phase, StepSystem, System
@@ -135,12 +136,12 @@ class Preparation(System):
             if self._problem_of(job) and job not in self._given_up:
                 self._given_up.add(job)
                 if problem := problem_of(job):
-                    tell(f"{SLOWER}: {problem}.")
+                    tell(slower(problem))
                 return
 
     def _tell(self, session: Any) -> None:
         for problem in self._problems:
-            tell(f"{SLOWER}: {problem}.")
+            tell(slower(problem))
         for sentence in (*cache.TROUBLE, *UNCOMPILED):
             if sentence not in self._said:
                 self._said.add(sentence)
@@ -152,7 +153,7 @@ class Preparation(System):
         problem, module = self.elsewhere.ended.get(job), self._modules.get(job)
         if problem is None or module is None or module.is_compiled():
             return ""
-        return problem or "what was compiled was not kept"
+        return problem or tr("what was compiled was not kept")
 
     # --- what waits ----------------------------------------------------------------------------------
 

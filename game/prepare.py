@@ -13,6 +13,7 @@ import sys
 from collections.abc import Sequence
 from itertools import groupby
 
+from components.language import tr
 from components.model import Model
 from components.particle import Particle
 from components.rod import spawn_rods
@@ -50,7 +51,7 @@ def problem_of(job: Job) -> str:
     try:
         importlib.import_module("systems.machine_code")
     except Exception as error:  # numba is not there, or damaged
-        return f"numba cannot be imported ({_in_a_line(error)})"
+        return tr("numba cannot be imported ({error})", error=_in_a_line(error))
     try:
         compile_job(job)
     except Exception as error:  # numba raises many kinds

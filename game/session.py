@@ -14,6 +14,7 @@ from components.camera import Viewport
 from components.card import share_of
 from components.environment import Environment
 from components.field import FieldError, Vector
+from components.language import begun, joined, listed, tr
 from components.load import Load
 from components.model import Model
 from components.particle import Particle
@@ -115,7 +116,7 @@ class Session(Context):
 
     def __reduce_ex__(self, protocol: object) -> NoReturn:
         raise TypeError(
-            "A session cannot be copied or pickled; save its model, and open that in another session."
+            tr("A session cannot be copied or pickled; save its model, and open that in another session.")
         )
 
     def __repr__(self) -> str:
@@ -159,7 +160,7 @@ class Session(Context):
         remarks on a run at rest.
         """
         said = self.fault or self.scenes.active.message or self.simulation.said or self.notice
-        return " ".join([*filter(None, [said]), *(remark.message for remark in self.remarks)])
+        return joined([said, *(remark.message for remark in self.remarks)])
 
     # --- time --------------------------------------------------------------------------------------
 
@@ -180,7 +181,7 @@ class Session(Context):
         interrupt (Ctrl+C) leaves the state after a step shortly before, from which a further run goes on.
         """
         if sum(option is not None for option in (until, time, steps)) != 1 or until not in (None, "rest"):
-            raise ValueError('Say how far to run: until="rest", time=SECONDS or steps=NUMBER, one of them.')
+            raise ValueError(tr('Say how far to run: until="rest", time=SECONDS or steps=NUMBER, one of them.'))
         limit = _forward("limit", limit)
         time = None if time is None else _forward("time", time)
         steps = None if steps is None else int(_forward("steps", steps, whole=True))
@@ -263,7 +264,7 @@ class Session(Context):
         from systems.statics.path import goal_of, load_path
 
         if points < 2:
-            raise ValueError(f"points is {points}; a curve has at least 2.")
+            raise ValueError(tr("points is {points}; a curve has at least 2.", points=points))
         return load_path(self.model, goal_of(self.model, factor, until), points=points, branch=branch)
 
     def buckling(self, modes: int = 5) -> Buckling:
@@ -276,7 +277,7 @@ class Session(Context):
         from systems.statics.buckling import buckling
 
         if modes < 1:
-            raise ValueError(f"modes is {modes}; ask for at least 1.")
+            raise ValueError(tr("modes is {modes}; ask for at least 1.", modes=modes))
         return buckling(self.model, modes)
 
     # --- editing -----------------------------------------------------------------------------------
@@ -421,7 +422,7 @@ class Session(Context):
             if name != left:  # the tool that opens a scene closes it, too
                 self.act(name, at)
         elif title := only_in_pause(self.scene, key):
-            self.notice = f"{title[:1].upper()}{title[1:]}: pause first, with Space."
+            self.notice = tr("{action}: press Space to pause first.", action=begun(tr(title)))
 
     def _left_for_tools(self) -> str:
         """Leave a scene in which tools do not act, for the one in which they do; returns its name, or ""."""
@@ -451,8 +452,8 @@ class Session(Context):
         if opened and self.scene != "pause":  # not even one that its keys would lead back to
             self.scenes.request("pause")
             self.scenes.apply(self)
-        said = [f"Opened {' and '.join(opened)}; Ctrl+Z goes back."] if opened else []
-        self.notice = " ".join([*problems, *said])
+        said = tr("Opened {models}. Ctrl+Z goes back.", models=listed(opened)) if opened else ""
+        self.notice = joined([*problems, said])
         scene = self.scenes.active
         if isinstance(scene, FileScene):
             scene.say(self.notice)
@@ -464,8 +465,15 @@ class Session(Context):
             1 <= width <= LARGEST_SIDE and 1 <= height <= LARGEST_SIDE and 0.0 < pixel_ratio <= LARGEST_RATIO
         ):
             raise ValueError(
-                f"The size is {width:g} × {height:g} pixels, {pixel_ratio:g} to a point; give sides from 1 to"
-                f" {LARGEST_SIDE}, and at most {LARGEST_RATIO:g} to a point."
+                tr(
+                    "The size is {width:g} × {height:g} pixels, {ratio:g} to a point; give sides from 1 to {most}, and at"
+                    " most {largest:g} to a point.",
+                    width=width,
+                    height=height,
+                    ratio=pixel_ratio,
+                    most=LARGEST_SIDE,
+                    largest=LARGEST_RATIO,
+                )
             )
         self.extent = width, height
         taken_right, taken_below = share_of(width, height, pixel_ratio) if self.beside is not None else (0, 0)
@@ -509,7 +517,7 @@ class Session(Context):
     def point(self, x: float, y: float) -> Vector:
         """Move the pointer to a point of the model (m); returns its pixel. Raises ValueError."""
         if not (math.isfinite(x) and math.isfinite(y)):
-            raise ValueError(f"The point is ({x}, {y}); give finite coordinates, in m.")
+            raise ValueError(tr("The point is ({x}, {y}); give finite coordinates, in m.", x=x, y=y))
         self.scenes.active.finish()
         x, y = _near(self.focus[1].camera.to_pixels((x, y)).tolist())
         self.focus[1].pointer = x, y
@@ -571,7 +579,9 @@ def _near(pixel: Sequence[float]) -> Vector:
     """A pixel at a distance from the window that computes. Raises ValueError."""
     x, y = pixel
     if not (abs(x) <= FARTHEST and abs(y) <= FARTHEST):
-        raise ValueError(f"The pixel ({x:g}, {y:g}) is too far from what is shown; take a nearer place.")
+        raise ValueError(
+            tr("The pixel ({x:g}, {y:g}) is too far from what is shown; take a nearer place.", x=x, y=y)
+        )
     return x, y
 
 
@@ -579,10 +589,16 @@ def _forward(name: str, value: float, *, whole: bool = False) -> float:
     """A time or a number of steps given by a script, checked. Raises ValueError."""
     number = isinstance(value, int | np.integer | (np.integer if whole else float | np.floating))
     if not number or isinstance(value, bool) or not math.isfinite(value):
-        kind = "whole" if whole else "finite"
-        raise ValueError(f"{name} is {quoted(value)}; it must be a {kind} number.")
+        given = quoted(value)
+        raise ValueError(
+            tr("{name} is {value}; it must be a whole number.", name=name, value=given)
+            if whole
+            else tr("{name} is {value}; it must be a finite number.", name=name, value=given)
+        )
     if value >= 2**63:
-        raise ValueError(f"{name} is {value}; it must be below 2^63.")
+        raise ValueError(tr("{name} is {value}; it must be below 2^63.", name=name, value=value))
     if value < 0:
-        raise ValueError(f"{name} is {value}; time only runs forward: undo or restart goes back.")
+        raise ValueError(
+            tr("{name} is {value}; time only runs forward: undo or restart goes back.", name=name, value=value)
+        )
     return float(value)

@@ -9,6 +9,7 @@ import re
 import sys
 from contextlib import suppress
 
+from components.language import tr
 from components.wording import printable
 
 
@@ -28,7 +29,7 @@ def put(text: str) -> None:
     """Write a text to standard output at once. Raises OSError, also if it is closed."""
     if sys.stdout is None:
         if text:
-            raise OSError("it is closed")
+            raise OSError(tr("it is closed"))
         return
     try:
         sys.stdout.write(text)

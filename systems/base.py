@@ -26,6 +26,7 @@ import esper
 from numpy.typing import NDArray
 
 from components.handle import Handle
+from components.language import marked
 from components.model import Model
 from systems.entries import ACCOUNTS
 
@@ -108,7 +109,7 @@ class System(esper.Processor):  # type: ignore[misc,unused-ignore]
     adds: ClassVar[tuple[str, ...]] = ()
     replaces: ClassVar[tuple[str, ...]] = ()
     scenes: ClassVar[tuple[str, ...] | None] = None
-    unneeded: ClassVar[str] = "the model has nothing for it to do"
+    unneeded: ClassVar[str] = marked("the model has nothing for it to do")
     headless: ClassVar[bool] = True
     mod: Mod | None = None
 

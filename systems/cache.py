@@ -15,6 +15,8 @@ from pathlib import Path
 
 from platformdirs import user_cache_path
 
+from components.language import tr
+
 NOWHERE = Path(os.devnull)  # stands for a folder where none can be had: there is nothing in it, nor can be
 LOG = logging.getLogger("pinjoint.cache")
 TROUBLE: list[str] = []  # the sentence that programs cannot be kept, and why, once that is known
@@ -89,7 +91,11 @@ def write(name: str, content: bytes) -> None:
 def _say(where: Path, error: OSError) -> None:
     if not TROUBLE:
         TROUBLE.append(
-            f"Compiled programs cannot be kept in {where}: {error.strerror}. Everything works, but what is compiled"
-            " now is compiled again next time; make room there to prevent that."
+            tr(
+                "Compiled programs cannot be kept in {folder}: {error}. Everything works, but starts more slowly next time."
+                " Make room in that folder, or allow writing to it.",
+                folder=where,
+                error=error.strerror,
+            )
         )
         LOG.warning(TROUBLE[0])

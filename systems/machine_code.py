@@ -38,6 +38,7 @@ from numba.core.serialize import dumps
 from numba.core.types import WrapperAddressProtocol, unliteral
 from numba.extending import typeof_impl
 
+from components.language import tr
 from systems import cache
 from systems.kernels import PLAIN, Kernel, Use
 from systems.translation import LeanCompiler
@@ -267,7 +268,12 @@ class _Part(CPUDispatcher):
 
     def __call__(self, *given: Any, **named: Any) -> Any:
         """Raise TypeError: a part has no machine code of its own."""
-        raise TypeError(f"{self.py_func.__qualname__} is a part of programs: call it from a compiled function.")
+        raise TypeError(
+            tr(
+                "{function} is a part of programs: call it from a compiled function.",
+                function=self.py_func.__qualname__,
+            )
+        )
 
 
 # --- entries -------------------------------------------------------------------------------------

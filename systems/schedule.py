@@ -19,6 +19,7 @@ from fnmatch import fnmatchcase
 from graphlib import CycleError, TopologicalSorter
 from typing import Protocol
 
+from components.language import tr
 from components.model import Model
 from components.suggestions import remedy
 from systems.base import Commit, Event, Integrator, Law, Phase, StepSystem, System
@@ -78,9 +79,13 @@ class Schedule:
         names = [system.name for system in self._systems]
         for system in self._systems:
             if not system.name:
-                raise ScheduleError(f"{type(system).__name__} has no name; give it one like 'mymod.wind'.")
+                raise ScheduleError(
+                    tr("{system} has no name; give it one like 'mymod.wind'.", system=type(system).__name__)
+                )
             if names.count(system.name) > 1:
-                raise ScheduleError(f"Two systems are called {system.name}; names must be unique.")
+                raise ScheduleError(
+                    tr("Two systems are called {name}; give one of them another name.", name=system.name)
+                )
 
     def _find_replacing(self) -> dict[System, tuple[System, ...]]:
         """By system: those that take its place where they act."""
@@ -90,8 +95,12 @@ class Schedule:
                 others = [s for s in self._systems if s is not system and _is_called(s, name)]
                 if not others:
                     raise ScheduleError(
-                        f"{system.name} replaces '{name}', but no other system is called so;"
-                        f" {remedy(name, [s.name for s in self._systems])}"
+                        tr(
+                            "{system} replaces '{name}', but there is no such system; {remedy}",
+                            system=system.name,
+                            name=name,
+                            remedy=remedy(name, [s.name for s in self._systems]),
+                        )
                     )
                 for other in others:
                     found.setdefault(other, []).append(system)
@@ -99,7 +108,9 @@ class Schedule:
             TopologicalSorter({s.name: [r.name for r in some] for s, some in found.items()}).prepare()
         except CycleError as error:
             chain = " → ".join(error.args[1])
-            raise ScheduleError(f"These systems replace each other: {chain}; drop one `replaces`.") from None
+            raise ScheduleError(
+                tr("These systems replace each other: {chain}; remove one `replaces`.", chain=chain)
+            ) from None
         return {system: tuple(some) for system, some in found.items()}
 
     # --- order -----------------------------------------------------------------------------------
@@ -123,8 +134,13 @@ class Schedule:
             elsewhere = [s for s in self._systems if s.name == other and other not in phase_systems]
             if elsewhere:
                 raise ScheduleError(
-                    f"{system.name} asks to be ordered with {other}, which runs in another phase"
-                    f" ({elsewhere[0].phase.value}); phases are ordered already."
+                    tr(
+                        "{system} names {other} in `before` or `after`, but that runs in another phase ({phase}). Remove it:"
+                        " phases follow one another in a fixed order.",
+                        system=system.name,
+                        other=other,
+                        phase=elsewhere[0].phase.value,
+                    )
                 )
         return [other for other in others if other in phase_systems]
 
@@ -138,7 +154,11 @@ class Schedule:
         except CycleError as error:
             chain = " → ".join(error.args[1])
             raise ScheduleError(
-                f"In phase {phase.value} these systems wait for each other: {chain}; drop one before/after."
+                tr(
+                    "In phase {phase} these systems wait for each other: {chain}; remove one `before` or `after`.",
+                    phase=phase.value,
+                    chain=chain,
+                )
             ) from None
         ready: list[str] = list(sorter.get_ready())
         ordered: list[System] = []
@@ -163,8 +183,13 @@ class Schedule:
                     continue
                 for column in _contested(earlier, later):
                     raise ScheduleError(
-                        f"{earlier.name} and {later.name} both touch {column}, at least one writing, and nothing"
-                        f" says which comes first; declare before=('{later.name}',) or after=(…) on one."
+                        tr(
+                            "{one} and {other} both use {column}, and at least one writes it, but nothing says which comes"
+                            " first; declare before=('{other}',) or after=(…) on one.",
+                            one=earlier.name,
+                            other=later.name,
+                            column=column,
+                        )
                     )
 
     # --- plans -----------------------------------------------------------------------------------
@@ -195,15 +220,17 @@ class Schedule:
         if not self.is_active(system, scene):
             return self.inactive(system, scene)
         if not system.needs(model):
-            return system.unneeded
+            return tr(system.unneeded)
         other = self._replaced_by(system, scene, model)
-        return f"replaced by {other.name}" if other is not None else ""
+        return tr("replaced by {system}", system=other.name) if other is not None else ""
 
     def inactive(self, system: System, scene: str) -> str:
         """The reason why a system is not active in a scene: where it is."""
         wanted = [other for other in self._wanted if self.is_active(system, other)]
         named = dict.fromkeys((*(system.scenes or ()), *wanted))
-        return f"not active in {scene}, only in {', '.join(named) or 'no scene'}"
+        if not named:
+            return tr("not active in {scene}, nor in any other scene", scene=scene)
+        return tr("not active in {scene}, only in {scenes}", scene=scene, scenes=", ".join(named))
 
     def plan(self, scene: str, model: Model) -> Plan:
         """Which systems run in a scene with a model, and why the others do not."""

@@ -8,6 +8,7 @@ Mods among the assets have catalogues of their own.
 from __future__ import annotations
 
 import argparse
+import ast
 import json
 import tomllib
 from collections.abc import Iterable, Iterator, Mapping
@@ -16,7 +17,7 @@ from pathlib import Path
 from typing import IO, Any
 
 from babel.messages.catalog import Catalog, Message
-from babel.messages.extract import extract_from_dir
+from babel.messages.extract import extract_from_dir, extract_python
 from babel.messages.frontend import parse_keywords
 from babel.messages.mofile import write_mo
 from babel.messages.pofile import read_po, write_po
@@ -36,6 +37,25 @@ msgstr ""
 "Plural-Forms: {catalogue.plural_forms}\\n"
 
 """
+
+
+def kinds(
+    file: IO[bytes], keywords: Any, tags: Any, options: Any
+) -> Iterator[tuple[int, str | None, Any, list[str]]]:
+    """The sentences of a module in Python, as Babel asks for them, and what people call its kinds and their Fields."""
+    yield from extract_python(file, keywords, tags, options)
+    file.seek(0)
+    for node in ast.walk(ast.parse(file.read())):
+        match node:
+            case ast.AnnAssign(target=ast.Name(name), value=ast.Call(func=ast.Name(maker), keywords=given)):
+                if maker in ("Field", "state", "derived", "look"):
+                    known = {g.arg: g.value.value for g in given if isinstance(g.value, ast.Constant)}
+                    words = {"title": name.replace("_", " ")} | known
+                    said = [words.get(key) for key in ("title", "doc", "absent")]
+                    yield from ((node.lineno, None, text, []) for text in said if text)
+            case ast.Assign(targets=[ast.Tuple([ast.Name("table"), *_])], value=ast.Tuple(names)):
+                said = [word.value for word in names[:2] if isinstance(word, ast.Constant)]
+                yield from ((node.lineno, None, text, []) for text in said)
 
 
 def texts(
@@ -86,7 +106,7 @@ def extracted(domain: str) -> Catalog:
             for pattern in mapping["patterns"]
         ]
     else:
-        mappings = [("**.py", "python", {})]
+        mappings = [("**.py", "tests.catalogues:kinds", {})]
     found = Catalog(domain=domain, creation_date=NO_DATE)
     places = extract_from_dir(
         folders()[domain][0],

@@ -1,68 +1,144 @@
-"""`pinjoint force-method`: hyperstatic forces by the force method."""
+"""`pinjoint force-method`: static unknowns by the force method, with the table of virtual work and a report."""
 
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
-from typing import Any
+from functools import partial
+from typing import TYPE_CHECKING, Any
 
+from components.language import tr
 from components.model import Model
+from components.view import CONVENTIONS, THESIS
 from game.commands.arguments import Parser, UsageError
 from game.commands.options import ANSWERED, NOT_ANSWERED, session_of
-from game.commands.output import Row, add_output, write_result
+from game.commands.output import Row, add_output, aligned, as_written, writable, write_result, writing
 from game.streams import tell
+
+if TYPE_CHECKING:  # they import scipy
+    from game.force_method.tables import Tables
+    from systems.statics.force_method import Solution
 
 
 def command(words: Sequence[str]) -> int:
     """Do what the words after the command ask for; returns the exit status."""
-    parser = Parser(prog="pinjoint force-method", description="Hyperstatic forces by the force method.")
-    parser.add_argument("model", help="a model file, or the name of a bundled model")
+    parser = Parser(
+        prog="pinjoint force-method",
+        description=tr("Statically indeterminate structures by the force method, as in textbooks."),
+    )
+    parser.add_argument("model", help=tr("a model file, or the name of a bundled model"))
     which = parser.add_mutually_exclusive_group(required=True)
-    which.add_argument("--release", metavar="AC", help="a rod, or a constraint such as A.y")
-    which.add_argument("--all", action="store_true", help="release unknowns until the structure is isostatic")
+    which.add_argument(
+        "--release",
+        metavar="AC",
+        action="append",
+        help=tr(
+            "a bar, a reaction such as A.y or A.rotation, a moment such as AB.start; may be given several times"
+        ),
+    )
+    which.add_argument(
+        "--all", action="store_true", help=tr("release unknowns until the structure is statically determinate")
+    )
     parser.add_argument(
-        "--set", action="append", default=[], metavar="PATH=VALUE", help="change the model first"
+        "--convention",
+        choices=CONVENTIONS,
+        default=CONVENTIONS[0],
+        help=tr("of the text: δ₁₀ + δ₁₁ X₁ = 0, or p = (Δ − Δ₀) / Δ₁"),
+    )
+    parser.add_argument(
+        "--report", type=writable, metavar="FILE.pdf", help=tr("write the whole solution to a PDF as well")
+    )
+    parser.add_argument(
+        "--set", action="append", default=[], metavar="PATH=VALUE", help=tr("change the model first")
     )
     add_output(parser, default="json")
     options = parser.parse_args(words)
+    if options.report is not None and not options.report.lower().endswith(".pdf"):
+        raise UsageError(tr("--report {file}: write a file that ends with .pdf.", file=options.report))
     session = session_of(options)
+    from game.force_method.tables import Tables
     from systems.statics.unknowns import ForceMethodError
 
     try:
-        found = _solved(session.model, None if options.all else options.release)
+        solution = _solution(session.model, options.release)
     except ForceMethodError as error:
         raise UsageError(str(error)) from None
+    tables = Tables.of(session.model, solution)
     laws = session.schedule.left_out_of_statics(session.model)
-    write_result(options, found | {"left_out": laws}, _rows)
+    found = _data(tables, single=options.release is not None and len(options.release) == 1)
+    write_result(options, found | {"left_out": laws}, _rows, partial(_lines, tables, options.convention))
+    if options.report is not None:
+        from game.force_method.report import write_report
+
+        with writing(options.report, "--report"):
+            write_report(tables, options.report, options.convention)
     if laws:
-        tell(f"The force method leaves out the laws of mods: {', '.join(laws)}.")
+        tell(tr("The force method leaves out the laws of mods: {laws}.", laws=", ".join(laws)))
     return NOT_ANSWERED if laws else ANSWERED
 
 
-def _solved(model: Model, release: str | None) -> dict[str, Any]:
-    """Displacements (m, m/kN), hyperstatic forces and their exact values (kN).
-
-    release: "AC" or "A.y"; None: unknowns whose release leaves an isostatic structure, in lists and a matrix.
-    Raises ForceMethodError.
-    """
-    from game.force_method.guide import exact_forces
+def _solution(model: Model, release: Sequence[str] | None) -> Solution:
+    """For these unknowns, or those whose release leaves an isostatic structure. Raises ForceMethodError."""
     from systems.statics.force_method import solve
     from systems.statics.unknowns import find_unknown, redundants
 
-    unknowns = redundants(model) if release is None else [find_unknown(model, release)]
-    solution = solve(model, unknowns)
-    exact = exact_forces(model, unknowns)
+    names = None if release is None else dict.fromkeys(release)
+    return solve(model, redundants(model) if names is None else [find_unknown(model, name) for name in names])
+
+
+def _data(tables: Tables, *, single: bool) -> dict[str, Any]:
+    """The solution as plain data, in m, rad, kN, kN·m: displacements and unknowns in lists and matrices.
+
+    single: there is one unknown, so that its numbers stand alone. virtual_work: of every rod, in the order of the sums.
+    """
+    from game.force_method.copies import exact_forces
+
+    solution = tables.solution
     found: dict[str, Any] = {
-        "released": [unknown.name for unknown in unknowns],
+        "released": [unknown.name for unknown in solution.unknowns],
+        "unit": [unknown.unit for unknown in solution.unknowns],
         "delta_real": solution.delta_real,
         "delta_base": solution.delta_base,
         "delta_unit": solution.delta_unit,
         "force": solution.force,
-        "exact_force": exact,
+        "exact_force": exact_forces(tables.model, solution.unknowns),
+        "gap": solution.gap,
+        "flexibility": solution.flexibility,
+        "prescribed": solution.prescribed,
     }
-    if release is None:
-        return found
-    first = {key: None if values is None else values[0] for key, values in found.items()}
-    return first | {"delta_unit": solution.delta_unit[0, 0]}
+    if single:
+        found = {key: None if values is None else values[0] for key, values in found.items()}
+        found |= {"delta_unit": solution.delta_unit[0, 0], "flexibility": solution.flexibility[0, 0]}
+    return found | {"virtual_work": _work(tables), "axial_force": _superposed(tables)}
+
+
+def _work(tables: Tables) -> dict[str, Any]:
+    """By rod: what the sums of virtual work are made of; n, m and terms of each unknown in the order of `released`."""
+    work, found = tables.work, {}
+    for row, name in enumerate(tables.model.rods.names):
+        found[name] = {
+            "length": work.length[row],
+            "stiffness": work.stiffness[row],
+            "N0": work.base_axial[row],
+            "n": work.unit_axial[:, row],
+            "N0 n L/EA": work.of_base[:, row],
+            "n n L/EA": work.of_units[:, :, row],
+            "without force": work.of_free[:, row],
+        }
+        if tables.bends:
+            found[name] |= {
+                "bending_stiffness": work.bending_stiffness[row],
+                "M0": work.base_moment[row],
+                "m": work.unit_moment[:, row],
+                "M0 m/EI": work.of_bending[:, row],
+                "m m/EI": work.of_unit_bending[:, :, row],
+            }
+    return found
+
+
+def _superposed(tables: Tables) -> dict[str, float]:
+    """N₀ + Σ X n of every rod (kN)."""
+    forces = tables.solution.superposed.axial_force
+    return dict(zip(tables.model.rods.names, forces.tolist(), strict=True))
 
 
 def _rows(found: Mapping[str, Any]) -> Iterator[Row]:
@@ -71,8 +147,47 @@ def _rows(found: Mapping[str, Any]) -> Iterator[Row]:
         found = {key: [value] for key, value in found.items()} | {"delta_unit": [[found["delta_unit"]]]}
     names = found["released"]
     exact = found["exact_force"] or [None] * len(names)
-    unit = [f"delta_unit {name} (m/kN)" for name in names]
-    yield "released", "delta_real (m)", "delta_base (m)", *unit, "force (kN)", "exact_force (kN)"
+    moments = "kN·m" in found["unit"]
+    length, force = ("m, rad", "kN, kN·m") if moments else ("m", "kN")
+    unit = [f"delta_unit {name} ({length}/{'(kN, kN·m)' if moments else 'kN'})" for name in names]
+    yield (
+        "released",
+        f"delta_real ({length})",
+        f"delta_base ({length})",
+        *unit,
+        f"force ({force})",
+        f"exact_force ({force})",
+    )
     parts = (names, found["delta_real"], found["delta_base"], found["delta_unit"], found["force"], exact)
     for name, real, base, row, force, exactly in zip(*parts, strict=True):
         yield name, real, base, *row, force, exactly
+
+
+def _lines(tables: Tables, convention: str, found: Mapping[str, Any]) -> Iterator[str]:
+    """The solution to read: in the textbook's convention with its tables, in the thesis' with its displacements."""
+    from game.force_method import words
+
+    solution, units = tables.solution, tables.units
+    yield from aligned([[as_written(value) for value in row] for row in _rows(found)])
+    if not solution.unknowns:
+        return
+    if convention == THESIS:
+        return
+    yield ""
+    for i, unknown in enumerate(solution.unknowns):
+        yield f"X{words.index(i + 1)}: {words.meaning(unknown)}"
+    every = range(len(solution.unknowns))
+    works = [table for table in (tables.bends and tables.bending(every), tables.virtual_work(every)) if table]
+    parts = [*works, tables.settlements()]
+    yield ""
+    yield from words.formulas(tables.bends, "₁" if len(every) == 1 else "ᵢ")
+    for table in parts:
+        if table:
+            yield ""
+            yield from aligned(table[:])
+    yield ""
+    yield from words.equations(solution, units.all, units.factor)
+    for table in (tables.axial_forces(), tables.moments() if tables.bends else None, tables.reactions()):
+        if table:
+            yield ""
+            yield from aligned(table[:])

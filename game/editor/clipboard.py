@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 
 from components.field import SAVED, Vector
 from components.handle import Handle
+from components.language import marked, tr
 from components.load import Load
 from components.model import ADDED, Model
 from components.particle import Particle
@@ -58,7 +59,7 @@ def selected_rows(model: Model) -> RowsByKind:
     particles = moving_rows(model, rows)
     others = {kind: rows[kind.table] for kind in _added() if len(rows[kind.table])}
     if not len(particles) and not others:
-        raise Refusal("Nothing is selected that can be copied; click a particle or a rod first.")
+        raise Refusal(tr("Nothing that can be copied is selected; click a particle or a rod first."))
     loads = np.flatnonzero(np.isin(model.loads.on, particles))
     return {Particle: particles, Rod: rows["rods"], Load: loads, **others}
 
@@ -68,7 +69,7 @@ def as_text(model: Model, rows: RowsByKind) -> str:
     try:
         return laid_out(document_of(model, rows), depth=2, spaced=False)
     except ModelError as error:
-        raise Refusal(f"This cannot be copied: {error}") from None
+        raise Refusal(tr("This cannot be copied: {error}", error=error)) from None
 
 
 def part_in(text: str) -> Part:
@@ -81,7 +82,7 @@ def part_in(text: str) -> Part:
     rows = {kind: np.arange(source.tables[kind.table].count) for kind in kinds}
     part = part_of(source, rows)
     if not len(part.position):
-        raise Refusal("The clipboard holds no particles or rods; select some and copy them with Ctrl+C.")
+        raise Refusal(tr("The clipboard holds no particles or rods; select some and copy them with Ctrl+C."))
     return part
 
 
@@ -103,7 +104,7 @@ def paste(model: Model, part: Part, offset: Vector) -> list[Handle]:
     """
     first = model.particles.count
     made: dict[Kind, list[Handle]] = {}
-    with model.transaction("paste"):
+    with model.transaction(marked("paste")):
         for kind, held in part.columns.items():
             columns = {**held, "name": _free_names(model.tables[kind.table], held["name"])}
             for point in _points(kind):

@@ -11,6 +11,7 @@ from typing import ClassVar
 
 from components.camera import Viewport
 from components.field import Vector
+from components.language import listed, marked, tr
 from components.model import Model
 from components.rod import bends
 from components.settings import NO_DIAGRAMS, Settings
@@ -44,7 +45,7 @@ def action(name: str, *, while_drawing: bool = False) -> Callable[[Action], Acti
 
     def register(function: Action) -> Action:
         if name in ACTIONS:
-            raise ValueError(f"There is an action '{name}' already.")
+            raise ValueError(tr("There is an action '{name}' already.", name=name))
         ACTIONS[name] = function
         if while_drawing:
             WHILE_DRAWING.add(name)
@@ -62,7 +63,7 @@ class Gesture:
     hint: the next possible step, for the status line.
     """
 
-    hint = "let go to finish     Esc cancel"
+    hint = marked("let go to finish     Esc cancel")
 
     def move(self, context: Context, pixel: Vector) -> None:
         """The pointer moved to a pixel."""
@@ -175,7 +176,9 @@ class Scene:
 
     def click_box(self, context: Context, title: str) -> None:
         """Select the box with that title. Raises LookupError."""
-        raise LookupError(f"In {self.name} there are no boxes; go to properties, save or load first.")
+        raise LookupError(
+            tr("In {scene} there are no boxes; go to properties, save or load first.", scene=self.name)
+        )
 
     @property
     def boxes(self) -> dict[str, str]:
@@ -213,10 +216,17 @@ class Scenes:
         for name in names:
             if name not in self._by_name:
                 known = ", ".join(self._by_name)
-                raise SceneError(f"There is no scene '{name}'; there are {known}.")
+                raise SceneError(tr("There is no scene '{name}'; there are {scenes}.", name=name, scenes=known))
             if name not in here.targets and here.name not in self._by_name[name].sources:
                 targets = ", ".join(here.targets)
-                raise SceneError(f"From {here.name} one cannot go to {name}, only to {targets}.")
+                raise SceneError(
+                    tr(
+                        "From {here} one cannot go to {scene}, only to {scenes}.",
+                        here=here.name,
+                        scene=name,
+                        scenes=targets,
+                    )
+                )
             here = self._by_name[name]
         self._requested.extend(names)
 
@@ -290,9 +300,9 @@ class Context(Workspace):
         if self.model.rods.count:
             self.view.rigid = bends(self.model)
         if missing := missing_mods(self.model):
-            self.notice = (
-                f"This model holds data of mods that are not loaded: {', '.join(missing)}. They are kept and"
-                " saved again, but have no effect."
+            self.notice = tr(
+                "This model uses mods that are not loaded: {mods}. Their data is kept and saved again, but has no effect.",
+                mods=listed(missing),
             )
         self._go_on()
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from pathlib import Path
 
+from components.language import tr
 from game.documents import models
 from game.documents.format import ModelError
 from game.documents.open_documents import file_of
@@ -19,10 +20,15 @@ def open_dropped(context: Context, path: Path) -> None:
     The document in use stays open unless it is empty.
     """
     if path.is_dir():
-        raise ModelError(f"'{path.name}' is a folder; drop the model files in it.")
+        raise ModelError(tr("'{name}' is a folder; drop the model files that are in it.", name=path.name))
     if path.suffix.lower() not in (MODEL, SCRIPT):
         raise ModelError(
-            f"'{path.name}' is no model: Pinjoint opens model files ({MODEL}) and recorded sessions ({SCRIPT})."
+            tr(
+                "'{name}' is not a model: Pinjoint opens model files ({model}) and recorded sessions ({script}).",
+                name=path.name,
+                model=MODEL,
+                script=SCRIPT,
+            )
         )
     script = Script(path) if path.suffix.lower() == SCRIPT else None
     if script is not None and script.has_tasks:

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from components.field import Vector
+from components.language import begun, marked, tr
 from components.menu import Menu
 from components.particle import Particle
 from components.rod import Rod, rigid_joints
@@ -28,22 +29,25 @@ IN_MENU = (
 
 _PLOT = "probes.plot"  # offered where the mod that plots is there
 _RESULTS = (
-    ("properties", "properties"),
-    ("toggle diagrams", "force diagram"),
-    (_PLOT, "plot"),
-    ("new slider", "slider for it"),
+    ("properties", marked("properties")),
+    ("toggle diagrams", marked("force diagram")),
+    (_PLOT, marked("plot")),
+    ("new slider", marked("slider for its load or stiffness")),
 )
 _SUPPORTS = ("free", "pin", "hold y", "hold x")
 _CLAMPS = ("clamp", "guide y", "guide x", "hold rotation")
 _FROM_HERE = (
-    ("force", "load: click its end"),
-    ("moment", "moment: click left or right"),
-    ("velocity", "velocity: click its end"),
-    ("rod", "rod from here"),
+    ("force", marked("load: click where its arrow ends")),
+    ("moment", marked("moment: click left or right of it")),
+    ("velocity", marked("velocity: click where its arrow ends")),
+    ("rod", marked("rod from here")),
 )
-_PARTS = (("copy", "copy"), ("duplicate", "duplicate"), ("delete", "delete"))
+_PARTS = (("copy", marked("copy")), ("duplicate", marked("duplicate")), ("delete", marked("delete")))
 _DIVISIONS = ("split", *DIVISIONS.values())
-_OF_RODS = (("toggle cable", "cable: tension only"), ("release", "release it in the force method"))
+_OF_RODS = (
+    ("toggle cable", marked("cable: tension only")),
+    ("release", marked("release it in the force method")),
+)
 
 
 def menu_at(context: Context, pixel: Vector) -> Menu:
@@ -61,13 +65,12 @@ def menu_at(context: Context, pixel: Vector) -> Menu:
 def _title(context: Context) -> str:
     if context.scene not in LIVE or not context.has_selected:
         return ""
-    named = heading(context.model, context.selected)
-    return named[:1].upper() + named[1:]
+    return begun(heading(context.model, context.selected))
 
 
 def _groups(context: Context, pixel: Vector) -> Groups:
     if context.scene == FORCE_METHOD:
-        unknown = [("pick unknown", "release this")]
+        unknown = [("pick unknown", marked("release this"))]
         return [unknown, *([binding.action for binding in group] for group in toolbar(context.scene))]
     return _of_selection(context, pixel) if context.has_selected else _of_canvas(context)
 
@@ -89,10 +92,12 @@ def _of_selection(context: Context, pixel: Vector) -> Groups:
         from_here if particles and alone else (),
         _joints(context, rods[0], pixel)
         if rods and alone
-        else [("rigid", "rigid at both ends")]
+        else [("rigid", marked("rigid at both ends"))]
         if rods
         else (),
-        (("force", "distributed load: click its end"), "weight along") if rods and alone else (),
+        (("force", marked("distributed load: click where its arrow ends")), "weight along")
+        if rods and alone
+        else (),
         (_DIVISIONS if alone else _DIVISIONS[1:]) if bent else (),
         (_OF_RODS if alone else _OF_RODS[:1]) if rods else (),
         _PARTS,
@@ -102,14 +107,26 @@ def _of_selection(context: Context, pixel: Vector) -> Groups:
 def _joints(context: Context, rod: Rod, pixel: Vector) -> Sequence[Entry]:
     """What can be done with the joints of a rod at its ends, first with the nearer one."""
     end = int(share_at(rod, context.view.camera.to_model(pixel)) > 0.5)
-    here = "hinge" if is_rigid(rod, end) else "make rigid"
-    return [("hinge", f"{here} at {rod.ends[end].name}"), ("rigid", "rigid at both ends")]
+    particle = rod.ends[end].name
+    here = (
+        tr("hinge at {particle}", particle=particle)
+        if is_rigid(rod, end)
+        else tr("make rigid at {particle}", particle=particle)
+    )
+    return [("hinge", here), ("rigid", marked("rigid at both ends"))]
 
 
 def _of_canvas(context: Context) -> Groups:
     """Where the toolbar is hidden, all that it has, too."""
     groups: list[list[Entry]] = [
-        [("place", "new particle here"), "rod", "rigid", *ADDED_TOOLS, ("paste", "paste here"), "select all"],
+        [
+            ("place", marked("new particle here")),
+            "rod",
+            "rigid",
+            *ADDED_TOOLS,
+            ("paste", marked("paste here")),
+            "select all",
+        ],
         ["toggle run", "restart", "settle"],
         ["toggle diagrams", "toggle free bodies", "toggle utilisation"],
         ["toggle theory", "toggle energy", "toggle events", "next shape"],

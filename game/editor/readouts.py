@@ -13,6 +13,7 @@ from components import written
 from components.field import CM, FieldError
 from components.free_body import Force, on_joint, on_rod
 from components.handle import Handle
+from components.language import begun, joined, marked, plural, tr
 from components.model import Model
 from components.particle import Particle
 from components.rod import Rod, bends
@@ -25,6 +26,7 @@ from systems.statics.counting import counted
 if TYPE_CHECKING:  # it imports scipy
     from systems.statics.verify import Comparison, Theories
 
+BESIDE = marked("Theory beside the run")  # the title of a panel
 MOST_ELEMENTS = 3  # selected elements with a readout of their own
 SUM = 34  # characters of a line of a sum
 MOST_JOINTS = 6  # whose sums are shown while none is selected
@@ -43,7 +45,38 @@ _SHOWN = {
     "shear": ("kN", 1.0),
     "bending_moment": ("kN·m", 1.0),
 }
-_WAYS = {"simulation": "the run", "linear": "linear theory", "exact": "exact theory"}
+_WAYS = {
+    "simulation": marked("the run"),
+    "linear": marked("linear theory"),
+    "exact": marked("exact theory"),
+}
+_WORST = {
+    "simulation": marked("largest error of the run"),
+    "linear": marked("largest error of linear theory"),
+}
+_DISTURBED = {
+    "edited": marked("edited during the run"),
+    "pulled": marked("pulled during the run"),
+    "settled": marked("settled during the run"),
+}
+_ENERGIES = {
+    "initial": marked("at the beginning"),
+    "work": marked("work of the loads"),
+    "kinetic": marked("kinetic"),
+    "elastic": marked("elastic"),
+    "dissipated_damping": marked("dissipated by damping"),
+    "dissipated_plastic": marked("dissipated by yielding"),
+    "dissipated_impact": marked("dissipated by impacts"),
+    "imbalance": marked("numerical imbalance"),
+}
+_ERRORS = {
+    "relative": marked("error of displacements"),
+    "relative_velocity": marked("error of velocities"),
+    "relative_axial_force": marked("error of axial forces"),
+    "relative_rotation": marked("error of rotations"),
+    "relative_bending_moment": marked("error of bending moments"),
+}
+_INSTABILITIES = {"snap-through": marked("snap-through"), "bifurcation": marked("bifurcation")}
 
 
 def own_readouts(context: Context) -> Iterator[Readout]:
@@ -63,29 +96,29 @@ def _events(context: Context) -> Iterator[Readout]:
     """What happened in the run, the latest last."""
     found = [(event.when, event.message.rstrip(".")) for event in context.events]
     left_out = len(found) - MOST_EVENTS
-    earlier = [(f"{left_out} earlier", "")] if left_out > 0 else []
-    yield Readout("What happened", (*earlier, *found[-MOST_EVENTS:]) or (("nothing yet", ""),))
+    earlier = [(plural("one earlier event", "{count} earlier events", left_out), "")] if left_out > 0 else []
+    rows = (*earlier, *found[-MOST_EVENTS:]) or ((tr("nothing yet"), ""),)
+    yield Readout(tr("What happened"), rows)
 
 
 def _energy(context: Context) -> Iterator[Readout]:
     energies = context.energy.as_dict()
     nothing = NO_ENERGY * max(map(abs, energies.values()))
     rows = [
-        (name.replace("_", " "), f"{written.number(value, nothing=nothing)} J")
-        for name, value in energies.items()
+        (tr(_ENERGIES[name]), f"{written.number(value, nothing=nothing)} J") for name, value in energies.items()
     ]
     error = None if context.busy else context.document.assessment.error()  # which takes a run of its own
     if error is not None:
         for key, share in error.record(bent=bends(context.model)).items():
-            if key.startswith("relative"):
-                of = key.removeprefix("relative").strip("_").replace("_", " ") or "displacement"
-                rows.append((f"{of} error", _error(share, " of the largest")))
-    yield Readout("Energy account", tuple(rows))
+            if key in _ERRORS:
+                said = tr("{share} of the largest", share=written.share(share, 2))
+                rows.append((tr(_ERRORS[key]), said if share > NOTHING else tr("rounding only")))
+    yield Readout(tr("Energy account"), tuple(rows))
 
 
-def _error(share: float, of: str = "") -> str:
+def _error(share: float) -> str:
     """A relative error, unless it is nothing but rounding."""
-    return f"{written.number(share, 2)}{of}" if share > NOTHING else "below rounding"
+    return written.share(share, 2) if share > NOTHING else tr("rounding only")
 
 
 # --- free bodies -----------------------------------------------------------------------------------------
@@ -98,13 +131,16 @@ def _equilibrium(context: Context) -> Iterator[Readout]:
         return
     for handle in chosen[:MOST_ELEMENTS]:
         forces = on_joint(model, handle.row) if isinstance(handle, Particle) else on_rod(model, handle.row)
-        rows = [(force.name, _parts(force, forces)) for force in forces]
-        yield Readout(f"Free body: {model.describe(handle)}", (*rows, *_sums(forces)))
+        rows = [(tr(force.name), _parts(force, forces)) for force in forces]
+        title = tr("Free body: {element}", element=model.describe(handle))
+        yield Readout(title, (*rows, *_sums(forces)))
     if not chosen:
         shown = [row for particle in list(model.particles)[:MOST_JOINTS] for row in _sums_of(model, particle)]
         more = model.particles.count - MOST_JOINTS
-        rest = [(f"and {more} more", "select one")] if more > 0 else []
-        yield Readout("Free bodies: sums of forces (kN)", (*shown, *rest))
+        rest = (
+            [(plural("and one more", "and {count} more", more), tr("select one to see it"))] if more > 0 else []
+        )
+        yield Readout(tr("Free bodies: sums of forces (kN)"), (*shown, *rest))
 
 
 def _parts(force: Force, forces: Sequence[Force]) -> str:
@@ -129,7 +165,7 @@ def _sums(forces: Sequence[Force]) -> Iterator[tuple[str, str]]:
     if any(force.moment or force.lever for force in forces):
         about_start = any(force.lever for force in forces)
         each = [part for force in forces for part in (force.moment, force.lever)]
-        parts["ΣM about its start" if about_start else "ΣM"] = each
+        parts[tr("ΣM about its start") if about_start else "ΣM"] = each
     largest = max((max(map(abs, terms)) for terms in parts.values() if terms), default=0.0)
     for title, terms in parts.items():
         terms = [term if abs(term) > UNSEEN * largest else 0.0 for term in terms]
@@ -143,16 +179,16 @@ def _sums(forces: Sequence[Force]) -> Iterator[tuple[str, str]]:
 
 def _theory(context: Context) -> Iterator[Readout]:
     if context.model.rods.count == 0:
-        yield Readout("Theory beside the run", (("no rods", ""),))
+        yield Readout(tr(BESIDE), ((tr("There are no rods to compare."), ""),))
     elif not context.document.assessment.is_small:
-        yield Readout("Theory beside the run", ((f"more than {LARGEST} rods: use", "pinjoint verify"),))
+        yield Readout(tr(BESIDE), ((tr("more than {count} rods: use", count=LARGEST), "pinjoint verify"),))
     else:
         try:
             theory, comparison = context.document.assessment.theories, context.document.assessment.comparison()
         except FieldError:  # running or settling names the number
-            yield Readout("Theory beside the run", (("numbers too large or too small", ""),))
+            yield Readout(tr(BESIDE), ((tr("numbers too large or too small"), ""),))
             return
-        yield Readout("Theory beside the run", tuple(_overview(context, theory, comparison)))
+        yield Readout(tr(BESIDE), tuple(_overview(context, theory, comparison)))
         for handle in context.selected[:MOST_ELEMENTS]:
             yield from _of_element(handle, comparison)
 
@@ -162,22 +198,28 @@ def _overview(context: Context, theory: Theories, comparison: Comparison) -> Ite
     yield from _verdict(context, comparison)
     yield from _indeterminacy(context)
     if theory.refusal is not None:
-        yield "linear theory", "a mechanism" if theory.refusal.status == "mechanism" else "not with cables"
+        mechanism = theory.refusal.status == "mechanism"
+        yield tr("linear theory"), tr("none: this is a mechanism") if mechanism else tr("none: it has cables")
     if theory.exact is None:
+        share = written.share(settlement.final.load_factor)
         yield (
-            "exact theory",
-            f"{settlement.status} at {written.share(settlement.final.load_factor)} of the load",
+            tr("exact theory"),
+            tr("{status} at {share} of the load", status=tr(settlement.status), share=share),
         )
     for event in settlement.events:
-        if event.kind in ("snap-through", "bifurcation"):
-            yield event.kind, f"at {written.share(event.load_factor)} of the load"
-    for way in ("simulation", "linear"):
+        if event.kind in _INSTABILITIES:
+            yield (
+                tr(_INSTABILITIES[event.kind]),
+                tr("at {share} of the load", share=written.share(event.load_factor)),
+            )
+    for way, title in _WORST.items():
         worst = comparison.worst(way)
         if worst is not None:
-            yield f"largest error of {_WAYS[way]}", _error(getattr(worst, f"{way}_error"), f" ({worst.title})")
+            error = _error(getattr(worst, f"{way}_error"))
+            yield tr(title), tr("{error} ({where})", error=error, where=tr(worst.title))
     disturbed = context.document.assessment.disturbed
     if disturbed and not context.at_beginning:
-        yield f"{disturbed} during the run", "theory is without that"
+        yield tr(_DISTURBED[disturbed]), tr("theory leaves this out")
 
 
 def _indeterminacy(context: Context) -> Iterator[tuple[str, str]]:
@@ -185,7 +227,7 @@ def _indeterminacy(context: Context) -> Iterator[tuple[str, str]]:
     count, degrees = counted(context.model), context.document.assessment.indeterminacy
     yield count.formula, count.numbers
     if said := count.by_rank(degrees.static, degrees.mechanisms):
-        yield "by rank", said
+        yield tr("by rank"), said
 
 
 def _verdict(context: Context, comparison: Comparison) -> Iterator[tuple[str, str]]:
@@ -196,9 +238,10 @@ def _verdict(context: Context, comparison: Comparison) -> Iterator[tuple[str, st
         return
     if differs(comparison):
         reasons = [DEPARTURES[remark.kind] for remark in context.remarks if remark.kind in DEPARTURES]
-        yield "differs from static theory", ", ".join(dict.fromkeys(reasons)) or "see pinjoint verify"
+        why = joined(map(tr, dict.fromkeys(reasons)), ", ")
+        yield tr("differs from static theory"), why or tr("see pinjoint verify")
     else:
-        yield "at rest", "where static theory says"
+        yield tr("at rest"), tr("as static theory predicts")
 
 
 def _of_element(handle: Handle, comparison: Comparison) -> Iterator[Readout]:
@@ -217,5 +260,8 @@ def _beside(comparison: Comparison, quantity: str, place: tuple[int, ...]) -> Re
         value, error = getattr(row, way), getattr(row, f"{way}_error", None)
         clear = 0.0 if value is not None and abs(value) <= nothing else value
         shown = "—" if clear is None else f"{written.number(factor * clear)} {unit}"
-        rows.append((title if error is None else f"{title}, error {_error(error)}", shown))
-    return Readout(row.title[:1].upper() + row.title[1:], tuple(rows))
+        named = tr(title)
+        if error is not None:
+            named = tr("{theory}, error {error}", theory=named, error=_error(error))
+        rows.append((named, shown))
+    return Readout(begun(tr(row.title)), tuple(rows))

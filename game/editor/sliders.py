@@ -9,6 +9,7 @@ from typing import Any
 from components.box import Box
 from components.field import Field
 from components.handle import Handle
+from components.language import begun, joined, marked, tr
 from components.load import Load, factor_at
 from components.model import Model
 from components.numeric_range import incomputable
@@ -57,7 +58,8 @@ def scale_control(settings: Settings) -> Control:
     """The control of the displacement scale."""
     scale, automatic = settings.displacement_scale, settings.prescribed_displacement_scale is None
     share = scales(settings).share_of(max(scale, 1.0))
-    return Control(SCALE, "displacements", f"× {scale:.4g}", share, "auto", pressed=automatic)
+    value = tr("× {scale:.4g}", scale=scale)
+    return Control(SCALE, tr("displacements"), value, share, tr("auto"), pressed=automatic)
 
 
 def scales(settings: Settings) -> Slider:
@@ -74,8 +76,8 @@ def _control(model: Model, key: int, slider: Slider) -> Control | None:
     aim, handle = found[0]
     field, value = model.tables[aim.table].fields[aim.field], _value(aim, handle)
     unit, factor = field.shown
-    text = field.absent if value is None else _written(value * factor, unit)
-    text += _now(handle, aim.field, model.clock.time)
+    text = tr(field.absent) if value is None else _written(value * factor, unit)
+    text = joined([text, _now(handle, aim.field, model.clock.time)], ", ")
     share = None if value is None else slider.share_of(value)
     return Control(key, slider.title or _title(model, aim, handle, field), text, share, "×")
 
@@ -87,7 +89,7 @@ def _now(handle: Handle, field: str, time: float) -> str:
     factor = factor_at(handle.history, time)
     if not math.isfinite(factor) or f"{factor:.0%}" == "100%":
         return ""
-    return f", now {100.0 * factor:.0f} %".replace("-", "−")
+    return tr("now {share} %", share=f"{100.0 * factor:.0f}".replace("-", "−"))
 
 
 def _written(value: float, unit: str) -> str:
@@ -96,9 +98,14 @@ def _written(value: float, unit: str) -> str:
 
 
 def _title(model: Model, aim: Aim, handle: Handle, field: Field[Any]) -> str:
-    """Whose number a slider moves, and which, as short as model files call it."""
-    whose = f"all {aim.table}" if aim.element is None else getattr(handle, "name", model.describe(handle))
-    return f"{whose}: {field.key.replace('_', ' ')} {aim.axis}".rstrip()
+    """Whose number a slider moves, and which."""
+    whose = (
+        tr("all {elements}", elements=tr(aim.table))
+        if aim.element is None
+        else getattr(handle, "name", model.describe(handle))
+    )
+    number = f"{tr(field.title)} {aim.axis}".rstrip()
+    return tr("{element}: {value}", element=whose, value=number)
 
 
 def _value(aim: Aim, handle: Handle) -> float | None:
@@ -120,7 +127,7 @@ def slider_of(context: Context, key: int) -> Slider:
     if key == SCALE:
         return scales(context.scenes.active.scaled(context)[0])
     if key >= len(context.model.sliders):
-        raise Refusal("This slider was removed meanwhile.")
+        raise Refusal(tr("This slider has been removed."))
     return context.model.sliders[key]
 
 
@@ -132,7 +139,7 @@ def move_to(context: Context, key: int, value: float) -> None:
         return
     slider = slider_of(context, key)
     control = _control(model, key, slider)
-    with model.transaction(control.title if control is not None else "nothing"):
+    with model.transaction(control.title if control is not None else marked("slider")):
         for aim in slider.aims:
             handles = aim.handles(model.tables)
             model.assign(handles, aim.field, [_with(aim, handle, value) for handle in handles])
@@ -168,17 +175,23 @@ def add_slider(context: Context, elements: Sequence[Handle], field: str, axis: s
     aims = tuple(Aim(element.table, element, found.name, axis) for element in elements)
     there = next((slider for slider in model.sliders if slider.aims == aims), None)
     if there is not None:
-        raise Refusal(f"There is a slider for {_title(model, aims[0], first, found)} already.")
+        raise Refusal(tr("There is already a slider for {title}.", title=_title(model, aims[0], first, found)))
     value = _value(aims[0], first)
     if value is None:
-        raise Refusal(f"{found.title.capitalize()} is {found.absent}; give it a number first.")
+        raise Refusal(
+            tr(
+                "{quantity} is {absent}; give it a number first.",
+                quantity=begun(tr(found.title)),
+                absent=tr(found.absent),
+            )
+        )
     slider = _limited(_around(model, found, value, aims), found)
-    _set(context, (*model.sliders, slider), "new slider")
+    _set(context, (*model.sliders, slider), marked("new slider"))
     context.view.legend = True  # it is hidden with the toolbar and the legend
     context.view.sliders = sliders_of(context)
     if context.view.fitted:
         context.view.fit(model)
-    context.notice = f"Slider at the lower left: {_title(model, aims[0], first, found)}"
+    context.notice = tr("New slider at the lower left: {title}", title=_title(model, aims[0], first, found))
     return slider
 
 
@@ -222,7 +235,7 @@ def add_usual_slider(context: Context) -> None:
             add_slider(context, *_usual(context.model, elements))
             return
     raise Refusal(
-        "Select the particle or the rod whose load or stiffness a slider is to move, then press this again."
+        tr("Select a particle or a rod first; then this makes a slider for its load or its stiffness.")
     )
 
 
@@ -242,7 +255,7 @@ def _usual(model: Model, elements: Sequence[Handle]) -> tuple[Sequence[Handle], 
 def remove_slider(context: Context, key: int) -> None:
     """Take a slider off the canvas; what it moved stays as it is."""
     sliders = context.model.sliders
-    _set(context, sliders[:key] + sliders[key + 1 :], "slider removed")
+    _set(context, sliders[:key] + sliders[key + 1 :], marked("slider removed"))
 
 
 def _set(context: Context, sliders: tuple[Slider, ...], title: str) -> None:

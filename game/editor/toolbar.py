@@ -6,12 +6,14 @@ from collections.abc import Callable
 from typing import Any
 
 from components.bent import is_frame
+from components.language import tr
 from components.particle import Particle
 from components.rod import Rod
 from components.tags import DiagramShown
 from components.toolbar import Tool, Toolbar
 from game.editor.context import Context
 from game.editor.gestures.drawing import Drawing
+from game.force_method import PARTS
 from systems.edit.dividing import DIVISIONS
 from systems.edit.rods import is_rigid
 from systems.edit.supports import SUPPORTS, Held, held
@@ -43,9 +45,9 @@ def tool(context: Context, binding: Binding, title: str = "") -> Tool:
     if action == "toggle diagrams" and pressed and is_frame(context.model):
         icon, title = (
             f"diagram {context.view.quantity}",
-            title or f"diagrams, now: {NAMES[context.view.quantity]}",
+            title or tr("diagrams, now: {quantity}", quantity=tr(NAMES[context.view.quantity])),
         )
-    return Tool(action, title or binding.title, binding.key, icon, pressed, enabled)
+    return Tool(action, tr(title or binding.title), binding.key, icon, pressed, enabled)
 
 
 def _in_hand(context: Context) -> str:
@@ -128,6 +130,8 @@ _NEEDS: dict[str, Condition] = {
     "next grid": lambda context: context.model.grids.count > 0,
     "force method": lambda context: context.model.rods.count > 0,
     **dict.fromkeys(("release x", "release y"), _guided(lambda guide: guide.axis_wanted is not None)),
+    "release moment": _guided(lambda guide: guide.clamp_wanted),
+    "report": _guided(lambda guide: guide.part == PARTS),
     "pick unknown": _guided(lambda guide: guide.part == 2),
     "release another": _guided(lambda guide: guide.can_release_another),
 }

@@ -7,6 +7,7 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import NDArray
 
+from components.language import begun, english, joined, listed, marked, plural, tr
 from components.model import Model
 from components.tags import Hovered
 from components.view import MARGIN, Preview, Readout, Status, drawn_places, drawn_positions
@@ -21,12 +22,13 @@ from systems.input.bindings import LIVE, help_lines
 from systems.render.help import help_pages
 from systems.render.overlays import BAR
 
-COMPILING = "Compiling the step program, which models of this size wait for once:"
+COMPILING = marked("Compiling the program for this model, once: about {seconds:.0f} s left.")
+COMPILED_SOON = marked("Compiling the program for this model, once: nearly done.")
 STILL = ("pause", "properties")  # scenes of the model in which time stands still
 FLASH = 0.15  # s shown, for which an impact is marked
 MOST_WATCHED = 2000  # particles, up to which it is told that they left the picture
+MOST_NAMED = 3  # of these, by their names
 FARTHEST = 8.0  # times: by how much the view shows more than the original structure to follow what moves
-SHOWN_BY = "Home (right click: fit the view)"
 MOST_FLASHES = 500  # impacts marked at a time
 
 
@@ -47,7 +49,7 @@ def show(context: Context, elapsed: float) -> None:
     if view.pressed is not None and not (view.pointer is not None and view.pressed.contains(view.pointer)):
         view.pressed = None
     view.flashes = _flashes(context)
-    view.heading = scene.heading
+    view.heading = tr(scene.heading)
     view.shape = context.document.shapes.shown
     view.swing = context.document.shapes.swing(elapsed) if view.shape is not None else 1.0
     pages = pages_of_help(context) if view.help else []
@@ -61,7 +63,7 @@ def show(context: Context, elapsed: float) -> None:
         state=_state_word(context),
         hint=_drawing_hint(context) or scene.hint(context),
         problem=_problem(context),
-        notice=said or " ".join(filter(None, [lately, *lasting])),
+        notice=said or joined([lately, *lasting]),
         share=awaited.share if awaited is not None else None,
     )
 
@@ -78,7 +80,7 @@ def _show_readouts(context: Context) -> None:
     view.readouts = (*own_readouts(context), *context.panels())
     latest, since = max(view.since.values(), default=0), view.since
     view.since = {
-        readout.title: since.get(readout.title, latest + number)
+        english(readout.title): since.get(english(readout.title), latest + number)
         for number, readout in enumerate(view.readouts, start=1)
     }
 
@@ -88,7 +90,9 @@ def _unsettled(context: Context) -> str:
     document = context.document
     if context.scene not in STILL or document.is_undeformed or document.assessment.balanced:
         return ""
-    return "Edited: no longer in equilibrium. E (right click: settle) goes to the new one."
+    return tr(
+        "The model was edited and is no longer in equilibrium. Press E for the new equilibrium (right click: settle)."
+    )
 
 
 def _gone(context: Context) -> str:
@@ -104,10 +108,19 @@ def _gone(context: Context) -> str:
     gone = np.flatnonzero(moving & ~inside)
     if not len(gone) or (moving & inside).sum() > len(gone):
         return ""
-    if (moving & inside).any():
-        names = ", ".join(model.particles.names[row] for row in gone[:3])
-        return f"{names[:1].upper()}{names[1:]} left the picture: {SHOWN_BY} shows all."
-    return f"All that moves has left the picture: {SHOWN_BY} shows it."
+    if not (moving & inside).any():
+        return tr(
+            "Everything that moves has left the picture. Press Home to see it (right click: fit the view)."
+        )
+    names = listed([model.particles.names[row] for row in gone[:MOST_NAMED]])
+    if len(gone) > MOST_NAMED:
+        names = tr("{count} particles", count=len(gone))
+    return plural(
+        "{particles} has left the picture. Press Home to see everything (right click: fit the view).",
+        "{particles} have left the picture. Press Home to see everything (right click: fit the view).",
+        len(gone),
+        particles=begun(names),
+    )
 
 
 def follows(context: Context) -> bool:
@@ -150,7 +163,7 @@ def _told(waited: Waiting | None) -> str:
     if waited is None:
         return ""
     left = waited.expected - waited.seconds
-    return f"{COMPILING} {f'some {left:.0f} s left' if left > 1.0 else 'nearly done'}."
+    return tr(COMPILING, seconds=left) if left > 1.0 else tr(COMPILED_SOON)
 
 
 def _flashes(context: Context) -> NDArray[np.float64]:
@@ -176,24 +189,25 @@ def _preview(context: Context) -> Preview | None:
 def _drawing_hint(context: Context) -> str:
     if context.scene not in LIVE:
         return ""
-    return context.gesture.hint if context.gesture is not None else hint_of_tool(context)
+    return tr(context.gesture.hint) if context.gesture is not None else hint_of_tool(context)
 
 
 def _state_word(context: Context) -> str:
+    """The state of the run in English, which is translated where it is shown."""
     if context.simulation.halted:
-        return "at rest" if context.simulation.reason is StopReason.REST else "diverged"
+        return marked("at rest") if context.simulation.reason is StopReason.REST else marked("diverged")
     if context.awaited is not None:
-        return "preparing"
+        return marked("preparing")
     if not context.busy:
-        return "paused"
-    return "running, slower than asked" if context.clock.lagging else "running"
+        return marked("paused")
+    return marked("running below the set speed") if context.clock.lagging else marked("running")
 
 
 def _problem(context: Context) -> str:
     """Why the run stopped, or a warning though it goes on."""
     simulation = context.simulation
     if context.fault:
-        return f"{context.fault} Esc takes this away."
+        return joined([context.fault, tr("Press Esc to close this message.")])
     if simulation.reason is StopReason.DIVERGED and simulation.halted:
         return simulation.message
     return simulation.warning

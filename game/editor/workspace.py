@@ -7,6 +7,7 @@ from pathlib import Path
 from typing import TypeVar
 
 from components.handle import Handle
+from components.language import begun, tr
 from components.model import Model
 from components.settings import Settings
 from components.tags import Selected
@@ -73,7 +74,7 @@ class Workspace:
         self.save(path)
         self.document.file, self.document.practice = ModelFile.at(path), False
         self.document.saved = self.model.revision
-        self.notice = f"Saved as '{path.stem}'."
+        self.notice = tr("Saved as '{name}'.", name=path.stem)
 
     @property
     def model(self) -> Model:
@@ -193,8 +194,7 @@ class Workspace:
 
     def name(self, handle: Handle) -> str:
         """An element as a sentence begins with it, such as "Rod AB"."""
-        described = self.model.describe(handle)
-        return described[:1].upper() + described[1:]
+        return begun(self.model.describe(handle))
 
     @property
     def clipboard(self) -> str:

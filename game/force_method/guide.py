@@ -9,25 +9,28 @@ from typing import Any
 
 import numpy as np
 
-from components.commands import Assign
-from components.field import MADE, Column
+from components.bent import MOMENT
+from components.field import Column, Vector
 from components.handle import Handle
+from components.language import tr
 from components.model import Model
 from components.particle import Particle
 from components.rod import Rod
 from components.round_numbers import round_down
 from components.table import Table
 from components.tags import Selected
-from components.view import View
+from components.view import THESIS, View
 from game.documents.shapes import DRAWN_SHARE
 from game.force_method import PARTS
+from game.force_method.copies import base_structure, exact_forces, loaded, still
+from game.force_method.tables import Tables
 from systems.edit.arrows import extent
 from systems.run.real_time import RealTimeRunner
 from systems.run.simulation import Simulation
 from systems.schedule import Schedule
 from systems.statics.counting import counted
 from systems.statics.equations import largest
-from systems.statics.force_method import Solution, solve, unit_force
+from systems.statics.force_method import Solution, solve
 from systems.statics.released import SetState
 from systems.statics.settle import settle
 from systems.statics.unknowns import ForceMethodError, Unknown
@@ -77,9 +80,32 @@ class Set:
                 self.model.give("particles.velocity", np.zeros_like(final.displacement))
 
 
+@dataclass
+class Still:
+    """A system of a frame, undeformed: its forces are drawn at once, by first-order theory."""
+
+    model: Model
+    view: View
+    suited = 1.0
+    moves = False
+    simulation = None
+
+    def advance(self, elapsed: float) -> None:
+        """It does not move."""
+
+    def scale_to(self, state: SetState) -> None:
+        """Its diagrams have scales of their own."""
+
+    def settle(self) -> None:
+        """It is at rest."""
+
+
 def _scale_to(drawn: float, size: float) -> float:
     """The round scale at which a size is drawn so large; 1 where it, or the picture, has none."""
     return round_down(drawn / size) if min(drawn, size) > 0.0 else 1.0
+
+
+AnySet = Set | Still
 
 
 class Mechanism:
@@ -98,7 +124,9 @@ class Mechanism:
         """Let the time of one frame pass."""
         self._time += elapsed
         swing = math.sin(2.0 * math.pi * self._time / SWING)
-        self.model.writable("particles.displacement")[...] = swing * self._motion
+        self.model.writable("particles.displacement")[...] = swing * self._motion[:, :2]
+        if self._motion.shape[1] > 2:
+            self.model.writable("particles.rotation")[...] = swing * self._motion[:, 2]
 
 
 class Guide:
@@ -118,10 +146,11 @@ class Guide:
         self.refusal = ""
         self.mechanism: Mechanism | None = None
         self.axis_wanted: Particle | None = None
+        self._tables: Tables | None = None
         real = solve(model, [])
         self.count = counted(model)
-        self.sets = [self._make_set([], unit=None)]
-        self.sets[0].scale_to(real.real)
+        self.sets: list[AnySet] = []
+        self.sets = [self._make_set([], real.real)]
         self._scale_alike()
 
     @property
@@ -134,19 +163,42 @@ class Guide:
         """The newest unknown."""
         return self.released[-1] if self.released else None
 
+    @property
+    def in_thesis(self) -> bool:
+        """True if texts follow the thesis' convention, p = (Δ − Δ₀) / Δ₁, not the textbook's."""
+        return self._view.convention == THESIS
+
+    @property
+    def tables(self) -> Tables:
+        """The tables of the solution."""
+        assert self.solution is not None
+        if self._tables is None or self._tables.solution is not self.solution:
+            self._tables = Tables.of(self.model, self.solution)
+        return self._tables
+
+    @property
+    def clamp_wanted(self) -> bool:
+        """True if the support of which a direction is to be chosen has a moment, too."""
+        return self.axis_wanted is not None and _clamps(self.model, self.axis_wanted)
+
     # --- sets --------------------------------------------------------------------------------------
 
-    def _make_set(self, released: Sequence[Unknown], unit: Unknown | None) -> Set:
-        """A copy of the structure without some unknowns, under the real load or only a unit force."""
-        copy = base_structure(self.model, released)
+    def _make_set(self, released: Sequence[Unknown], state: SetState, amounts: Sequence[float] = ()) -> AnySet:
+        """A copy of the structure without some unknowns, under the real load, or under so much of them alone.
+
+        Where members bend it stays still; else it runs towards the state.
+        """
+        copy = loaded(self.model, released, amounts) if amounts else base_structure(self.model, released)
         known = self.sets[0].model.settings if released else None  # a person may have chosen its scale
         copy.settings.displacement_scale = known.prescribed_displacement_scale if known is not None else None
-        if unit is not None:
-            _unload(copy)
-            copy.assign(list(copy.particles), "force", unit_force(self.model, unit).tolist())
-        return Set(
-            copy, view_like(self._view), RealTimeRunner(Simulation(copy, self._schedule, "force method"))
-        )
+        if len(state.end_moment):
+            view = view_like(self._view)
+            view.all_diagrams, view.quantity = True, MOMENT
+            return Still(still(copy, self.model, state), view)
+        live = RealTimeRunner(Simulation(copy, self._schedule, "force method"))
+        made = Set(copy, view_like(self._view), live)
+        made.scale_to(state)
+        return made
 
     def _scale_alike(self) -> None:
         """Draw the displacements of all sets to the smallest of their scales: who moves further is softer."""
@@ -155,17 +207,17 @@ class Guide:
             one.model.writable("settings.automatic_displacement_scale")[0] = scale
 
     @property
-    def running(self) -> list[Set]:
+    def running(self) -> list[AnySet]:
         """The sets that move in this part."""
         return {1: self.sets[:1], 3: self.sets[1:2], 5: self.sets[2:3], 7: self.sets[2:3]}.get(self.part, [])
 
     @property
-    def shown(self) -> list[Set | Mechanism]:
+    def shown(self) -> list[AnySet | Mechanism]:
         """The structures in the picture, from left to right."""
         return [*self.sets, self.mechanism] if self.mechanism is not None else [*self.sets]
 
     @property
-    def moving(self) -> list[Set | Mechanism]:
+    def moving(self) -> list[AnySet | Mechanism]:
         """The structures that frames change."""
         return [one for one in (*self.running, self.mechanism) if one is not None and one.moves]
 
@@ -179,12 +231,12 @@ class Guide:
         for running in self.running:
             running.settle()
         if self.part == 2:
-            self.refusal = "First click the rod or the support to release, in set 1."
+            self.refusal = tr("First click the rod or the support to release, in set 1.")
             return True
         self.part += 1
         if self.part == 5 and self.solution is not None:
-            self.sets.append(self._make_set(self.released, unit=self.released[-1]))
-            self.sets[2].scale_to(self.solution.units[-1])
+            alone = [0.0] * (len(self.released) - 1) + [1.0]
+            self.sets.append(self._make_set(self.released, self._times(alone), alone))
             self._scale_alike()
         elif self.part == PARTS:
             self._apply_forces()
@@ -201,32 +253,41 @@ class Guide:
             self.sets[2].settle()
             self.sets, self.part = self.sets[:1], 2
 
-    def pick(self, hit: Handle | None) -> None:
-        """Take the element that was clicked in set 1 as the unknown (part 2)."""
+    def pick(self, hit: Handle | None, near: Vector = (0.0, 0.0)) -> None:
+        """Take the element that was clicked in set 1 at a point (m) as the unknown (part 2)."""
         self._forget_refusal()
         self.axis_wanted = None
         if isinstance(hit, Rod):
-            self._take(Unknown(self.model.rods[hit.name]))
+            rod = self.model.rods[hit.name]
+            self._take(Unknown(rod, self._end_of(rod, near)))
         if not isinstance(hit, Particle):
             return
         particle = self.model.particles[hit.name]
-        held = [axis for axis in (0, 1) if particle.fixed[axis]]
+        held = [axis for axis in (0, 1) if particle.fixed[axis]] + [2] * _clamps(self.model, particle)
         if not held:
-            self.refusal = f"{particle.name} has no support; click a rod or a support."
+            self.refusal = tr("{particle} has no support; click a rod or a support.", particle=particle.name)
         elif len(held) == 1:
             self._take(Unknown(particle, held[0]))
         else:
             self.axis_wanted = particle
 
+    def _end_of(self, rod: Rod, near: Vector) -> int | None:
+        """The rigid end of a rod that is nearer to a point (m), of which the moment is released; None of a bar."""
+        rigid = self.model.rods.turning_shares[rod.row] > 0.0
+        if not rigid.any():
+            return None
+        places = self.model.particles.position[list(rod.between)]
+        return int(np.where(rigid, np.hypot(*(places - near).T), np.inf).argmin())
+
     def pick_axis(self, axis: int) -> None:
-        """Choose the direction of a particle constrained in both (part 2)."""
-        if self.axis_wanted is not None:
+        """Choose the direction of a support that holds several: 0: x, 1: y, 2: the moment of a clamp (part 2)."""
+        if self.axis_wanted is not None and (axis < 2 or self.clamp_wanted):
             self._take(Unknown(self.axis_wanted, axis))
 
     def _take(self, unknown: Unknown) -> None:
         wanted = [*self.released, unknown]
         if unknown.name in {known.name for known in self.released}:
-            self.refusal = f"{unknown.name} is released already; pick another one."
+            self.refusal = tr("{name} is released already; pick another one.", name=unknown.name)
             return
         try:
             self.solution = solve(self.model, wanted)
@@ -241,8 +302,7 @@ class Guide:
         first = self.sets[0].model  # in which the released elements are drawn as selected
         tables: dict[str, Table[Any]] = first.tables
         first.tag_only([tables[one.element.table][one.element.name] for one in wanted], Selected)
-        base = self._make_set(wanted, unit=None)
-        base.scale_to(self.solution.base)
+        base = self._make_set(wanted, self.solution.base)
         self.sets = [self.sets[0], base]
         self._scale_alike()
         self.part = 3
@@ -250,18 +310,27 @@ class Guide:
     def _forget_refusal(self) -> None:
         self.refusal, self.mechanism = "", None
 
-    def _apply_forces(self) -> None:
-        """The hyperstatic forces in place of the unit force (part 7)."""
+    def _times(self, amounts: Sequence[float]) -> SetState:
+        """The state of the released structure under so much of its unknowns."""
         assert self.solution is not None
-        third = self.sets[2]
-        axial_force = np.zeros(self.model.rods.count)
-        force, displacement = np.zeros((2, self.model.particles.count, 2))
-        for p, unknown, unit in zip(self.solution.force, self.released, self.solution.units, strict=True):
-            force += p * unit_force(self.model, unknown)
-            displacement += p * unit.displacement
-            axial_force += p * unit.axial_force
+        states = self.solution.units
+        parts = {
+            name: sum(amount * getattr(unit, name) for amount, unit in zip(amounts, states, strict=True))
+            for name in vars(states[0])
+        }
+        return SetState(**parts)
+
+    def _apply_forces(self) -> None:
+        """The unknowns' values in place of the unit force (part 7)."""
+        assert self.solution is not None
+        amounts = self.solution.force.tolist()
+        third, state = self.sets[2], self._times(amounts)
+        if isinstance(third, Still):
+            self.sets[2] = self._make_set(self.released, state, amounts)
+            return
+        force = loaded(self.model, self.released, amounts).particles.force
         third.model.assign(list(third.model.particles), "force", force.tolist())
-        third.scale_to(SetState(displacement, axial_force))
+        third.scale_to(state)
         self._scale_alike()
         scale = min(one.model.settings.diagram_scale for one in self.sets)
         for one in self.sets:  # equal, so that the pictures add up, too
@@ -273,68 +342,7 @@ def view_like(view: View) -> View:
     return View(all_diagrams=view.all_diagrams, legend=False, pixel_ratio=view.pixel_ratio, fitted=True)
 
 
-def elastic_copy(model: Model) -> Model:
-    """The same structure without yielding, at rest at the beginning of time; only moved supports are displaced."""
-    copy = Model()
-    for name, table in model.tables.items():
-        kept = [field.name for field in table.fields_in(*MADE)] + ["plastic_strain"] * (name == "rods")
-        columns = {field: table.column(field) for field in kept}
-        if name == "particles":
-            columns["displacement"] = np.where(table.fixed, table.displacement, 0.0)
-        if table.kind.single:
-            [one] = copy.tables[name]
-            for field, column in columns.items():
-                copy.apply(Assign(name, field, (one.entity,), column))
-        else:
-            copy.create(table.kind, table.count, **columns)
-    copy.settings.plasticity = False
-    return copy
-
-
-def base_structure(model: Model, released: Sequence[Unknown]) -> Model:
-    """An elastic copy without some unknowns, which keeps all nodal masses."""
-    copy = elastic_copy(model)
-    copy.settings.time_step = None
-    copy.settings.collisions = False
-    if released:
-        copy.assign(list(copy.particles), "prescribed_mass", model.particles.mass.tolist())
-    for unknown in released:
-        _release(copy, unknown)
-    return copy
-
-
-def exact_forces(model: Model, unknowns: Sequence[Unknown]) -> list[float] | None:
-    """The unknowns' forces (kN) by exact geometry, without yielding; None if there is no equilibrium."""
-    if not unknowns:
-        return []
-    final = settle(elastic_copy(model)).final
-    if not final.balanced:
-        return None
-    return [
-        float(final.axial_force[unknown.element.row])
-        if unknown.axis is None
-        else float(final.reaction[unknown.element.row, unknown.axis])
-        for unknown in unknowns
-    ]
-
-
-def _unload(model: Model) -> None:
-    """Remove loads, accelerations, lack of fit, changes of temperature and displacements of supports."""
-    model.delete(list(model.loads))
-    model.environment.force = model.environment.acceleration = (0.0, 0.0)
-    particles = list(model.particles)
-    model.assign(particles, "acceleration", [(0.0, 0.0)] * len(particles))
-    model.assign(particles, "displacement", [(0.0, 0.0)] * len(particles))
-    rods = list(model.rods)
-    model.assign(rods, "plastic_strain", [0.0] * len(rods))
-    model.assign(rods, "prescribed_rest_length", model.rods.original_length.tolist())
-    model.assign(rods, "temperature_change", [0.0] * len(rods))
-
-
-def _release(model: Model, unknown: Unknown) -> None:
-    if unknown.axis is None:
-        model.delete([model.rods[unknown.element.name]])
-        return
-    particle = model.particles[unknown.element.name]
-    x, y = particle.fixed
-    particle.fixed = (x and unknown.axis != 0, y and unknown.axis != 1)
+def _clamps(model: Model, particle: Particle) -> bool:
+    """True if a particle cannot turn, and rods feel it."""
+    joined = (model.rods.between == particle.row) & (model.rods.turning_shares > 0.0)
+    return particle.fixed_rotation and bool(joined.any())

@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from components import Model, Plot, Readout, Vector, written
+from components.language import marked, tr
 from components.rod import nodes
 from game.editor.context import Context
 from game.mods import App
@@ -64,16 +65,19 @@ def is_gas(model: Model) -> bool:
 def toggle_speeds(session: Context, pixel: Vector) -> None:
     """Show or hide the speeds of the particles."""
     shown = _asked[session] = not _asked.get(session, is_gas(session.model))
-    session.notice = "Speeds beside Rayleigh's curve." if shown else "Speeds are not shown."
-    if shown and not free_speeds(session.model).any():
-        session.notice += " They appear as soon as a particle that no rod holds is moving."
+    if not shown:
+        session.notice = tr("The speeds of particles are hidden.")
+    elif free_speeds(session.model).any():
+        session.notice = tr("The speeds of particles are shown beside Rayleigh's curve.")
+    else:
+        session.notice = tr("The speeds of particles are shown as soon as one that no rod holds is moving.")
 
 
 def panels(session: Context) -> Sequence[Readout]:
     """A panel with the number of impacts, if any, and one with the speeds, of a gas or on demand."""
     made = []
     if session.model.clock.collisions:
-        made.append(Readout("Impacts", (("so far", str(session.model.clock.collisions)),)))
+        made.append(Readout(tr("Impacts"), ((tr("so far"), str(session.model.clock.collisions)),)))
     if _asked.get(session, is_gas(session.model)):
         speed = free_speeds(session.model)
         mean_square = float((speed**2).mean()) if len(speed) else 0.0
@@ -85,18 +89,18 @@ def panels(session: Context) -> Sequence[Readout]:
 def _speeds(speed: Array, mean_square: float, revision: int) -> Readout:
     smooth = np.linspace(0.0, RANGE * np.sqrt(mean_square), 80)
     curves = (
-        ("particles", *histogram(speed, mean_square)),
-        ("Rayleigh", smooth, rayleigh(smooth, mean_square)),
+        (tr("particles"), *histogram(speed, mean_square)),
+        (tr("Rayleigh"), smooth, rayleigh(smooth, mean_square)),
     )
     expected = np.sqrt(np.pi * mean_square) / 2
     rows = (
-        ("mean", f"{written.number(speed.mean())} m/s"),
-        ("mean by Rayleigh", f"{written.number(expected)} m/s"),
+        (tr("mean"), f"{written.number(speed.mean())} m/s"),
+        (tr("mean by Rayleigh"), f"{written.number(expected)} m/s"),
     )
     return Readout(
-        "Speeds",
+        tr("Speeds"),
         rows,
-        Plot("speed (m/s)", "share (s/m)", curves, hash((revision, speed.tobytes()))),
+        Plot(tr("speed (m/s)"), tr("share (s/m)"), curves, hash((revision, speed.tobytes()))),
         closes="collisions.speeds",
     )
 
@@ -104,5 +108,5 @@ def _speeds(speed: Array, mean_square: float, revision: int) -> Readout:
 def plugin(app: App) -> None:
     """Register the panels and the key."""
     app.panel(panels)
-    live, title = ("simulation", "pause"), "speeds beside Rayleigh's curve"
+    live, title = ("simulation", "pause"), marked("speeds beside Rayleigh's curve")
     app.action("collisions.speeds", key="u", scenes=live, title=title, icon=ICON)(toggle_speeds)

@@ -17,6 +17,7 @@ from typing import TextIO
 import numpy as np
 
 from components import FieldError, HistoryKind, Load, Model, Vector
+from components.language import marked, tr
 from components.load import History
 from components.wording import quoted
 from game.mods import App
@@ -29,7 +30,13 @@ def check_positive(parameter: str, unit: str, history: History, where: str) -> N
     """Raise FieldError unless a parameter is above 0."""
     if not history[parameter] > 0.0:
         raise FieldError(
-            f"{where}: history {parameter} is {history[parameter]:g} {unit}; it must be above 0 {unit}."
+            tr(
+                "{where}: history {parameter} is {value:g} {unit}; it must be above 0 {unit}.",
+                where=where,
+                parameter=parameter,
+                value=history[parameter],
+                unit=unit,
+            )
         )
 
 
@@ -38,10 +45,17 @@ def check_points(history: History, where: str) -> None:
     times, values = (history[name] for name in list(history)[1:])
     if not times or len(times) != len(values):
         raise FieldError(
-            f"{where}: the history has {len(times)} times and {len(values)} values; give as many of both."
+            tr(
+                "{where}: the history has {times} times and {values} values; give as many of both.",
+                where=where,
+                times=len(times),
+                values=len(values),
+            )
         )
     if any(later <= earlier for earlier, later in itertools.pairwise(times)):
-        raise FieldError(f"{where}: history times must ascend; correct or leave out those that do not.")
+        raise FieldError(
+            tr("{where}: history times must ascend; correct or leave out those that do not.", where=where)
+        )
 
 
 KERNELS = "systems.loads.kernels"
@@ -91,13 +105,18 @@ def read_record(path: Path, unit: float = 1.0) -> dict[str, list[float] | str]:
             except (ValueError, IndexError):
                 if times and "".join(row).strip():
                     raise ValueError(
-                        f"{path}, line {number}: {quoted(row)} is not a time and an acceleration."
+                        tr(
+                            "{path}, line {number}: {row} is not a time and an acceleration.",
+                            path=path,
+                            number=number,
+                            row=quoted(row),
+                        )
                     ) from None
                 continue
             times.append(time)
             values.append(value * unit)
     if not times:
-        raise ValueError(f"{path}: there is no line with a time and an acceleration.")
+        raise ValueError(tr("{path}: there is no line with a time and an acceleration.", path=path))
     return {"kind": "record", "times": times, "accelerations": values}
 
 
@@ -108,7 +127,12 @@ def _lines(file: TextIO, path: Path) -> Iterator[list[str]]:
         yield from reader
     except (csv.Error, UnicodeDecodeError) as error:
         raise ValueError(
-            f"{path}, after line {reader.line_num}: this is no CSV file in UTF-8 ({error})."
+            tr(
+                "{path}, after line {number}: this is not a CSV file in UTF-8 ({error}).",
+                path=path,
+                number=reader.line_num,
+                error=error,
+            )
         ) from None
 
 
@@ -120,7 +144,7 @@ def shake(model: Model, record: History | dict[str, list[float] | str], directio
     particles = model.particles
     free = np.flatnonzero(~particles.fixed.all(axis=1))
     force = -particles.mass[free, None] * np.array(direction) / 1000.0
-    with model.transaction("shake the supports"):
+    with model.transaction(marked("shake the supports")):
         names = [f"base acceleration of {particles.names[row]}" for row in free.tolist()]
         model.delete([model.loads[name] for name in names if name in model.loads])
         model.create(Load, len(free), name=names, on=free, force=force, history=[record] * len(free))
@@ -133,14 +157,14 @@ def run(words: list[str]) -> int:
     from game.documents import models
 
     parser = Parser(
-        prog="pinjoint shake", description="Shake the supports of a model by a recorded acceleration."
+        prog="pinjoint shake", description=tr("Shake the supports of a model by a recorded acceleration.")
     )
-    parser.add_argument("model", help="a model file, or the name of a bundled model")
-    parser.add_argument("record", type=Path, metavar="RECORD.csv", help="lines of time (s), acceleration")
-    parser.add_argument("--unit", choices=("m/s2", "g"), default="m/s2", help="of the accelerations")
+    parser.add_argument("model", help=tr("a model file, or the name of a bundled model"))
+    parser.add_argument("record", type=Path, metavar="RECORD.csv", help=tr("lines of time (s), acceleration"))
+    parser.add_argument("--unit", choices=("m/s2", "g"), default="m/s2", help=tr("of the accelerations"))
     parser.add_argument("--direction", choices=tuple(DIRECTIONS), default="x")
     parser.add_argument(
-        "--output", type=writable, required=True, metavar="FILE", help="the model with the loads"
+        "--output", type=writable, required=True, metavar="FILE", help=tr("the model with the loads")
     )
     options = parser.parse_args(words)
     model = models.load(options.model)
@@ -148,7 +172,9 @@ def run(words: list[str]) -> int:
         record = read_record(options.record, STANDARD_GRAVITY if options.unit == "g" else 1.0)
         shake(model, record, DIRECTIONS[options.direction])
     except OSError as error:
-        raise UsageError(f"{options.record} cannot be read: {error.strerror}. Check its path.") from None
+        raise UsageError(
+            tr("{file} cannot be read: {reason}. Check its path.", file=options.record, reason=error.strerror)
+        ) from None
     except ValueError as error:
         raise UsageError(str(error)) from None
     models.save(model, options.output)
@@ -159,4 +185,4 @@ def plugin(app: App) -> None:
     """Register the histories and the command."""
     for kind in (SINE, PULSE, TABLE, RECORD):
         app.history(kind)
-    app.command("shake", run, "give a model the loads of a recorded base acceleration")
+    app.command("shake", run, marked("give a model the loads of a recorded base acceleration"))

@@ -13,8 +13,9 @@ from typing import Any
 
 import numpy as np
 
-from components import Model, Particle, Plot, Readout, Rod, Vector
+from components import Model, Particle, Plot, Readout, Rod, Vector, written
 from components.field import ENDS
+from components.language import english, joined, listed, marked, tr
 from game.documents.models import replace
 from game.editor.context import Context
 from game.mods import App
@@ -26,7 +27,12 @@ from systems.render.theme import load_theme
 
 MOST = 20_000  # samples; beyond, every second one is dropped
 FEW = 3  # plots at a time
-ENERGIES = ("energy.kinetic", "energy.elastic", "energy.dissipated_damping", "energy.dissipated_plastic")
+ENERGIES = {  # by path, as legends name them
+    "energy.kinetic": marked("kinetic"),
+    "energy.elastic": marked("elastic"),
+    "energy.dissipated_damping": marked("damping"),
+    "energy.dissipated_plastic": marked("yielding"),
+}
 OF_ROD = (("axial_force", TIME), ("axial_force", "strain"))
 OF_BENDING_ROD = (*((f"bending_moment.{end}", TIME) for end in ENDS), ("shear.start", TIME))
 OF_PARTICLE = (
@@ -84,13 +90,13 @@ class Probe:
             table = table[table[:, 0] >= begin]
         curves = tuple((_short(q), table[:, 1], table[:, 2 + index]) for index, q in enumerate(self.read))
         units = ", ".join(dict.fromkeys(q.unit for q in self.read))
-        title = self.read[0].title if len(self.read) == 1 else units
-        return Plot(self.against.title, title, curves, hash((self.revision, span)))
+        title = tr(self.read[0].title) if len(self.read) == 1 else units
+        return Plot(tr(self.against.title), title, curves, hash((self.revision, span)))
 
 
 def _short(read: Quantity) -> str:
     """A name for the legend of a plot."""
-    return read.path.partition(".")[2].replace("dissipated_", "").replace(".", " ").replace("_", " ")
+    return tr(ENERGIES.get(read.path, read.name))
 
 
 @dataclass(eq=False)
@@ -154,7 +160,7 @@ def choices(session: Context) -> list[tuple[tuple[str, ...], str]]:
             pairs = (*pairs, ("rotation", TIME))
         start = f"{handle.table}.{getattr(handle, 'name', '')}."
         found = [((start + y,), x if x == TIME else start + x) for y, x in pairs]
-    return found or [(ENERGIES, TIME)]
+    return found or [(tuple(ENERGIES), TIME)]
 
 
 def plot_next(session: Context, pixel: Vector) -> None:
@@ -166,20 +172,22 @@ def plot_next(session: Context, pixel: Vector) -> None:
     probes.all = [probe for probe in probes.all if probe.key not in keys]
     following = shown[-1] + 1 if shown else 0
     if following == len(offered):
-        session.notice = "No plot of it any more."
+        session.notice = tr("The plots of the selection are closed.")
         return
     paths, against = offered[following]
     probe = probes.add(session, paths, against)
     probes.sample(session)
-    title = probe.read[0].title if len(paths) == 1 else "energies"
-    session.notice = f"Plot: {title} against {probe.against.title}; O: the next."
+    title = tr(probe.read[0].title) if len(paths) == 1 else tr("energies")
+    session.notice = tr(
+        "Plot: {quantity} against {other}. O shows the next.", quantity=title, other=tr(probe.against.title)
+    )
 
 
 def zoom(factor: float, session: Context) -> None:
     """Show a shorter or longer part of the time."""
     probes = probes_of(session)
     probes.span = min(max(probes.span * factor, 1.0 / 1024.0), 1.0)
-    session.notice = f"Plots: the last {100.0 * probes.span:.3g} % of the time."
+    session.notice = tr("Plots show the last {share} of the time.", share=written.share(probes.span))
 
 
 def save(session: Context, pixel: Vector) -> None:
@@ -191,16 +199,25 @@ def save(session: Context, pixel: Vector) -> None:
             write_png(probe, path.with_suffix(".png"), session.view.theme)
     except OSError as error:
         raise Refusal(
-            f"No plot was saved: {error.filename}: {error.strerror}. Start Pinjoint in a folder where you may write."
+            tr(
+                "No plot was saved: {file}: {reason}. Start Pinjoint in a folder where you may write.",
+                file=error.filename,
+                reason=error.strerror,
+            )
         ) from None
-    names = ", ".join(path.stem for path in paths)
-    session.notice = f"Saved as CSV and PNG: {names}" if paths else "There is no plot to save; O makes one."
+    names = listed([path.stem for path in paths])
+    session.notice = (
+        tr("Saved as CSV and PNG: {names}", names=names)
+        if paths
+        else tr("There is no plot to save; O makes one.")
+    )
 
 
 def write_csv(probe: Probe, path: Path) -> None:
     """Write one sample a line: the time and the quantities, in the units of the headings."""
     against = [] if probe.against.path == TIME else [1]
-    heads = ["time (s)", *([probe.against.title] if against else []), *(read.title for read in probe.read)]
+    titles = [*([probe.against.title] if against else []), *(read.title for read in probe.read)]
+    heads = ["time (s)", *map(english, titles)]
     text = io.StringIO()
     writer = csv.writer(text)
     writer.writerow(heads)
@@ -237,7 +254,9 @@ def _names(readout: Readout) -> tuple[str, ...]:
 
 def _heading(probe: Probe) -> str:
     energies = all(read.path.startswith("energy.") for read in probe.read)
-    return "Energies" if energies else ", ".join(map(_short, probe.read))
+    if energies:
+        return tr("Energies")
+    return tr("Plot of {quantities}", quantities=joined(map(_short, probe.read), ", "))
 
 
 def run(words: list[str]) -> int:
@@ -247,22 +266,23 @@ def run(words: list[str]) -> int:
     from game.commands.output import writable, writing
 
     parser = Parser(
-        prog="pinjoint plot", description="Run a model and write quantities against time or another."
+        prog="pinjoint plot",
+        description=tr("Run a model and write quantities against time or another quantity."),
     )
     add_model(parser)
     parser.add_argument(
-        "--of", action="append", required=True, metavar="PATH", help="such as rods.AB.axial_force"
+        "--of", action="append", required=True, metavar="PATH", help=tr("such as rods.AB.axial_force")
     )
-    parser.add_argument("--against", default=TIME, metavar="PATH", help="default: time")
-    parser.add_argument("--until", type=positive, required=True, metavar="T", help="simulated time (s)")
-    parser.add_argument("--samples", type=count, default=500, metavar="N", help="at least; default 500")
-    parser.add_argument("--output", type=writable, required=True, metavar="FILE", help=".csv or .png")
+    parser.add_argument("--against", default=TIME, metavar="PATH", help=tr("default: time"))
+    parser.add_argument("--until", type=positive, required=True, metavar="T", help=tr("simulated time (s)"))
+    parser.add_argument("--samples", type=count, default=500, metavar="N", help=tr("at least; default 500"))
+    parser.add_argument("--output", type=writable, required=True, metavar="FILE", help=tr(".csv or .png"))
     options = parser.parse_args(words)
     session = session_of(options)
     probe = probes_of(session).add(session, options.of, options.against)
     output = Path(options.output)
     if output.suffix not in (".csv", ".png"):
-        raise UsageError(f"--output {output}: write a file that ends with .csv or .png.")
+        raise UsageError(tr("--output {file}: write a file that ends with .csv or .png.", file=output))
     record(session, probe, options.until, options.samples)
     with writing(output, "--output"):
         (write_png if output.suffix == ".png" else write_csv)(probe, output)
@@ -285,13 +305,15 @@ def plugin(app: App) -> None:
     """Register the system, its keys, the panels and the command."""
     app.system(Sampling)
     app.panel(panels)
-    app.command("plot", run, "write or draw what a run does, against time or another quantity")
+    app.command("plot", run, marked("write or draw what a run does, against time or another quantity"))
     live = ("simulation", "pause")
-    app.action("probes.plot", key="o", scenes=live, title="plot of the selection", icon=ICON)(plot_next)
-    app.action("probes.save", key="ctrl+e", scenes=live, title="plots as CSV and PNG")(save)
+    app.action("probes.plot", key="o", scenes=live, title=marked("plot of the selection"), icon=ICON)(plot_next)
+    app.action("probes.save", key="ctrl+e", scenes=live, title=marked("plots as CSV and PNG"))(save)
     app.action("probes.close", while_drawing=True)(close)
-    for name, key, factor in (("longer", "[", 2.0), ("shorter", "]", 0.5)):
-        title = f"{name} plots"
+    for name, key, factor, title in (
+        ("longer", "[", 2.0, marked("longer plots")),
+        ("shorter", "]", 0.5, marked("shorter plots")),
+    ):
         app.action(f"probes.{name}", key=key, scenes=live, title=title, while_drawing=True)(
             lambda session, pixel, factor=factor: zoom(factor, session)  # type: ignore[misc]
         )

@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from components import CM, Field, FieldError, Handle, Pieces, Selected, Table, Vector
+from components.language import marked, tr
 from components.tags import Hovered
 from game.mods import App
 from systems.render.clip import bounds, clip_segments
@@ -28,18 +29,18 @@ class Wall(Handle):
     """A straight line from one point to another; both of its sides and its ends are hard and smooth."""
 
     __slots__ = ()
-    table, noun = "walls", "wall"
+    table, noun = marked("walls"), marked("wall")
     points = ("start", "end")
 
-    name: Field[str] = Field(doc="Unique among the walls.", dtype=str)
-    start: Field[Vector] = Field("m", shape=(2,), doc="Where it begins.", shown=CM)
-    end: Field[Vector] = Field("m", shape=(2,), doc="Where it ends.", shown=CM)
+    name: Field[str] = Field(doc=marked("Unique among the walls."), dtype=str)
+    start: Field[Vector] = Field("m", shape=(2,), doc=marked("Where it begins."), shown=CM)
+    end: Field[Vector] = Field("m", shape=(2,), doc=marked("Where it ends."), shown=CM)
     restitution: Field[float | None] = Field(
         default=None,
         nullable=True,
         minimum=0.0,
         maximum=1.0,
-        doc="Of impacts with it, whatever that of particles is; automatic: that of the settings.",
+        doc=marked("Of impacts with it, whatever that of the particles is; automatic: that of the settings."),
     )
 
     @classmethod
@@ -48,7 +49,9 @@ class Wall(Handle):
         points = (table.start[rows] == table.end[rows]).all(axis=1)
         for row in rows[points][:1].tolist():
             where = table.world.describe(table[row])
-            raise FieldError(f"{where}: its start and its end are the same point; place one elsewhere.")
+            raise FieldError(
+                tr("{wall}: its start and its end are the same point; place one elsewhere.", wall=where)
+            )
 
 
 def as_pieces(walls: Table[Wall]) -> Pieces:
@@ -67,8 +70,8 @@ def draw(sheet: Sheet) -> Iterator[Mark]:
     sheet.occupancy.line(start, end, STRONG)
     sheet.occupancy.parts.lines(("walls", rows), start, end, width / 2)
     selected, hovered = (sheet.tagged(tag, "walls") for tag in (Selected, Hovered))
-    for marked, halo in ((hovered, sheet.theme.hover), (selected, sheet.theme.selected)):
-        chosen = sheet.chosen(marked, rows)
+    for which, halo in ((hovered, sheet.theme.hover), (selected, sheet.theme.selected)):
+        chosen = sheet.chosen(which, rows)
         glow = faded(halo, HALO_OPACITY)
         yield from _thick(start[chosen], end[chosen], 3.5 * width, glow, rows[chosen])
     yield from _thick(start, end, width, sheet.theme.ink, rows)
@@ -106,4 +109,4 @@ def plugin(app: App) -> None:
     app.kind(Wall)
     app.shape(Wall, as_pieces)
     app.layer(draw, below=True)
-    app.tool(Wall, key="w", title="wall or floor, from point to point", icon=ICON)
+    app.tool(Wall, key="w", title=marked("wall or floor, from point to point"), icon=ICON)

@@ -249,7 +249,7 @@ class Course:
         self._shown = True
 
     def look(self) -> None:
-        """Accept a state as soon as it is reached and nobody is in the middle of something; take back what is said no more."""
+        """Accept a state as soon as it is reached and nobody is in the middle of something, or say anew what is wrong."""
         session, task = self._session, self.task
         if session.gesture is not None or session.performing or (session.busy and task.after):
             return
@@ -306,16 +306,16 @@ class Course:
     def _buttons(self, *, last: bool) -> tuple[CardButton, ...]:
         onward = tr("Next lesson") if last else tr("Next")
         main = (
-            CardButton("next task", onward, "F2", main=True)
+            CardButton("next task", onward, "F5", main=True)
             if self.accepted
-            else CardButton("check answer", tr("Check"), "F2", main=True)
+            else CardButton("check answer", tr("Check"), "F5", main=True)
         )
-        hint = CardButton("hint", tr("Hint"), "F3", bool(self.task.hints) and not self.accepted)
-        show = CardButton("show solution", tr("Show me"), "F4", not self.accepted)
+        hint = CardButton("hint", tr("Hint"), "F6", bool(self.task.hints) and not self.accepted)
+        show = CardButton("show solution", tr("Show me"), "F7", not self.accepted)
         return (
             main,
             hint,
             show,
-            CardButton("task again", tr("Again"), "F5"),
-            CardButton("leave lesson", tr("Leave"), "F6"),
+            CardButton("task again", tr("Again"), "F8"),
+            CardButton("leave lesson", tr("Leave"), "F9"),
         )

@@ -10,6 +10,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from components.language import tr
 from components.model import Model
 from components.obstacles import obstacles
 from components.table import read_only
@@ -74,7 +75,13 @@ class Impacts:
 
     def __getattr__(self, name: str) -> Column:
         if name not in _COLUMNS:
-            raise AttributeError(f"Impacts have no column '{name}'; they have {', '.join(_COLUMNS)}.")
+            raise AttributeError(
+                tr(
+                    "Impacts have no column '{name}'; they have {columns}.",
+                    name=name,
+                    columns=", ".join(_COLUMNS),
+                )
+            )
         column = self._table[: len(self), _COLUMNS.index(name)]
         if name in ("first", "second"):
             return column.astype(np.int64)

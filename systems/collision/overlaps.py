@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from components.language import joined, plural
 from components.model import Model
 from components.obstacles import NO_OBSTACLES, Obstacles, obstacles
 from components.rod import nodes
@@ -89,9 +90,21 @@ def part_overlaps(model: Model) -> str:
     model.writable("particles.displacement")[...] = displacement
     if farthest <= UNSEEN_OVERLAP * float(particles.radius.min()) and not left:
         return ""
-    pairs = "1 pair of particles" if count == 1 else f"{count} pairs of particles"
-    note = f"{pairs} overlapped and were moved apart along their lines of centres."
     if (overlapping[:, 1] >= particles.count).any():
-        pairs = "1 overlap" if count == 1 else f"{count} overlaps"
-        note = f"{pairs} of particles with others or with obstacles: they were moved apart."
-    return note if left == 0 else f"{note} {left} still overlap: move them, or free a direction."
+        note = plural(
+            "1 particle overlapped an obstacle: it was moved away.",
+            "{count} overlaps of particles with others or with obstacles: they were moved apart.",
+            count,
+        )
+    else:
+        note = plural(
+            "1 pair of particles overlapped and was moved apart along the line of centres.",
+            "{count} pairs of particles overlapped and were moved apart along their lines of centres.",
+            count,
+        )
+    still = plural(
+        "1 pair still overlaps: move one of the two, or free a direction.",
+        "{count} pairs still overlap: move them, or free a direction.",
+        left,
+    )
+    return joined([note, still if left else ""])

@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from components.collision_state import PersistentContacts
+from components.language import marked
 from components.model import Model
 from components.obstacles import any_obstacles, obstacles
 from systems.base import Integrator, StepSystem
@@ -24,7 +25,7 @@ class Collision(StepSystem):
     """
 
     name = "collision.discs"
-    unneeded = "no two particles, and no particle and obstacle, can meet; or settings.collisions is off"
+    unneeded = marked("no two particles, and no particle and obstacle, can meet; or settings.collisions is off")
     reads = ("particles.radius", "particles.mobility", "settings.restitution")
     writes = ("particles.velocity", "clock.collisions", "clock.dissipated_impact")
     impulsive = True

@@ -12,14 +12,19 @@ from numpy.typing import NDArray
 
 from components.derived import chord_rotation
 from components.field import SAVED
+from components.language import begun, marked, plural, tr
 from components.model import Model
 from components.particle import Particle
 from components.rod import Rod
 from components.slider import SetSliders
+from components.wording import quoted
 from systems.edit import Refusal
 
 MOST_PARTS = 1000
-DIVISIONS = {2: "divide in two", 4: "divide in four"}  # titles of what menus offer, by the number of parts
+DIVISIONS = {
+    2: marked("divide in two"),
+    4: marked("divide in four"),
+}  # titles of what menus offer, by the number of parts
 # Half a rod has half of the first and twice the others; sliders that move these move the first part only.
 _WITH_LENGTH, _AGAINST_LENGTH = ("prescribed_rest_length",), ("damping", "bending_damping")
 
@@ -29,10 +34,21 @@ Numbers = NDArray[np.float64]
 def divide(model: Model, rods: Sequence[Rod], parts: int = 2) -> list[Rod]:
     """Divide rods into equally long ones, as one edit; returns the new ones, in order. Raises Refusal."""
     if isinstance(parts, bool) or not isinstance(parts, int) or not 2 <= parts <= MOST_PARTS:
-        raise Refusal(f"A rod is divided into 2 to {MOST_PARTS} equal parts, not {parts!r:.40}.")
+        raise Refusal(
+            tr(
+                "A rod can be divided into 2 to {most} equal parts, not {parts}.",
+                most=MOST_PARTS,
+                parts=quoted(parts),
+            )
+        )
     places = np.arange(1, parts) / parts
-    with model.transaction(f"divide {model.describe(rods[0]) if len(rods) == 1 else f'{len(rods)} rods'}"):
+    with model.transaction(tr("divide {rods}", rods=several(model, rods))):
         return [part for rod in rods for part in divide_at(model, rod, places)]
+
+
+def several(model: Model, rods: Sequence[Rod]) -> str:
+    """Some rods as a person calls them: "rod AB", "3 rods"."""
+    return plural("{rod}", "{count} rods", len(rods), rod=model.describe(rods[0]))
 
 
 def divide_at(model: Model, rod: Rod, places: Sequence[float] | Numbers) -> list[Rod]:
@@ -44,15 +60,23 @@ def divide_at(model: Model, rod: Rod, places: Sequence[float] | Numbers) -> list
     name = model.describe(rod)
     if rod.bending_stiffness == 0.0:
         raise Refusal(
-            f"{name[:1].upper()}{name[1:]} does not bend, and pinned bars in a line are a mechanism; make it rigid or"
-            " give it a bending stiffness first."
+            tr(
+                "{rod} does not bend, and pinned bars in a line are a mechanism; join it rigidly or give it a bending"
+                " stiffness first.",
+                rod=begun(name),
+            )
         )
     shares = np.asarray(places, dtype=np.float64)
     lengths = np.diff(shares, prepend=0.0, append=1.0)
     if not (lengths > 0.0).all():
-        raise Refusal(f"{name}: the places where it is divided must ascend between 0 and 1.")
+        raise Refusal(
+            tr(
+                "{rod}: the places where it is divided must be between 0 and 1, in ascending order.",
+                rod=begun(name),
+            )
+        )
     ends, last = rod.ends, len(lengths) - 1
-    with model.transaction(f"divide {name}"):
+    with model.transaction(tr("divide {rods}", rods=name)):
         between = _particles(model, rod, shares)
         chain = [ends[0], *between, ends[1]]
         pairs = [(first.row, second.row) for first, second in itertools.pairwise(chain)]

@@ -9,6 +9,7 @@ from typing import Any
 from components.field import Vector
 from components.handle import Handle
 from components.kind import outlines
+from components.language import marked
 from components.model import Model
 from components.tags import Hovered
 from components.view import View
@@ -26,7 +27,7 @@ class Hover(System):
     after = ("edit.actions",)
     reads = ("document", "view")
     writes = ("tags",)
-    unneeded = "the model has nothing to point at"
+    unneeded = marked("the model has nothing to point at")
     scenes = ("simulation", "pause", "properties", "force method")
 
     def __init__(self, beside: Picked = lambda *where: None) -> None:

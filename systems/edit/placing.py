@@ -8,6 +8,7 @@ import numpy as np
 
 from components.field import Vector
 from components.handle import Handle
+from components.language import begun, tr
 from components.model import Model
 from components.particle import Particle
 from components.view import View, drawn_positions
@@ -72,4 +73,4 @@ def check_free(model: Model, view: View, point: Vector, besides: list[Particle] 
     nearest = int(np.argmin(distance))
     if distance[nearest] <= PARTICLE_REACH * view.pixel_ratio:
         name = model.describe(model.particles[nearest])
-        raise Refusal(f"{name[0].upper()}{name[1:]} is here already; choose another place, or zoom in.")
+        raise Refusal(tr("{particle} is here already; choose another place, or zoom in.", particle=begun(name)))

@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 
 from components.clock import is_error_controlled
 from components.field import Vector
+from components.language import marked
 from components.model import Model
 from components.particle import Particle
 from components.view import View
@@ -41,7 +42,7 @@ class Pull(Law):
     """The force of the hand on one particle. Its work is accounted for; without a hand the law is left out."""
 
     name = "edit.pull"
-    unneeded = "no hand pulls a particle"
+    unneeded = marked("no hand pulls a particle")
     each = "particles"
     kernel = "systems.edit.kernels:pull"
     reads = ("particles.displacement", "particles.velocity")

@@ -11,6 +11,7 @@ import numpy as np
 
 from components.field import Vector
 from components.handle import Handle
+from components.language import begun, tr
 from components.model import Model
 from components.particle import Particle
 from components.rod import Rod, spawn_rods
@@ -37,14 +38,25 @@ def distance(first: Particle, second: Particle) -> float:
 def check_ends(model: Model, first: Particle, second: Particle) -> None:
     """Raise Refusal if two particles cannot be joined by a new rod."""
     if first is second:
-        raise Refusal("A rod needs two different particles; point at another one.")
+        raise Refusal(tr("A rod needs two different particles; point at another one."))
     ends = model.rods.between
     for row in np.flatnonzero(((ends == first.row) | (ends == second.row)).all(axis=1))[:1].tolist():
         raise Refusal(
-            f"{first.name} and {second.name} are joined already, by {model.describe(model.rods[row])}."
+            tr(
+                "{rod} already joins {first} and {second}; choose two other particles.",
+                rod=begun(model.describe(model.rods[row])),
+                first=first.name,
+                second=second.name,
+            )
         )
     if distance(first, second) == 0.0:
-        raise Refusal(f"{first.name} and {second.name} are at the same place; move one of them first.")
+        raise Refusal(
+            tr(
+                "{first} and {second} are at the same place; move one of them first.",
+                first=first.name,
+                second=second.name,
+            )
+        )
 
 
 def join(model: Model, first: Particle, second: Particle, *, rigid: bool = False) -> Rod:
@@ -55,7 +67,7 @@ def join(model: Model, first: Particle, second: Particle, *, rigid: bool = False
     """
     check_ends(model, first, second)
     moved = first.displacement != second.displacement
-    with model.transaction("new rod"):
+    with model.transaction(tr("new {noun}", noun=tr(Rod.noun))):
         [rod] = spawn_rods(
             model,
             [(first.row, second.row)],
@@ -87,23 +99,37 @@ def toggle_hinge(model: Model, rod: Rod, end: int) -> str:
     rigid = is_rigid(rod, end)
     hinged = [not is_rigid(rod, other) for other in (0, 1)]
     hinged[end] = rigid
-    with model.transaction(f"{'hinge' if rigid else 'rigid joint'} of {model.describe(rod)}"):
+    title = (
+        tr("hinge of {rod}", rod=model.describe(rod))
+        if rigid
+        else tr("rigid joint of {rod}", rod=model.describe(rod))
+    )
+    with model.transaction(title):
         _let_bend(model, [rod] if not rigid else [])
         model.assign([rod], "hinged", [hinged])
-    return f"{'hinged' if rigid else 'rigid'} at {rod.ends[end].name}"
+    particle = rod.ends[end].name
+    if rigid:
+        return tr("hinged at {particle}", particle=particle)
+    return tr("rigidly joined at {particle}", particle=particle)
 
 
 def toggle_joint(model: Model, particle: Particle) -> str:
     """Hinge all rods' ends at a particle, or make them rigid if they are hinged; returns what they are now."""
     ends = np.argwhere(model.rods.between == particle.row).tolist()
     if not ends:
-        raise Refusal(f"{particle.name} has no rods that could be hinged; click an end of a rod.")
+        raise Refusal(
+            tr("No rod ends at {particle}; choose an end of a rod to hinge it.", particle=particle.name)
+        )
     rigid = any(is_rigid(model.rods[row], end) for row, end in ends)
-    with model.transaction(f"{'hinges' if rigid else 'rigid joint'} at {model.describe(particle)}"):
+    name = model.describe(particle)
+    title = (
+        tr("hinges at {particle}", particle=name) if rigid else tr("rigid joint at {particle}", particle=name)
+    )
+    with model.transaction(title):
         for row, end in ends:
             if is_rigid(model.rods[row], end) == rigid:
                 toggle_hinge(model, model.rods[row], end)
-    return "all rods hinged to it" if rigid else "all rods rigidly joined"
+    return tr("all rods hinged to it") if rigid else tr("all rods rigidly joined")
 
 
 def is_rigid(rod: Rod, end: int) -> bool:
@@ -113,7 +139,7 @@ def is_rigid(rod: Rod, end: int) -> bool:
 
 def join_rigidly(model: Model, rods: Sequence[Rod], rigid: bool) -> None:
     """Make both ends of rods rigid, or hinge them."""
-    with model.transaction("rigid joints" if rigid else "hinges"):
+    with model.transaction(tr("rigid joints") if rigid else tr("hinges")):
         _let_bend(model, rods if rigid else [])
         model.assign(list(rods), "hinged", [(not rigid, not rigid)] * len(rods))
 
@@ -133,7 +159,7 @@ def delete(model: Model, handles: Iterable[Handle]) -> None:
     rods = flags(rows["rods"], model.rods.count) | particles[model.rods.between].any(axis=1)
     ends = flags(model.rods.between[rods], model.particles.count)
     remaining = [model.particles[row] for row in np.flatnonzero(ends & ~particles).tolist()]
-    with model.transaction("delete"):
+    with model.transaction(tr("delete")):
         masses_from_rods(model, remaining)
         model.delete(doomed)
 

@@ -6,6 +6,7 @@ import math
 from collections.abc import Sequence
 
 from components.field import Vector
+from components.language import marked, tr
 from components.model import Model
 from components.particle import Particle
 from components.rod import rigid_joints
@@ -15,14 +16,14 @@ Held = tuple[bool, bool, bool]  # in x, in y, and the rotation
 # Names of the supports, in the order in which pressing the key goes through them; those that hold the rotation only
 # where rigid rod ends would turn.
 NAMES: dict[Held, str] = {
-    (False, False, False): "free",
-    (True, True, False): "pinned: held in x and y",
-    (True, True, True): "clamped: held in x and y, cannot turn",
-    (False, True, False): "on a roller: held in y",
-    (True, False, False): "on a roller: held in x",
-    (False, True, True): "guided: held in y, cannot turn",
-    (True, False, True): "guided: held in x, cannot turn",
-    (False, False, True): "cannot turn, free in x and y",
+    (False, False, False): marked("free"),
+    (True, True, False): marked("pinned: held in x and y"),
+    (True, True, True): marked("clamped: held in x and y, cannot turn"),
+    (False, True, False): marked("on a roller: held in y"),
+    (True, False, False): marked("on a roller: held in x"),
+    (False, True, True): marked("guided: held in y, cannot turn"),
+    (True, False, True): marked("guided: held in x, cannot turn"),
+    (False, False, True): marked("cannot turn, free in x and y"),
 }
 SUPPORTS: dict[str, Held] = {  # by the names of the actions of menus
     "free": (False, False, False),
@@ -51,10 +52,10 @@ def next_support(model: Model, particles: Sequence[Particle]) -> str:
 
 def support(model: Model, particles: Sequence[Particle], wanted: Held) -> str:
     """Hold particles in x and y and their rotation, or not; returns the name of the support."""
-    with model.transaction(f"support of {model.describe(particles[0])}"):
+    with model.transaction(tr("support of {particle}", particle=model.describe(particles[0]))):
         model.assign(list(particles), "fixed", [wanted[:2]] * len(particles))
         model.assign(list(particles), "fixed_rotation", [wanted[2]] * len(particles))
-    return NAMES[wanted]
+    return tr(NAMES[wanted])
 
 
 def support_towards(along: Vector) -> tuple[bool, bool]:

@@ -6,6 +6,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
+from components.language import begun, plural, tr
 from components.model import Model
 from components.rod import Rod
 from systems.edit import Refusal
@@ -24,12 +25,12 @@ def weigh_along(model: Model, rods: Sequence[Rod]) -> str:
     rows = np.array([rod.row for rod in chosen], dtype=np.intp)
     if not (model.rods.density[rows] > 0.0).any():
         raise Refusal(
-            "These rods have no density, so they weigh nothing; give them a density or a section first."
+            tr("These rods have no density, so they weigh nothing; give them a density or a section first.")
         )
     pull = everywhere if everywhere.any() else np.array(GRAVITY)
     weight = model.rods.density[rows][:, None] * pull / 1000.0
     particles = model.particles
-    with model.transaction("weight as distributed force"):
+    with model.transaction(tr("weight as distributed force")):
         if everywhere.any():
             half = 0.5 * model.rods.density * model.rods.rest_length
             lumped = np.bincount(model.rods.between.ravel(), np.repeat(half, 2), particles.count)
@@ -39,6 +40,13 @@ def weigh_along(model: Model, rods: Sequence[Rod]) -> str:
             model.environment.acceleration = (0.0, 0.0)
         model.assign(chosen, "distributed_force", model.rods.distributed_force[rows] + weight)
     if everywhere.any():
-        return "All rods bear their weight along them now, in place of the environment's acceleration."
-    named = model.describe(chosen[0]) if len(chosen) == 1 else f"{len(chosen)} rods"
-    return f"{named[:1].upper()}{named[1:]}: weight along it, as a distributed force, with 9.81 m/s² downwards"
+        return tr(
+            "The weight of all rods acts along them now, as distributed forces; these replace the acceleration of the"
+            " environment."
+        )
+    return plural(
+        "{rod}: its weight acts along it now, as a distributed force (9.81 m/s² downwards)",
+        "{count} rods: their weight acts along them now, as distributed forces (9.81 m/s² downwards)",
+        len(chosen),
+        rod=begun(model.describe(chosen[0])),
+    )

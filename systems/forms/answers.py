@@ -11,6 +11,7 @@ from components.box import Box, number_and_unit
 from components.field import LENGTHS, Field, FieldError
 from components.form import Form
 from components.handle import Handle
+from components.language import tr
 from components.load import HISTORIES
 from components.model import Model
 from systems.forms.properties import KIND
@@ -25,15 +26,15 @@ def problem(model: Model, box: Box) -> str:
     try:
         value = _value(field, part, box.text)
     except DecimalException:
-        return "must be a number"
+        return tr("must be a number")
     except FieldError as error:
         return str(error)
     if isinstance(value, float):
         if not math.isfinite(value):
-            return "must be a finite number"
+            return tr("must be a finite number")
         limit = field.limit_broken_by(value, shown=True)
         if limit:
-            return f"must be {limit}"
+            return tr("must be {limit}", limit=limit)
     if field.name == "name":
         return _name_problem(model, box)
     if part and field.shape:
@@ -42,7 +43,7 @@ def problem(model: Model, box: Box) -> str:
         field.check(_with_part(box.elements[0], field, part, value), box.section)
     except FieldError as error:
         if field.choices is not None:  # too many to be named here
-            return f"no {field.title} is called so"
+            return tr("unknown name")
         return str(error).removeprefix(f"{box.section}: ").removesuffix(".")
     return ""
 
@@ -50,9 +51,9 @@ def problem(model: Model, box: Box) -> str:
 def _name_problem(model: Model, box: Box) -> str:
     element, table = box.elements[0], model.tables[box.elements[0].table]
     if not box.text.strip():
-        return "must not be empty"
+        return tr("must not be empty")
     if box.text in table and table[box.text] is not element:
-        return f"there is a {element.noun} '{box.text}' already"
+        return tr("there is a {kind} '{name}' already", kind=tr(element.noun), name=box.text)
     return ""
 
 
@@ -62,7 +63,7 @@ def apply(form: Form, model: Model, *, typing: bool = False) -> list[str]:
     typing: also the box that is still typed into. What one box refuses because of another is tried again each time.
     """
     refused = []
-    with model.transaction(f"properties of {form.heading.text}"):
+    with model.transaction(tr("properties of {element}", element=form.heading.text)):
         for box in form.boxes:
             if not box.changed or (box is form.selected and box.words != YES_NO and not typing):
                 continue
@@ -71,7 +72,14 @@ def apply(form: Form, model: Model, *, typing: bool = False) -> list[str]:
                 continue
             box.problem = problem(model, box)
             if box.problem:
-                refused.append(f"{box.section}, {box.title}: {box.problem}; the old value stays.")
+                refused.append(
+                    tr(
+                        "{section}, {title}: {problem}; the old value is kept.",
+                        section=box.section,
+                        title=box.said_title,
+                        problem=box.problem,
+                    )
+                )
                 continue
             try:
                 _assign(model, box, elements)
@@ -127,5 +135,5 @@ def _per_inside_unit(field: Field[Any], unit: str) -> float:
     """How many of a unit make one of those inside the program. Raises FieldError if it is of another kind."""
     units = LENGTHS if field.unit == "m" else dict([field.shown])
     if unit not in units:
-        raise FieldError(f"must be in {' or '.join(units)}, not in {unit}")
+        raise FieldError(tr("must be in one of {units}, not in {unit}", units=", ".join(units), unit=unit))
     return units[unit]

@@ -12,10 +12,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from components.bent import is_frame
-from components.box import NAME, NUMBER, TEXT, WORD, Box
+from components.box import NAME, NUMBER, TEXT, WORD, Box, said_title
 from components.field import SAVED, Field
 from components.form import Form
 from components.handle import Handle
+from components.language import joined, marked, plural, tr
 from components.load import HISTORIES, Load
 from components.model import Model
 from components.particle import Particle
@@ -23,7 +24,7 @@ from components.rod import Rod, rigid_joints
 from components.settings import Settings
 from systems.forms.typing import YES_NO, select
 
-MIXED = "mixed"
+MIXED = marked("mixed")
 KIND = "kind"  # the part of a history that is its kind
 EXACT, DIGITS = 12, 9  # significant digits: numbers with so few are shown in full, others rounded
 _OF_RODS = (
@@ -36,12 +37,12 @@ _OF_RODS = (
 _DECIDED = (Particle.asleep, Rod.yielded_at)  # by the run
 # Fields of one kind with a heading of their own, in the order in which these follow.
 _APART: Mapping[str, tuple[Field[Any], ...]] = {
-    "Cross-section": (Rod.section, Rod.material, Rod.youngs_modulus, Rod.area, Rod.second_moment),
-    "Bending": (
+    marked("Cross-section"): (Rod.section, Rod.material, Rod.youngs_modulus, Rod.area, Rod.second_moment),
+    marked("Bending"): (
         *(Rod.prescribed_bending_stiffness, Rod.hinged, Rod.distributed_force),
         *(Rod.temperature_gradient, Rod.bending_damping),
     ),
-    "Rotation": (
+    marked("Rotation"): (
         *(Particle.rotation, Particle.angular_velocity, Particle.fixed_rotation),
         *(Particle.moment, Particle.prescribed_inertia),
     ),
@@ -69,11 +70,20 @@ class Subject:
 def heading(model: Model, selected: Sequence[Handle]) -> str:
     """The name of some elements, such as "rod AB" or "2 particles, 1 rod"; without any, the environment."""
     if not selected:
-        return "Environment"
+        return tr("Environment")
     if len(selected) == 1:
         return model.describe(selected[0])
     counts = Counter(handle.noun for handle in selected)
-    return ", ".join(f"{count} {noun}{'s' * (count > 1)}" for noun, count in counts.items())
+    return joined((_counted(noun, count) for noun, count in counts.items()), ", ")
+
+
+def _counted(noun: str, count: int) -> str:
+    """So many elements of a kind: "2 particles"."""
+    if noun == Particle.noun:
+        return plural("{count} particle", "{count} particles", count)
+    if noun == Rod.noun:
+        return plural("{count} rod", "{count} rods", count)
+    return plural("{count} {kind}", "{count} {kind}s", count, kind=tr(noun))
 
 
 def subjects(model: Model, selected: Sequence[Handle]) -> list[Subject]:
@@ -89,7 +99,7 @@ def subjects(model: Model, selected: Sequence[Handle]) -> list[Subject]:
         found += [_subject(model, model.describe(grid), [grid]) for grid in model.grids if grid.shown]
     found += [part for subject in found for part in _parts(model, subject)]
     found += [_subject(model, model.describe(load), [load]) for load in _loads_on(model, selected)]
-    for section, kind, of_rods in (("All particles", Particle, False), ("All rods", Rod, True)):
+    for section, kind, of_rods in ((tr("All particles"), Particle, False), (tr("All rods"), Rod, True)):
         if not selected or kind in kinds:
             fields = model.tables[Settings.table].fields_in(*SAVED)
             chosen = tuple(field for field in fields if (field.name in _OF_RODS) is of_rods)
@@ -105,7 +115,7 @@ def _parts(model: Model, subject: Subject) -> Iterator[Subject]:
     for heading, fields in _APART.items():
         chosen = tuple(f for f in fields if vars(kind).get(f.name) is f and (turns or f not in _OF_BENT_RODS))
         if chosen and (turns or kind is Rod):
-            yield replace(subject, section=heading, fields=chosen)
+            yield replace(subject, section=tr(heading), fields=chosen)
 
 
 def _turn(model: Model, subject: Subject) -> bool:
@@ -145,7 +155,7 @@ def _subject(model: Model, section: str, elements: Sequence[Handle]) -> Subject:
 
 
 def fill(form: Form, model: Model, selected: Sequence[Handle]) -> None:
-    """Create the boxes: in each section alphabetical by title, vectors as two, x and y."""
+    """Create the boxes: in each section alphabetical by title as it is shown, vectors as two, x and y."""
     form.delete(list(form.boxes))
     for boxes in _sections(model, selected):
         form.create(Box, len(boxes), **{key: [box[key] for box in boxes] for key in boxes[0]})
@@ -171,7 +181,7 @@ def refresh(form: Form, model: Model, selected: Sequence[Handle]) -> None:
 def _sections(model: Model, selected: Sequence[Handle]) -> Iterator[list[dict[str, Any]]]:
     for subject in subjects(model, selected):
         boxes = [box for field in subject.fields for box in _boxes(model, subject, field)]
-        yield sorted(boxes, key=lambda box: str(box["title"]).casefold())
+        yield sorted(boxes, key=lambda box: said_title(box["title"], box["target"]).casefold())
 
 
 def _boxes(model: Model, subject: Subject, field: Field[Any]) -> Iterator[dict[str, Any]]:
@@ -234,9 +244,9 @@ def _content(model: Model, subject: Subject, field: Field[Any], axis: str) -> Co
         if field.overrides is None:
             return field.absent, ""
         text, note = _content(model, subject, table.fields[field.overrides], axis)
-        return text, f"{note}, {field.absent}" if note else field.absent
+        return text, joined([note, tr(field.absent)], ", ")
     if not (values == values[0]).all():
-        return "", MIXED
+        return "", tr(MIXED)
     if values[0] is None:
         return field.absent, ""
     return _written(field, values[0]), ""

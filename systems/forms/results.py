@@ -10,15 +10,16 @@ import numpy as np
 from numpy.typing import NDArray
 
 from components import written
-from components.field import CM, ENDS, Field, Role
+from components.field import CM, Field, Role
 from components.form import Form, Reading
 from components.handle import Handle
+from components.language import marked, tr, tr_in
 from components.load import CONSTANT, Load, factor_at
 from components.model import Model
 from components.particle import Particle
 from components.rod import Rod, rigid_joints, utilisation
 
-SECTION = "Results"
+SECTION = marked("Results")
 RESIDUAL = 1e-12  # of a length (m), force (kN) or speed (m/s): nothing, where all of them are as small
 MRAD = "mrad", 1000.0  # rotations of structures are small
 SHORT = 4  # characters of names by which the ends of a rod are called
@@ -92,34 +93,37 @@ def _of_rods(columns: _Columns, rows: NDArray[np.intp]) -> Iterator[Result]:
     rods, names = columns.model.rods, columns.model.rods.column("name")
     force = columns("rods.axial_force")
     if len(rows) == 1:
-        yield _result("axial force", _number(force[rows[0]], force, "kN"), Rod.axial_force)
+        yield _result(tr("axial force"), _number(force[rows[0]], force, "kN"), Rod.axial_force)
     else:
-        for title, pick, seen in (("tension", np.argmax, force > 0.0), ("compression", np.argmin, force < 0.0)):
+        for title, pick, seen in (
+            (tr("largest tension"), np.argmax, force > 0.0),
+            (tr("largest compression"), np.argmin, force < 0.0),
+        ):
             row = rows[pick(force[rows])]
-            text = f"{_number(force[row], force, 'kN')} ({names[row]})" if seen[row] else "none"
-            yield _result(f"largest {title}", text, Rod.axial_force)
+            text = f"{_number(force[row], force, 'kN')} ({names[row]})" if seen[row] else tr_in("force", "none")
+            yield _result(title, text, Rod.axial_force)
         moment = np.abs(columns("rods.bending_moment")).max(axis=1)
         if (rods.bending_stiffness[rows] > 0.0).any():
             row = rows[np.argmax(moment[rows])]
             text = f"{_number(moment[row], moment, 'kN·m')} ({names[row]})"
-            yield _result("largest end moment", text, Rod.bending_moment)
+            yield _result(tr("largest end moment"), text, Rod.bending_moment)
     yield from _utilisation(columns, rows)
     if len(rows) == 1:
         (row,) = rows
         if rods.bending_stiffness[row]:
             yield _largest_moment(columns, int(row))
         strain, length = 1000.0 * columns("rods.strain"), columns("rods.length") * CM[1]
-        yield _result("strain", _number(strain[row], strain, "‰"), Rod.strain)
+        yield _result(tr("strain"), _number(strain[row], strain, "‰"), Rod.strain)
         if not math.isnan(rods.area[row]):
             stress = 1e-3 * force / np.where(np.isnan(rods.area), np.inf, rods.area)
-            told = "Axial force per area of the cross-section; tension positive."
-            title = "axial stress" if rods.bending_stiffness[row] else "stress"
+            told = marked("Axial force divided by the area of the cross-section; positive in tension.")
+            title = tr("axial stress") if rods.bending_stiffness[row] else tr("stress")
             yield Result(SECTION, title, _number(stress[row], stress, "MPa"), told)
-        yield _result("length", _number(length[row], length, CM[0]), Rod.length)
+        yield _result(tr("length"), _number(length[row], length, CM[0]), Rod.length)
         yield from _at_ends(columns, row)
         if rods.plastic_strain[row]:
             plastic = 1000.0 * rods.plastic_strain
-            yield _result("plastic strain", _number(plastic[row], plastic, "‰"), Rod.plastic_strain)
+            yield _result(tr("plastic strain"), _number(plastic[row], plastic, "‰"), Rod.plastic_strain)
 
 
 def _largest_moment(columns: _Columns, row: int) -> Result:
@@ -127,8 +131,9 @@ def _largest_moment(columns: _Columns, row: int) -> Result:
     moments = columns("rods.largest_moment")
     value, distance = moments[row]
     text = _number(value, moments[:, 0], "kN·m")
-    at = "" if math.isnan(distance) else f" at {written.length(distance, written.DIGITS)}"
-    return _result("largest moment", f"{text}{at}", Rod.largest_moment)
+    if not math.isnan(distance):
+        text = tr("{moment} at {place}", moment=text, place=written.length(distance, written.DIGITS))
+    return _result(tr("largest moment"), text, Rod.largest_moment)
 
 
 def _at_ends(columns: _Columns, row: np.intp) -> Iterator[Result]:
@@ -138,12 +143,14 @@ def _at_ends(columns: _Columns, row: np.intp) -> Iterator[Result]:
     if not (bends or rods.distributed_force[row].any()):
         return
     ends = [particle.name for particle in columns.model.rods[int(row)].ends]
-    ends = ends if max(map(len, ends)) <= SHORT else [*ENDS]
+    ends = (
+        ends if max(map(len, ends)) <= SHORT else [tr_in("end of a rod", "start"), tr_in("end of a rod", "end")]
+    )
     for title, field, unit, factor in (
-        ("N at its ends", Rod.end_axial_force, "kN", 1.0),
-        ("V at its ends", Rod.shear, "kN", 1.0),
-        ("M at its ends", Rod.bending_moment, "kN·m", 1.0),
-        ("rotation of its ends", Rod.end_rotation, *MRAD),
+        (tr("N at its ends"), Rod.end_axial_force, "kN", 1.0),
+        (tr("V at its ends"), Rod.shear, "kN", 1.0),
+        (tr("M at its ends"), Rod.bending_moment, "kN·m", 1.0),
+        (tr("rotation of its ends"), Rod.end_rotation, *MRAD),
     )[: 4 if bends else 2]:
         values = factor * columns(f"rods.{field.name}")
         yield _vector(title, values[row], values, unit, field, axes=ends)
@@ -159,9 +166,12 @@ def _utilisation(columns: _Columns, rows: NDArray[np.intp]) -> Iterator[Result]:
         most = int(np.nanargmax(used))
         whose = f" ({rods.column('name')[rows[most]]})" if len(rows) > 1 else ""
         text = f"{written.share(used[most])}{whose}"
-    title = "axial utilisation" if rods.bending_stiffness[rows].any() else "utilisation"
-    title = f"largest {title}" if len(rows) > 1 else title
-    yield Result(SECTION, title, text, "Axial force, as a share of the strength in its direction.")
+    several = len(rows) > 1
+    if rods.bending_stiffness[rows].any():
+        title = tr("largest axial utilisation") if several else tr("axial utilisation")
+    else:
+        title = tr("largest utilisation") if several else tr("utilisation")
+    yield Result(SECTION, title, text, marked("Axial force divided by the strength in its direction."))
 
 
 # --- particles ----------------------------------------------------------------------------------------
@@ -172,29 +182,29 @@ def _of_particles(columns: _Columns, rows: NDArray[np.intp]) -> Iterator[Result]
     moved, reactions = CM[1] * particles.displacement, columns("particles.reaction")
     if len(rows) == 1:
         (row,) = rows
-        yield _vector("displacement", moved[row], moved, CM[0], Particle.displacement)
+        yield _vector(tr("displacement"), moved[row], moved, CM[0], Particle.displacement)
         turns = rigid_joints(columns.model)[row]
         if turns:
             angle = MRAD[1] * particles.rotation
-            yield _result("rotation", _number(angle[row], angle, MRAD[0]), Particle.rotation)
+            yield _result(tr("rotation"), _number(angle[row], angle, MRAD[0]), Particle.rotation)
         held = particles.fixed[row]
         if held.any():
-            yield _vector("reaction", reactions[row], reactions, "kN", Particle.reaction, held)
+            yield _vector(tr("reaction"), reactions[row], reactions, "kN", Particle.reaction, held)
         if turns and particles.fixed_rotation[row]:
             moment = columns("particles.reaction_moment")
-            yield _result("reaction moment", _number(moment[row], moment, "kN·m"), Particle.reaction_moment)
+            yield _result(tr("reaction moment"), _number(moment[row], moment, "kN·m"), Particle.reaction_moment)
         force = columns("particles.applied_force")
-        yield _vector("sum of loads", force[row], force, "kN", Particle.applied_force)
+        yield _vector(tr("sum of loads"), force[row], force, "kN", Particle.applied_force)
         speed = np.hypot(*particles.velocity.T)
-        yield _result("speed", _number(speed[row], speed, "m/s"), Particle.velocity)
+        yield _result(tr("speed"), _number(speed[row], speed, "m/s"), Particle.velocity)
         return
     distance = np.hypot(*moved.T)
     most = rows[np.argmax(distance[rows])]
     text = f"{_number(distance[most], distance, CM[0])} ({particles.column('name')[most]})"
-    yield _result("largest displacement", text, Particle.displacement)
+    yield _result(tr("largest displacement"), text, Particle.displacement)
     if particles.fixed[rows].any():
         total = reactions[rows].sum(axis=0)
-        yield _vector("sum of reactions", total, reactions, "kN", Particle.reaction)
+        yield _vector(tr("sum of reactions"), total, reactions, "kN", Particle.reaction)
 
 
 # --- loads, and elements of mods -----------------------------------------------------------------------
@@ -209,7 +219,7 @@ def _of_loads(model: Model, particle: int) -> Iterator[Result]:
             text += f", {written.given(load.moment)} kN·m"
         if load.history["kind"] != CONSTANT["kind"]:
             now = factor_at(load.history, model.clock.time) * model.loads.force[row]
-            text = f"{written.vector(now, written.DIGITS)} of {text}"
+            text = tr("{now} of {whole}", now=written.vector(now, written.DIGITS), whole=text)
         yield _result(model.describe(load), text, Load.force)
 
 
@@ -222,7 +232,7 @@ def _of_others(model: Model, handle: Handle) -> Iterator[Result]:
         if field.dtype is float and value is not None:
             parts = np.multiply(value, factor)
             text = written.vector(parts) if field.shape else written.given(float(parts))
-            yield _result(field.title, f"{text} {unit}".rstrip(), field)
+            yield _result(tr(field.title), f"{text} {unit}".rstrip(), field)
 
 
 # --- as text ------------------------------------------------------------------------------------------

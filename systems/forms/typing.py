@@ -8,9 +8,10 @@ from collections.abc import Sequence
 from components.box import FILE_NAME, NAME, NUMBER, TEXT, Box, fits_file_names
 from components.field import LENGTHS
 from components.form import Form
+from components.language import joined, marked, tr
 from components.tags import Selected
 
-YES_NO = ("no", "yes")
+YES_NO = (marked("no"), marked("yes"))
 MOST_CHARACTERS = 200  # in one box
 
 _MEANS = {"0": "no", "1": "yes"}
@@ -48,8 +49,16 @@ def restore(form: Form) -> str:
     select(form, None)
     if typed in ("", box.held):
         return ""
-    again = f"it is {box.held} as before" if box.held else "it is as before"
-    return f"“{typed}” was not taken for the {box.title}; {again}. Return takes what is typed."
+    if box.held:
+        told = tr(
+            "“{typed}” was discarded; {title} is still {value}.",
+            typed=typed,
+            title=box.said_title,
+            value=box.held,
+        )
+    else:
+        told = tr("“{typed}” was discarded; {title} is as before.", typed=typed, title=box.said_title)
+    return joined([told, tr("Press Return to accept what you typed.")])
 
 
 def accept(form: Form) -> bool:
@@ -88,9 +97,13 @@ def write(form: Form, text: str) -> str:
             refused += character
     if not refused or box.accepts != NUMBER:
         return ""
-    words = "".join(f", or “{word}”" for word in box.words or ())
-    unit = f" in {box.unit}" if box.unit else ""
-    return f"“{refused}” is not taken; the {box.title} is a number{unit}, such as 2.5 or 1e3{words}."
+    if box.unit:
+        told = tr(
+            "Type a number in {unit}, such as 2.5 or 1e3, without “{refused}”.", unit=box.unit, refused=refused
+        )
+    else:
+        told = tr("Type a number, such as 2.5 or 1e3, without “{refused}”.", refused=refused)
+    return joined([told, *(tr("“{word}” is possible, too.", word=tr(word)) for word in box.words or ())])
 
 
 def erase(form: Form, *, after: bool = False) -> None:
@@ -111,7 +124,7 @@ def place_caret(form: Form, caret: int) -> None:
     """Put the caret of the selected box behind a number of characters, and mark nothing."""
     box = form.selected
     if box is not None:
-        box.caret = min(max(caret, 0), len(box.text))
+        box.caret = min(max(caret, 0), len(box.said_text))
         box.marked = False
 
 
@@ -119,7 +132,7 @@ def step_caret(form: Form, by: int) -> None:
     """Move the caret by one character, or to the end of the marked text."""
     box = form.selected
     if box is not None and box.marked:
-        place_caret(form, len(box.text) if by > 0 else 0)
+        place_caret(form, len(box.said_text) if by > 0 else 0)
     elif box is not None:
         place_caret(form, box.caret + by)
 
@@ -160,7 +173,7 @@ def _entered(box: Box, character: str) -> tuple[str, int] | None:
     """Text and caret after a character was typed; None if the box does not accept it."""
     words: Sequence[str] = box.words or ()
     whole = box.marked or (box.text in words and box.accepts != NAME)
-    before, after = ("", "") if whole else (box.text[: box.caret], box.text[box.caret :])
+    before, after = ("", "") if whole else (box.said_text[: box.caret], box.said_text[box.caret :])
     after = "" if box.accepts == NAME and box.text in words else after
     if box.accepts == NUMBER:
         if box.unit in LENGTHS and _WITH_UNIT_SO_FAR.fullmatch(before + character + after):
@@ -181,12 +194,12 @@ def _entered(box: Box, character: str) -> tuple[str, int] | None:
 
 
 def _completed(box: Box, words: Sequence[str], character: str) -> tuple[str, int] | None:
-    """The word whose beginning was typed, and the number of typed characters."""
-    so_far = "" if box.marked or not (box.text in words or box.accepts == NAME) else box.text[: box.caret]
+    """The word whose beginning was typed, in the present language or in English, and the number of typed characters."""
+    so_far = "" if box.marked or not (box.text in words or box.accepts == NAME) else box.said_text[: box.caret]
     alone = () if box.accepts == NAME and so_far else (character,)
     for typed in (so_far + character, *alone):
         meant = _MEANS.get(typed, typed).lower() if words == YES_NO else typed.lower()
         for word in words:
-            if word.lower().startswith(meant):
+            if any(said.lower().startswith(meant) for said in (tr(word), word)):
                 return word, len(meant)
     return None

@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 from functools import cache
 
+from components.language import marked, tr
 from components.suggestions import missing
 
 SIMULATION, PAUSE = "simulation", "pause"
@@ -29,8 +30,8 @@ class Binding:
 
     Key names are lower case: "escape", "return", "space", "a", "+", "left", "f1"; modifiers come first,
     in the order ctrl, shift: "ctrl+z", "ctrl+shift+z". "drag" begins a drag, "drag to" and "drop" follow.
-    title: for the help, tips and menus; "" leaves the key out of the help. repeats: the action is repeated while the
-    key is held. group: the purpose under which the help lists it.
+    title: for the help, tips and menus, translated where shown; "" leaves the key out of the help. repeats: the action is
+    repeated while the key is held. group: the purpose under which the help lists it.
     """
 
     key: str
@@ -38,164 +39,174 @@ class Binding:
     scenes: tuple[str, ...]
     title: str
     repeats: bool = False
-    group: str = "More"
+    group: str = marked("More")
 
 
 # By purpose, in the order in which the help lists them. The keys of an open menu go before those of its scene.
 _BY_PURPOSE: dict[str, tuple[Binding, ...]] = {
-    "Time": (
-        Binding("space", "toggle run", LIVE, "run / pause"),
-        Binding("right", "arrow right", (PAUSE,), "single step", repeats=True),
-        Binding("left", "arrow left", (PAUSE,), "step back", repeats=True),
-        Binding("shift+right", "far arrow right", (PAUSE,), "skip ahead", repeats=True),
-        Binding("shift+left", "far arrow left", (PAUSE,), "skip back", repeats=True),
-        Binding(".", "step", (PAUSE,), "single step", repeats=True),
-        Binding(",", "step back", (PAUSE,), "step back", repeats=True),
-        Binding("r", "restart", LIVE, "restart from the undeformed beginning"),
-        Binding("e", "settle", LIVE, "settle: go to the equilibrium at once"),
-        Binding("+", "faster", LIVE, "faster", repeats=True),
-        Binding("-", "slower", LIVE, "slower", repeats=True),
-        Binding("0", "natural pace", LIVE, "pace that suits the model"),
+    marked("Time"): (
+        Binding("space", "toggle run", LIVE, marked("run or pause")),
+        Binding("right", "arrow right", (PAUSE,), marked("step forward"), repeats=True),
+        Binding("left", "arrow left", (PAUSE,), marked("step back"), repeats=True),
+        Binding("shift+right", "far arrow right", (PAUSE,), marked("skip ahead"), repeats=True),
+        Binding("shift+left", "far arrow left", (PAUSE,), marked("skip back"), repeats=True),
+        Binding(".", "step", (PAUSE,), marked("step forward"), repeats=True),
+        Binding(",", "step back", (PAUSE,), marked("step back"), repeats=True),
+        Binding("r", "restart", LIVE, marked("restart from the undeformed shape")),
+        Binding("e", "settle", LIVE, marked("find equilibrium at once")),
+        Binding("+", "faster", LIVE, marked("run faster"), repeats=True),
+        Binding("-", "slower", LIVE, marked("run slower"), repeats=True),
+        Binding("0", "natural pace", LIVE, marked("reset the speed to suit the model")),
     ),
-    "Draw": (
-        Binding("p", "place", LIVE, "new particle under the pointer"),
-        Binding("l", "rod", LIVE, "rod from one particle to another"),
-        Binding("ctrl+r", "rigid", LIVE, "rigid rods of frames: drawn, or those selected"),
-        Binding("ctrl+j", "hinge", LIVE, "hinge at an end of a rod, or rigid"),
-        Binding("c", "support", LIVE, "support: next, or drag to its ground"),
-        Binding("f", "force", LIVE, "load, as an arrow from a particle or a rod"),
-        Binding("ctrl+m", "moment", LIVE, "moment on a particle: left or right"),
-        Binding("v", "velocity", LIVE, "velocity, as an arrow from a particle"),
-        Binding("g", "new grid", (PAUSE,), "new grid"),
-        Binding("h", "next grid", (PAUSE,), "next grid"),
+    marked("Draw"): (
+        Binding("p", "place", LIVE, marked("draw a particle")),
+        Binding("l", "rod", LIVE, marked("draw a rod between two particles")),
+        Binding("ctrl+r", "rigid", LIVE, marked("draw frame rods, or make selected rods rigid")),
+        Binding("ctrl+j", "hinge", LIVE, marked("hinge an end of a rod, or make it rigid")),
+        Binding("c", "support", LIVE, marked("add or change a support")),
+        Binding("f", "force", LIVE, marked("draw a load on a particle or a rod")),
+        Binding("ctrl+m", "moment", LIVE, marked("draw a moment on a particle")),
+        Binding("v", "velocity", LIVE, marked("draw the velocity of a particle")),
+        Binding("g", "new grid", (PAUSE,), marked("add a grid")),
+        Binding("h", "next grid", (PAUSE,), marked("show the next grid")),
     ),
-    "Select and edit": (
-        Binding("click", "select", LIVE, "select"),
-        Binding("ctrl+click", "add to selection", LIVE, "add to the selection"),
-        Binding("double click", "open", LIVE, "properties of what is clicked"),
-        Binding("right click", "open menu", (*LIVE, FORCE_METHOD), "menu of what is under the pointer"),
-        Binding("menu", "open menu", (*LIVE, FORCE_METHOD), "menu of what is under the pointer"),
+    marked("Select and edit"): (
+        Binding("click", "select", LIVE, marked("select")),
+        Binding("ctrl+click", "add to selection", LIVE, marked("add to the selection")),
+        Binding("double click", "open", LIVE, marked("open the properties of an element")),
+        Binding("right click", "open menu", (*LIVE, FORCE_METHOD), marked("open the menu at the pointer")),
+        Binding("menu", "open menu", (*LIVE, FORCE_METHOD), marked("open the menu at the pointer")),
         Binding("shift+f10", "open menu", (*LIVE, FORCE_METHOD), ""),
-        Binding("drag", "drag", (PAUSE,), "move it; or select in a box"),
-        Binding("drag", "drag", (SIMULATION,), "pull it; or select in a box"),
-        Binding("ctrl+drag", "drag to add", LIVE, "add what is in a box"),
+        Binding("drag", "drag", (PAUSE,), marked("move an element, or select in a box")),
+        Binding("drag", "drag", (SIMULATION,), marked("pull a particle, or select in a box")),
+        Binding("ctrl+drag", "drag to add", LIVE, marked("add all in a box to the selection")),
         Binding("drag to", "drag to", (*LIVE, PROPERTIES, FORCE_METHOD), ""),
         Binding("drop", "drop", (*LIVE, PROPERTIES, FORCE_METHOD), ""),
-        Binding("escape", "escape", (SIMULATION,), "put the tool away, or pause"),
-        Binding("escape", "escape", (PAUSE,), "drop tool or selection"),
-        Binding("return", "properties", LIVE, "properties of the selected elements"),
-        Binding("delete", "delete", LIVE, "delete the selection"),
-        Binding("backspace", "delete", LIVE, "delete the selection"),
-        Binding("up", "arrow up", (PAUSE,), "before a run, like left and right: move it", repeats=True),
-        Binding("down", "arrow down", (PAUSE,), "before a run, like left and right: move it", repeats=True),
-        Binding("shift+up", "far arrow up", (PAUSE,), "the same, by the grid", repeats=True),
-        Binding("shift+down", "far arrow down", (PAUSE,), "the same, by the grid", repeats=True),
+        Binding("escape", "escape", (SIMULATION,), marked("put the tool away, or pause")),
+        Binding("escape", "escape", (PAUSE,), marked("put the tool away, or deselect")),
+        Binding("return", "properties", LIVE, marked("open the properties of the selection")),
+        Binding("delete", "delete", LIVE, marked("delete the selection")),
+        Binding("backspace", "delete", LIVE, marked("delete the selection")),
+        Binding("up", "arrow up", (PAUSE,), marked("move the selection (before a run)"), repeats=True),
+        Binding("down", "arrow down", (PAUSE,), marked("move the selection (before a run)"), repeats=True),
+        Binding(
+            "shift+up", "far arrow up", (PAUSE,), marked("move it by the grid (before a run)"), repeats=True
+        ),
+        Binding(
+            "shift+down", "far arrow down", (PAUSE,), marked("move it by the grid (before a run)"), repeats=True
+        ),
         *(
             Binding(f"ctrl+{shift}{way}", f"move {far}{way}", (PAUSE,), title, repeats=True)
-            for shift, far, title in (("", "", "move the selection"), ("shift+", "far ", "move it by the grid"))
+            for shift, far, title in (
+                ("", "", marked("move the selection")),
+                ("shift+", "far ", marked("move it by the grid")),
+            )
             for way in ("left", "right", "up", "down")
         ),
-        Binding("ctrl+z", "undo", LIVE, "undo", repeats=True),
-        Binding("ctrl+y", "redo", LIVE, "redo", repeats=True),
-        Binding("ctrl+shift+z", "redo", LIVE, "redo", repeats=True),
-        Binding("ctrl+a", "select all", LIVE, "select all"),
-        Binding("ctrl+c", "copy", LIVE, "copy the selection"),
-        Binding("ctrl+x", "cut", LIVE, "cut the selection"),
-        Binding("ctrl+v", "paste", LIVE, "paste at the pointer"),
-        Binding("ctrl+d", "duplicate", LIVE, "duplicate the selection"),
+        Binding("ctrl+z", "undo", LIVE, marked("undo"), repeats=True),
+        Binding("ctrl+y", "redo", LIVE, marked("redo"), repeats=True),
+        Binding("ctrl+shift+z", "redo", LIVE, marked("redo"), repeats=True),
+        Binding("ctrl+a", "select all", LIVE, marked("select all")),
+        Binding("ctrl+c", "copy", LIVE, marked("copy the selection")),
+        Binding("ctrl+x", "cut", LIVE, marked("cut the selection")),
+        Binding("ctrl+v", "paste", LIVE, marked("paste at the pointer")),
+        Binding("ctrl+d", "duplicate", LIVE, marked("duplicate the selection")),
     ),
-    "Results": (
-        Binding("i", "toggle diagrams", LIVE, "force diagrams on / off; in frames N, M, V"),
-        Binding("x", "toggle free bodies", LIVE, "free bodies: rods and joints apart, on / off"),
-        Binding("a", "toggle utilisation", LIVE, "utilisation in colours, on / off"),
-        Binding("m", "toggle theory", LIVE, "theory beside the run, on / off"),
-        Binding("j", "toggle energy", LIVE, "energy account on / off"),
-        Binding("ctrl+h", "toggle events", LIVE, "what happened, on / off"),
-        Binding("b", "next shape", LIVE, "mechanisms, buckling, natural modes, none"),
-        Binding("ctrl+l", "new slider", LIVE, "slider for the load or stiffness selected"),
-        Binding("k", "force method", (PAUSE,), "force method"),
+    marked("Results"): (
+        Binding("i", "toggle diagrams", LIVE, marked("show or hide force diagrams (N, M, V)")),
+        Binding("x", "toggle free bodies", LIVE, marked("show or hide free-body diagrams")),
+        Binding("a", "toggle utilisation", LIVE, marked("show or hide utilisation of strength")),
+        Binding("m", "toggle theory", LIVE, marked("show or hide comparison with theory")),
+        Binding("j", "toggle energy", LIVE, marked("show or hide energies")),
+        Binding("ctrl+h", "toggle events", LIVE, marked("show or hide the list of events")),
+        Binding("b", "next shape", LIVE, marked("show mechanisms, buckling, vibration modes")),
+        Binding("ctrl+l", "new slider", LIVE, marked("add a slider for selected load or stiffness")),
+        Binding("k", "force method", (PAUSE,), marked("force method")),
     ),
-    "Force method": (
-        Binding("k", "next part", (FORCE_METHOD,), "next part"),
-        Binding("click", "pick unknown", (FORCE_METHOD,), "pick the static unknown in set 1"),
-        Binding("n", "release another", (FORCE_METHOD,), "release another unknown as well"),
-        Binding("x", "release x", (FORCE_METHOD,), "release the support along x"),
-        Binding("y", "release y", (FORCE_METHOD,), "release the support along y"),
-        Binding("i", "toggle diagrams of sets", (FORCE_METHOD,), "force diagrams on / off"),
-        Binding("escape", "back", (FORCE_METHOD,), "back to pause"),
+    marked("Force method"): (
+        Binding("k", "next part", (FORCE_METHOD,), marked("next part")),
+        Binding("click", "pick unknown", (FORCE_METHOD,), marked("choose the redundant in set 1")),
+        Binding("n", "release another", (FORCE_METHOD,), marked("release one more redundant")),
+        Binding("x", "release x", (FORCE_METHOD,), marked("release the support along x")),
+        Binding("y", "release y", (FORCE_METHOD,), marked("release the support along y")),
+        Binding("m", "release moment", (FORCE_METHOD,), marked("release the moment of the clamp")),
+        Binding("c", "next convention", (FORCE_METHOD,), marked("convention: textbook or thesis")),
+        Binding("p", "report", (FORCE_METHOD,), marked("report of the solution as a PDF")),
+        Binding("i", "toggle diagrams of sets", (FORCE_METHOD,), marked("show or hide force diagrams")),
+        Binding("escape", "back", (FORCE_METHOD,), marked("leave the force method")),
     ),
-    "Boxes": (
-        Binding("return", "accept", (PROPERTIES,), "accept the box; without one, go back"),
-        Binding("return", "accept", (SAVE,), "save"),
-        Binding("return", "accept", (LOAD,), "open"),
-        Binding("escape", "cancel", FORMS, "restore the box; without one, go back"),
-        Binding("tab", "next box", FORMS, "next box", repeats=True),
-        Binding("shift+tab", "previous box", FORMS, "previous box", repeats=True),
-        Binding("click", "click form", (PROPERTIES,), "select a box, turn a switch; elsewhere, accept"),
-        Binding("click", "click form", (SAVE, LOAD), "choose"),
-        Binding("up", "go up", (PROPERTIES,), "box above, or the previous choice", repeats=True),
-        Binding("down", "go down", (PROPERTIES,), "box below, or the next choice", repeats=True),
-        Binding("left", "go left", (PROPERTIES,), "caret to the left", repeats=True),
-        Binding("right", "go right", (PROPERTIES,), "caret to the right", repeats=True),
-        Binding("up", "go up", (SAVE, LOAD), "choose a picture", repeats=True),
-        Binding("down", "go down", (SAVE, LOAD), "choose a picture", repeats=True),
-        Binding("left", "go left", (SAVE, LOAD), "choose a picture", repeats=True),
-        Binding("right", "go right", (SAVE, LOAD), "choose a picture", repeats=True),
+    marked("Boxes"): (
+        Binding("return", "accept", (PROPERTIES,), marked("accept the value, or go back")),
+        Binding("return", "accept", (SAVE,), marked("save")),
+        Binding("return", "accept", (LOAD,), marked("open")),
+        Binding("escape", "cancel", FORMS, marked("restore the old value, or go back")),
+        Binding("tab", "next box", FORMS, marked("go to the next box"), repeats=True),
+        Binding("shift+tab", "previous box", FORMS, marked("go to the previous box"), repeats=True),
+        Binding("click", "click form", (PROPERTIES,), marked("select a box, or accept its value")),
+        Binding("click", "click form", (SAVE, LOAD), marked("choose")),
+        Binding("up", "go up", (PROPERTIES,), marked("go up, or to the previous choice"), repeats=True),
+        Binding("down", "go down", (PROPERTIES,), marked("go down, or to the next choice"), repeats=True),
+        Binding("left", "go left", (PROPERTIES,), marked("move the cursor left"), repeats=True),
+        Binding("right", "go right", (PROPERTIES,), marked("move the cursor right"), repeats=True),
+        Binding("up", "go up", (SAVE, LOAD), marked("choose a picture"), repeats=True),
+        Binding("down", "go down", (SAVE, LOAD), marked("choose a picture"), repeats=True),
+        Binding("left", "go left", (SAVE, LOAD), marked("choose a picture"), repeats=True),
+        Binding("right", "go right", (SAVE, LOAD), marked("choose a picture"), repeats=True),
         Binding("home", "to the beginning", FORMS, ""),
         Binding("end", "to the end", FORMS, ""),
-        Binding("backspace", "erase", FORMS, "erase", repeats=True),
-        Binding("delete", "erase after", FORMS, "erase after the caret", repeats=True),
-        Binding("ctrl+a", "mark all", FORMS, "mark all"),
-        Binding("ctrl+c", "copy text", FORMS, "copy"),
-        Binding("ctrl+x", "cut text", FORMS, "cut"),
-        Binding("ctrl+v", "paste text", FORMS, "paste"),
-        Binding("ctrl+l", "slider of box", (PROPERTIES,), "slider for the number in the box"),
-        Binding("wheel up", "scroll up", FORMS, "scroll up"),
-        Binding("wheel down", "scroll down", FORMS, "scroll down"),
+        Binding("backspace", "erase", FORMS, marked("erase"), repeats=True),
+        Binding("delete", "erase after", FORMS, marked("erase after the cursor"), repeats=True),
+        Binding("ctrl+a", "mark all", FORMS, marked("select all text")),
+        Binding("ctrl+c", "copy text", FORMS, marked("copy")),
+        Binding("ctrl+x", "cut text", FORMS, marked("cut")),
+        Binding("ctrl+v", "paste text", FORMS, marked("paste")),
+        Binding("ctrl+l", "slider of box", (PROPERTIES,), marked("add a slider for this number")),
+        Binding("wheel up", "scroll up", FORMS, marked("scroll up")),
+        Binding("wheel down", "scroll down", FORMS, marked("scroll down")),
         Binding("page up", "page up", FORMS, "", repeats=True),
         Binding("page down", "page down", FORMS, "", repeats=True),
     ),
-    "View": (
-        Binding("wheel up", "zoom in", (*LIVE, FORCE_METHOD), "zoom in at the pointer"),
-        Binding("wheel down", "zoom out", (*LIVE, FORCE_METHOD), "zoom out"),
-        Binding("drag middle", "pan", (*LIVE, FORCE_METHOD), "move the view (or right button)"),
-        Binding("home", "fit", (*LIVE, FORCE_METHOD), "fit the view"),
-        Binding("tab", "toggle legend", (*LIVE, FORCE_METHOD), "legend and toolbar on / off"),
-        Binding("t", "next theme", (*LIVE, FORCE_METHOD), "light, dark, colour-blind themes"),
-        Binding("f2", "next language", EVERY, "next language: English, Português"),
-        Binding("ctrl++", "larger", EVERY, "larger or smaller type", repeats=True),
+    marked("View"): (
+        Binding("wheel up", "zoom in", (*LIVE, FORCE_METHOD), marked("zoom in at the pointer")),
+        Binding("wheel down", "zoom out", (*LIVE, FORCE_METHOD), marked("zoom out")),
+        Binding("drag middle", "pan", (*LIVE, FORCE_METHOD), marked("move the view (right button, too)")),
+        Binding("home", "fit", (*LIVE, FORCE_METHOD), marked("show the whole model")),
+        Binding("tab", "toggle legend", (*LIVE, FORCE_METHOD), marked("show or hide legend and toolbar")),
+        Binding("t", "next theme", (*LIVE, FORCE_METHOD), marked("change the colours")),
+        Binding("f2", "next language", EVERY, marked("change the language: English, Português")),
+        Binding("ctrl++", "larger", EVERY, marked("make text larger or smaller"), repeats=True),
         Binding("ctrl+shift++", "larger", EVERY, "", repeats=True),
-        Binding("ctrl+-", "smaller", EVERY, "larger or smaller type", repeats=True),
-        Binding("ctrl+0", "usual size", EVERY, "usual size of type"),
-        Binding("f1", "toggle help", EVERY, "these keys"),
-        Binding("f11", "toggle full screen", EVERY, "full screen"),
-        Binding("f12", "screenshot", EVERY, "save a picture"),
-        Binding("shift+f12", "picture as svg", EVERY, "save a picture as SVG"),
-        Binding("ctrl+f12", "picture as pdf", EVERY, "save a picture as PDF"),
+        Binding("ctrl+-", "smaller", EVERY, marked("make text larger or smaller"), repeats=True),
+        Binding("ctrl+0", "usual size", EVERY, marked("reset the size of text")),
+        Binding("f1", "toggle help", EVERY, marked("show help: keys and glossary")),
+        Binding("f11", "toggle full screen", EVERY, marked("full screen on or off")),
+        Binding("f12", "screenshot", EVERY, marked("save a picture")),
+        Binding("shift+f12", "picture as svg", EVERY, marked("save a picture as SVG")),
+        Binding("ctrl+f12", "picture as pdf", EVERY, marked("save a picture as PDF")),
     ),
-    "Lessons": (
-        Binding("f2", "check answer", (*LIVE, FORCE_METHOD), "check the task of a lesson; then: the next one"),
-        Binding("f3", "hint", (*LIVE, FORCE_METHOD), "a hint"),
-        Binding("f4", "show solution", (*LIVE, FORCE_METHOD), "show how it is done"),
-        Binding("f5", "task again", (*LIVE, FORCE_METHOD), "begin the task again"),
-        Binding("f6", "leave lesson", (*LIVE, FORCE_METHOD), "leave the lesson"),
+    marked("Lessons"): (
+        Binding("f5", "check answer", (*LIVE, FORCE_METHOD), marked("check the task of the lesson, or go on")),
+        Binding("f6", "hint", (*LIVE, FORCE_METHOD), marked("show a hint for the task")),
+        Binding("f7", "show solution", (*LIVE, FORCE_METHOD), marked("show how the task is done")),
+        Binding("f8", "task again", (*LIVE, FORCE_METHOD), marked("begin the task again")),
+        Binding("f9", "leave lesson", (*LIVE, FORCE_METHOD), marked("leave the lesson")),
     ),
-    "Files": (
-        Binding("s", "save", (PAUSE,), "save as"),
-        Binding("ctrl+shift+s", "save", LIVE, "save as"),
-        Binding("ctrl+s", "save again", LIVE, "save under the same name"),
-        Binding("d", "load", (PAUSE,), "open a model"),
-        Binding("ctrl+o", "load", LIVE, "open a model"),
-        Binding("ctrl+n", "new", LIVE, "new, empty model"),
+    marked("Files"): (
+        Binding("s", "save", (PAUSE,), marked("save as")),
+        Binding("ctrl+shift+s", "save", LIVE, marked("save as")),
+        Binding("ctrl+s", "save again", LIVE, marked("save")),
+        Binding("d", "load", (PAUSE,), marked("open a model")),
+        Binding("ctrl+o", "load", LIVE, marked("open a model")),
+        Binding("ctrl+n", "new", LIVE, marked("start a new model")),
     ),
-    "Menu": (
-        Binding("up", "menu up", (MENU,), "entry above", repeats=True),
-        Binding("down", "menu down", (MENU,), "entry below", repeats=True),
-        Binding("left", "menu left", (MENU,), "column to the left", repeats=True),
-        Binding("right", "menu right", (MENU,), "column to the right", repeats=True),
-        Binding("return", "choose entry", (MENU,), "choose the entry"),
-        Binding("click", "choose entry", (MENU,), "choose the entry; beside the menu, close it"),
-        Binding("escape", "close menu", (MENU,), "close the menu"),
+    marked("Menu"): (
+        Binding("up", "menu up", (MENU,), marked("go to the entry above"), repeats=True),
+        Binding("down", "menu down", (MENU,), marked("go to the entry below"), repeats=True),
+        Binding("left", "menu left", (MENU,), marked("go to the column on the left"), repeats=True),
+        Binding("right", "menu right", (MENU,), marked("go to the column on the right"), repeats=True),
+        Binding("return", "choose entry", (MENU,), marked("choose the entry")),
+        Binding("click", "choose entry", (MENU,), marked("choose the entry; outside, close the menu")),
+        Binding("escape", "close menu", (MENU,), marked("close the menu")),
     ),
 }
 BINDINGS: list[Binding] = [
@@ -204,22 +215,22 @@ BINDINGS: list[Binding] = [
 
 # Actions that menus and the toolbar offer without a key.
 WITHOUT_KEY: tuple[Binding, ...] = (
-    Binding("", "free", LIVE, "free: no support"),
-    Binding("", "pin", LIVE, "pinned: held in x and y"),
-    Binding("", "hold y", LIVE, "on a roller: held in y"),
-    Binding("", "hold x", LIVE, "on a roller: held in x"),
-    Binding("", "clamp", LIVE, "clamped: held in x and y, cannot turn"),
-    Binding("", "guide y", LIVE, "guided: held in y, cannot turn"),
-    Binding("", "guide x", LIVE, "guided: held in x, cannot turn"),
-    Binding("", "hold rotation", LIVE, "cannot turn, free in x and y"),
-    Binding("", "split", LIVE, "divide it here"),
-    Binding("", "weight along", LIVE, "weight as distributed load"),
-    Binding("", "toggle cable", LIVE, "cable: tension only"),
-    Binding("", "divide in two", LIVE, "divide in two"),
-    Binding("", "divide in four", LIVE, "divide in four"),
-    Binding("", "release", (PAUSE,), "release it in the force method"),
-    Binding("", "environment", LIVE, "properties of the environment"),
-    Binding("", "more tools", (*LIVE, FORCE_METHOD), "more"),
+    Binding("", "free", LIVE, marked("free: no support")),
+    Binding("", "pin", LIVE, marked("pinned: held in x and y")),
+    Binding("", "hold y", LIVE, marked("roller: held in y")),
+    Binding("", "hold x", LIVE, marked("roller: held in x")),
+    Binding("", "clamp", LIVE, marked("clamped: held in x and y, cannot turn")),
+    Binding("", "guide y", LIVE, marked("guided: held in y, cannot turn")),
+    Binding("", "guide x", LIVE, marked("guided: held in x, cannot turn")),
+    Binding("", "hold rotation", LIVE, marked("cannot turn, free in x and y")),
+    Binding("", "split", LIVE, marked("divide the rod here")),
+    Binding("", "weight along", LIVE, marked("add its weight as a distributed load")),
+    Binding("", "toggle cable", LIVE, marked("cable: tension only")),
+    Binding("", "divide in two", LIVE, marked("divide in two")),
+    Binding("", "divide in four", LIVE, marked("divide in four")),
+    Binding("", "release", (PAUSE,), marked("release it in the force method")),
+    Binding("", "environment", LIVE, marked("open the properties of the environment")),
+    Binding("", "more tools", (*LIVE, FORCE_METHOD), marked("show more tools")),
 )
 
 # The actions of the toolbar, in groups from the top to the bottom.
@@ -326,7 +337,7 @@ def action_for(scene: str, key: str) -> str | None:
 def only_in_pause(scene: str, key: str) -> str:
     """What a key does in pause, if it does nothing in the scene in which time passes; "" else."""
     found = _binding(PAUSE, key) if scene == LIVE[0] and _binding(scene, key) is None else None
-    return found.title if found else ""
+    return tr(found.title) if found else ""
 
 
 def key_named(text: str) -> str:
@@ -378,11 +389,11 @@ def toolbar(scene: str) -> tuple[tuple[Binding, ...], ...]:
 
 
 def help_lines(scene: str) -> list[tuple[str, str]]:
-    """(key, title) of all keys of a scene by purpose; before those of each, ("", purpose)."""
+    """(key, title) of all keys of a scene by purpose, in the present language; before those of each, ("", purpose)."""
     shown = [b for b in BINDINGS if b.title and _binding(scene, b.key) is b]
     purposes = dict.fromkeys([*_BY_PURPOSE, *(binding.group for binding in shown)])
     lines: list[tuple[str, str]] = []
     for purpose in purposes:
-        keys = [(binding.key, binding.title) for binding in shown if binding.group == purpose]
-        lines += [("", purpose), *keys] if keys else []
+        keys = [(binding.key, tr(binding.title)) for binding in shown if binding.group == purpose]
+        lines += [("", tr(purpose)), *keys] if keys else []
     return lines

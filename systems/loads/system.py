@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from components.language import marked
 from components.load import CONSTANT, HISTORIES, HistoryKind, flattened
 from components.model import Model
 from components.rod import bends
@@ -18,13 +19,13 @@ class VaryingLoads(Law):
     """Loads whose history is of one kind; constant loads are part of the constant force."""
 
     each = "loads"
+    unneeded = marked("no load has a history of this kind")
     reads = ("loads.on", "loads.force", "loads.history")
     adds = ("particles.force",)
 
     def __init__(self, kind: HistoryKind) -> None:
         self.kind, self.mod = kind, kind.mod
         self.name = f"loads.{kind.name}"  # type: ignore[misc]
-        self.unneeded = f"no load has the history '{kind.name}'"  # type: ignore[misc]
         self.kernel = kind.factor  # type: ignore[misc]
 
     def _rows(self, model: Model) -> list[int]:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from components.language import marked
 from components.model import Model
 from components.rod import bends, has_cables, has_plastic_strain, is_curved
 from systems.base import Law
@@ -11,7 +12,7 @@ class Elasticity(Law):
     """Axial force of rods that never yielded and cannot: N = EA ε."""
 
     name = "physics.elasticity"
-    unneeded = "the model has no rods, or some have yielded or can (physics.elasticity_after_yielding)"
+    unneeded = marked("the model has no rods, or some have yielded or can (physics.elasticity_after_yielding)")
     elastic = True
     kernel = "systems.physics.kernels:elastic"
     reads = ("rods.stiffness", "rods.rest_length")
@@ -25,7 +26,7 @@ class ElasticityAfterYielding(Law):
     """Axial force of rods with plastic strain: N = EA (ε − ε_p)."""
 
     name = "physics.elasticity_after_yielding"
-    unneeded = "no rod has yielded or can"
+    unneeded = marked("no rod has yielded or can")
     elastic = True
     kernel = "systems.physics.kernels:elastic_after_yielding"
     reads = ("rods.stiffness", "rods.rest_length", "rods.plastic_strain")
@@ -39,7 +40,7 @@ class AxialDamping(Law):
     """Viscous force along the axis of the rods, on top of N."""
 
     name = "physics.axial_damping"
-    unneeded = "no rod has a damper, or there are cables (physics.axial_damping_of_cables)"
+    unneeded = marked("no rod has a damper, or there are cables (physics.axial_damping_of_cables)")
     kernel = "systems.physics.kernels:axial_damper"
     reads = ("rods.damping",)
     adds = ("rods.axial_force",)
@@ -54,7 +55,7 @@ class Slackness(Law):
 
     name = "physics.slackness"
     elastic = True
-    unneeded = "the model has no cables"
+    unneeded = marked("the model has no cables")
     kernel = "systems.physics.kernels:taut"
     branch = "systems.physics.kernels:slack_branch"
     margin = "systems.physics.kernels:slack_margin"
@@ -70,7 +71,7 @@ class AxialDampingOfCables(Law):
     """Axial damping in a model with cables: a cable's damper acts while it is taut, and never makes it push."""
 
     name = "physics.axial_damping_of_cables"
-    unneeded = "the model has no cables with dampers"
+    unneeded = marked("the model has no cables with dampers")
     kernel = "systems.physics.kernels:taut_damper"
     reads = ("rods.damping", "rods.tension_only")
     adds = ("rods.axial_force",)
@@ -84,7 +85,7 @@ class Bending(Law):
     """Moments on the ends of rods that bend, by the slopes of these to the chord; N in the bowed axis adds to them."""
 
     name = "physics.bending"
-    unneeded = "no rod bends, or some are warmer on one side (physics.bending_of_warped)"
+    unneeded = marked("no rod bends, or some are warmer on one side (physics.bending_of_warped)")
     each = "ends"
     kernel = "systems.physics.kernels:bending"
     potential = "systems.physics.kernels:bending_energy"
@@ -99,7 +100,7 @@ class BendingOfWarped(Law):
     """The same where rods are warmer on one side: slopes count from those without moments."""
 
     name = "physics.bending_of_warped"
-    unneeded = "no rod that bends is warmer on one side"
+    unneeded = marked("no rod that bends is warmer on one side")
     each = "ends"
     kernel = "systems.physics.kernels:warped"
     potential = "systems.physics.kernels:warped_energy"
@@ -114,7 +115,7 @@ class BendingDamping(Law):
     """Viscous moments on the ends of rods that bend."""
 
     name = "physics.bending_damping"
-    unneeded = "no rod that bends has a damper"
+    unneeded = marked("no rod that bends has a damper")
     each = "ends"
     kernel = "systems.physics.kernels:bending_damper"
     reads = ("rods.end_damping",)
@@ -129,7 +130,7 @@ class TurningDrag(Law):
     """The environment's resistance to all turning."""
 
     name = "physics.turning_drag"
-    unneeded = "the drag of the environment is 0, or no rod bends"
+    unneeded = marked("the drag of the environment is 0, or no rod bends")
     each = "rotations"
     kernel = "systems.physics.kernels:turning_drag"
     reads = ("particles.inertia", "particles.angular_velocity", "environment.drag")
@@ -144,7 +145,7 @@ class Drag(Law):
     """The environment's resistance to all motion."""
 
     name = "physics.drag"
-    unneeded = "the drag of the environment is 0"
+    unneeded = marked("the drag of the environment is 0")
     each = "particles"
     kernel = "systems.physics.kernels:drag"
     reads = ("particles.mass", "particles.velocity", "environment.drag")

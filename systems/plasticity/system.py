@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from components.language import marked
 from components.model import Model
 from components.rod import can_yield
 from systems.base import Commit, Law
@@ -12,7 +13,7 @@ class Strength(Law):
 
     name = "plasticity.strength"
     elastic = True
-    unneeded = "no rod can yield: strengths are unlimited, or settings.plasticity is off"
+    unneeded = marked("no rod can yield: strengths are unlimited, or settings.plasticity is off")
     kernel = "systems.plasticity.kernels:limited"
     after = ("physics.elasticity_after_yielding",)
     reads = ("rods.tension_limit", "rods.compression_limit")
@@ -26,7 +27,7 @@ class Yielding(Commit):
     """Plastic strain takes up what exceeds the elastic range."""
 
     name = "plasticity.yielding"
-    unneeded = "no rod can yield: strengths are unlimited, or settings.plasticity is off"
+    unneeded = marked("no rod can yield: strengths are unlimited, or settings.plasticity is off")
     kernel = "systems.plasticity.kernels:yielded"
     branch = "systems.plasticity.kernels:branch"
     margin = "systems.plasticity.kernels:margin"

@@ -13,6 +13,7 @@ from typing import Any
 from numpy.typing import NDArray
 
 from components.field import Role
+from components.language import marked, tr
 from components.model import Model
 from components.wording import is_identifier
 from systems.base import Commit, Event, Law, StepSystem
@@ -62,20 +63,20 @@ class ProgramError(ValueError):
 class StepRole(Enum):
     """How the result of a kernel enters a step, in the order in which the kernels follow from each other."""
 
-    PARTICLE_FORCE = "adds to the force on a particle"
-    RESISTANCE = "adds to the force that resists a particle's motion"
-    PAIR_FORCE = "adds to the forces on two particles"
-    PAIR_RESISTANCE = "adds to the forces that resist the motion of two particles"
-    LOAD = "is the factor of a load"
-    HISTORY = "is the history of a rod"
-    SUMMED = "adds to the axial force of a rod"
-    REPLACING = "replaces the axial force of a rod, which it is given"
-    LATE_HISTORY = "is the history of a rod, by its axial force"
-    RATE = "adds to the force of a rod's dampers"
-    ENDS = "adds to the moments on the ends of a rod"
-    RATE_OF_ENDS = "adds to the moments of dampers on the ends of a rod"
-    TURNING = "adds to the moment that resists a particle's turning"
-    EVENT = "stops the run where it changes sign"
+    PARTICLE_FORCE = marked("adds to the force on a particle")
+    RESISTANCE = marked("adds to the force that resists a particle's motion")
+    PAIR_FORCE = marked("adds to the forces on two particles")
+    PAIR_RESISTANCE = marked("adds to the forces that resist the motion of two particles")
+    LOAD = marked("is the factor of a load")
+    HISTORY = marked("is the history of a rod")
+    SUMMED = marked("adds to the axial force of a rod")
+    REPLACING = marked("replaces the axial force of a rod, which it is given")
+    LATE_HISTORY = marked("is the history of a rod, by its axial force")
+    RATE = marked("adds to the force of a rod's dampers")
+    ENDS = marked("adds to the moments on the ends of a rod")
+    RATE_OF_ENDS = marked("adds to the moments of dampers on the ends of a rod")
+    TURNING = marked("adds to the moment that resists a particle's turning")
+    EVENT = marked("stops the run where it changes sign")
 
 
 HISTORIES = (StepRole.HISTORY, StepRole.LATE_HISTORY)
@@ -206,7 +207,14 @@ def bind(system: StepSystem, model: Model, kernel: str = "kernel") -> Bound:
     except Exception as error:
         if system.mod is None:
             raise
-        raise ProgramError(f"{system.name} cannot be read: {type(error).__name__}: {error}.", system) from error
+        raise ProgramError(
+            tr(
+                "{system} cannot be read: {error}.",
+                system=system.name,
+                error=f"{type(error).__name__}: {error}",
+            ),
+            system,
+        ) from error
 
 
 def _bound(system: StepSystem, model: Model, kernel: str) -> Bound:
@@ -215,19 +223,32 @@ def _bound(system: StepSystem, model: Model, kernel: str) -> Bound:
     plain = getattr(function, "py_func", None)
     if plain is None:
         raise ProgramError(
-            f"The kernel of {system.name} is not compiled; put `@compiled` of game.api above it."
+            tr(
+                "The kernel of {system} is not compiled; put `@compiled` of game.api above it.",
+                system=system.name,
+            )
         )
     if system.mod is not None and (chance := source_of_chance(function)):
         raise ProgramError(
-            f"The kernel of {system.name} draws random numbers ({chance}), so that no run could be repeated; draw"
-            " them before, with a seed, and hand them over by `arrays`."
+            tr(
+                "The kernel of {system} draws random numbers ({source}), so that no run could be repeated. Draw them"
+                " before the run, with a seed, and hand them over by `arrays`.",
+                system=system.name,
+                source=chance,
+            )
         )
     parameters = tuple(inspect.signature(plain).parameters)
     arrays = {name: read_only(array) for name, array in system.arrays(model).items()}
     bound = Bound(system, function, parameters, arrays, kernel, _cutoff(system, model))
     for name in bound.arrays:
         if _is_column(name, model):
-            raise ProgramError(f"The array '{name}' of {system.name} has the name of a column; rename it.")
+            raise ProgramError(
+                tr(
+                    "The array '{name}' of {system} has the name of a column; rename it.",
+                    name=name,
+                    system=system.name,
+                )
+            )
     if bound.each != "loads":
         for parameter in bound.parameters:
             _check_parameter(bound, parameter, model)
@@ -241,7 +262,11 @@ def _cutoff(system: StepSystem, model: Model) -> float:
     distance = system.cutoff(model)
     if not distance > 0.0:
         raise ProgramError(
-            f"The cutoff of {system.name} is {distance}; give a distance above 0 m, or math.inf for all pairs."
+            tr(
+                "The cutoff of {system} is {distance}; give a distance above 0 m, or math.inf for all pairs.",
+                system=system.name,
+                distance=str(distance),
+            )
         )
     return float(distance)
 
@@ -284,7 +309,12 @@ def check_names(bound: Iterable[Bound]) -> None:
         for name in (b.call, *b.stored_arrays):
             if name in owner:
                 raise ProgramError(
-                    f"{owner[name]} and {b.system.name} are both '{name}' in the step program; rename one.",
+                    tr(
+                        "{one} and {other} are both called '{name}' in the step program; rename one of them.",
+                        one=owner[name],
+                        other=b.system.name,
+                        name=name,
+                    ),
                     b.system,
                 )
             owner[name] = b.system.name
@@ -293,20 +323,42 @@ def check_names(bound: Iterable[Bound]) -> None:
 def _check_role(system: StepSystem, model: Model) -> None:
     name = system.name
     if not all(is_identifier(part) for part in name.split(".")):
-        raise ProgramError(f"The name '{name}' of a step system cannot be used; name it like 'mymod.wind'.")
+        raise ProgramError(
+            tr("The name '{name}' of a step system cannot be used; name it like 'mymod.wind'.", name=name)
+        )
     if isinstance(system, Law) and system.each not in _KINDS:
-        raise ProgramError(f"{name} is a law for each of '{system.each}'; choose one of {', '.join(_KINDS)}.")
+        raise ProgramError(
+            tr(
+                "{law} has each = '{each}'; choose one of {choices}.",
+                law=name,
+                each=system.each,
+                choices=", ".join(_KINDS),
+            )
+        )
     if isinstance(system, Event) and system.each not in ("rods", "particles"):
-        raise ProgramError(f"{name} is an event for each of '{system.each}'; choose rods or particles.")
+        raise ProgramError(
+            tr("{event} has each = '{each}'; choose rods or particles.", event=name, each=system.each)
+        )
     if isinstance(system, Law | Commit) and system.account not in ACCOUNTS:
-        raise ProgramError(f"{name} has the account '{system.account}'; choose one of {', '.join(ACCOUNTS)}.")
+        raise ProgramError(
+            tr(
+                "{system} has the account '{account}'; choose one of {choices}.",
+                system=name,
+                account=system.account,
+                choices=", ".join(ACCOUNTS),
+            )
+        )
     if isinstance(system, Commit):
         table, _, column = (system.writes[0] if len(system.writes) == 1 else "").partition(".")
         field = model.tables["rods"].fields.get(column) if table == "rods" else None
         if field is None or field.role is Role.DOCUMENT or field.shape:
             raise ProgramError(
-                f"{name} writes {', '.join(system.writes) or 'nothing'}; a commit writes exactly one column of"
-                " the rods that is no part of the document and has one number in each row."
+                tr(
+                    "{system} has writes = {columns}; a commit writes exactly one column of the rods, which has one number"
+                    " in each row and is not part of the document.",
+                    system=name,
+                    columns=list(system.writes),
+                )
             )
 
 
@@ -320,8 +372,12 @@ def find(kernel: str | Callable[..., Any], owner: StepSystem) -> Callable[..., A
         found = getattr(importlib.import_module(module), attribute)
     except (Exception, SystemExit) as error:  # of the module, which may be a mod's
         raise ProgramError(
-            f"The kernel '{kernel}' of {owner.name} cannot be found: {error}; write it like"
-            " 'package.module:function'.",
+            tr(
+                "The kernel '{kernel}' of {system} cannot be found: {error}; write it like 'package.module:function'.",
+                kernel=kernel,
+                system=owner.name,
+                error=str(error),
+            ),
             owner,
         ) from None
     return found
@@ -334,42 +390,79 @@ def _check_parameter(b: Bound, parameter: str, model: Model) -> None:
     conservative = isinstance(b.system, Law) and b.system.potential
     if parameter in ("time", "dt", "drift", "particles_velocity") and conservative:
         raise ProgramError(
-            f"{name} has a potential, so that its force depends on places alone, but takes '{parameter}'; drop one."
+            tr(
+                "{law} has a potential, so its force depends on positions only, but its kernel takes '{parameter}'; remove"
+                " one of the two.",
+                law=name,
+                parameter=parameter,
+            )
         )
     if parameter in ("time", "dt") and getattr(b.system, "elastic", False):
         raise ProgramError(
-            f"{name} is elastic, so that the energy it stores depends on the state alone, but takes '{parameter}';"
-            " drop `elastic` or the parameter."
+            tr(
+                "{law} is elastic, so the energy it stores depends on the state only, but its kernel takes '{parameter}';"
+                " remove `elastic` or the parameter.",
+                law=name,
+                parameter=parameter,
+            )
         )
     if parameter in provided:
         return
     if parameter in b.arrays:
         if len(b.arrays[parameter]) != model.tables[rows].count:
             raise ProgramError(
-                f"The array '{parameter}' of {name} has {len(b.arrays[parameter])} rows for"
-                f" {model.tables[rows].count} {rows}; give it one row for each."
+                tr(
+                    "The array '{name}' of {system} has {count} rows for {elements} {table}; give it one row for each.",
+                    name=parameter,
+                    system=name,
+                    count=len(b.arrays[parameter]),
+                    elements=model.tables[rows].count,
+                    table=tr(rows),
+                )
             )
         width = math.prod(b.arrays[parameter].shape[1:])
         if not 0 < width <= WIDEST_ROW:
             raise ProgramError(
-                f"The array '{parameter}' of {name} has {width} numbers in a row; a kernel takes 1 to {WIDEST_ROW}."
+                tr(
+                    "The array '{name}' of {system} has {count} numbers in a row; a kernel takes 1 to {most}.",
+                    name=parameter,
+                    system=name,
+                    count=width,
+                    most=WIDEST_ROW,
+                )
             )
         return
     table, _, column = parameter.partition("_")
     if not _is_column(parameter, model):
         raise ProgramError(
-            f"The kernel of {name} has a parameter '{parameter}', but there is no column {table}.{column};"
-            f" name parameters <table>_<column>, {', '.join(provided)} or like an entry of `arrays`."
+            tr(
+                "The kernel of {system} has a parameter '{parameter}', but there is no column {column}; name parameters"
+                " <table>_<column>, {provided} or like an entry of `arrays`.",
+                system=name,
+                parameter=parameter,
+                column=f"{table}.{column}",
+                provided=", ".join(provided),
+            )
         )
     if f"{table}.{column}" not in (*b.system.reads, *b.system.writes):
         raise ProgramError(
-            f"The kernel of {name} takes {parameter}, but the system does not declare that it reads"
-            f" '{table}.{column}'; add it to `reads`."
+            tr(
+                "The kernel of {system} takes {parameter}, but the system does not declare that it reads '{column}'; add it"
+                " to `reads`.",
+                system=name,
+                parameter=parameter,
+                column=f"{table}.{column}",
+            )
         )
     if table != rows and not model.tables[table].kind.single:
         raise ProgramError(
-            f"The kernel of {name} is called for each of the {rows} and cannot take {parameter}; take a column"
-            f" of the {rows} or of a table with a single row, such as the environment."
+            tr(
+                "The kernel of {system} is called for each of the {table} and cannot take {parameter}; take a column of the"
+                " {table} or of a table with a single row, such as the environment.",
+                system=name,
+                table=tr(rows),
+                parameter=parameter,
+            )
         )
 
 

@@ -24,6 +24,7 @@ from pathlib import Path
 from types import MappingProxyType, ModuleType, SimpleNamespace
 from typing import Any
 
+from components.language import begun, tr
 from components.mistake import Mistake
 from systems import cache
 from systems.interpreter import FORMS, NoPlainForm, Rewriting, plain_function, rewrite
@@ -51,7 +52,13 @@ def _asked() -> Compile:
     try:
         return Compile(said)
     except ValueError:
-        raise Mistake(f"{VARIABLE} is '{said}'; set it to never or always, or leave it out.") from None
+        raise Mistake(
+            tr(
+                "{variable} is '{value}'; set it to never or always, or leave it out.",
+                variable=VARIABLE,
+                value=said,
+            )
+        ) from None
 
 
 VARIABLE = "PINJOINT_COMPILE"
@@ -174,7 +181,9 @@ class GeneratedModule:
         try:
             return {name: function.interpreted for name, function in self.functions.items()}
         except NoPlainForm as error:
-            self.refusal = f"{self.name} cannot be interpreted: {error}"
+            self.refusal = tr(
+                "{program} cannot be interpreted: {reason}", program=tr(self.name), reason=str(error)
+            )
             return None
 
     def rewrite_all(self) -> None:
@@ -194,7 +203,13 @@ class GeneratedModule:
             self.load()
         except Exception as error:  # numba raises many kinds
             self._patience = math.inf
-            tell(f"{self.name} goes on interpreted, and slower: it cannot be compiled ({error}).")
+            tell(
+                tr(
+                    "{program} cannot be compiled, so it runs interpreted, which is slower ({error}).",
+                    program=begun(tr(self.name)),
+                    error=str(error),
+                )
+            )
 
     @property
     def is_loaded(self) -> bool:

@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
-from typing import Any
+from collections.abc import Mapping
 
 import numpy as np
 
 from components.field import Column
+from components.language import listed, tr
 from components.model import Model
 from components.snapshot import Snapshot
 from systems.base import REVIEW_INTERVAL, Mod, StepSystem
@@ -57,7 +57,17 @@ def find_culprit(program: Program, safe: Snapshot) -> Mod | None:
     mod = system.mod
     if mod is None:
         return None
-    mod.switch_off(f"{system.name} gave {value} for {element}{_place(system, model)}, which is not finite.")
+    code = plain_function(bind(system, model).function).__code__
+    mod.switch_off(
+        tr(
+            "{system} gave {value} for {element}, which is not finite ({file}, line {line}).",
+            system=system.name,
+            value=str(value),
+            element=element,
+            file="/".join(code.co_filename.split("/")[-2:]),
+            line=code.co_firstlineno,
+        )
+    )
     return mod
 
 
@@ -102,13 +112,8 @@ def _element(system: StepSystem, model: Model, row: int) -> str:
     each = getattr(system, "each", "rods")
     if each == "pairs":
         pair = pairs_within(model, bind(system, model).cutoff)[row].tolist()
-        return " and ".join(model.describe(model.particles[particle]) for particle in pair)
+        return listed([model.describe(model.particles[particle]) for particle in pair])
     each = ROWS_OF.get(each, each)
-    return model.describe(model.tables[each][row]) if row < model.tables[each].count else f"row {row}"
-
-
-def _place(system: StepSystem, model: Model) -> str:
-    """The file and the line in which its kernel begins."""
-    function: Callable[..., Any] = bind(system, model).function
-    code = plain_function(function).__code__
-    return f" ({'/'.join(code.co_filename.split('/')[-2:])}, line {code.co_firstlineno})"
+    return (
+        model.describe(model.tables[each][row]) if row < model.tables[each].count else tr("row {row}", row=row)
+    )

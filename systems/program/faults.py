@@ -6,6 +6,7 @@ import traceback
 from collections.abc import Callable, Iterable
 from typing import Any
 
+from components.language import marked, plural, tr
 from components.model import Model
 from systems.base import Integrator
 from systems.interpreter import NoPlainForm, plain_function
@@ -14,18 +15,18 @@ from systems.program.binding import PROVIDED, Bound, ProgramError, shape_given
 from systems.program.compiler import Choice, Compile
 
 _RESULTS = {
-    "rods": "one number, the axial force (kN)",
-    "particles": "a pair, the force (fx, fy) in kN",
-    "pairs": "a pair, the force (fx, fy) on the first particle in kN",
-    "potential": "one number, the energy of two particles, or of the ends of a rod (kN·m)",
-    "ends": "a pair, the moments on the ends (M_start, M_end) in kN·m",
-    "rotations": "one number, the moment on a particle in kN·m",
-    "branch": "one number, the branch that the rod is on",
-    "margin": "one number, positive while the rod stays on its branch",
-    "loads": "one number, the factor of the load",
-    "commit": "a pair, the new value of the column and the energy dissipated (kN·m)",
-    "event of rods": "one number, whose sign counts",
-    "event of particles": "one number, whose sign counts",
+    "rods": marked("one number, the axial force (kN)"),
+    "particles": marked("a pair, the force (fx, fy) in kN"),
+    "pairs": marked("a pair, the force (fx, fy) on the first particle in kN"),
+    "potential": marked("one number, the energy of two particles, or of the ends of a rod (kN·m)"),
+    "ends": marked("a pair, the moments on the ends (M_start, M_end) in kN·m"),
+    "rotations": marked("one number, the moment on a particle in kN·m"),
+    "branch": marked("one number, the branch that the rod is on"),
+    "margin": marked("one number, positive while the rod stays on its branch"),
+    "loads": marked("one number, the factor of the load"),
+    "commit": marked("a pair, the new value of the column and the energy dissipated (kN·m)"),
+    "event of rods": marked("one number, whose sign counts"),
+    "event of particles": marked("one number, whose sign counts"),
 }
 
 
@@ -67,13 +68,27 @@ def _problem_interpreted(b: Bound, model: Model) -> str:
     except NoPlainForm as reason:
         if Choice.compile is not Compile.NEVER:
             return ""  # it is compiled at once
-        return f"The kernel of {b.system.name} cannot be interpreted: {reason}; PINJOINT_COMPILE=never allows nothing else."
+        return tr(
+            "The kernel of {system} cannot be interpreted: {reason}. PINJOINT_COMPILE=never forbids compiling it; leave that"
+            " out.",
+            system=b.system.name,
+            reason=str(reason),
+        )
     numbers = made if isinstance(made, tuple) else (made,)
     if len(numbers) == _count(b) and all(isinstance(kind, str) and kind for kind in numbers):
         return ""
     nested = any(isinstance(kind, tuple) for kind in numbers)
-    said = "nothing" if not made else "tuples" if nested else f"{len(numbers)} number{'s' * (len(numbers) > 1)}"
-    return f"The kernel of {b.system.name} returns {said}; it must return {_RESULTS[b.purpose]}."
+    said = tr("tuples") if nested else plural("1 number", "{count} numbers", len(numbers))
+    return _wrong_result(b, said if made else tr("nothing"))
+
+
+def _wrong_result(b: Bound, made: str) -> str:
+    return tr(
+        "The kernel of {system} returns {made}; it must return {wanted}.",
+        system=b.system.name,
+        made=made,
+        wanted=tr(_RESULTS[b.purpose]),
+    )
 
 
 def _count(b: Bound) -> int:
@@ -91,8 +106,14 @@ def explain(
         problem = problem_of(b, model) if compiled else failure_of(b, error) if _lines(b, error) else ""
         if problem:
             return ProgramError(problem, b.system)
-    does = "does not compile" if compiled else "cannot be interpreted"
-    return ProgramError(f"The step program of {integrator.name} {does}: {_brief(error)}", integrator)
+    name, brief = integrator.name, _brief(error)
+    if compiled:
+        message = tr("The step program of {integrator} does not compile: {error}", integrator=name, error=brief)
+    else:
+        message = tr(
+            "The step program of {integrator} cannot be interpreted: {error}", integrator=name, error=brief
+        )
+    return ProgramError(message, integrator)
 
 
 def _lines(b: Bound, error: Exception) -> list[int]:
@@ -108,8 +129,13 @@ def failure_of(b: Bound, error: Exception) -> str:
     """An error that a kernel raised, as a sentence."""
     code = plain_function(b.function).__code__
     line = (_lines(b, error) or [code.co_firstlineno])[-1]
-    place = f"{'/'.join(code.co_filename.split('/')[-2:])}, line {line}"
-    return f"The kernel of {b.system.name} failed: {type(error).__name__}: {error} ({place})."
+    return tr(
+        "The kernel of {system} failed: {error} ({file}, line {line}).",
+        system=b.system.name,
+        error=f"{type(error).__name__}: {error}",
+        file="/".join(code.co_filename.split("/")[-2:]),
+        line=line,
+    )
 
 
 def form_of(b: Bound, model: Model) -> Callable[..., Any]:
@@ -135,12 +161,14 @@ def problem_of(b: Bound, model: Model) -> str:
     try:
         made = _result_type(b, model)
     except Exception as failure:  # numba raises many kinds
-        return f"The kernel of {b.system.name} does not compile: {_brief(failure)}"
+        return tr(
+            "The kernel of {system} does not compile: {error}", system=b.system.name, error=_brief(failure)
+        )
     from numba import types
 
     numbers = tuple(getattr(made, "types", (made,)))
     if len(numbers) != _count(b) or not all(isinstance(n, types.Number | types.Boolean) for n in numbers):
-        return f"The kernel of {b.system.name} returns {made}; it must return {_RESULTS[b.purpose]}."
+        return _wrong_result(b, str(made))
     return ""
 
 

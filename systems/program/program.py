@@ -15,6 +15,7 @@ from numpy.typing import NDArray
 
 from components.field import Column, Role
 from components.handle import Handle
+from components.language import marked
 from components.load import load_breaks, loads_end
 from components.model import Model
 from systems.base import Event, Integrator, StepSystem, StopReason
@@ -77,7 +78,7 @@ def module_of(
 def _module(writer: Writer, model: Model, between: Between | None) -> GeneratedModule:
     kinds = {b.call: kinds_of(b, model) for b in writer.kernels if not b.is_ours}
     needs = (between.module,) if between is not None else ()
-    return generated("the step program", writer.source(), writer.names, kinds, needs)
+    return generated(marked("the step program"), writer.source(), writer.names, kinds, needs)
 
 
 def _between(systems: Iterable[StepSystem]) -> Between | None:

@@ -14,6 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from components.field import Vector
+from components.language import marked
 from components.model import Model
 from components.rod import bends
 from systems.base import StepSystem
@@ -146,7 +147,7 @@ def _compiled_loop(bound: Bound, columns: Sequence[NDArray[Any]]) -> Callable[..
         f"        total += {'made[0] + made[1]' if pair else 'made'}",
         "    return total",
     ]
-    module = generated("the timing of a kernel", "\n".join(lines), {"kernel": bound.function})
+    module = generated(marked("the timing of a kernel"), "\n".join(lines), {"kernel": bound.function})
     loop: Callable[..., float] = (module.form if Choice.compile is Compile.NEVER else module.load()).loop
     return loop
 

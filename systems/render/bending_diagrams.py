@@ -19,6 +19,7 @@ from components.bent import (
     values,
     zeros,
 )
+from components.language import marked, tr
 from components.tags import DiagramShown, Selected
 from components.view import MARGIN
 from systems.render.arrows import steady
@@ -43,7 +44,11 @@ from systems.render.overlays import heading_height
 from systems.render.sheet import Rows, Sheet, typical_length
 from systems.render.theme import Colour, faded
 
-NAMES = {AXIAL: "axial force N", MOMENT: "bending moment M", SHEAR: "shear force V"}
+NAMES = {
+    AXIAL: marked("axial force N"),
+    MOMENT: marked("bending moment M"),
+    SHEAR: marked("shear force V"),
+}
 UNITS = {AXIAL: "kN", MOMENT: "kN·m", SHEAR: "kN"}
 _MEANT = {AXIAL: ("tension", "compression"), MOMENT: ("moment",), SHEAR: ("shear",)}  # in the legend
 _BESIDE = (
@@ -122,7 +127,7 @@ def draw_diagrams(sheet: Sheet) -> None:
         if quantity == AXIAL:
             force = np.nan_to_num(sheet.model.rods.axial_force)
             sheet.pulled, sheet.pushed = rows[force[rows] > SMALLEST_FORCE], rows[force[rows] < -SMALLEST_FORCE]
-        sheet.notes.append("zoom in to see force diagrams")
+        sheet.notes.append(tr("zoom in to see force diagrams"))
         return
     room = min(_ROOM * room_for(sheet, start, end), MARGIN * sheet.unit)
     diagram = _measured(sheet, rows, quantity, room)

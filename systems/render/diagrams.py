@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 
 from components import written
 from components.bent import distributed_shares
+from components.language import tr
 from components.load import CONSTANT
 from components.model import Model
 from components.tags import DiagramShown, Selected
@@ -80,13 +81,13 @@ def draw_rod_diagrams(sheet: Sheet) -> None:
     if typical_length(start, end) < SHORTEST_WITH_DIAGRAM * sheet.unit:
         sheet.pulled = rows[force[rows] > SMALLEST_FORCE]
         sheet.pushed = rows[force[rows] < -SMALLEST_FORCE]
-        sheet.notes.append("zoom in to see force diagrams")
+        sheet.notes.append(tr("zoom in to see force diagrams"))
         return
     room = room_for(sheet, start, end) / sheet.unit
     largest = float(np.abs(force).max())
     factor = diagram_factor(largest, _loads(sheet.model), sheet.model.settings.diagram_scale, room)
     if factor != 1.0:
-        sheet.notes.append(f"diagrams ×{factor:g}")
+        sheet.notes.append(tr("diagrams ×{factor:g}", factor=factor))
     height = np.abs(force[rows]) * (sheet.model.settings.diagram_scale * factor * sheet.unit)
     normal = _outward_normals(sheet, rows, start, end)
     values = force[rows]
@@ -330,7 +331,7 @@ def _thinned(
     first[1:] = (np.diff(x) != 0) | (np.diff(y) != 0) | (np.diff(along) != 0)
     kept = np.sort(order[first])
     if len(kept) < len(order):
-        sheet.notes.append("zoom in to see all loads and reactions")
+        sheet.notes.append(tr("zoom in to see all loads and reactions"))
     return index[kept], axis[kept]
 
 

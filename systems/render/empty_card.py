@@ -6,6 +6,7 @@ import numpy as np
 
 from components.camera import Rectangle
 from components.field import Vector
+from components.language import tr
 from components.model import Model
 from components.toolbar import Button, Tool
 from components.view import View
@@ -79,7 +80,7 @@ def draw_card(view: View, theme: Theme) -> list[Mark]:
     marks: list[Mark] = [
         Panel(left, top, width, height, 12.0 * u, theme.background, theme.line),
         *(_emblem(middle, top + 24.0 * u, u, theme) if card.emblem else []),
-        Text("An empty model", middle, y, size, theme.text, "semibold", "centre"),
+        Text(tr("An empty model"), middle, y, size, theme.text, "semibold", "centre"),
     ]
     for button in card.buttons:
         marks += _row(button, card.size, view, theme)

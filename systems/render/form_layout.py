@@ -12,7 +12,8 @@ from components.box import Box
 from components.camera import Rectangle, Viewport
 from components.field import Vector
 from components.form import Form, Reading, Tile
-from systems.render.typography import font_size, in_rows, wrapped
+from components.language import marked, tr
+from systems.render.typography import font_size, in_rows, text_width, wrapped
 
 WIDEST = 1500.0  # points that tiles spread over
 EDGE, CLOSE_EDGE, SLIM = 16.0, 10.0, 325.0  # points around all; in a viewport less wide than the last, less
@@ -26,8 +27,11 @@ HINT, EXPLAINED, MOST_EXPLAINED = 26.0, 2, 6  # points at the bottom; lines of e
 SMALL, LOW_TYPE = 560.0, (11.0, 14.0)  # points: a viewport less high explains in smaller type, and lines apart
 SECTION = 28.0
 COLUMN_GAP = 10.0
-HEADING = 104.0  # points, where a low viewport has the box beside the heading
-CLOSE, ACCEPT = 24.0, 64.0  # points, side of the button that leaves; width of that which does what Return does
+HEADING = 104.0  # points, at least, where a low viewport has the box beside the heading
+CLOSE, ACCEPT = (
+    24.0,
+    64.0,
+)  # points, side of the button that leaves; least width of that which does what Return does
 NARROW, NARROWEST = 140.0, 120.0  # points, a box less wide does not share its row; one of a vector
 TILE, TILE_GAP, CAPTION, PROPORTION = 172.0, 16.0, 38.0, 0.6
 PILL, PILL_WIDTH, PILL_GAP = 40.0, 184.0, 10.0  # points: tiles of a section without pictures
@@ -36,7 +40,7 @@ LOWEST = 0.65  # share of a picture's height that it keeps where one more row fi
 LEAST_PICTURE = 30.0  # points
 SECTIONS_SEEN = 2  # with pictures, that begin in sight in any window
 
-PROPERTIES = "Properties"  # the heading of an element's own boxes, where its results stand above them
+PROPERTIES = marked("Properties")  # the heading of an element's own boxes, where its results stand above them
 
 Row = str | list[Box] | list[Reading] | list[Tile]
 
@@ -135,7 +139,7 @@ def explanation_type(v: Viewport, u: float) -> tuple[float, float]:
 def _lines_of_explanations(form: Form, width: float, v: Viewport, u: float) -> int:
     """How many lines the longest explanation of a tile takes, so that none is cut that is not very long."""
     size = font_size(explanation_type(v, u)[0], u)
-    lines = (_line_count(tile.explanation, width, size) for tile in form.tiles)
+    lines = (_line_count(tr(tile.explanation), width, size) for tile in form.tiles)
     return min(max(lines, default=EXPLAINED), MOST_EXPLAINED) if len(form.tiles) else EXPLAINED
 
 
@@ -151,17 +155,20 @@ def _name_place(
 
     They stand beside the heading where there is room or little height, else below it.
     """
-    button, closes, heading = (ACCEPT + 8.0) * u, (CLOSE + 8.0) * u, width - (CLOSE + 8.0) * u
+    said, head = tr(form.accept), tr(form.heading.text)
+    pressed = max(text_width(said, font_size(13.0, u), "semibold") + 16.0 * u, ACCEPT * u)
+    button, closes, heading = pressed + 8.0 * u, (CLOSE + 8.0) * u, width - (CLOSE + 8.0) * u
     x, top, room = left, v.top + 46.0 * u, 420.0 * u
     if v.height < LOW * u:
-        x, top, heading = left + HEADING * u, v.top + 6.0 * u, (HEADING - 8.0) * u
-        width -= HEADING * u + closes
+        taken = max(text_width(head, font_size(19.0, u), "semibold") + 9.0 * u, HEADING * u)
+        x, top, heading = left + taken, v.top + 6.0 * u, taken - 8.0 * u
+        width -= taken + closes
     elif width >= BESIDE * u:
         room, top = SEARCH * u, v.top + 13.0 * u
         x = left + width - closes - button - room
         heading = x - left - COLUMN_GAP * u
     room = max(min(width - button, room), 40.0 * u)
-    accept = Rectangle(x + room + 8.0 * u, top, ACCEPT * u, BOX * u)
+    accept = Rectangle(x + room + 8.0 * u, top, pressed, BOX * u)
     return [Place(x, top, room, BOX * u, box) for box in form.boxes], accept, heading
 
 

@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 
 from components.camera import Viewport
+from components.language import listed, tr
 from components.wording import printable
 from systems.render.clip import bounds, clip_segments
 from systems.render.icons import icons
@@ -92,7 +93,9 @@ def check_mark(mark: Mark) -> None:
         arrays.append("of")
         counts.add(len(of[1]))
     if len(counts) > 1:
-        raise ValueError(f"{kind.__name__}: {' and '.join(arrays)} have different numbers of rows")
+        raise ValueError(
+            tr("{mark}: {parts} have different numbers of rows", mark=kind.__name__, parts=listed(arrays))
+        )
 
 
 def _problem(name: str, value: Any, shape: tuple[int | None, ...] | None) -> str:
@@ -103,21 +106,31 @@ def _problem(name: str, value: Any, shape: tuple[int | None, ...] | None) -> str
         )
         if not fits and value.size:
             wanted = ", ".join("n" if n is None else str(n) for n in shape)
-            return f"has the shape {value.shape}; it must be ({wanted})"
+            return tr("has the shape {shape}; it must be ({wanted})", shape=value.shape, wanted=wanted)
     if name in _COLOURS:
         wrong = value is not None and not all(0 <= part <= 255 for part in value)
-        return f"is {value}; red, green, blue and opacity go from 0 to 255" if wrong else ""
+        told = tr("is {value}; red, green, blue and opacity go from 0 to 255", value=value)
+        return told if wrong else ""
     if name == "symbol":
-        return "" if value in SYMBOLS or value in icons() else f"is '{value}'; there is no such symbol"
+        return (
+            ""
+            if value in SYMBOLS or value in icons()
+            else tr("is '{value}'; there is no such symbol", value=value)
+        )
     if name in _WORDS:
-        return "" if value in _WORDS[name] else f"is '{value}'; choose one of {', '.join(_WORDS[name])}"
+        known = ", ".join(_WORDS[name])
+        return (
+            "" if value in _WORDS[name] else tr("is '{value}'; choose one of {known}", value=value, known=known)
+        )
     if isinstance(value, str):
         return ""
     value = np.asarray(value, dtype=np.float64)  # whole numbers of any length, too
     bad = ~np.isfinite(value) | ((value < 0.0) if name in _SIZES else False)
     if np.any(bad):
-        wanted = "0 or more" if name in _SIZES else "finite"
-        return f"has {value[bad].flat[0]} in it; it must be {wanted}, in pixels"
+        wrong = value[bad].flat[0]
+        if name in _SIZES:
+            return tr("contains {value}; it must be 0 or more, in pixels", value=wrong)
+        return tr("contains {value}; it must be finite, in pixels", value=wrong)
     return ""
 
 

@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 from components import written
 from components.bent import axes
 from components.free_body import Apart, Force, apart, on_joint
+from components.language import tr
 from systems.render.arrows import FORCES, GAP, arrows, lengths
 from systems.render.diagrams import SMALLEST_FORCE
 from systems.render.labels import Label, half_size
@@ -33,13 +34,13 @@ def draw_free_bodies(sheet: Sheet) -> None:
     force = known.pull
     long = np.hypot(*(sheet.end - sheet.start).T) >= SHORTEST * sheet.unit
     if len(sheet.rods) > MOST or not long.any():
-        sheet.notes.append("zoom in to take rods and joints apart")
+        sheet.notes.append(tr("zoom in to see free bodies"))
         sheet.marks.append(
             Strokes(sheet.start, sheet.end, 2.0 * sheet.unit, sheet.theme.ink, ("rods", sheet.rods))
         )
         return
     if not long.all():
-        sheet.notes.append("zoom in to take short rods apart, too")
+        sheet.notes.append(tr("zoom in to see short rods as free bodies, too"))
     largest = _largest(sheet, force)
     _draw_rods(sheet, known, long, largest)
     inertia = np.hypot(*known.left_over.T) > _SMALLEST_SHARE * largest

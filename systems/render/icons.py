@@ -12,6 +12,8 @@ from collections.abc import Sequence
 from functools import cache
 from importlib.resources import files
 
+from components.language import tr
+
 Part = tuple[str, tuple[float, ...]]
 
 STROKE = 1.8  # the width of lines
@@ -34,8 +36,11 @@ def check_icon(parts: Sequence[Part]) -> None:
         )
         if kind not in (*_NUMBERS, "line", "area") or not fits or not all(map(math.isfinite, numbers)):
             raise ValueError(
-                f"{(kind, numbers)!r} is no part of an icon; a part is like ('line', (-5, 0, 5, 0)), 'area' with three"
-                " points or more, ('arc', (x, y, radius, from, to)) or ('disc', (x, y, radius))."
+                tr(
+                    "{part!r} is not a part of an icon; write ('line', (-5, 0, 5, 0)), 'area' with three points or"
+                    " more, ('arc', (x, y, radius, from, to)) or ('disc', (x, y, radius)).",
+                    part=(kind, numbers),
+                )
             )
 
 

@@ -6,6 +6,7 @@ import numpy as np
 
 from components.camera import Rectangle, Viewport
 from components.field import Vector
+from components.language import begun, tr
 from components.menu import Menu
 from components.toolbar import Tool
 from components.view import View
@@ -114,8 +115,8 @@ class MenuLayout:
 
 
 def titled(tool: Tool) -> str:
-    """The title of an entry or a button, as a sentence begins."""
-    return tool.title[:1].upper() + tool.title[1:]
+    """The title of an entry or a button in the present language, as a sentence begins."""
+    return begun(tr(tool.title))
 
 
 def draw_menu(view: View, theme: Theme) -> list[Mark]:

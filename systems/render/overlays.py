@@ -10,6 +10,7 @@ import numpy as np
 
 from components import written
 from components.camera import Viewport
+from components.language import begun, marked, plural, tr
 from components.round_numbers import round_down
 from components.view import BETWEEN
 from systems.render.marks import Mark, Panel, Stamps, Strokes, Text, boxes
@@ -59,7 +60,7 @@ def _status_bar(sheet: Sheet) -> tuple[list[Mark], float]:
         dot = np.array([[x + 3.5 * u, middle]])
         marks.append(Stamps("disc", dot, 3.5 * u, u, _state_colour(sheet), _state_colour(sheet)))
         x += 13.0 * u
-        state = status.state[0].upper() + status.state[1:]
+        state = begun(tr(status.state))
         x = _append(sheet, marks, state, x, middle, theme.text, "semibold")
         time = "" if status.time is None else f"t = {written.time(status.time)}"
         for text in (time, written.pace(status.speed)):
@@ -97,7 +98,7 @@ def _state_colour(sheet: Sheet) -> Colour:
     if status.problem:
         return theme.problem
     return {"running": theme.running, "paused": theme.halted, "halted": theme.halted}.get(
-        status.state.lower(), theme.resting
+        status.state.partition(" ")[0], theme.resting
     )
 
 
@@ -243,20 +244,20 @@ def _progress(sheet: Sheet, left: float, top: float, width: float) -> list[Mark]
 _BAR_WIDTH = 70.0  # points, of a scale of colours
 _ABOVE, _PAD, _BETWEEN = 10.0, 9.0, 14.0  # points: to the edges, inside a row, between its entries
 MEANINGS = {
-    "tension": "tension (kN)",
-    "compression": "compression (kN)",
-    "moment": "M on the tension side (kN·m)",
-    "shear": "shear V (kN)",
-    "yielding": "yielding",
-    "utilisation": "utilisation 0 to 100 %",
-    "first": "first at its strength",
-    "slack": "slack cable",
-    "load": "load",
-    "reaction": "reaction",
-    "inertia": "inertia −m a",
-    "velocity": "velocity",
-    "hinge": "hinge",
-    "ghost": "undeformed",
+    "tension": marked("tension (kN)"),
+    "compression": marked("compression (kN)"),
+    "moment": marked("M on the tension side (kN·m)"),
+    "shear": marked("shear force V (kN)"),
+    "yielding": marked("yielding"),
+    "utilisation": marked("utilisation 0 to 100 %"),
+    "first": marked("first to yield"),
+    "slack": marked("slack cable"),
+    "load": marked("load"),
+    "reaction": marked("reaction"),
+    "inertia": marked("inertia −m a"),
+    "velocity": marked("velocity"),
+    "hinge": marked("hinge"),
+    "ghost": marked("undeformed"),
 }
 UNITS = {
     "load": "kN",
@@ -275,7 +276,8 @@ def meanings_of(legend: Sequence[str]) -> dict[str, str]:
     for name, meaning in MEANINGS.items():
         units = [unit for of, unit in UNITS.items() if of.split(" ")[0] == name and of in legend]
         if units or name in legend:
-            found[name] = f"{meaning} ({', '.join(units)})" if units else meaning
+            said = tr(meaning)
+            found[name] = f"{said} ({', '.join(units)})" if units else said
     return found
 
 
@@ -436,9 +438,9 @@ def draw_scale(sheet: Sheet, scale: Scale | None) -> list[Mark]:
 
 def _said(metres: float, hidden: int, notes: list[str]) -> list[str]:
     """What is said beside the ruler, if so many values are hidden."""
-    values = "1 value" if hidden == 1 else f"{hidden} values"
+    values = plural("{count} value hidden: zoom in", "{count} values hidden: zoom in", hidden)
     length = [written.length(metres)] if metres else []
-    return [*length, *([f"{values} hidden: zoom in"] if hidden else []), *notes]
+    return [*length, *([values] if hidden else []), *notes]
 
 
 def _freest(sheet: Sheet, width: float, room: tuple[float, float]) -> tuple[float, float]:
@@ -473,8 +475,13 @@ def _displacements(sheet: Sheet) -> list[str]:
     """The exaggeration of displacements, if no slider shows it, or a hint where a structure seems not to move."""
     model, scale = sheet.model, sheet.model.settings.displacement_scale
     if scale != 1.0:
-        return [] if sheet.view.slider_places else [f"displacements ×{scale:g}"]
+        return [] if sheet.view.slider_places else [tr("displacements ×{scale:g}", scale=scale)]
     largest = float(np.abs(model.particles.displacement).max(initial=0.0)) if model.rods.count else 0.0
     if not _NOISE < largest * sheet.view.camera.scale < sheet.unit:
         return []
-    return [f"displacements up to {written.length(largest, 2)}, too small to see; their slider enlarges them"]
+    return [
+        tr(
+            "displacements up to {largest} are too small to see: enlarge them with the slider",
+            largest=written.length(largest, 2),
+        )
+    ]

@@ -7,6 +7,7 @@ import numpy as np
 from components.box import NAME, NUMBER, WORD, Box, number_and_unit
 from components.camera import Rectangle, Viewport
 from components.form import Form, Reading, Tile
+from components.language import begun, tr, tr_in
 from components.view import BETWEEN, View
 from systems.render.form_layout import (
     CAPTION,
@@ -70,8 +71,7 @@ class _Writer:
         """The heading, and the message below the boxes that stay."""
         layout, heading = self.layout, self.form.heading
         size, small, u = self.font(19.0), self.font(MESSAGE), self.unit
-        text = heading.text[:1].upper() + heading.text[1:]
-        text = shortened(text, layout.heading_width, size, "semibold")
+        text = shortened(begun(tr(heading.text)), layout.heading_width, size, "semibold")
         marks: list[Mark] = [Text(text, layout.left, layout.header, size, self.theme.text, "semibold")]
         for number, line in enumerate(message_lines(self.form, layout.right - layout.left, u)):
             y = layout.message + number * MESSAGE_LINE * u
@@ -82,7 +82,7 @@ class _Writer:
         """The one that leaves the form, and the one that does what Return does."""
         layout, theme, u = self.layout, self.theme, self.unit
         marks: list[Mark] = []
-        for place, title in ((layout.close, ""), (layout.accept, self.form.accept)):
+        for place, title in ((layout.close, ""), (layout.accept, tr(self.form.accept))):
             if place is None or not (title or place is layout.close):
                 continue
             under = self.view.pointer is not None and place.contains(self.view.pointer)
@@ -114,9 +114,9 @@ class _Writer:
         name = next((box for box in self.form.boxes if box.target == "name"), None)
         for item in (self.hovered, self.chosen, self.selected, name):
             if isinstance(item, Box) and item.problem:
-                return f"{item.title}: {item.problem}", self.theme.problem
+                return f"{item.said_title}: {item.problem}", self.theme.problem
             if item is not None and item.explanation:
-                return item.explanation, self.theme.text
+                return tr(item.explanation), self.theme.text
         return "", self.theme.text
 
     def scroll_bar(self) -> list[Mark]:
@@ -139,7 +139,7 @@ class _Writer:
         for place in self.layout.places:
             if isinstance(place.item, str):
                 y = place.top + 0.5 * place.height
-                marks.append(Text(place.item, place.left, y, self.font(13.0), self.theme.text, "semibold"))
+                marks.append(Text(tr(place.item), place.left, y, self.font(13.0), self.theme.text, "semibold"))
             elif isinstance(place.item, Box):
                 marks += self._box(place, place.item)
             elif isinstance(place.item, Reading):
@@ -154,7 +154,7 @@ class _Writer:
         value = shortened(reading.text, 0.65 * place.width, size, "semibold")
         room = place.width - text_width(value, size, "semibold") - 8.0 * self.unit
         return [
-            Text(shortened(reading.title, room, size), place.left, y, size, theme.muted),
+            Text(shortened(tr(reading.title), room, size), place.left, y, size, theme.muted),
             Text(value, place.right, y, size, theme.text, "semibold", "right"),
         ]
 
@@ -166,10 +166,10 @@ class _Writer:
             unit = box.unit
             if self._has_room_for_unit(place, box):
                 unit = "" if box.changed or self._has_room_for_note(place, box) else box.note
-                if text_width(f"{box.title} {unit}", size) + 8.0 * u > place.width:
-                    unit = unit.replace("automatic", "auto")
+                if text_width(f"{box.said_title} {unit}", size) + 8.0 * u > place.width:
+                    unit = unit.replace(tr("automatic"), tr_in("note of a box", "auto"))
             taken = text_width(unit, size) + 8.0 * u if unit else 0.0
-            title = shortened(box.title, place.width - taken, size)
+            title = shortened(box.said_title, place.width - taken, size)
             marks.append(Text(title, place.left, above, size, theme.muted))
             if unit:
                 marks.append(Text(unit, place.right, above, size, theme.muted, anchor="right"))
@@ -237,7 +237,7 @@ class _Writer:
         u, theme, size, small = self.unit, self.theme, self.font(12.5), self.font(11.0)
         middle, left = place.middle[1], place.left + 40.0 * u
         room = place.right - left - 6.0 * u
-        x, title = place.left + 21.0 * u, shortened(tile.title, room, size, "semibold")
+        x, title = place.left + 21.0 * u, shortened(tr(tile.title), room, size, "semibold")
         at = np.array([[x, middle]])
         return [
             *self._card(place, tile, 8.0 * u),
@@ -274,7 +274,7 @@ class _Writer:
     def _legend(self, tile: Tile, left: float, top: float, width: float) -> list[Mark]:
         """The title in at most two lines, and the caption if one is enough."""
         u, theme, size, small = self.unit, self.theme, self.font(12.5), self.font(11.0)
-        lines = at_most(wrapped(tile.title, width, size, "semibold"), 2, width, size, "semibold")
+        lines = at_most(wrapped(tr(tile.title), width, size, "semibold"), 2, width, size, "semibold")
         marks: list[Mark] = [
             Text(line, left, top + (13.0 + 15.5 * number) * u, size, theme.text, "semibold")
             for number, line in enumerate(lines)
@@ -312,8 +312,8 @@ def _window(text: str, caret: int, room: float, size: int) -> tuple[int, str]:
 
 
 def written(box: Box) -> str:
-    """The text of a box as it is shown, with as many characters: numbers with a real minus sign."""
-    text: str = box.text
+    """The text of a box as it is shown: numbers with a real minus sign."""
+    text = box.said_text
     return text.replace("-", "−") if box.accepts == NUMBER else text
 
 

@@ -23,7 +23,7 @@ def as_pdf(pictures: Sequence[Picture], size: tuple[int, int], title: str) -> by
     """Pictures, each in its viewport of a page of that size in pixels, as the contents of a PDF file."""
     from reportlab.pdfgen.canvas import Canvas
 
-    _embed_fonts()
+    embed_fonts()
     made = io.BytesIO()
     width, height = size
     page = Canvas(made, pagesize=(POINTS * width, POINTS * height), invariant=1, pageCompression=1)
@@ -32,25 +32,30 @@ def as_pdf(pictures: Sequence[Picture], size: tuple[int, int], title: str) -> by
     page.setCreator("Pinjoint")
     page.scale(POINTS, POINTS)
     for picture in pictures:
-        v = picture.viewport
-        page.saveState()
-        frame = page.beginPath()
-        frame.rect(v.left, height - v.bottom, v.width, v.height)
-        page.clipPath(frame, stroke=0, fill=0)
-        if picture.background is not None:
-            _fill(page, picture.background)
-            page.rect(v.left, height - v.bottom, v.width, v.height, stroke=0, fill=1)
-        for mark in picture.marks:
-            for _, shape in shapes(mark):
-                _draw(page, shape, height)
-        page.restoreState()
+        draw_picture(page, picture, height)
     page.showPage()
     page.save()
     return made.getvalue()
 
 
+def draw_picture(page: Any, picture: Picture, height: float) -> None:
+    """A picture in its viewport of a page of that height, both in pixels."""
+    v = picture.viewport
+    page.saveState()
+    frame = page.beginPath()
+    frame.rect(v.left, height - v.bottom, v.width, v.height)
+    page.clipPath(frame, stroke=0, fill=0)
+    if picture.background is not None:
+        _fill(page, picture.background)
+        page.rect(v.left, height - v.bottom, v.width, v.height, stroke=0, fill=1)
+    for mark in picture.marks:
+        for _, shape in shapes(mark):
+            _draw(page, shape, height)
+    page.restoreState()
+
+
 @cache
-def _embed_fonts() -> None:
+def embed_fonts() -> None:
     """Make the fonts known, under the names of weights."""
     from reportlab.pdfbase.pdfmetrics import registerFont
     from reportlab.pdfbase.ttfonts import TTFont

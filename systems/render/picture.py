@@ -146,7 +146,7 @@ def _composed(sheet: Sheet) -> tuple[Picture, list[ShownPanel]]:
     readouts, panels = draw_readouts(sheet, room)
     overlays += readouts
     overlays += draw_notice(sheet, room)
-    scale = place_scale(sheet, room) if model.particles.count else None
+    scale = place_scale(sheet, room) if model.particles.count and sheet.view.has_scale else None
     if shows_card(model, sheet.view):
         overlays += draw_card(sheet.view, theme)
     labels = place_labels(sheet.labels, sheet.occupancy, sheet.unit, sheet.placed)

@@ -7,6 +7,7 @@ from dataclasses import dataclass, replace
 
 from components.camera import Rectangle
 from components.field import Vector
+from components.language import english, tr
 from components.view import Readout
 from systems.render.marks import Mark, Panel, Text, cross
 from systems.render.plots import Box, draw_plot
@@ -63,7 +64,7 @@ def draw_readouts(sheet: Sheet, room: tuple[float, float]) -> tuple[list[Mark], 
 
 def _heights(sheet: Sheet, readouts: Sequence[Readout], width: float, room: float) -> dict[int, float]:
     """Heights in pixels of the panels for which there is room, by index; the newest panels come first."""
-    since = [sheet.view.since.get(readout.title, 0) for readout in readouts]
+    since = [sheet.view.since.get(english(readout.title), 0) for readout in readouts]
     newest = sorted(range(len(readouts)), key=since.__getitem__, reverse=True)
     gap, shown = _BETWEEN * sheet.unit, dict[int, float]()
     left = room
@@ -105,7 +106,7 @@ def _titles(sheet: Sheet, rows: Sequence[ShownPanel], box: Box) -> list[Mark]:
     for row in rows:
         left, right = row.place.left + _PAD * u, row.close.left if row.close else row.place.right
         room = right - 4.0 * u - left
-        title = shortened(row.readout.title, room, size)
+        title = shortened(tr(row.readout.title), room, size)
         marks.append(Text(title, left, row.place.middle[1], size, theme.muted))
         marks += _closing(sheet, row.close) if row.close else []
     return marks
@@ -139,7 +140,7 @@ def _width(sheet: Sheet, readout: Readout) -> float:
     u, size = sheet.unit, sheet.font(12.0)
     names = max((text_width(name, size) for name, _ in readout.rows), default=0.0)
     values = max((text_width(value, size, "semibold") for _, value in readout.rows), default=0.0)
-    title = text_width(readout.title, size, "semibold") + (_CLOSE * u if readout.closes else 0.0)
+    title = text_width(tr(readout.title), size, "semibold") + (_CLOSE * u if readout.closes else 0.0)
     return max(names + _GAP * u + values, title) + 2 * _PAD * u
 
 
@@ -168,7 +169,7 @@ def _panel(sheet: Sheet, readout: Readout, panel: ShownPanel) -> list[Mark]:
     inner, room = left + _PAD * u, width - 2 * _PAD * u
     y = top + _PAD * u + _line(sheet) / 2
     beside = room if close is None else close.left - 4.0 * u - inner
-    heading = shortened(readout.title, beside, size, "semibold")
+    heading = shortened(tr(readout.title), beside, size, "semibold")
     marks: list[Mark] = [
         Panel(*box, 6.0 * u, faded(theme.panel, 0.94), theme.line),
         Text(heading, inner, y, size, theme.text, "semibold"),

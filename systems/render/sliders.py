@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
+from components.language import tr
 from components.slider import PAD, Place, under
 from systems.render.marks import Mark, Panel, Stamps, Text, boxes
 from systems.render.sheet import Sheet
@@ -33,7 +34,7 @@ def _slider(sheet: Sheet, place: Place, *, hovered: bool) -> list[Mark]:
     room = right - left - text_width(value, size, "semibold") - _GAP * u
     marks: list[Mark] = [
         Panel(*place.box, 6.0 * u, faded(theme.panel, 0.94), theme.line),
-        Text(shortened(control.title, room, size), left, line, size, theme.muted),
+        Text(shortened(tr(control.title), room, size), left, line, size, theme.muted),
         Text(value, right, line, size, theme.text, "semibold", "right"),
         boxes(theme.muted, (round(left), round(middle - u), round(right - left), max(round(2 * u), 1))),
         *_button(sheet, place),

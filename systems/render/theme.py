@@ -8,6 +8,8 @@ from dataclasses import dataclass, fields
 from functools import cache
 from importlib.resources import files
 
+from components.language import tr
+
 Colour = tuple[int, int, int, int]  # red, green, blue, opacity, each 0 to 255
 
 
@@ -77,7 +79,8 @@ def theme_names() -> list[str]:
 def load_theme(name: str = "light") -> Theme:
     """The theme of that name. Raises ValueError if there is none or if its file is wrong."""
     if name not in theme_names():
-        raise ValueError(f"There is no theme '{name}'; choose one of {', '.join(theme_names())}.")
+        known = ", ".join(theme_names())
+        raise ValueError(tr("There is no theme '{name}'; choose one of {known}.", name=name, known=known))
     text = (files("assets") / "themes" / f"{name}.json").read_text(encoding="utf-8")
     return theme_from(json.loads(text), f"theme {name}")
 
@@ -87,15 +90,19 @@ def theme_from(entries: dict[str, str], where: str) -> Theme:
     known = {field.name for field in fields(Theme)}
     wrong = sorted(known ^ set(entries))
     if wrong:
-        problem = "lacks the colour" if wrong[0] in known else "has an unknown colour"
-        raise ValueError(f"{where} {problem} '{wrong[0]}'; it needs exactly {', '.join(sorted(known))}.")
+        told = {"where": where, "colour": wrong[0], "known": ", ".join(sorted(known))}
+        if wrong[0] in known:
+            raise ValueError(tr("{where} lacks the colour '{colour}'; it needs exactly {known}.", **told))
+        raise ValueError(tr("{where} has an unknown colour '{colour}'; it needs exactly {known}.", **told))
     colours = {key: _colour(value, f"{where}, {key}") for key, value in entries.items() if key != "title"}
     return Theme(title=entries["title"], **colours)
 
 
 def _colour(text: str, where: str) -> Colour:
     if not re.fullmatch(r"#[0-9A-Fa-f]{6}", text):
-        raise ValueError(f"{where}: '{text}' is no colour; write it like #0064FF.")
+        raise ValueError(
+            tr("{where}: '{text}' is not a colour; write it like #0064FF.", where=where, text=text)
+        )
     red, green, blue = bytes.fromhex(text[1:])
     return red, green, blue, 255
 

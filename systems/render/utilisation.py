@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from components import written
+from components.language import tr
 from components.model import Model
 from components.rod import has_strength, utilisation
 from systems.render.labels import Label, half_size
@@ -89,10 +90,12 @@ def _label(sheet: Sheet, share: Values) -> None:
 def _said(model: Model, row: int, share: float) -> str:
     """What is said of the first rod at its strength, or of that which is nearest to it."""
     rod = model.rods[row]
-    if rod.yielded_at is None:
-        by = " by N alone" if rod.bending_stiffness > 0.0 else ""  # bending takes its part of the strength too
-        return f"{rod.name} {written.share(share)}: nearest to its limit{by}"
-    return f"{rod.name} {written.share(share)}: first, at {written.time(rod.yielded_at)}"
+    used = {"rod": rod.name, "share": written.share(share)}
+    if rod.yielded_at is not None:
+        return tr("{rod} {share}: yielded first, at {time}", **used, time=written.time(rod.yielded_at))
+    if rod.bending_stiffness > 0.0:  # bending takes its part of the strength too
+        return tr("{rod} {share}: closest to yielding by axial force", **used)
+    return tr("{rod} {share}: closest to yielding", **used)
 
 
 def scale_bar(theme: Theme, x: float, y: float, width: float, unit: float) -> list[Mark]:

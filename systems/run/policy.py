@@ -14,6 +14,7 @@ import numpy as np
 
 from components import written
 from components.field import Column
+from components.language import tr
 from systems.base import Integrator, StopReason
 from systems.entries import SMALLEST_ENERGY, Measure
 from systems.physics.automatic import SMALL
@@ -167,9 +168,23 @@ def energy_warning(imbalance: float, scale: float) -> str:
     if not energy_is_off(imbalance, scale):
         return ""
     share = abs(imbalance) / max(scale, SMALLEST_ENERGY)
-    amount = f"{written.share(share)} of" if share < 10.0 else f"{written.number(share, 3)} times"
-    did = "lost" if imbalance > 0.0 else "created"
-    return f"The steps {did} {amount} the energy that was supplied: the results may be as wrong."
+    if share >= 10.0:
+        times = written.number(share, 3)
+        if imbalance > 0.0:
+            return tr(
+                "The time steps lost {times} times the supplied energy: the results may be as wrong.",
+                times=times,
+            )
+        return tr(
+            "The time steps created {times} times the supplied energy: the results may be as wrong.",
+            times=times,
+        )
+    part = written.share(share)
+    if imbalance > 0.0:
+        return tr(
+            "The time steps lost {share} of the supplied energy: the results may be as wrong.", share=part
+        )
+    return tr("The time steps created {share} of the supplied energy: the results may be as wrong.", share=part)
 
 
 def residual(measures: Column) -> Column:
@@ -184,4 +199,4 @@ def residual(measures: Column) -> Column:
 
 def at_rest_since(time: float) -> str:
     """The message of a model that came to rest at this time (s)."""
-    return f"At rest since t = {written.time(time)}."
+    return tr("At rest since t = {time}.", time=written.time(time))

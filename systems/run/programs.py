@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from contextlib import contextmanager
 
+from components.language import tr
 from components.model import Model
 from components.rod import bears_between, is_warm
 from components.settings import AUTOMATIC
@@ -108,9 +109,9 @@ class Programs:
             return ""
         named = INTEGRATORS.get(name)
         if named is None:
-            return "of a mod that is not loaded"
+            return tr("its mod is not loaded")
         if named.mod is not None and named.mod.off:
-            return "switched off with its mod"
+            return tr("its mod is switched off")
         return "" if self._schedule.is_active(named, self.scene) else self._schedule.inactive(named, self.scene)
 
     @property
@@ -119,7 +120,12 @@ class Programs:
         refused = self._refused
         if not refused or self.integrator.exact:
             return ""
-        return f"The integrator {self._model.settings.integrator} is {refused}: {self.integrator.key} acts instead."
+        return tr(
+            "The integrator {chosen} cannot act ({reason}); {other} acts instead.",
+            chosen=self._model.settings.integrator,
+            other=self.integrator.key,
+            reason=refused,
+        )
 
     @property
     def ready(self) -> bool:
@@ -194,8 +200,12 @@ class Programs:
         except Exception as error:
             if integrator.mod is None:
                 raise
-            said = f"{type(error).__name__}: {error}"
-            raise ProgramError(f"{integrator.name} makes no step program: {said}.", integrator) from error
+            message = tr(
+                "The integrator {name} cannot make its step program: {error}.",
+                name=integrator.name,
+                error=f"{type(error).__name__}: {error}",
+            )
+            raise ProgramError(message, integrator) from error
 
     def _key(self, plan: list[StepSystem]) -> Key:
         # Written only where needed.

@@ -4,8 +4,10 @@ from __future__ import annotations
 
 from components import written
 from components.field import same
+from components.language import joined, tr
 from components.model import Model
 from components.snapshot import Snapshot
+from systems.base import REVIEW_INTERVAL
 from systems.program.culprit import find_culprit
 from systems.program.program import MOTION, TURNING
 from systems.run.programs import Programs
@@ -64,17 +66,20 @@ class Recovery:
         self._halvings += 1
         return True
 
-    def give_up(self, why: str) -> str:
-        """Return to the good state for good; says what happened and what helps."""
+    def give_up(self, message: str) -> str:
+        """Return to the good state for good; says what happened, by a message with {time}, and what helps."""
         failed, size = self._model.clock.time, self._model.clock.step_size
         assert self.safe is not None
         self._programs.return_to(self.safe)
-        return (
-            f"The simulation diverged near t = {written.time(failed)}: {why}. {self._step_size.remedy(size)}"
-            f" The last good state, at t = {written.time(self._model.clock.time)}, was kept.{self._acting_mods()}"
-        )
+        what = tr(message, time=written.time(failed), steps=REVIEW_INTERVAL)
+        kept = tr("The last good state, at t = {time}, was kept.", time=written.time(self._model.clock.time))
+        return joined([what, self._step_size.remedy(size), kept, self._acting_mods()])
 
     def _acting_mods(self) -> str:
         """The sentence that names the laws of mods in the run that was given up, which may be the cause."""
         laws = [law.name for law in self._programs.plan if law.kernel and law.mod is not None]
-        return f" Laws of mods act in it: {', '.join(laws)}; see whether it runs without them." if laws else ""
+        if not laws:
+            return ""
+        return tr(
+            "Laws of mods act in the model: {laws}; see whether it runs without them.", laws=", ".join(laws)
+        )

@@ -12,6 +12,7 @@ from typing import Any
 
 from components.departure import Departure
 from components.field import Column, Role
+from components.language import joined, marked, tr
 from components.model import ADDED, Model
 from components.numeric_range import incomputable
 from components.rod import idle_moment
@@ -37,10 +38,17 @@ from systems.schedule import Plan, Schedule
 # Of the clock, as a run begins.
 CHOSEN = ("step_size", "guard_energy", "largest_imbalance", "initial_energy", "potential_reference")
 
-SAME = f"each {REVIEW_INTERVAL} steps lead back to the same state"
-STUCK = (
-    f"{SAME.capitalize()}, though forces are not balanced or the integration took the motion: what moves alternates,"
-    " or is lost in rounding. Choose another time step."
+# Messages of runs that diverged, and of one that does not get on.
+UNRESOLVED = marked(
+    "The simulation diverged near t = {time}: no time step, however small, leads on from there."
+)
+FROM_NOWHERE = marked("The simulation diverged near t = {time}: energy appeared from nowhere.")
+SAME = marked(
+    "The simulation diverged near t = {time}: after each {steps} steps the model is in the same state again."
+)
+STUCK = marked(
+    "After each {steps} steps the model is in the same state again, although forces are not balanced or the time steps took"
+    " the motion: it alternates, or is lost in rounding. Choose another time step."
 )
 
 ENDS = (StopReason.REST, StopReason.DIVERGED)  # of a run
@@ -353,7 +361,7 @@ class Simulation:
                 self.reason, self.message = StopReason.DIVERGED, self._recovery.give_up(SAME)
                 return
             if not self.warning:
-                self.note = STUCK
+                self.note = tr(STUCK, steps=REVIEW_INTERVAL)
         self.step_size.review((clock.time - since) / max(clock.steps - before, 1))
 
     def _recover(self, reason: StopReason) -> None:
@@ -362,12 +370,10 @@ class Simulation:
         if self._recovery.without_mod():
             self.before_change()  # what is lost with the mod counts as an edit
         elif unresolved or not self._recovery.with_shorter_steps():
-            why = (
-                "no time step, however small, leads on from there"
-                if unresolved
-                else "energy appeared from nowhere"
+            self.reason, self.message = (
+                StopReason.DIVERGED,
+                self._recovery.give_up(UNRESOLVED if unresolved else FROM_NOWHERE),
             )
-            self.reason, self.message = StopReason.DIVERGED, self._recovery.give_up(why)
             return
         self.reason = StopReason.DONE
 
@@ -510,15 +516,15 @@ class Simulation:
         clock, warning = self.model.clock, "" if self.halted else self.step_size.warning
         told = "" if warning else energy_warning(clock.largest_imbalance, clock.energy_scale)
         if told:
-            warning = f"{told} {self.step_size.remedy(clock.step_size)}"
-        return " ".join(filter(None, [warning, self.note]))
+            warning = joined([told, self.step_size.remedy(clock.step_size)])
+        return joined([warning, self.note])
 
     @property
     def said(self) -> str:
         """Why the run ended, unless it was edited since, and what a person should know of it; "" if nothing."""
         message = self.message if self.armed else ""
         diverged = self.halted and self.reason is StopReason.DIVERGED
-        return message if diverged else " ".join(filter(None, [message, self.warning]))
+        return message if diverged else joined([message, self.warning])
 
     def observe(self) -> None:
         """Bring axial forces, lengths, reactions and energies up to date with the state."""
@@ -550,13 +556,21 @@ class Simulation:
 
 def _why_not_at_rest(program: Dynamics, energy: Energy, limit: float) -> str:
     """The message of a run that did not come to rest by the time `limit` (s)."""
-    message = f"Not at rest within {limit:g} s of simulated time."
     if program.lasting:
-        return f"{message} {program.lasting} changes with time, so it never will be; run to a time instead."
-    if not program.resists_motion:
-        return f"{message} Nothing damps the motion, so it never will be; give rods damping or set a drag."
-    if program.changes_end > limit:
-        return f"{message} A load still changes; raise the limit."
-    if energy.imbalance > energy.dissipated_damping:
-        return f"{message} The steps, not dampers or drag, took most of the motion; make the time step smaller."
-    return f"{message} Raise the limit, or the damping of the rods or the drag."
+        reason = tr(
+            "{system} changes with time, so the model never comes to rest; run to a time instead.",
+            system=program.lasting,
+        )
+    elif not program.resists_motion:
+        reason = tr(
+            "Nothing damps the motion, so the model never comes to rest; give the rods damping or set a drag."
+        )
+    elif program.changes_end > limit:
+        reason = tr("A load still changes then; raise the limit.")
+    elif energy.imbalance > energy.dissipated_damping:
+        reason = tr(
+            "Errors of the time steps, not dampers or drag, took most of the motion; make the time step smaller."
+        )
+    else:
+        reason = tr("Raise the limit, or the damping of the rods or the drag.")
+    return joined([tr("Not at rest within {limit:g} s of simulated time.", limit=limit), reason])

@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from components.field import Role
+from components.language import joined, tr
 from components.model import Model
 from systems.physics.integrators import INTEGRATORS
 from systems.physics.pace import natural_pace
@@ -79,7 +80,7 @@ class StepSize:
         limits = Limits.of(policy.integrator, found.frequency, found.decay)
         self.stable, self.warning = limits.stable_step, ""
         if policy.is_doubtful(limits):
-            self.warning = f"{self.remedy(policy.fixed)} The run will probably diverge."
+            self.warning = joined([self.remedy(policy.fixed), tr("The run will probably diverge.")])
         return limits
 
     def _rods_that_limit(self, policy: StepPolicy) -> NDArray[np.bool_] | None:
@@ -106,9 +107,11 @@ class StepSize:
             limits = self.look_up()
             self._model.writable("clock.step_limit")[0] = policy.limit(limits)
             if policy.crawls(limits, mean):
-                self.warning = (
-                    f"Forces change so fast that steps of {mean:.2g} s are needed, {1.0 / mean:.2g} for a second:"
-                    " look for a law that is singular, or much stiffer than the rods."
+                self.warning = tr(
+                    "Forces change so fast that time steps of {step:.2g} s are needed, {count:.2g} for each simulated"
+                    " second. Look for a law whose force becomes infinite, or that is much stiffer than the rods.",
+                    step=mean,
+                    count=1.0 / mean,
                 )
         elif policy.fixed is None:
             wanted = policy.reviewed(self.look_up(), self._model.clock.step_size)
@@ -131,19 +134,27 @@ class StepSize:
         integrator = self._programs.integrator
         name = integrator.name.rpartition(".")[2]
         if self.stable == 0.0:
-            return (
-                f"Without damping {name} is stable at no time step:"
-                f" choose the integrator {DEFAULT_INTEGRATOR}, or give the rods damping."
+            return tr(
+                "Without damping {integrator} is stable at no time step: choose the integrator {other}, or give the rods"
+                " damping.",
+                integrator=name,
+                other=DEFAULT_INTEGRATOR,
             )
         if size is not None and is_unstable(size, self.stable):
-            return (
-                f"The time step {size:.3g} s is not below the largest stable one, {self.stable:.3g} s for"
-                f" {name}: set it to automatic or make it smaller."
+            return tr(
+                "The time step {step:.3g} s is too long: {integrator} is stable with steps below {stable:.3g} s. Set it to"
+                " automatic or make it smaller.",
+                step=size,
+                integrator=name,
+                stable=self.stable,
             )
         if self._policy.controls_error:
-            return "Make the tolerance smaller."
+            return tr("Make the tolerance smaller.")
         if integrator.estimates_error:
-            return "Set the time step to automatic, so that the error is controlled, or make it smaller."
+            return tr("Set the time step to automatic, so that its error is controlled, or make it smaller.")
         if integrator is not INTEGRATORS[DEFAULT_INTEGRATOR]:
-            return f"Make the time step smaller, or choose the integrator {DEFAULT_INTEGRATOR}."
-        return "Make the time step smaller."
+            return tr(
+                "Make the time step smaller, or choose the integrator {integrator}.",
+                integrator=DEFAULT_INTEGRATOR,
+            )
+        return tr("Make the time step smaller.")

@@ -143,7 +143,7 @@ def test_variants_of_whose_energy_a_person_is_told_are_single_runs() -> None:
     assert Worker(plan).together(range(2)) == {0: alone(plan, 0)}
     [(status, message, *_)] = alone(plan, 1)
     assert status == "time reached"
-    assert "The steps lost 100 % of the energy that was supplied" in message
+    assert "The time steps lost 100 % of the supplied energy" in message
 
 
 def test_the_number_of_threads_changes_no_bit() -> None:

@@ -148,9 +148,11 @@ def test_what_leaves_the_picture_is_told() -> None:
     for _ in range(600):
         session.frame(1 / 60)
         said.add(session.view.status.notice)
-    shown_by = "Home (right click: fit the view)"
-    assert any(notice.endswith(f"Particle 2 left the picture: {shown_by} shows all.") for notice in said)
-    assert session.view.status.notice == f"All that moves has left the picture: {shown_by} shows it."
+    shown_by = "Press Home to see {} (right click: fit the view)."
+    one = f"Particle 2 has left the picture. {shown_by.format('everything')}"
+    assert any(notice.endswith(one) for notice in said)
+    everything = f"Everything that moves has left the picture. {shown_by.format('it')}"
+    assert session.view.status.notice == everything
     session.press("home")
     session.frame(1 / 60)
     assert session.view.status.notice == ""

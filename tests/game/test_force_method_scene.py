@@ -11,7 +11,8 @@ from game import Session
 from game.documents import models
 from game.editor.scenes.force_method import ForceMethod
 from game.force_method import PARTS, words
-from game.force_method.guide import Guide, elastic_copy
+from game.force_method.copies import elastic_copy
+from game.force_method.guide import Guide
 from systems.render.marks import Text
 from systems.render.overlays import MEANINGS, meanings_of
 from systems.render.page import draw_page
@@ -235,6 +236,9 @@ def test_it_is_repeated_for_a_further_unknown() -> None:
     expected = guide.solution.force[0] * unit[0] + guide.solution.force[1] * unit[1]
     largest = np.abs(expected).max()
     assert np.abs(third.model.particles.displacement - expected).max() < 0.02 * largest  # exact geometry
+    assert "δ₁₀ + δ₁₁ X₁ + δ₁₂ X₂ = 0:" in words.working(guide)[0]
+    assert "X₁ = −215.4 kN,  X₂ = −25.02 kN" in words.working(guide)[2]
+    session.press("c")
     assert "Δ = Δ₀ + Σ Δ₁ p" in words.working(guide)[0]
     assert "p(R0-R1) = −215.4 kN,  p(R1-L2) = −25.02 kN" in words.working(guide)[2]
 
@@ -247,7 +251,7 @@ def test_the_degree_says_how_often() -> None:
     session.press("n")
     assert "Every unknown is released" in session.notice
     assert session.scenes.active.stages(session)[0][1].heading == session.notice  # type: ignore[union-attr]
-    assert "1 unknown to release" in words._degree(1)
+    assert "1 unknown to release" in words.degree_of(1)
 
 
 def test_an_unknown_is_not_released_twice() -> None:
@@ -328,10 +332,10 @@ def test_a_long_table_is_scrolled_with_the_wheel(size: tuple[int, int]) -> None:
     released(session, "R0-R1")
     page = session.stages[-2][1].page
     assert page is not None
-    assert {"kN", "set 1", page.table[1][0]} <= texts_of_the_working(session)
+    assert {"rod", "N (kN)", page.table[1][0]} <= texts_of_the_working(session)
     for _ in range(len(page.table)):
         session.press("wheel down", session.stages[-2][1].camera.viewport.middle)
-    assert {"kN", page.table[-1][0]} <= texts_of_the_working(session)
+    assert {"rod", page.table[-1][0]} <= texts_of_the_working(session)
 
 
 def texts_of_the_working(session: Session) -> set[str]:

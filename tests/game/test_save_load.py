@@ -198,7 +198,7 @@ def test_a_file_in_place_of_the_folder_is_explained(session: Session, data: Path
     (data / "models").write_text("no folder")
     saved_as(session, "a")
     assert session.scene == "save"
-    assert "models cannot be made: File exists. Start Pinjoint with PINJOINT_DATA" in message_of(session)
+    assert "models cannot be made: File exists. Set the variable PINJOINT_DATA" in message_of(session)
 
 
 def test_ctrl_s_saves_again_without_asking(session: Session, data: Path) -> None:
@@ -646,4 +646,4 @@ def test_what_is_asked_is_read_in_full_in_a_small_window(session: Session) -> No
     form, view = session.stages[0]
     said = " ".join(mark.text for mark in compose(form, view, load_theme()).marks if isinstance(mark, Text))
     assert message_of(session) in said
-    assert "Return again replaces it; Esc does not." in said
+    assert "Press Return again to replace it, or Esc to keep it." in said

@@ -152,7 +152,7 @@ def test_escape_drops_the_selection_and_never_runs(session: Session) -> None:
     assert (session.scene, session.selected) == ("pause", [])
     session.press("escape")
     assert (session.scene, session.time) == ("pause", 0.0)
-    assert "Space runs" in session.notice
+    assert "Space starts it" in session.notice
 
 
 def test_a_click_selects_particle_or_rod_and_never_the_grid(session: Session) -> None:
@@ -397,14 +397,14 @@ def test_the_pages_of_keys_are_turned_by_wheel_and_click_and_each_says_which_it_
         session.update_view()
         toolbar, view = session.stages[-1]
         [heading] = [
-            text for text in compose(toolbar, view, load_theme("light")).texts if text.startswith("Keys")
+            text for text in compose(toolbar, view, load_theme("light")).texts if text.startswith("Help")
         ]
-        assert heading == f"Keys, page {view.help} of {count}"
+        assert heading == f"Help, page {view.help} of {count}"
         assert view.keys[0][0] == "", "a purpose stands above"
         return view.help
 
     middle = session.view.camera.middle
-    turned = [("wheel up", 1), ("wheel down", 2), ("wheel down", min(3, count)), ("wheel down", count)]
+    turned = [("wheel up", 1), *(("wheel down", min(there, count)) for there in range(2, count + 2))]
     for key, there in (*turned, ("wheel up", count - 1), ("click", count)):
         session.press(key, middle)
         assert page() == there
@@ -453,7 +453,7 @@ def test_a_key_that_acts_in_pause_only_says_so_while_time_passes() -> None:
     session.press("space")
     session.press("k")
     assert session.scene == "simulation"
-    assert session.notice == "Force method: pause first, with Space."
+    assert session.notice == "Force method: press Space to pause first."
     session.press("i")
     assert session.notice == ""
     session.press("space")

@@ -86,7 +86,7 @@ def test_the_wheel_moves_a_slider_and_does_not_zoom() -> None:
     session = opened(FORCE)
     scale = session.view.camera.scale
     for _ in range(3):
-        session.press("wheel up", at(place(session, "B: force x"), 0.2))
+        session.press("wheel up", at(place(session, "B: load x"), 0.2))
     assert 130.0 < session.particles["B"].force[0] < 140.0  # three times 2 % of the length
     assert session.view.camera.scale == scale
     assert len(session.history._done) == 1
@@ -110,10 +110,10 @@ def test_the_slider_of_a_load_that_grows_says_how_much_of_it_acts_now() -> None:
 
 def test_a_slider_moves_its_number_and_one_drag_is_one_edit() -> None:
     session = opened(FORCE)
-    assert place(session, "B: force x").control.value == "120 kN"
-    slide(session, "B: force x", 0.6, 0.7, 1.0)
+    assert place(session, "B: load x").control.value == "120 kN"
+    slide(session, "B: load x", 0.6, 0.7, 1.0)
     assert session.particles["B"].force == (240.0, -160.0)
-    assert session.undo() == "B: force x"
+    assert session.undo() == "B: load x"
     assert session.particles["B"].force == (120.0, -160.0)
     assert not session.can_undo
     session.redo()
@@ -122,7 +122,7 @@ def test_a_slider_moves_its_number_and_one_drag_is_one_edit() -> None:
 
 def test_escape_puts_back_what_is_dragged() -> None:
     session = opened(FORCE)
-    where = place(session, "B: force x")
+    where = place(session, "B: load x")
     session.press("drag", at(where, 0.5))
     session.press("drag to", at(where, 0.9))
     assert session.particles["B"].force[0] > 200.0
@@ -146,7 +146,7 @@ def test_a_drag_while_time_passes_acts_live_and_is_one_edit() -> None:
     session.press("space")
     for _ in range(3):
         session.frame(0.016)
-    before, time, where = session.particles["B"].displacement, session.time, place(session, "B: force x")
+    before, time, where = session.particles["B"].displacement, session.time, place(session, "B: load x")
     session.press("drag", at(where, 0.5))
     for n in range(1, 11):
         session.press("drag to", at(where, 0.5 + 0.05 * n))
@@ -172,7 +172,7 @@ def test_escape_in_a_drag_while_time_passes_puts_the_value_back_and_keeps_the_ti
     session = opened(FORCE)
     session.press("space")
     session.frame(0.016)
-    where = place(session, "B: force x")
+    where = place(session, "B: load x")
     session.press("drag", at(where, 0.5))
     session.press("drag to", at(where, 1.0))
     session.frame(0.016)
@@ -196,7 +196,7 @@ def test_a_value_that_cannot_be_is_said_and_not_taken() -> None:
 
 @pytest.mark.parametrize(
     ("select", "title", "share"),
-    [(("rods", "AB"), "AB: stiffness", 0.5), (("particles", "B"), "B: force y", 0.4)],
+    [(("rods", "AB"), "AB: stiffness", 0.5), (("particles", "B"), "B: load y", 0.4)],
 )
 def test_q_makes_a_slider_for_what_is_selected(select: tuple[str, str], title: str, share: float) -> None:
     session = opened()
@@ -216,7 +216,7 @@ def test_q_makes_a_slider_for_what_is_selected(select: tuple[str, str], title: s
 
 def test_its_button_removes_it_and_undo_brings_it_back() -> None:
     session = opened(FORCE)
-    button = place(session, "B: force x").button
+    button = place(session, "B: load x").button
     session.press("click", (button.left + 3, button.top + 3))
     assert not session.model.sliders
     assert "Ctrl+Z" in session.notice
@@ -260,7 +260,7 @@ def test_a_box_of_properties_makes_one_for_its_number() -> None:
     session.press("escape")
     assert session.scene == "pause"
     titles = [p.control.title for p in session.view.slider_places]
-    assert titles == ["displacements", "B: force y", "B: radius"]
+    assert titles == ["displacements", "B: load y", "B: radius"]
 
 
 def test_what_is_no_number_has_none() -> None:
@@ -282,14 +282,14 @@ def test_what_is_no_number_has_none() -> None:
 def test_a_slider_of_a_deleted_element_is_gone_until_undo() -> None:
     session = opened(FORCE, STIFFNESS)
     session.particles["B"].name = "top"
-    assert place(session, "top: force x")
+    assert place(session, "top: load x")
     session.select(session.particles["top"])
     session.press("delete")
     session.offer_tools()
     assert not [p for p in session.view.slider_places if "force" in p.control.title]
     assert [entry["of"] for entry in models.document(session.model)["sliders"]] == ["rods.*.stiffness"]
     session.undo()
-    assert place(session, "top: force x")
+    assert place(session, "top: load x")
 
 
 # --- files ---------------------------------------------------------------------------------------------------
@@ -352,7 +352,7 @@ def test_a_recording_replays_what_was_dragged() -> None:
     first, second = opened(FORCE), opened(FORCE)
     presses: list[Any] = []
     first.on_press = lambda key, pixel: presses.append((key, pixel))
-    slide(first, "B: force x", 0.3, 0.9)
+    slide(first, "B: load x", 0.3, 0.9)
     slide(first, "displacements", 0.2)
     for key, pixel in presses:
         second.press(key, pixel)
@@ -384,7 +384,7 @@ def test_what_was_settled_and_edited_is_said_to_be_out_of_equilibrium() -> None:
     session.update_view()
     assert (
         session.view.status.notice
-        == "Edited: no longer in equilibrium. E (right click: settle) goes to the new one."
+        == "The model was edited and is no longer in equilibrium. Press E for the new equilibrium (right click: settle)."
     )
     session.undo()
     session.notice = ""

@@ -89,7 +89,7 @@ def test_it_snaps_to_the_grid_and_has_a_length() -> None:
     session.point(-0.49, 0.01)
     session.press("w")
     session.click(-0.5, 0)
-    assert "goes from one point to another" in session.notice
+    assert "begin and end at the same point" in session.notice
     session.click(1.01, 0.49)
     [wall] = walls_of(session)
     assert (wall.start, wall.end) == ((-0.5, 0.0), (1.0, 0.5))

@@ -276,7 +276,7 @@ STATES: dict[str, Scene] = {
     "unkept": _noticed(
         unkept(Path("/home/somebody/.local/share/pinjoint"), OSError(28, "No space left on device"))
     ),
-    "compiling": _noticed(f"{COMPILING} 12 s."),
+    "compiling": _noticed(COMPILING.format(seconds=12.0)),
     "settled": lambda window: pressed(window, "e", source="hyperstatic_yield"),
     "snapped": lambda window: pressed(window, "e", source="snap_through"),
     "all-panels": _panels("hyperstatic_yield", "m", "j", "i", "o", select="CD"),

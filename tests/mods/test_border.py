@@ -180,7 +180,7 @@ def test_threads_of_mods_do_not_keep_the_program_from_ending(
     began = time.monotonic()
     done = pinjoint("run", truss, "--at", "0.001", "--mods", str(write_mod("apple", LATE)))
     assert done.returncode == 0
-    assert "threads that did not end were left: late" in done.stderr
+    assert "threads did not end and were left: late" in done.stderr
     assert time.monotonic() - began < 50.0
 
 

@@ -174,7 +174,7 @@ def test_what_a_system_does_by_commands_is_one_step_of_undo(session: Any) -> Non
             "@njit(error_model='numpy')\ndef bad(particles_position):\n"
             "    return 1.0 / (particles_position[1] - 1.0), 0.0",
             "",
-            "apple.bad gave inf for particle C (apple/__init__.py, line 6), which is not finite",
+            "apple.bad gave inf for particle C, which is not finite (apple/__init__.py, line 6)",
         ),
         ("@njit\ndef bad(particles_position):\n    return particles_position.nothing, 0.0", "", "does not compile"),
         ("@njit\ndef bad(particles_position):\n    return 1.0", "", "must return a pair"),
@@ -217,7 +217,9 @@ def bad(particles_position, particles_velocity, time):
     with pytest.raises(mods.ModError, match="The run stopped at t = "):
         made.run(time=0.01)
     assert 0.0 <= made.time < 0.006
-    check_switched_off(made, before, "apple.bad gave nan for particle A (apple/__init__.py, line 7)")
+    check_switched_off(
+        made, before, "apple.bad gave nan for particle A, which is not finite (apple/__init__.py, line 7)"
+    )
     assert made.run(time=0.01 - made.time) == "time reached"  # without the mod
 
 
@@ -425,7 +427,7 @@ def test_where_a_run_diverges_the_laws_of_mods_are_named(write_mod: Write) -> No
     )
     session = Session.open(PULLED, mods=[write_mod("apple", law)])
     assert session.run(time=1.0) == "diverged"
-    assert "Laws of mods act in it: apple.harder; see whether it runs without them." in session.message
+    assert "Laws of mods act in the model: apple.harder; see whether it runs without them." in session.message
 
 
 PAIRS = """

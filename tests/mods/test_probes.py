@@ -80,7 +80,7 @@ def test_o_plots_one_quantity_of_the_selected_element_after_the_other() -> None:
         session.frame(1 / 60)
     (readout,) = session.view.readouts
     assert isinstance(readout.plot, Plot)
-    assert readout.title == "AB axial force"
+    assert readout.title == "Plot of axial force of rod AB"
     assert len(readout.plot.curves[0][1]) > 2
     texts = compose(session.model, session.view, LIGHT).texts
     assert "axial force of rod AB (kN)" in texts

@@ -63,7 +63,7 @@ def test_steps_that_a_law_makes_tiny_are_told(write_mod: Write) -> None:
     mods.load_all([write_mod("apple", SPRING)])
     session = struck(integrator="dop853")
     assert session.run(steps=20_000) == "time reached"
-    assert "Forces change so fast that steps of" in session.message
+    assert "Forces change so fast that time steps of" in session.message
     assert "much stiffer than the rods" in session.message
 
 
@@ -72,9 +72,7 @@ def test_an_integrator_that_does_not_act_in_the_scene_is_replaced_with_a_note(wr
     session = struck(integrator="mine", time_step=1e-4)
     session.run(steps=10)
     assert session.simulation.integrator.key == "velocity_verlet"
-    said = (
-        "The integrator mine is not active in simulation, only in force method: velocity_verlet acts instead."
-    )
+    said = "The integrator mine cannot act (not active in simulation, only in force method); velocity_verlet acts instead."
     assert session.message == said
     session.settings.integrator = "velocity_verlet"
     session.run(steps=10)

@@ -257,9 +257,7 @@ def test_an_event_for_neither_rods_nor_particles_is_refused_by_name() -> None:
         name = "test.wrong"
         each = "loads"
 
-    with pytest.raises(
-        ProgramError, match=r"test\.wrong is an event for each of 'loads'; choose rods or particles"
-    ):
+    with pytest.raises(ProgramError, match=r"test\.wrong has each = 'loads'; choose rods or particles"):
         Session.open(pulled(), [Wrong()]).run(steps=1)
 
 

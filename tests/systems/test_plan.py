@@ -133,7 +133,7 @@ def test_in_simulation_what_the_model_needs_acts_and_the_rest_says_why_not(
     ]
     why = found["left_out"]
     assert "no two particles" in why["collision.discs"]
-    assert why["loads.ramp"] == "no load has the history 'ramp'"
+    assert why["loads.ramp"] == "no load has a history of this kind"
     assert why["physics.slackness"] == "the model has no cables"
     assert why["physics.rk4"] == "physics.dop853 integrates"
 

@@ -105,26 +105,26 @@ def test_a_system_takes_the_place_of_those_it_replaces_where_it_acts() -> None:
 @pytest.mark.parametrize(
     ("systems", "says"),
     [
-        ([system("a", after=("b",)), system("b", after=("a",))], "wait for each other: .*drop one"),
+        ([system("a", after=("b",)), system("b", after=("a",))], "wait for each other: .*remove one"),
         ([system("a", before=("a",))], "wait for each other: a → a"),
         ([system("a"), system("a")], "Two systems are called a"),
         ([system("")], "Noted has no name"),
         (
             [system("a.one", replaces=("b",)), system("b.two", replaces=("a",))],
-            "replace each other: .*drop one",
+            "replace each other: .*remove one",
         ),
-        ([system("a", replaces="beta"), system("bets")], "a replaces 'beta', but no other .* mean 'bets'"),
+        ([system("a", replaces="beta"), system("bets")], "a replaces 'beta', but there is no .* mean 'bets'"),
         (
             [system("a", phase=Phase.INPUT), system("b", after=("a",))],
-            "b asks to be ordered with a, which runs in another phase",
+            "b names a in `before` or `after`, but that runs in another phase",
         ),
         (
             [system("a", writes=("rods.strain",)), system("b", reads=("rods.strain",))],
-            "a and b both touch rods.strain, .*declare before",
+            "a and b both use rods.strain, .*declare before",
         ),
-        ([system("a", writes=("x.y",)), system("b", writes=("x.y",))], "a and b both touch x.y"),
-        ([system("a", adds=("x.y",)), system("b", reads=("x.y",))], "a and b both touch x.y"),
-        ([system("a", adds=("x.y",)), system("b", writes=("x.y",))], "a and b both touch x.y"),
+        ([system("a", writes=("x.y",)), system("b", writes=("x.y",))], "a and b both use x.y"),
+        ([system("a", adds=("x.y",)), system("b", reads=("x.y",))], "a and b both use x.y"),
+        ([system("a", adds=("x.y",)), system("b", writes=("x.y",))], "a and b both use x.y"),
     ],
 )
 def test_mistakes_are_named_with_the_remedy(systems: list[System], says: str) -> None:

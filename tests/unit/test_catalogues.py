@@ -142,6 +142,12 @@ def said_at_import(node: ast.AST) -> Iterator[int]:
             yield from said_at_import(child)
 
 
+def test_what_people_call_kinds_and_fields_is_extracted(present):
+    said = {message for _, message in present[DOMAIN]}
+    assert {"particles", "particle", "angular velocity", "stiffness", "unlimited", "Mass per length."} <= said
+    assert "sail area" in {message for _, message in present["wind"]}
+
+
 def test_texts_of_data_are_extracted_by_their_keys(tmp_path):
     (tmp_path / "film.jsonl").write_text(
         '{"say": "Go."}\n# note\n{"hints": ["One", "Two"], "right": {"say": "Yes"}}\n'

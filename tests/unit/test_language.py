@@ -3,7 +3,7 @@
 import pytest
 
 from components import language
-from components.language import Said, english, joined, listed, plural, tr, tr_in
+from components.language import Said, begun, english, joined, listed, plural, tr, tr_in
 from components.mistake import Mistake
 
 HELD = {
@@ -59,6 +59,16 @@ def test_errors_and_sentences_in_a_row_keep_their_english() -> None:
     both = joined([said, "", "More."])
     assert isinstance(both, Said)
     assert both.english == "It says: AB carries 1.0 kN. More."
+
+
+@pytest.mark.usefixtures("portuguese")
+def test_what_is_translated_already_and_nothing_stay_as_they_are() -> None:
+    said = tr("{rod} carries {force:.1f} kN.", rod="AB", force=1.0)
+    assert tr(said) is said
+    assert tr("") == ""
+    raised = begun(tr_in("support", "free"))
+    assert (raised, english(raised)) == ("Livre", "Free")
+    assert begun("rod AB") == "Rod AB"
 
 
 def test_an_unknown_language_is_refused_and_nothing_changes() -> None:

@@ -15,7 +15,7 @@ from components.particle import Particle
 from components.rod import spawn_rods
 from game import Session
 from game.documents import models
-from game.force_method.guide import exact_forces
+from game.force_method.copies import exact_forces
 from systems.statics.force_method import solve
 from systems.statics.theory import linear
 from systems.statics.unknowns import ForceMethodError, find_unknown, redundants

@@ -10,7 +10,10 @@ from components import written
 from components.field import Vector
 from components.grid import Grid
 from components.handle import Handle
+from components.language import begun, listed, marked, plural, tr
+from components.load import Load
 from components.particle import Particle
+from components.rod import Rod
 from game.editor.clipboard import Part, as_text, part_in, part_of, paste, selected_rows
 from game.editor.context import Context, action
 from systems.edit import Refusal
@@ -29,20 +32,38 @@ def _place(context: Context, pixel: Vector) -> None:
         context.take_up("place")
         return
     particle = place(context.model, context.view, pixel)
-    context.notice = f"{context.name(particle)}: {written.place(particle.position, written.DIGITS)}"
+    context.notice = tr(
+        "{element}: {value}",
+        element=context.name(particle),
+        value=written.place(particle.position, written.DIGITS),
+    )
 
 
 @action("delete")
 def _delete(context: Context, pixel: Vector) -> None:
     doomed = context.selected
     if not doomed:
-        raise Refusal("Nothing is selected; click what is to be deleted first.")
+        raise Refusal(tr("Nothing is selected; first click what you want to delete."))
     before = {table.name: table.count for table in context.model.tables.values()}
     named = context.name(doomed[0])
     delete(context.model, doomed)
     gone = {name: count - context.model.tables[name].count for name, count in before.items()}
-    gone_by_kind = [f"{count} {name if count > 1 else name[:-1]}" for name, count in gone.items() if count]
-    context.notice = f"{named} deleted." if sum(gone.values()) == 1 else f"{', '.join(gone_by_kind)} deleted."
+    if sum(gone.values()) == 1:
+        context.notice = tr("{element} deleted.", element=named)
+    else:
+        counted = [_counted(context.model.tables[name].kind, count) for name, count in gone.items() if count]
+        context.notice = tr("{elements} deleted.", elements=listed(counted))
+
+
+def _counted(kind: type[Handle], count: int) -> str:
+    """A number of elements of a kind, such as "2 rods"."""
+    if kind is Particle:
+        return plural("{count} particle", "{count} particles", count)
+    if kind is Rod:
+        return plural("{count} rod", "{count} rods", count)
+    if kind is Load:
+        return plural("{count} load", "{count} loads", count)
+    return f"{count} {tr(kind.noun if count == 1 else kind.table)}"
 
 
 @action("support")
@@ -56,12 +77,12 @@ def _support(context: Context, pixel: Vector) -> None:
         context.take_up("support")
         return
     support = next_support(context.model, chosen)
-    context.notice = f"{all_of(context, chosen)}: {support}"
+    context.notice = tr("{element}: {value}", element=all_of(context, chosen), value=tr(support))
 
 
 def all_of(context: Context, elements: Sequence[Handle]) -> str:
-    """Some elements of a kind as a sentence begins with them."""
-    return context.name(elements[0]) if len(elements) == 1 else f"{len(elements)} {elements[0].table}"
+    """Some elements as a sentence begins with them."""
+    return begun(heading(context.model, elements))
 
 
 def nudge(context: Context, direction: Vector, *, far: bool) -> bool:
@@ -74,8 +95,8 @@ def nudge(context: Context, direction: Vector, *, far: bool) -> bool:
     moved = [*chosen.particles, *chosen.others]
     with context.history.as_one(("nudge", *(handle.entity for handle in moved))):
         chosen.place(positions)
-    named = all_of(context, chosen.particles) if not chosen.others else heading(model, moved)
-    context.notice = f"{named[:1].upper()}{named[1:]}: {written.place(positions[0], written.DIGITS)}"
+    place = written.place(positions[0], written.DIGITS)
+    context.notice = tr("{element}: {value}", element=all_of(context, moved), value=place)
     return True
 
 
@@ -84,7 +105,7 @@ def nudge(context: Context, direction: Vector, *, far: bool) -> bool:
 
 @action("new grid")
 def _new_grid(context: Context, pixel: Vector) -> None:
-    with context.model.transaction("new grid"):
+    with context.model.transaction(marked("new grid")):
         for grid in context.model.grids:
             if grid.shown:
                 grid.shown = False
@@ -97,7 +118,7 @@ def _next_grid(context: Context, pixel: Vector) -> None:
     grids = list(context.model.grids)
     shown = [index for index, grid in enumerate(grids) if grid.shown]
     following = shown[-1] + 1 if shown else 0
-    with context.model.transaction("next grid"):
+    with context.model.transaction(marked("next grid")):
         for index, grid in enumerate(grids):
             if grid.shown != (index == following):
                 grid.shown = index == following
@@ -112,14 +133,14 @@ BESIDE = 30.0  # points to the right and down, where a duplicate appears
 @action("copy")
 def _copy(context: Context, pixel: Vector) -> None:
     _put_on_clipboard(context)
-    context.notice = "Copied; Ctrl+V pastes it at the pointer."
+    context.notice = tr("Copied. Ctrl+V pastes it at the pointer.")
 
 
 @action("cut")
 def _cut(context: Context, pixel: Vector) -> None:
     _put_on_clipboard(context)
     delete(context.model, context.selected)
-    context.notice = "Cut; Ctrl+V pastes it at the pointer."
+    context.notice = tr("Cut. Ctrl+V pastes it at the pointer.")
 
 
 @action("paste")
@@ -132,7 +153,13 @@ def _paste(context: Context, pixel: Vector) -> None:
     middle = 0.5 * (position.min(axis=0) + position.max(axis=0))
     x, y = (position[0] + context.view.camera.to_model(pixel) - middle).tolist()
     offset = np.subtract(snapped(context.model, context.view, (x, y)), position[0]).tolist()
-    _show(context, paste(context.model, source, (offset[0], offset[1])), "Pasted")
+    made = paste(context.model, source, (offset[0], offset[1]))
+    context.select(*made)
+    context.notice = plural(
+        "Pasted {count} element; drag it where it belongs.",
+        "Pasted {count} elements; drag them where they belong.",
+        len(made),
+    )
 
 
 @action("duplicate")
@@ -140,7 +167,13 @@ def _duplicate(context: Context, pixel: Vector) -> None:
     view = context.view
     beside = BESIDE * view.pixel_ratio / view.camera.scale
     source = part_of(context.model, selected_rows(context.model))
-    _show(context, paste(context.model, source, snapped(context.model, view, (beside, -beside))), "Duplicated")
+    made = paste(context.model, source, snapped(context.model, view, (beside, -beside)))
+    context.select(*made)
+    context.notice = plural(
+        "Duplicated {count} element; drag the copy where it belongs.",
+        "Duplicated {count} elements; drag the copies where they belong.",
+        len(made),
+    )
 
 
 def _put_on_clipboard(context: Context) -> None:
@@ -153,8 +186,3 @@ def _clipboard(context: Context) -> Part:
     """The part on the clipboard; its text is parsed only if it was not copied here."""
     text, copied = context.clipboard, context.copied
     return copied[1] if copied is not None and copied[0] == text else part_in(text)
-
-
-def _show(context: Context, made: list[Handle], done: str) -> None:
-    context.select(*made)
-    context.notice = f"{done}: {len(made)} elements; drag them where they belong."

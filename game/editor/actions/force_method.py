@@ -6,6 +6,8 @@ from collections.abc import Callable
 from typing import TYPE_CHECKING
 
 from components.field import Vector
+from components.language import tr
+from components.view import CONVENTIONS
 from game.editor.context import Context, action
 from game.editor.scenes.force_method import ForceMethod
 from game.force_method import PARTS
@@ -37,22 +39,24 @@ def _next_part(context: Context, pixel: Vector) -> None:
     elif guide.part == 2:
         guide.next()
     else:
-        _work(context, f"Computing part {guide.part + 1}", guide.next)
+        _work(context, tr("Computing part {part}", part=guide.part + 1), guide.next)
 
 
 @action("pick unknown")
 def _pick_unknown(context: Context, pixel: Vector) -> None:
     guide = _guide(context)
     if guide is not None and guide.part == 1:
-        raise Refusal("Press K first: part 2 asks which rod or support to release.")
+        raise Refusal(tr("Press K first: part 2 asks which rod or support to release."))
     if guide is not None and guide.part == 2:
         model, view = context.focus
         hit = pick(model, view, pixel) if view.camera.viewport.contains(pixel) else None
-        _work(context, "Releasing it and solving anew", lambda: guide.pick(hit))
+        near = view.camera.to_model(pixel)
+        _work(context, tr("Releasing it and solving anew"), lambda: guide.pick(hit, near))
 
 
 action("release x")(lambda context, pixel: _pick_axis(context, 0))
 action("release y")(lambda context, pixel: _pick_axis(context, 1))
+action("release moment")(lambda context, pixel: _pick_axis(context, 2))
 
 
 @action("release another")
@@ -60,7 +64,9 @@ def _release_another(context: Context, pixel: Vector) -> None:
     guide = _guide(context)
     if guide is not None and not guide.can_release_another:
         raise Refusal(
-            "Every unknown is released." if guide.part == PARTS else "Go through all parts first, with K."
+            tr("Every unknown is released.")
+            if guide.part == PARTS
+            else tr("Go through all parts first, with K.")
         )
     if guide is not None:
         guide.release_another()
@@ -68,8 +74,10 @@ def _release_another(context: Context, pixel: Vector) -> None:
 
 def _pick_axis(context: Context, axis: int) -> None:
     guide = _guide(context)
+    if guide is not None and axis == 2 and not guide.clamp_wanted:
+        raise Refusal(tr("Click a clamped support first; then M releases its moment."))
     if guide is not None:
-        _work(context, "Releasing it and solving anew", lambda: guide.pick_axis(axis))
+        _work(context, tr("Releasing it and solving anew"), lambda: guide.pick_axis(axis))
 
 
 @action("toggle diagrams of sets")
@@ -79,3 +87,22 @@ def _toggle_diagrams(context: Context, pixel: Vector) -> None:
         context.view.all_diagrams = not context.view.all_diagrams
         for one in guide.shown:
             one.view.all_diagrams = context.view.all_diagrams
+
+
+@action("next convention")
+def _next_convention(context: Context, pixel: Vector) -> None:
+    """The textbook's convention, or the thesis'."""
+    at = CONVENTIONS.index(context.view.convention) + 1
+    context.view.convention = CONVENTIONS[at % len(CONVENTIONS)]
+    if context.view.convention == CONVENTIONS[0]:
+        context.notice = tr("Convention of textbooks: δ₁₀ + δ₁₁ X₁ = 0")
+    else:
+        context.notice = tr("Convention of the thesis: p = (Δ − Δ₀) / Δ₁")
+
+
+@action("report")
+def _report(context: Context, pixel: Vector) -> None:
+    """Write the whole solution to a PDF beside the model (part 7)."""
+    guide = _guide(context)
+    if guide is None or guide.part < PARTS or guide.solution is None:
+        raise Refusal(tr("Go through all parts first, with K; then P writes the report."))

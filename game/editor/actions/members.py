@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from components.field import Vector
+from components.language import tr
 from components.rod import Rod
 from game.editor.actions.editing import all_of
 from game.editor.context import Action, Context, action
@@ -27,20 +28,21 @@ def _rigid(context: Context, pixel: Vector) -> None:
         elif context.view.rigid and not drawing:
             context.take_up(DrawRod.tool)
         context.notice = (
-            f"Rods are drawn {'rigid at both ends' if context.view.rigid else 'pinned at both ends'}."
+            tr("New rods will be rigid at both ends.")
+            if context.view.rigid
+            else tr("New rods will be pinned at both ends.")
         )
         return
     rigid = not all(is_rigid(rod, end) for rod in rods for end in (0, 1))
     join_rigidly(context.model, rods, rigid)
     context.view.rigid = rigid
-    context.notice = (
-        f"{all_of(context, rods)}: {'rigid' if rigid else 'pinned'} at both ends{_of_section(rods, rigid)}"
-    )
-
-
-def _of_section(rods: list[Rod], rigid: bool) -> str:
-    section = rods[0].section
-    return f", {section}" if rigid and section is not None else ""
+    named, section = all_of(context, rods), rods[0].section
+    if not rigid:
+        context.notice = tr("{rods}: pinned at both ends", rods=named)
+    elif section is None:
+        context.notice = tr("{rods}: rigid at both ends", rods=named)
+    else:
+        context.notice = tr("{rods}: rigid at both ends, {section}", rods=named, section=section)
 
 
 @action("hinge", while_drawing=True)
@@ -48,12 +50,15 @@ def _hinge(context: Context, pixel: Vector) -> None:
     """Hinge the rod's end under the pointer, or make it rigid; at a particle all ends there; else take up the tool."""
     model, view = context.model, context.view
     if (particle := pick_particle(model, view, pixel)) is not None:
-        context.notice = f"{context.name(particle)}: {toggle_joint(model, particle)}"
+        context.notice = tr(
+            "{element}: {value}", element=context.name(particle), value=tr(toggle_joint(model, particle))
+        )
     elif (end := _end_at(context, pixel)) is not None:
-        context.notice = f"{context.name(end.rod)}: {toggle_hinge(model, end.rod, end.number)}"
+        made = toggle_hinge(model, end.rod, end.number)
+        context.notice = tr("{element}: {value}", element=context.name(end.rod), value=tr(made))
     elif view.tool == "hinge" and not view.covers(pixel):
         raise Refusal(
-            "Click near an end of a rod, where the ring shows, or at a joint. Esc puts the tool away."
+            tr("Click near the end of a rod, where a ring appears, or on a joint. Esc puts the tool away.")
         )
     else:
         context.take_up("hinge")
@@ -77,8 +82,11 @@ def _divide(parts: int) -> Action:
         rods = _selected(context)
         named = all_of(context, rods)
         context.select(*divide(context.model, rods, parts))
-        each = "" if len(rods) == 1 else "each "
-        context.notice = f"{named}: {each}divided into {parts}"
+        context.notice = (
+            tr("{rod}: divided into {parts} parts", rod=named, parts=parts)
+            if len(rods) == 1
+            else tr("{rods}: each divided into {parts} parts", rods=named, parts=parts)
+        )
 
     return act
 
@@ -92,11 +100,11 @@ def _split(context: Context, pixel: Vector) -> None:
     """Divide the rod under the pointer there, at a line of the grid if one is near."""
     rod = pick_rod(context.model, context.view, pixel)
     if rod is None:
-        raise Refusal("There is no rod under the pointer; point at one.")
+        raise Refusal(tr("There is no rod under the pointer; point at one."))
     name, point = context.name(rod), snapped(context.model, context.view, context.view.camera.to_model(pixel))
     parts = divide_at(context.model, rod, [round(share_at(rod, point), 6)])
     context.select(parts[0].ends[1])
-    context.notice = f"{name}: divided at {parts[0].ends[1].name}"
+    context.notice = tr("{rod}: divided at {particle}", rod=name, particle=parts[0].ends[1].name)
 
 
 @action("weight along")
@@ -108,5 +116,5 @@ def _weight_along(context: Context, pixel: Vector) -> None:
 def _selected(context: Context) -> list[Rod]:
     rods = context.selected_of(Rod)
     if not rods:
-        raise Refusal("No rod is selected; click one first.")
+        raise Refusal(tr("No rod is selected; click one first."))
     return rods

@@ -6,6 +6,7 @@ from collections.abc import Callable
 from dataclasses import replace
 
 from components.field import Vector
+from components.language import tr
 from game.documents.models import ModelError
 from game.documents.open_documents import stamp_of
 from game.editor.context import Action, Context, SceneError, action
@@ -45,13 +46,13 @@ def _escape(context: Context, pixel: Vector) -> None:
     elif context.has_selected:
         context.select()
     else:
-        context.notice = "Time stands still and nothing is selected. Space runs, F1 shows all keys."
+        context.notice = tr("Nothing is selected, and the run is paused. Space starts it, F1 shows all keys.")
 
 
 @action("force method")
 def _force_method(context: Context, pixel: Vector) -> None:
     if context.model.particles.count == 0:
-        raise Refusal("There is nothing to solve yet; draw a structure with P and L, or open one with D.")
+        raise Refusal(tr("There is nothing to solve yet; draw a structure with P and L, or open one with D."))
     context.scenes.request("force method")
 
 
@@ -69,8 +70,11 @@ def _save_again(context: Context, pixel: Vector) -> None:
     if there not in ((), file.stamp):
         context.document.file = replace(file, stamp=there)
         raise Refusal(
-            f"Another window or program has changed '{file.name}' since. Ctrl+S again replaces that; S asks for another"
-            " name."
+            tr(
+                "Another window or program has changed '{file}'. Press Ctrl+S again to replace it, or S to save under"
+                " another name.",
+                file=file.name,
+            )
         )
     try:
         context.save_as(file.path)
@@ -93,7 +97,9 @@ def _properties(context: Context, pixel: Vector) -> None:
 def _form_scene(context: Context) -> FormScene:
     scene = context.scenes.active
     if not isinstance(scene, FormScene):
-        raise SceneError(f"In {scene.name} there are no boxes; go to properties, save or load first.")
+        raise SceneError(
+            tr("In {scene} there are no boxes; go to properties, save or load first.", scene=scene.name)
+        )
     return scene
 
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from components.bent import AXIAL, QUANTITIES, is_frame
 from components.field import Vector
+from components.language import begun, plural, tr
 from components.particle import Particle
 from components.rod import Rod
 from components.tags import DiagramShown
@@ -67,7 +68,7 @@ def _draw(context: Context, tool: str, pixel: Vector) -> None:
     if begun is not None:
         context.gesture = begun
     elif context.gesture is None:
-        raise Refusal("Begin at a particle. Esc puts the tool away, P makes a new particle.")
+        raise Refusal(tr("Begin at a particle. P makes a new particle, Esc puts the tool away."))
 
 
 for _kind in TOOLS.values():
@@ -103,7 +104,7 @@ def _add_to_selection(context: Context, pixel: Vector) -> None:
 def _select_all(context: Context, pixel: Vector) -> None:
     chosen = everything(context.model)
     context.select(*chosen)
-    context.notice = f"{len(chosen)} elements selected."
+    context.notice = plural("{count} element selected.", "{count} elements selected.", len(chosen))
 
 
 @action("toggle diagrams", while_drawing=True)
@@ -135,5 +136,5 @@ def _following(context: Context, shown: bool) -> bool:
     if shown and view.quantity == last:
         return False
     view.quantity = QUANTITIES[QUANTITIES.index(view.quantity) + 1] if shown else AXIAL
-    context.notice = f"Diagrams: {NAMES[view.quantity]}; I: the next."
+    context.notice = tr("{quantity}. Press I for the next.", quantity=begun(tr(NAMES[view.quantity])))
     return True

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from components.field import Vector
+from components.language import tr
 from game.editor.context import Action, Context, action
 from game.editor.gestures.sliding import Slide
 from game.editor.scenes.form import FormScene
@@ -39,7 +40,7 @@ def _click_slider(context: Context, pixel: Vector) -> None:
         automatic(context)
     else:
         remove_slider(context, place.control.key)
-        context.notice = f"Slider removed: {place.control.title}. Ctrl+Z brings it back."
+        context.notice = tr("Slider removed: {title}. Ctrl+Z brings it back.", title=place.control.title)
 
 
 @action("double click slider")
@@ -77,7 +78,7 @@ def _slider_of_box(context: Context, pixel: Vector) -> None:
     scene = context.scenes.active
     box = scene.form.selected if isinstance(scene, FormScene) else None
     if box is None:
-        raise Refusal("Click the box of the number first; then this makes a slider for it.")
+        raise Refusal(tr("Click the box with the number first; then Ctrl+L makes a slider for it."))
     add_slider_for(context, box)
 
 

@@ -6,6 +6,7 @@ import math
 
 from components import written
 from components.field import Vector
+from components.language import joined, plural, tr
 from game.editor.actions.editing import nudge
 from game.editor.context import Action, Context, action
 from systems.collision.impacts import TooManyImpacts
@@ -28,7 +29,10 @@ def _arrow(direction: Vector, steps: int, *, far: bool) -> Action:
             _step(context, steps * (_far(context) if far else 1))
         elif context.has_selected:
             raise Refusal(
-                "While there is a run, Ctrl with an arrow moves the selection; R goes back to the beginning."
+                tr(
+                    "Once a run has begun, arrow keys step through time. Ctrl with an arrow moves the selection; R goes back"
+                    " to the beginning."
+                )
             )
 
     return act
@@ -39,7 +43,7 @@ def _move(direction: Vector, *, far: bool) -> Action:
 
     def act(context: Context, pixel: Vector) -> None:
         if not nudge(context, direction, far=far):
-            raise Refusal("Nothing is selected that could be moved; click it first.")
+            raise Refusal(tr("Nothing that can be moved is selected; click a particle or a rod first."))
 
     return act
 
@@ -72,17 +76,28 @@ def _step(context: Context, steps: int) -> None:
     try:
         done = context.step(steps)
     except TooManyImpacts:
-        asked = f"{steps} steps hold" if steps > 1 else "One step holds"
         raise Refusal(
-            f"{asked} more than {MOST_IMPACTS} impacts. Press Space, which lets time pass slowly enough to see them, or"
-            " choose a smaller time step."
+            plural(
+                "One step has more than {most} impacts. Press Space to run slowly enough to see them, or choose a smaller"
+                " time step.",
+                "{count} steps have more than {most} impacts. Press Space to run slowly enough to see them, or choose a"
+                " smaller time step.",
+                abs(steps),
+                most=MOST_IMPACTS,
+            )
         ) from None
     finally:
         impacts.most_awaited = math.inf
-    context.notice = f"Step {clock.steps}, t = {written.time(clock.time)}"
-    if not done and steps < 0:
-        context.notice += ": as far back as steps go. Ctrl+Z takes back what was done here, R restarts."
-    elif not done:
+    time = written.time(clock.time)
+    if done:
+        context.notice = tr("Step {step}, t = {time}", step=clock.steps, time=time)
+    elif steps < 0:
+        context.notice = tr(
+            "Step {step}, t = {time}: this is as far back as steps go. Ctrl+Z undoes what was done here, R restarts.",
+            step=clock.steps,
+            time=time,
+        )
+    else:
         context.notice = context.simulation.message
 
 
@@ -96,23 +111,26 @@ action("natural pace", while_drawing=True)(lambda context, pixel: setattr(contex
 @action("restart")
 def _restart(context: Context, pixel: Vector) -> None:
     if context.document.is_undeformed:
-        raise Refusal("This is the beginning: no time has passed. Ctrl+Z takes back edits.")
+        raise Refusal(tr("This is the beginning already: no time has passed. Ctrl+Z undoes edits."))
     known = context.document.undeformed is not None
     context.restart()
-    unknown = "" if known else " Its file does not say with which velocities the run began: it is at rest."
-    context.notice = f"Back at the beginning, undeformed; all edits are kept.{unknown}"
+    begun_at_rest = tr(
+        "The file does not say with which velocities the run began, so all particles are at rest."
+    )
+    back = tr("Back at the beginning, undeformed; all edits are kept.")
+    context.notice = back if known else joined([back, begun_at_rest])
 
 
 @action("undo")
 def _undo(context: Context, pixel: Vector) -> None:
     title = context.undo()
-    context.notice = f"Undone: {title}" if title else "There is nothing to undo."
+    context.notice = tr("Undone: {title}", title=tr(title)) if title else tr("There is nothing to undo.")
 
 
 @action("redo")
 def _redo(context: Context, pixel: Vector) -> None:
     title = context.redo()
-    context.notice = f"Done again: {title}" if title else "There is nothing to do again."
+    context.notice = tr("Redone: {title}", title=tr(title)) if title else tr("There is nothing to redo.")
 
 
 @action("settle")

@@ -25,7 +25,7 @@ def _magnify(by: int) -> Action:
 
     def act(context: Context, pixel: Vector) -> None:
         if context.window is not None:
-            context.notice = f"Size of type and symbols: {context.window.magnify(by)}"
+            context.notice = tr("Size of text and symbols: {size}", size=context.window.magnify(by))
 
     return act
 
@@ -62,7 +62,11 @@ def _toggle_utilisation(context: Context, pixel: Vector) -> None:
     """Show how much of its strength each rod bears, or hide it."""
     view = context.view
     if not view.utilisation and not has_strength(context.model):
-        raise Refusal("No rod has a strength: select some and give them a tensile or compressive one (Return).")
+        raise Refusal(
+            tr(
+                "No rod has a strength yet. Select rods, press Return, and type in a tensile or compressive strength."
+            )
+        )
     view.utilisation = view.put_together() or not view.utilisation
 
 
@@ -72,7 +76,7 @@ def _next_theme(context: Context, pixel: Vector) -> None:
     theme = context.view.theme
     following = THEMES.index(theme) + 1 if theme in THEMES else 0
     context.view.theme = THEMES[following % len(THEMES)]
-    context.notice = f"Theme: {load_theme(context.view.theme).title}"
+    context.notice = tr("Theme: {theme}", theme=tr(load_theme(context.view.theme).title))
 
 
 @action("next language", while_drawing=True)
@@ -118,11 +122,14 @@ def _picture(suffix: str) -> Action:
         if context.window is None:
             return
         try:
-            context.notice = f"Picture saved: {context.window.screenshot(suffix)}"
+            context.notice = tr("Picture saved: {file}", file=context.window.screenshot(suffix))
         except OSError as error:
             raise Refusal(
-                f"No picture was saved: {error.filename}: {error.strerror}. Start Pinjoint in a folder where you may"
-                " write."
+                tr(
+                    "No picture was saved: {file}: {reason}. Start Pinjoint in a folder where you may write.",
+                    file=error.filename,
+                    reason=error.strerror,
+                )
             ) from None
 
     return act

@@ -8,10 +8,11 @@ from typing import ClassVar
 from components import written
 from components.field import Vector
 from components.handle import Handle
+from components.language import begun, joined, marked, plural, tr
 from components.model import Model
 from components.particle import Particle
 from components.rod import Rod, rigid_joints
-from components.view import Preview, drawn_positions
+from components.view import BETWEEN, Preview, drawn_positions
 from game.editor.context import Context, Gesture
 from systems.edit import Refusal
 from systems.edit.arrows import (
@@ -26,6 +27,7 @@ from systems.edit.picking import PARTICLE_REACH, pick_end, pick_particle, pick_r
 from systems.edit.placing import place, place_at, snapped, snapped_to_points
 from systems.edit.rods import check_ends, distance, is_rigid, join
 from systems.edit.supports import NAMES, Held, next_support, support, support_towards
+from systems.forms.properties import heading
 
 CLAMPED_BEYOND = 60.0  # points from a particle to its ground, which then holds its rotation, too
 HINGES = "hinge"  # the tool by which clicks hinge ends of rods; its action acts at once
@@ -76,7 +78,7 @@ class Drawing(Gesture):
 def start_of(context: Context, particle: Particle) -> Vector:
     """Where a particle from which something is drawn is drawn (m). Raises Refusal if it was deleted."""
     if not particle.exists:
-        raise Refusal("The particle where this began was deleted meanwhile; begin at another one.")
+        raise Refusal(tr("The particle where this began has been deleted; begin at another one."))
     return drawn_at(context, particle)
 
 
@@ -112,9 +114,13 @@ class DrawRod(Drawing):
     def say(self, context: Context) -> None:
         """Let the hint name the kind of rod that is drawn."""
         begin = self._begin
-        named = f" from {begin.name}" if isinstance(begin, Particle) else ""
-        done = "double click ends the chain     Esc done" if self.goes_on else "Esc cancel"
-        self.hint = f"rod{named}: L or click where it ends     {kind_of_rods(context)}     {done}"
+        step = (
+            tr("rod from {particle}: click where it ends (or L)", particle=begin.name)
+            if isinstance(begin, Particle)
+            else tr("rod: click where it ends (or L)")
+        )
+        done = tr("double click ends the chain     Esc done") if self.goes_on else tr("Esc cancel")
+        self.hint = joined([step, kind_of_rods(context), done], BETWEEN)
 
     @classmethod
     def begin(cls, context: Context, pixel: Vector) -> Drawing | None:
@@ -134,14 +140,15 @@ class DrawRod(Drawing):
         model, view, begin = context.model, context.view, self._begin
         self._start(context)
         before = model.particles.count
-        with model.transaction("new rod"):
+        with model.transaction(marked("new rod")):
             first = begin if isinstance(begin, Particle) else place_at(model, view, begin)
             self._end = pick_particle(model, view, pixel) or place(model, view, pixel)
             rod = join(model, first, self._end, rigid=view.rigid)
         made = model.particles.count - before
-        new = f", with {made} new particle{'s' * (made > 1)}" if made else ""
-        made_of = f", {rod.section or 'rigid'}" if view.rigid else ""
-        context.notice = f"{context.name(rod)}: {written.length(rod.rest_length, written.DIGITS)}{made_of}{new}"
+        with_new = plural("with one new particle", "with {count} new particles", made) if made else ""
+        made_of = (rod.section or tr("rigid")) if view.rigid else ""
+        said = [written.length(rod.rest_length, written.DIGITS), made_of, with_new]
+        context.notice = tr("{element}: {value}", element=context.name(rod), value=joined(said, ", "))
 
     def finish(self, context: Context, pixel: Vector) -> None:
         """End at a pixel; a click where a chain of rods has come to ends the chain."""
@@ -172,21 +179,24 @@ class DrawRod(Drawing):
             check_ends(context.model, self._begin, other)
             label = written.length(distance(self._begin, other), written.DIGITS)
         except Refusal:
-            label = "joined already"
+            label = tr("joined already")
         return Preview("rod", start, drawn_at(context, other), label)
 
 
 class DrawArrow(DrawFromParticle):
-    """A vector of a particle, drawn as an arrow from the particle."""
+    """A vector of a particle, drawn as an arrow from the particle.
 
-    title: ClassVar[str]
+    asks, says: the status line while it is drawn, and the notice then.
+    """
+
+    asks: ClassVar[str]
+    says: ClassVar[str]
     unit: ClassVar[str]
     usual: ClassVar[staticmethod[[Model], float]]  # the size that an arrow of comfortable length stands for
 
     def __init__(self, context: Context, particle: Particle) -> None:
         super().__init__(context, particle)
-        key = self.tool[0].upper()
-        self.hint = f"{self.title.lower()} {particle.name}: {key} or click where its arrow ends     Esc cancel"
+        self.hint = tr(self.asks, particle=particle.name)
 
     def value(self, context: Context, pixel: Vector) -> Vector:
         """The vector that the arrow to a pixel stands for."""
@@ -199,7 +209,7 @@ class DrawArrow(DrawFromParticle):
     def drop(self, context: Context, pixel: Vector) -> None:
         value = self.value(context, pixel)
         context.model.assign([self.particle], self.tool, [value])
-        context.notice = f"{self.title} {self.particle.name}: {self.shown(value)}"
+        context.notice = tr(self.says, particle=self.particle.name, value=self.shown(value))
 
     def preview(self, context: Context, pixel: Vector) -> Preview | None:
         value, start = self.value(context, pixel), self.start(context)
@@ -210,7 +220,9 @@ class DrawArrow(DrawFromParticle):
 class DrawForce(DrawArrow):
     """The constant force on a particle; beside one, the distributed force on a rod."""
 
-    tool, title, unit, usual = "force", "Load on", "kN", staticmethod(usual_force)
+    tool, unit, usual = "force", "kN", staticmethod(usual_force)
+    asks = marked("load on {particle}: click where its arrow ends (or F)     Esc cancel")
+    says = marked("Load on {particle}: {value}")
 
     @classmethod
     def begin(cls, context: Context, pixel: Vector) -> Drawing | None:
@@ -229,8 +241,10 @@ class DrawDistributedForce(Drawing):
         rods = context.selected_of(Rod)
         self._rods = rods if rod in rods else [rod]
         self._from = context.view.camera.to_model(pixel)
-        named = rod.name if len(self._rods) == 1 else f"{len(self._rods)} rods"
-        self.hint = f"distributed load on {named}: F or click where its arrow ends     Esc cancel"
+        named = rod.name if len(self._rods) == 1 else heading(context.model, self._rods)
+        self.hint = tr(
+            "distributed load on {rods}: click where its arrow ends (or F)     Esc cancel", rods=named
+        )
 
     def _value(self, context: Context, pixel: Vector) -> Vector:
         return arrow_value(context.view, self._from, pixel, usual_distributed_force(context.model))
@@ -239,8 +253,9 @@ class DrawDistributedForce(Drawing):
         value, rods = self._value(context, pixel), [rod for rod in self._rods if rod.exists]
         if rods:
             context.model.assign(rods, "distributed_force", [value] * len(rods))
-            named = context.name(rods[0]) if len(rods) == 1 else f"{len(rods)} rods"
-            context.notice = f"{named}: distributed load {written.vector(value)} kN/m"
+            named = begun(heading(context.model, rods))
+            load = f"{written.vector(value)} kN/m"
+            context.notice = tr("{rods}: distributed load {load}", rods=named, load=load)
 
     def preview(self, context: Context, pixel: Vector) -> Preview | None:
         value, usual = self._value(context, pixel), usual_distributed_force(context.model)
@@ -259,10 +274,17 @@ class DrawMoment(DrawFromParticle):
     def __init__(self, context: Context, particle: Particle) -> None:
         if not rigid_joints(context.model)[particle.row]:
             raise Refusal(
-                f"{particle.name} has no rigid rod ends that a moment could turn; Ctrl+J makes a rod's end rigid."
+                tr(
+                    "A moment cannot act on {particle}, where no rod is rigidly joined. Ctrl+J makes the end of a rod"
+                    " rigid.",
+                    particle=particle.name,
+                )
             )
         super().__init__(context, particle)
-        self.hint = f"moment on {particle.name}: left of it counter-clockwise, right clockwise     Esc cancel"
+        self.hint = tr(
+            "moment on {particle}: click left of it for counter-clockwise, right for clockwise     Esc cancel",
+            particle=particle.name,
+        )
 
     def _value(self, context: Context, pixel: Vector) -> float:
         usual = usual_moment(context.model)
@@ -271,7 +293,7 @@ class DrawMoment(DrawFromParticle):
     def drop(self, context: Context, pixel: Vector) -> None:
         value = self._value(context, pixel)
         context.model.assign([self.particle], "moment", value)
-        context.notice = f"Moment on {self.particle.name}: {_moment(value)}"
+        context.notice = tr("Moment on {particle}: {value}", particle=self.particle.name, value=_moment(value))
 
     def preview(self, context: Context, pixel: Vector) -> Preview | None:
         value, start = self._value(context, pixel), self.start(context)
@@ -280,18 +302,28 @@ class DrawMoment(DrawFromParticle):
 
 
 def _moment(value: float) -> str:
-    way = ", counter-clockwise" if value > 0.0 else ", clockwise" if value < 0.0 else ""
-    return f"{written.given(abs(value))} kN·m{way}"
+    size = f"{written.given(abs(value))} kN·m"
+    if value == 0.0:
+        return size
+    way = tr("counter-clockwise") if value > 0.0 else tr("clockwise")
+    return joined([size, way], ", ")
 
 
 class DrawVelocity(DrawArrow):
     """The velocity of a particle; zero where it is held."""
 
-    tool, title, unit, usual = "velocity", "Velocity of", "m/s", staticmethod(usual_speed)
+    tool, unit, usual = "velocity", "m/s", staticmethod(usual_speed)
+    asks = marked("velocity of {particle}: click where its arrow ends (or V)     Esc cancel")
+    says = marked("Velocity of {particle}: {value}")
 
     def __init__(self, context: Context, particle: Particle) -> None:
         if all(particle.fixed):
-            raise Refusal(f"{particle.name} is held in both directions and cannot move; C frees it.")
+            raise Refusal(
+                tr(
+                    "{particle} is held in x and y and cannot move; C changes its support.",
+                    particle=particle.name,
+                )
+            )
         super().__init__(context, particle)
 
     def value(self, context: Context, pixel: Vector) -> Vector:
@@ -308,7 +340,11 @@ class DrawElement(Drawing):
 
     def __init__(self, context: Context, pixel: Vector) -> None:
         self.from_ = snapped_to_points(context.model, context.view, pixel)
-        self.hint = f"{self.kind.noun}: {self.key.upper()} or click where it ends     Esc cancel"
+        self.hint = tr(
+            "{element}: click where it ends (or {key})     Esc cancel",
+            element=tr(self.kind.noun),
+            key=self.key.upper(),
+        )
 
     @classmethod
     def begin(cls, context: Context, pixel: Vector) -> Drawing | None:
@@ -319,11 +355,18 @@ class DrawElement(Drawing):
     def drop(self, context: Context, pixel: Vector) -> None:
         end = snapped_to_points(context.model, context.view, pixel)
         if end == self.from_:
-            raise Refusal(f"A {self.kind.noun} goes from one point to another; end it elsewhere.")
+            raise Refusal(
+                tr(
+                    "The {element} would begin and end at the same point; click another point.",
+                    element=tr(self.kind.noun),
+                )
+            )
         first, last = self.kind.points
         [made] = context.model.create(self.kind, 1, **{first: [self.from_], last: [end]})
         context.select(made)
-        context.notice = f"{context.name(made)}: {_length_and_angle(self.from_, end)}"
+        context.notice = tr(
+            "{element}: {value}", element=context.name(made), value=_length_and_angle(self.from_, end)
+        )
 
     def preview(self, context: Context, pixel: Vector) -> Preview | None:
         end = snapped_to_points(context.model, context.view, pixel)
@@ -359,10 +402,9 @@ class DrawSupport(DrawFromParticle):
         selected = [handle for handle in context.selected if isinstance(handle, Particle)]
         self._particles = selected if particle in selected else [particle]
         self._turns = bool(rigid_joints(context.model)[particle.row])
-        farther = "farther: cannot turn either     " if self._turns else ""
-        self.hint = (
-            f"ground below or above: held in y     at a side: in x     between: both     {farther}Esc cancel"
-        )
+        farther = tr("farther away: cannot turn, too") if self._turns else ""
+        steps = tr("ground below or above: held in y     at a side: held in x     in between: held in both")
+        self.hint = joined([steps, farther, tr("Esc cancel")], BETWEEN)
 
     def drop(self, context: Context, pixel: Vector) -> None:
         wanted = self._wanted(context, pixel)
@@ -372,8 +414,9 @@ class DrawSupport(DrawFromParticle):
             if wanted is None
             else support(context.model, particles, wanted)
         )
-        others = f" and {len(particles) - 1} more" if len(particles) > 1 else ""
-        context.notice = f"{context.name(self.particle)}{others}: {name}"
+        named, more = context.name(self.particle), len(particles) - 1
+        named = tr("{element} and {count} more", element=named, count=more) if more > 0 else named
+        context.notice = tr("{element}: {value}", element=named, value=tr(name))
 
     def preview(self, context: Context, pixel: Vector) -> Preview | None:
         """The symbol of the support on the side of the pointer, with its point on the rim of the particle."""
@@ -387,7 +430,7 @@ class DrawSupport(DrawFromParticle):
         start = x + rim * side[0], y + rim * side[1]
         end = start[0] + side[0] / camera.scale, start[1] + side[1] / camera.scale
         symbols = ("guided", "clamped") if wanted[2] else ("roller", "pinned")
-        return Preview(symbols[all(wanted[:2])], start, end, NAMES[wanted])
+        return Preview(symbols[all(wanted[:2])], start, end, tr(NAMES[wanted]))
 
     def _wanted(self, context: Context, pixel: Vector) -> Held | None:
         """What a ground at a pixel holds; None if the pixel lies on the particle."""
@@ -407,14 +450,16 @@ class DrawSupport(DrawFromParticle):
 
 def kind_of_rods(context: Context) -> str:
     """What rods are drawn with now, and how to change that, for the status line."""
-    return "rigid ends (Ctrl+R: pinned)" if context.view.rigid else "pinned (Ctrl+R: rigid ends)"
+    return tr("rigid ends (Ctrl+R: pinned)") if context.view.rigid else tr("pinned (Ctrl+R: rigid ends)")
 
 
 def hint_of_tool(context: Context) -> str:
     """The status line while clicks use the tool in hand."""
     tool = context.view.tool
-    hint = TOOL_HINTS.get(tool, "")
-    return hint.replace("     ", f"     {kind_of_rods(context)}     ", 1) if tool == DrawRod.tool else hint
+    if tool == DrawRod.tool:
+        steps = tr("rods: click from place to place, or drag"), kind_of_rods(context)
+        return joined([*steps, tr("double click ends the chain     Esc done")], BETWEEN)
+    return tr(TOOL_HINTS.get(tool, ""))
 
 
 def end_pointed_at(context: Context, pixel: Vector) -> Preview | None:
@@ -425,18 +470,25 @@ def end_pointed_at(context: Context, pixel: Vector) -> Preview | None:
     end = pick_end(model, view, pixel)
     if end is None:
         return None
-    at, named = ring_of(model, view, end), f"{end.rod.name} at {end.rod.ends[end.number].name}"
-    return Preview("hinge", at, at, f"{'hinge' if is_rigid(end.rod, end.number) else 'make rigid:'} {named}")
+    at, rod, particle = ring_of(model, view, end), end.rod.name, end.rod.ends[end.number].name
+    label = (
+        tr("hinge {rod} at {particle}", rod=rod, particle=particle)
+        if is_rigid(end.rod, end.number)
+        else tr("make {rod} rigid at {particle}", rod=rod, particle=particle)
+    )
+    return Preview("hinge", at, at, label)
 
 
 # By tool: the status line while clicks use it, and what it draws ("place" draws nothing, "support" has an action).
+# That of rods names the kind of rods, too.
 TOOL_HINTS = {
-    "place": "click where particles are to be     Esc done",
-    "support": "supports: drag from a particle to its ground, or click for the next kind     Esc done",
-    "rod": "rods: click from place to place, or drag     double click ends a chain     Esc done",
-    HINGES: "click near a rod's end: hinged or rigid     at a joint: all rods there     Esc done",
-    "force": "loads: drag an arrow from a particle; from a rod, a distributed load     F or Esc done",
-    "moment": "moments: drag from a particle, to the left counter-clockwise     Esc done",
-    "velocity": "velocities: drag an arrow from a particle     V or Esc done",
+    "place": marked("click where you want particles     Esc done"),
+    "support": marked("supports: drag from a particle to its ground, or click for the next kind     Esc done"),
+    HINGES: marked("click near a rod's end: hinged or rigid     at a joint: all rods there     Esc done"),
+    "force": marked(
+        "loads: drag an arrow from a particle     from a rod: a distributed load     F or Esc done"
+    ),
+    "moment": marked("moments: drag from a particle, to the left for counter-clockwise     Esc done"),
+    "velocity": marked("velocities: drag an arrow from a particle     V or Esc done"),
 }
 TOOLS: dict[str, type[Drawing]] = {kind.tool: kind for kind in (DrawRod, DrawForce, DrawMoment, DrawVelocity)}

@@ -9,6 +9,7 @@ import numpy as np
 from components import written
 from components.field import FieldError, Vector
 from components.handle import Handle
+from components.language import marked, tr
 from components.particle import Particle
 from components.view import Preview, drawn_positions
 from game.editor.context import Context, Gesture
@@ -22,7 +23,7 @@ from systems.edit.pull import hand_on
 class Placing(Gesture):
     """A drag of which every move changes the document; all its moves are one entry of the log."""
 
-    hint = "let go to place     Esc put back"
+    hint = marked("let go to place it     Esc put it back")
 
     def drop(self, context: Context, pixel: Vector) -> None:
         self.move(context, pixel)
@@ -71,8 +72,9 @@ class Move(Placing):
     def _place_of(self, target: Vector) -> str:
         particles, count = self._movable.particles, len(self._movable)
         leader = particles[self._leader] if self._leader < len(particles) else self._movable.others[0]
-        others = f" and {count - 1} more" if count > 1 else ""
-        return f"{leader.name}{others}: {written.place(target, written.DIGITS)}"  # type: ignore[attr-defined]
+        named: str = leader.name  # type: ignore[attr-defined]
+        named = tr("{element} and {count} more", element=named, count=count - 1) if count > 1 else named
+        return tr("{element}: {value}", element=named, value=written.place(target, written.DIGITS))
 
 
 class MovePoint(Placing):
@@ -91,17 +93,25 @@ class MovePoint(Placing):
         except FieldError as error:
             context.notice = str(error)
         else:
-            context.notice = f"{context.name(element)}, {point}: {written.place(target, written.DIGITS)}"
+            named = tr(context.model.tables[element.table].fields[point].title)
+            place = written.place(target, written.DIGITS)
+            context.notice = tr(
+                "{element}, {point}: {place}", element=context.name(element), point=named, place=place
+            )
 
 
 class PullParticle(Gesture):
     """Pulls a particle by a spring while time passes; see systems/edit/pull.py."""
 
-    hint = "pull with the pointer     let go to release"
+    hint = marked("pull with the pointer     let go to release it")
 
     def __init__(self, context: Context, particle: Particle) -> None:
         if context.settings.displacement_scale == 0.0:
-            raise Refusal("Displacements are drawn at scale 0, so nothing can be pulled; set it above 0.")
+            raise Refusal(
+                tr(
+                    "Displacements are drawn at scale 0, so nothing can be pulled; set the displacement scale above 0."
+                )
+            )
         self._particle = particle
         context.simulation.advance(0)
         context.document.assessment.disturb("pulled")
@@ -136,7 +146,7 @@ class PullParticle(Gesture):
 class BoxSelect(Gesture):
     """Selects the elements inside a box. adding: the elements selected before stay selected."""
 
-    hint = "let go to select what is inside     Esc cancel"
+    hint = marked("let go to select what is inside     Esc cancel")
 
     def __init__(self, context: Context, pixel: Vector, *, adding: bool) -> None:
         self._corner = context.view.camera.to_model(pixel)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from components.field import FieldError, Vector
+from components.language import marked
 from components.slider import Place
 from game.editor.context import Context
 from game.editor.gestures.moving import Placing
@@ -14,7 +15,7 @@ KNOB_REACH = 9.0  # points from the knob's middle within which a drag holds it w
 class Slide(Placing):
     """Drags a knob; a grip beside it takes it there first."""
 
-    hint = "drag along the line     let go to finish     Esc put back"
+    hint = marked("drag along the line     let go to finish     Esc put it back")
 
     def __init__(self, context: Context, place: Place, pixel: Vector) -> None:
         self._place, self._key = place, place.control.key

@@ -10,6 +10,7 @@ from typing import Any, NamedTuple
 
 from components.box import FILE_NAME, Box
 from components.form import Form, Tile
+from components.language import joined, marked, tr
 from game.documents import library, models
 from game.documents.previews import LARGEST_SOLVED, has_moved, preview, solved
 from game.editor.context import Context
@@ -17,7 +18,7 @@ from game.editor.scenes.form import FormScene
 from systems.base import Phase, System
 from systems.forms import typing
 
-SAVED = "Saved models"
+SAVED = marked("Saved models")
 LARGEST_PICTURED = 4 * 2**20  # bytes; larger files get no picture
 READING = 0.005  # s of each frame spent on reading pictures; one picture at least
 
@@ -37,7 +38,7 @@ class FileScene(FormScene):
     def new_form(self, heading: str, name: str, offers: Sequence[Offer], accept: str) -> Form:
         """A form with a box for the name, a button, and a tile for each offer, its picture to be read later."""
         form = Form(heading, accept=accept)
-        form.create(Box, 1, title="name", target="name", accepts=FILE_NAME, text=name, opened=name)
+        form.create(Box, 1, title=tr("name"), target="name", accepts=FILE_NAME, text=name, opened=name)
         if offers:
             columns = map(list, zip(*offers, strict=True))
             form.create(Tile, len(offers), **dict(zip(Offer._fields, columns, strict=True)))
@@ -157,7 +158,7 @@ class Offer(NamedTuple):
 def saved_models() -> list[Offer]:
     """The person's own models, the newest first."""
     return [
-        Offer(SAVED, name, library.written_age(p), name, p)
+        Offer(tr(SAVED), name, library.written_age(p), name, p)
         for p in library.saved()
         if (name := models.name_of(p))
     ]
@@ -179,6 +180,6 @@ def _read_picture(tile: Tile) -> None:
             tile.picture = preview(tile.source)
             tile.explanation = tile.picture.description or tile.picture.title
         else:
-            tile.caption = f"{tile.caption}, too large for a picture".lstrip(", ")
+            tile.caption = joined([tile.caption, tr("too large for a picture")], ", ")
     except (OSError, models.ModelError):
-        tile.caption = "cannot be read"
+        tile.caption = tr("cannot be read")

@@ -11,10 +11,11 @@ import numpy as np
 
 from components.camera import Camera, Viewport
 from components.field import Vector
+from components.language import tr
 from components.model import Model
 from components.settings import Settings
 from components.slider import SliderStack
-from components.view import Page, Status, View
+from components.view import BETWEEN, Page, Status, View
 from game.editor.context import Context, Scene
 from game.editor.sliders import scale_control
 from game.force_method import PARTS, words
@@ -24,7 +25,7 @@ from systems.render.overlays import heading_height
 from systems.render.page import page_height
 
 if TYPE_CHECKING:  # it imports scipy
-    from game.force_method.guide import Guide, Mechanism, Set
+    from game.force_method.guide import AnySet, Guide, Mechanism
 
 WIDE = 1.1  # width / height from which the sets stand side by side
 MOST_OF_HEIGHT = 0.45  # of the window that the equations and the table take at most; the rest is scrolled
@@ -34,6 +35,7 @@ LEAST_WIDTH, LEAST_HEIGHT, LEAST_LOW = 140.0, 160.0, 90.0  # points of a set; be
 HIGH = 340.0  # points of a set in which a slider has room below supports and reactions
 MOVED = 0.08  # of the size of a structure: about what drawn displacements add to it
 LEAST_EXPLAINED = 300.0  # points of a window; lower ones have no legend
+_NOTHING = (-1, False)  # no part is shown yet
 CAPTION, SCALE, MARGIN = 66.0, 48.0, 40.0  # points above, below (its slider), at most about a structure
 
 
@@ -61,7 +63,7 @@ class ForceMethod(Scene):
         self._work: _Work | None = None
         self._problem = ""
         self._mechanism: Mechanism | None = None  # the whole structure, if it cannot be solved
-        self._page, self._page_of, self._first = Page(), -1, 0
+        self._page, self._page_of, self._first = Page(), _NOTHING, 0
         self._blank = Model()
         self._places = [View(page=Page(), legend=False, fitted=True) for _ in range(3)]
         self._head, self._foot = View(page=Page(), explains_all=True), View(page=Page(), legend=False)
@@ -77,13 +79,14 @@ class ForceMethod(Scene):
         return words.message(self.shown_guide) if self.shown_guide else self._problem
 
     def enter(self, context: Context) -> None:
-        self._problem, self._mechanism, self._page_of = "", None, -1
+        self._problem, self._mechanism, self._page_of = "", None, _NOTHING
         unknown, self.first_unknown = self.first_unknown, ""
-        self.work(context, "Solving the structure", partial(self._begin, context, unknown))
+        self.work(context, tr("Solving the structure"), partial(self._begin, context, unknown))
 
     def _begin(self, context: Context, unknown: str) -> None:
         # Here only, since they import scipy.
-        from game.force_method.guide import Guide, Mechanism, base_structure, view_like
+        from game.force_method.copies import base_structure
+        from game.force_method.guide import Guide, Mechanism, view_like
         from systems.statics.unknowns import ForceMethodError
 
         try:
@@ -117,9 +120,9 @@ class ForceMethod(Scene):
         if context.model.rods.count <= LARGE:
             do()
         else:
-            self._work = _Work(f"{text} with {context.model.rods.count} rods …", do)
+            self._work = _Work(tr("{work} with {count} rods …", work=text, count=context.model.rods.count), do)
 
-    def _moving(self) -> list[Set | Mechanism]:
+    def _moving(self) -> list[AnySet | Mechanism]:
         if self.shown_guide is not None:
             return self.shown_guide.moving
         return [self._mechanism] if self._mechanism is not None else []
@@ -139,7 +142,7 @@ class ForceMethod(Scene):
         return self._work is not None or bool(self._moving())
 
     def hint(self, context: Context) -> str:
-        return words.hint(self.shown_guide) if self.shown_guide else "Esc back to pause"
+        return words.hint(self.shown_guide) if self.shown_guide else tr("Esc back to pause")
 
     # --- what is seen ------------------------------------------------------------------------------
 
@@ -158,10 +161,10 @@ class ForceMethod(Scene):
         """Place message, sets and equations in the window; returns the stages of the sets."""
         guide, ratio, whole = self.shown_guide, context.view.pixel_ratio, context.view.canvas
         self._head.heading = context.notice or self._said
-        part = f"Part {guide.part} of {PARTS}" if guide else "Not possible"
+        part = tr("Part {part} of {parts}", part=guide.part, parts=PARTS) if guide else tr("Not possible")
         if self._work is not None:
-            self._head.heading, part = self._work.text, "Working"
-        hint = f"still moving     {self.hint(context)}" if self._moving() else self.hint(context)
+            self._head.heading, part = self._work.text, tr("Working")
+        hint = f"{tr('still moving')}{BETWEEN}{self.hint(context)}" if self._moving() else self.hint(context)
         self._foot.status = Status(time=None, state=part, hint=hint)
         self._foot.page = self._working()
         self._head.legend = context.view.legend and whole.height >= LEAST_EXPLAINED * ratio
@@ -170,7 +173,7 @@ class ForceMethod(Scene):
         wanted = page_height(self._foot.page, whole.width, ratio)
         foot = min(wanted, round(MOST_OF_HEIGHT * whole.height))
         if foot < wanted:
-            self._foot.status = replace(self._foot.status, hint=f"Wheel more rows     {hint}")
+            self._foot.status = replace(self._foot.status, hint=f"{tr('Wheel more rows')}{BETWEEN}{hint}")
         middle = Viewport(whole.left, whole.top + head, whole.width, max(whole.height - head - foot, 1))
         _place(self._head, Viewport(whole.left, whole.top, whole.width, head), ratio)
         _place(self._foot, Viewport(whole.left, middle.top + middle.height, whole.width, foot), ratio)
@@ -187,14 +190,14 @@ class ForceMethod(Scene):
         guide = self.shown_guide
         if guide is None:
             return Page()
-        if guide.part != self._page_of:
+        if (guide.part, guide.in_thesis) != self._page_of:
             self._page = Page(words.working(guide), words.table(guide))
-            self._page_of, self._first = guide.part, 0
+            self._page_of, self._first = (guide.part, guide.in_thesis), 0
         return replace(self._page, first=self._first)
 
     def _sets(self, context: Context, middle: Viewport, ratio: float) -> list[tuple[Model, View]]:
         captions = words.captions(self.shown_guide) if self.shown_guide else [("",)] * 3
-        there: list[Set | Mechanism] = [*self.shown_guide.shown] if self.shown_guide else self._moving()
+        there: list[AnySet | Mechanism] = [*self.shown_guide.shown] if self.shown_guide else self._moving()
         places = [(index, _third(middle, index)) for index in range(3)]
         if there and not _readable(places[0][1], ratio):
             picks = self.shown_guide is not None and self.shown_guide.part == 2  # from set 1

@@ -10,6 +10,7 @@ from components.box import NAME, WORD, Box
 from components.camera import Camera, Viewport
 from components.field import Vector
 from components.form import Form, Tile
+from components.language import english, joined
 from components.suggestions import missing
 from game.editor.context import Context, Scene
 from systems.forms import typing
@@ -41,7 +42,7 @@ class FormScene(Scene):
     @property
     def message(self) -> str:
         """The message of the heading, and why the text of a box is refused."""
-        return " ".join(filter(None, [self.form.heading.message, *(box.problem for box in self.form.boxes)]))
+        return joined([self.form.heading.message, *(box.problem for box in self.form.boxes)])
 
     def enter(self, context: Context) -> None:
         self.form = self.make_form(context)
@@ -182,18 +183,18 @@ class FormScene(Scene):
 
     @property
     def boxes(self) -> dict[str, str]:
-        return Texts((box.title, box.text) for box in self.form.boxes)
+        return Texts((english(box.title), box.text) for box in self.form.boxes)
 
     def click_box(self, context: Context, title: str) -> None:
         """Select the box with that title, as a click on it does. Raises LookupError."""
         wanted = title.strip().lower()
         wanted = FORMER.get(wanted, wanted)
         for box in self.form.boxes:
-            if box.title.lower() == wanted:
+            if english(box.title).lower() == wanted:
                 self.reveal(context, box)
                 typing.select(self.form, box)
                 return
-        titles = [box.title for box in self.form.boxes]
+        titles = [english(box.title) for box in self.form.boxes]
         raise LookupError(missing("boxes", title, titles))
 
     def scroll(self, context: Context, rows: int) -> None:

@@ -5,7 +5,8 @@ from __future__ import annotations
 from typing import Any
 
 from components.form import Form, Tile
-from components.language import tr
+from components.language import joined, marked, tr
+from components.view import BETWEEN
 from game.documents import library, models
 from game.documents.autosave import recovered_name
 from game.documents.open_documents import ModelFile
@@ -15,11 +16,11 @@ from game.lessons import progress
 from game.lessons.shelf import count_of, is_done, shelf
 from game.scripts.script import Script, lessons
 
-WELCOME = "Welcome to Pinjoint. What would you like to begin with?"
-NEW = "New, empty model"
-LESSONS = "Begin here"
-TRUSSES, BENDING, COLLISIONS = EXAMPLES = "Trusses", "Members that bend", "Collisions"
-YOURS = "Your models"
+WELCOME = marked("Welcome to Pinjoint. What would you like to begin with?")
+NEW = marked("New, empty model")
+LESSONS = marked("Begin here")
+TRUSSES, BENDING, COLLISIONS = EXAMPLES = marked("Trusses"), marked("Members that bend"), marked("Collisions")
+YOURS = marked("Your models")
 DISCARD = "discard unsaved work"  # the source of the tile that discards what windows left behind
 ALL = "all of this section"  # the source of a tile that shows all tiles of its section, not only a row of them
 # The first of each section; the others follow in alphabetical order.
@@ -37,7 +38,7 @@ class Load(FileScene):
     """
 
     name = "load"
-    heading = "Open"
+    heading = marked("Open")
 
     def __init__(self) -> None:
         super().__init__()
@@ -46,20 +47,13 @@ class Load(FileScene):
 
     def make_form(self, context: Context) -> Form:
         self._asked = False
-        new = Offer(LESSONS, NEW, "draw your own", "", None, "An empty plane to draw on.", "+")
+        new = Offer(tr(LESSONS), tr(NEW), tr("draw your own"), "", None, tr("An empty plane to draw on."), "+")
         learn = _tasks()
-        rest = Offer(
-            LESSONS,
-            tr("All lessons"),
-            tr("{tasks} to do, {films} to watch", tasks=len(learn), films=len(lessons())),
-            "",
-            ALL,
-            symbol="»",
-            rest=True,
-        )
+        held = tr("{tasks} to do, {films} to watch", tasks=len(learn), films=len(lessons()))
+        rest = Offer(tr(LESSONS), tr("All lessons"), held, "", ALL, symbol="»", rest=True)
         offers = [*learn[:1], new, *learn[1:], *_lessons(), rest, *_yours(context), *_examples()]
-        form = self.new_form(WELCOME if self.welcome else "Open a model", "", offers, "Open")
-        form.boxes[0].note = "type to search, or click a picture"
+        form = self.new_form(tr(WELCOME) if self.welcome else tr("Open a model"), "", offers, tr("Open"))
+        form.boxes[0].note = tr("type to search, or click a picture")
         return form
 
     def exit(self, context: Context) -> None:
@@ -79,7 +73,10 @@ class Load(FileScene):
             self._asked = True
             self.form.choose(tile)
             self.say(
-                "Unsaved work of earlier windows will be gone for ever. Choose this once more to discard it; Esc does not."
+                tr(
+                    "Unsaved work of earlier windows will be deleted for ever. Choose this again to delete it, or press Esc"
+                    " to keep it."
+                )
             )
 
     def accept(self, context: Context) -> None:
@@ -89,15 +86,15 @@ class Load(FileScene):
         if chosen is not None:
             self.choose(context, chosen)
         elif not name:
-            self.say("Type a name, or choose a picture with the arrow keys.")
+            self.say(tr("Type a name, or choose a picture with the arrow keys."))
         elif (source := library.find(name)) is not None:
             self._open(context, source)
         elif len(left) == 1:
             self.choose(context, left[0])
         else:
             nearest = library.nearest(name)
-            hint = f" Did you mean '{nearest}'?" if nearest else ""
-            self.say(f"File not found: there is no model '{name}'.{hint}")
+            missing = tr("File not found: there is no model '{name}'.", name=name)
+            self.say(joined([missing, tr("Did you mean '{name}'?", name=nearest) if nearest else ""]))
 
     def _open(self, context: Context, source: Any) -> None:
         try:
@@ -122,7 +119,7 @@ class Load(FileScene):
         self._asked = False
         words = self.box.text.lower().split()
         tiles = list(self.form.tiles)
-        told = [f"{tile.title} {tile.file}".lower() for tile in tiles]
+        told = [f"{tr(tile.title)} {tile.title} {tile.file}".lower() for tile in tiles]
         hidden = [
             bool(words) and (tile.rest or not all(word in text for word in words))
             for tile, text in zip(tiles, told, strict=True)
@@ -130,26 +127,35 @@ class Load(FileScene):
         self.form.assign(tiles, "hidden", hidden)
         self.form.heading.first = 0
         if words and all(hidden):
-            self.say("No model or lesson has that in its name. Backspace takes characters away again.")
+            self.say(tr("No model or lesson has this in its name. Delete characters with Backspace."))
 
     def hint(self, context: Context) -> str:
         layout = self.layout(context)
-        more = "Wheel shows more     " if layout.shown < layout.count else ""
-        return f"Click a picture     {more}Arrows choose     Return open     Type to search     Esc back"
+        more = tr("Wheel shows more") if layout.shown < layout.count else ""
+        steps = tr("Arrows choose     Return open     Type to search     Esc back")
+        return joined([tr("Click a picture"), more, steps], BETWEEN)
 
 
 def _yours(context: Context) -> list[Offer]:
     """Unsaved work that windows left behind, and saved models, the newest first."""
     files = context.autosave.left() if context.autosave is not None else []
     offers = [
-        Offer(YOURS, recovered_name(path) or "Untitled", f"not saved, {library.written_age(path)}", "", path)
+        Offer(
+            tr(YOURS),
+            recovered_name(path) or tr("Untitled"),
+            joined([tr("not saved"), library.written_age(path)], ", "),
+            "",
+            path,
+        )
         for path in files
     ]
     if offers:
-        offers.append(Offer(YOURS, "Discard", "what was not saved", "", DISCARD, symbol="×"))
-    offers += [offer._replace(section=YOURS) for offer in saved_models()]
+        offers.append(Offer(tr(YOURS), tr("Discard"), tr("unsaved work"), "", DISCARD, symbol="×"))
+    offers += [offer._replace(section=tr(YOURS)) for offer in saved_models()]
     count = sum(offer.source is not DISCARD for offer in offers)
-    everything = Offer(YOURS, f"All {count}", "of your models", "", ALL, symbol="»", rest=True)
+    everything = Offer(
+        tr(YOURS), tr("All {count}", count=count), tr("your models"), "", ALL, symbol="»", rest=True
+    )
     return [*offers, everything] if offers else []
 
 
@@ -165,7 +171,7 @@ def _tasks() -> list[Offer]:
             caption = tr("continue: {done} of {count} tasks done", done=done, count=count)
         title, about = tr(script.title), tr(script.description)
         offers.append(
-            Offer(LESSONS, title, caption, script.name, script, about, "✓" if is_done(script) else "▶")
+            Offer(tr(LESSONS), title, caption, script.name, script, about, "✓" if is_done(script) else "▶")
         )
     if offers and not is_done(offers[0].source):
         offers[0] = offers[0]._replace(title=tr("Learn: {lesson}", lesson=offers[0].title))
@@ -174,7 +180,10 @@ def _tasks() -> list[Offer]:
 
 def _lessons() -> list[Offer]:
     scripts = [(name, Script(name)) for name in lessons()]
-    return [Offer(LESSONS, s.title, "a lesson to watch", name, s, s.description, "▶") for name, s in scripts]
+    return [
+        Offer(tr(LESSONS), tr(s.title), tr("a lesson to watch"), name, s, tr(s.description), "▶")
+        for name, s in scripts
+    ]
 
 
 def _examples() -> list[Offer]:
@@ -185,8 +194,10 @@ def _examples() -> list[Offer]:
     offers = []
     for section in EXAMPLES:
         some = [name for name in names if _subject(told[name]) == section]
-        offers += [Offer(section, told[n].title or n, n, n, n, told[n].description) for n in some]
-        offers.append(Offer(section, f"All {len(some)}", "of these", "", ALL, symbol="»", rest=True))
+        offers += [Offer(tr(section), tr(told[n].title or n), n, n, n, tr(told[n].description)) for n in some]
+        offers.append(
+            Offer(tr(section), tr("All {count}", count=len(some)), tr(section), "", ALL, symbol="»", rest=True)
+        )
     return offers
 
 

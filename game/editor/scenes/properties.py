@@ -11,6 +11,7 @@ from components.camera import Camera, Viewport
 from components.field import MADE, Vector
 from components.form import Form
 from components.handle import Handle
+from components.language import begun, joined, marked, tr
 from components.model import Model
 from components.view import LEAST_BESIDE, Readout, View, drawn_positions
 from game.editor.context import Context
@@ -28,7 +29,7 @@ class Properties(FormScene):
     """
 
     name = "properties"
-    heading = "Properties"
+    heading = marked("Properties")
 
     def __init__(self) -> None:
         super().__init__()
@@ -60,7 +61,7 @@ class Properties(FormScene):
     def exit(self, context: Context) -> None:
         refused = self._apply(context, typing=True)
         if refused:
-            context.notice = " ".join(sentence[:1].upper() + sentence[1:] for sentence in refused)
+            context.notice = joined(map(begun, refused))
         self._return_to = ("pause",)
         super().exit(context)
 
@@ -114,8 +115,8 @@ class Properties(FormScene):
 
     def hint(self, context: Context) -> str:
         if self.form.selected is not None:
-            return "Return accept     Esc restore     Tab next box"
-        return "Click a box     Tab next box     Esc back"
+            return tr("Return accept     Esc take back     Tab next box")
+        return tr("Click a box     Tab next box     Esc back")
 
     # --- beside the model --------------------------------------------------------------------------
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from components.form import Form, Tile
+from components.language import marked, tr
 from game.documents import library, models
 from game.editor.context import Context
 from game.editor.scenes.files import FileScene, saved_models
@@ -13,7 +14,7 @@ class Save(FileScene):
     """Saving under a name; a model of that name is replaced only when Return is pressed twice."""
 
     name = "save"
-    heading = "Save"
+    heading = marked("Save")
 
     def __init__(self) -> None:
         super().__init__()
@@ -21,8 +22,8 @@ class Save(FileScene):
 
     def make_form(self, context: Context) -> Form:
         self._confirmed = ""
-        form = self.new_form("Save", context.file.name, saved_models(), "Save")
-        form.boxes[0].explanation = f"A file in {library.models_folder()}"
+        form = self.new_form(tr("Save"), context.file.name, saved_models(), tr("Save"))
+        form.boxes[0].explanation = tr("A file in {folder}", folder=library.models_folder())
         return form
 
     def choose(self, context: Context, tile: Tile) -> None:
@@ -46,14 +47,24 @@ class Save(FileScene):
             path = library.path_of(name)
             if path.exists() and self._confirmed != name:
                 self._confirmed = name
-                self.say(f"There is a model '{name}' already. Return again replaces it; Esc does not.")
+                self.say(
+                    tr(
+                        "There is already a model '{name}'. Press Return again to replace it, or Esc to keep it.",
+                        name=name,
+                    )
+                )
                 return
             path.parent.mkdir(parents=True, exist_ok=True)
             context.save_as(path)
         except OSError as error:
             self.say(
-                f"{library.models_folder()} cannot be made: {error.strerror}. Start Pinjoint with {library.DATA_VARIABLE}"
-                " naming a folder where you may write."
+                tr(
+                    "The folder {folder} cannot be made: {reason}. Set the variable {variable} to a folder where you may"
+                    " write, and start Pinjoint again.",
+                    folder=library.models_folder(),
+                    reason=error.strerror,
+                    variable=library.DATA_VARIABLE,
+                )
             )
             return
         except (library.NameRefused, models.ModelError) as error:
@@ -66,4 +77,4 @@ class Save(FileScene):
         self._confirmed = ""
 
     def hint(self, context: Context) -> str:
-        return "Type a name     Return save     Esc back"
+        return tr("Type a name     Return save     Esc back")

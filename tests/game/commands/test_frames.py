@@ -7,7 +7,9 @@ from typing import Any
 import pytest
 
 from game.commands.command_line import main
+from game.documents import models
 from game.session import Session
+from systems.statics.theory import linear
 from tests.reference.models import model
 
 Out = pytest.CaptureFixture[str]
@@ -87,19 +89,19 @@ def test_a_table_of_theory_names_both_ends(portal: Path, capsys: Out) -> None:
     assert "AB start" in text
 
 
-@pytest.mark.parametrize("words", [["--release", "AB"], ["--all"]])
-def test_the_force_method_says_that_it_takes_bars_only(portal: Path, capsys: Out, words: list[str]) -> None:
-    assert main(["force-method", str(portal), *words]) == 2
-    said = capsys.readouterr().err
-    assert "The force method takes bars only as yet, but rod AB bends" in said
-    assert "pinjoint verify" in said
+def test_the_force_method_says_what_to_release_instead_of_a_rod_that_bends(portal: Path, capsys: Out) -> None:
+    assert main(["force-method", str(portal), "--release", "AB"]) == 2
+    assert "Release the moment at one of its ends instead: AB.start or AB.end." in capsys.readouterr().err
 
 
-def test_the_guide_to_the_force_method_says_so_too(portal: Path) -> None:
-    session = Session.open(portal)
-    session.press("k")
-    assert session.scene == "force method"
-    assert "takes bars only" in session.message
+def test_the_force_method_of_a_portal_gives_what_linear_theory_does(portal: Path, capsys: Out) -> None:
+    assert main(["force-method", str(portal), "--all"]) == 0
+    found = json.loads(capsys.readouterr().out)
+    theory = linear(models.load(portal))
+    names = models.load(portal).rods.names
+    assert found["axial_force"] == pytest.approx(dict(zip(names, theory.axial_force, strict=True)), rel=1e-9)
+    assert set(found["virtual_work"]) == set(names)
+    assert found["unit"] == ["kN·m"] * len(found["released"])
 
 
 def test_a_sweep_measures_moments_of_settled_frames(portal: Path, tmp_path: Path) -> None:

@@ -98,7 +98,7 @@ def test_a_wrong_number_of_parts_is_refused(parts: object) -> None:
 
 def test_a_pinned_bar_is_refused_with_the_remedy() -> None:
     session = beam(bending_stiffness=0.0)
-    with pytest.raises(Refusal, match=r"Rod AB does not bend.*make it rigid"):
+    with pytest.raises(Refusal, match=r"Rod AB does not bend.*join it rigidly"):
         session.divide("AB")
     assert session.model.particles.count == 2
 
@@ -107,9 +107,9 @@ def test_menus_and_scripts_divide() -> None:
     session = beam()
     session.select(session.rods["AB"])
     session.act("divide in two")
-    assert session.notice == "Rod AB: divided into 2"
+    assert session.notice == "Rod AB: divided into 2 parts"
     session.act("divide in four")
-    assert session.notice == "2 rods: each divided into 4"
+    assert session.notice == "2 rods: each divided into 4 parts"
     assert session.model.rods.count == 8
     assert "AB 2 4" in session.rods
     again = beam()

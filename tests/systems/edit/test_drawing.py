@@ -103,7 +103,7 @@ def test_a_rod_that_cannot_be_is_refused_and_the_tool_goes_on(two: Session) -> N
     press_at(two, "l", 1.5, 0.0)
     press_at(two, "l", 0.0, 0.0)
     assert two.rods.count == 1
-    assert "joined already, by rod 1" in two.notice
+    assert "Rod 1 already joins particle 2 and particle 1" in two.notice
 
 
 def test_the_rod_tool_drags_from_particle_to_particle_until_it_is_put_away(two: Session) -> None:

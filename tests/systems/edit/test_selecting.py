@@ -57,7 +57,7 @@ def test_delete_removes_the_selected_with_what_depends_on_it_and_undo_brings_it_
     triangle.click(1.0, 1.0)
     triangle.press(key)
     assert [rod.name for rod in triangle.rods] == ["CA"]
-    assert triangle.notice == "1 particle, 2 rods deleted."
+    assert triangle.notice == "1 particle and 2 rods deleted."
     triangle.press("ctrl+z")
     assert document(triangle.model) == before
     assert names(triangle.selected) == ["B"]
@@ -172,4 +172,4 @@ def test_arrows_go_through_time_once_there_is_a_run_and_ctrl_moves(triangle: Ses
     assert (triangle.model.clock.steps, triangle.particles["B"].position) == (0, (0.51, 1.01))
     triangle.select()
     triangle.press("ctrl+right")
-    assert triangle.notice.startswith("Nothing is selected")
+    assert triangle.notice.startswith("Nothing that can be moved is selected")

@@ -106,6 +106,6 @@ def test_a_velocity_is_drawn_as_an_arrow_and_only_where_it_is_free(triangle: Ses
     triangle.click(1.0, 0.5)
     assert triangle.particles["A"].velocity == (5.0, 0.0)  # on a roller; 100 px are 5 m/s
     press_at(triangle, "v", 2.0, 0.0)
-    assert "held in both directions" in triangle.notice
+    assert "held in x and y" in triangle.notice
     triangle.press("ctrl+z")
     assert triangle.particles["A"].velocity == (0.0, 0.0)

@@ -291,7 +291,7 @@ def test_a_length_may_be_typed_with_its_unit(
 @pytest.mark.parametrize(
     ("element", "title", "typed", "problem"),
     [
-        ("B", "radius", "3 kN", "must be in m or cm or mm, not in kN"),
+        ("B", "radius", "3 kN", "must be in one of m, cm, mm, not in kN"),
         ("B", "radius", "-70 mm", "must be greater than 0 cm"),
     ],
 )
@@ -601,7 +601,7 @@ def test_what_contradicts_another_property_is_refused_and_the_rest_is_applied(se
     session.press("escape")
     assert session.particles["A"].velocity == (0.0, 0.0)
     assert session.particles["A"].mass == 4.0
-    assert "constrained in y" in session.notice
+    assert "a support holds it along y" in session.notice
 
 
 def test_freeing_a_direction_and_moving_in_it_go_together(session: Session) -> None:

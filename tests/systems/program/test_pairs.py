@@ -332,7 +332,7 @@ class NoEnergy(Conservative):
     ("law", "says"),
     [
         (Nowhere, "The cutoff of test.springy is 0.0; give a distance above 0 m, or math.inf"),
-        (Timed, "has a potential, so that its force depends on places alone, but takes 'time'; drop one"),
+        (Timed, "has a potential, so its force depends on positions only, but its kernel takes 'time'; remove"),
         (OfRods, "is called for each of the particles and cannot take rods_stiffness"),
         (Single, "must return a pair, the force (fx, fy) on the first particle in kN"),
         (NoEnergy, "must return one number, the energy of two particles"),

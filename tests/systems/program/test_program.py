@@ -404,7 +404,10 @@ def test_what_changes_with_time_does_not_let_a_model_rest() -> None:
     assert session.particles["A"].displacement[0] == pytest.approx(1.0 / 6.0, rel=1e-6)  # t³/6 of 1 kg
     session = Session.open(alone, [Later()])
     assert session.run(until="rest", limit=0.4) == "limit reached"
-    assert "mod.later changes with time, so it never will be; run to a time instead." in session.message
+    assert (
+        "mod.later changes with time, so the model never comes to rest; run to a time instead."
+        in session.message
+    )
 
 
 # --- mistakes --------------------------------------------------------------------------------------------
@@ -457,7 +460,7 @@ class WideArray(OwnArray):
 @pytest.mark.parametrize(
     ("system", "says"),
     [
-        (law(njit(lambda elongation, time: time), elastic=True), "drop `elastic` or the parameter"),
+        (law(njit(lambda elongation, time: time), elastic=True), "remove `elastic` or the parameter"),
         (WideArray(), "has 65 numbers in a row; a kernel takes 1 to 64"),
         (law(of_mass, each="particles"), "reads 'particles.mass'; add it to `reads`"),
         (law(of_charge, reads=("rods.charge",)), "no column rods.charge"),
@@ -471,8 +474,8 @@ class WideArray(OwnArray):
         (law(heated, reads=("rods.stiffness",), account="heat"), "choose one of work"),
         (law(failing, each="particles"), "name parameters <table>_<column>, time, dt or"),
         (commit(progressive, writes=("rods.yielding",)), "a parameter 'rate', but there is no column"),
-        (commit(remembered, writes=("rods.density",)), "no part of the document"),
-        (commit(remembered, writes=()), "writes nothing"),
+        (commit(remembered, writes=("rods.density",)), "not part of the document"),
+        (commit(remembered, writes=()), "has writes = []"),
         (OwnArray(), "has 3 rows for 2 particles"),
     ],
 )

@@ -32,7 +32,7 @@ def test_a_problem_is_told_in_full() -> None:
 def test_displacements_too_small_to_be_seen_are_told(displacement: float, told: bool) -> None:
     model = triangle()
     model.particles["B"].displacement = (displacement, 0.0)
-    said = "displacements up to 0.043 cm, too small to see; their slider enlarges them"
+    said = "displacements up to 0.043 cm are too small to see: enlarge them with the slider"
     assert (said in " ".join(picture_of(model, width=900).texts)) == told
     model.settings.displacement_scale = 100.0
     assert said not in " ".join(picture_of(model, width=900).texts)
@@ -92,7 +92,7 @@ def test_an_empty_model_says_how_to_begin() -> None:
     session.resize(1024, 640)
     session.update_view()
     texts = compose(session.model, session.view, LIGHT).texts
-    assert {"An empty model", "New particle under the pointer", "P", "Open a model", "D"} <= set(texts)
+    assert {"An empty model", "Draw a particle", "P", "Open a model", "D"} <= set(texts)
     enabled = [button for button in Card(session.view).buttons if button.tool.enabled]
     assert [button.tool.action for button in enabled] == ["place", "rod", "rigid", "load", "toggle help"]
     place, _, _, load, _ = enabled

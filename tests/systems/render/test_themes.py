@@ -30,7 +30,7 @@ def test_wrong_themes_are_refused_by_name() -> None:
         theme_from({k: v for k, v in entries.items() if k != "load"}, "theme t")
     with pytest.raises(ValueError, match="theme t has an unknown colour 'glow'"):
         theme_from(entries | {"glow": "#000000"}, "theme t")
-    with pytest.raises(ValueError, match="theme t, load: 'blue' is no colour"):
+    with pytest.raises(ValueError, match="theme t, load: 'blue' is not a colour"):
         theme_from(entries | {"load": "blue"}, "theme t")
 
 

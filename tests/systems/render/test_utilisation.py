@@ -44,7 +44,7 @@ def test_rods_take_its_colours_only_where_they_are_asked_for() -> None:
         assert line.of[1].tolist() == [model.rods[name].row]
     [free] = [m for m in marks_of(picture, Strokes, LIGHT.ghost) if m.of is not None]
     assert free.of[1].tolist() == [2]
-    assert {"14.2 %", "BC 99.0 %: nearest to its limit", "utilisation 0 to 100 %"} <= set(picture.texts)
+    assert {"14.2 %", "BC 99.0 %: closest to yielding", "utilisation 0 to 100 %"} <= set(picture.texts)
     bar = [m for m in picture.marks if isinstance(m, Rectangles) and m.colour == shade(LIGHT, 1.0)]
     assert len(bar) == 1
     model.tag(model.rods["BC"], Selected)
@@ -61,8 +61,8 @@ def test_the_first_at_its_strength_is_marked() -> None:
     picture = picture_of(model, utilisation=True)
     [halo] = [m for m in marks_of(picture, Strokes, LIGHT.yielding) if m.colour[3] < 255 and m.of is not None]
     assert halo.of[1].tolist() == [0]
-    assert "AB 14.2 %: first, at 0.2500 s" in picture.texts
-    assert {"first at its strength", "yielding"} <= set(picture.texts)
+    assert "AB 14.2 %: yielded first, at 0.2500 s" in picture.texts
+    assert {"first to yield", "yielding"} <= set(picture.texts)
 
 
 @pytest.mark.parametrize("vision", VISIONS)

@@ -1,0 +1,142 @@
+"""Copies of a structure for the force method: elastic, released, unloaded, and still with the forces of a state."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from components.commands import Assign
+from components.field import MADE
+from components.model import Model
+from systems.statics.external import external_forces
+from systems.statics.force_method import unit_force
+from systems.statics.released import SetState
+from systems.statics.settle import settle
+from systems.statics.unknowns import Unknown
+
+_STIFF = 1e9  # times the bending stiffness, so that what is drawn stays straight
+
+
+def elastic_copy(model: Model) -> Model:
+    """The same structure without yielding, at rest at the beginning of time; only moved supports are displaced."""
+    copy = Model()
+    for name, table in model.tables.items():
+        kept = [field.name for field in table.fields_in(*MADE)] + ["plastic_strain"] * (name == "rods")
+        columns = {field: table.column(field) for field in kept}
+        if name == "particles":
+            columns["displacement"] = np.where(table.fixed, table.displacement, 0.0)
+            columns["rotation"] = np.where(table.fixed_rotation, table.rotation, 0.0)
+        if table.kind.single:
+            [one] = copy.tables[name]
+            for field, column in columns.items():
+                copy.apply(Assign(name, field, (one.entity,), column))
+        else:
+            copy.create(table.kind, table.count, **columns)
+    copy.settings.plasticity = False
+    return copy
+
+
+def base_structure(model: Model, released: Sequence[Unknown]) -> Model:
+    """An elastic copy without some unknowns, which keeps all nodal masses."""
+    copy = elastic_copy(model)
+    copy.settings.time_step = None
+    copy.settings.collisions = False
+    if released:
+        copy.assign(list(copy.particles), "prescribed_mass", model.particles.mass.tolist())
+    for unknown in released:
+        _release(copy, unknown)
+    return copy
+
+
+def unloaded(model: Model, released: Sequence[Unknown]) -> Model:
+    """The released structure under nothing: no loads, lack of fit, warmth or displacements of supports."""
+    copy = base_structure(model, released)
+    copy.delete(list(copy.loads))
+    copy.environment.force = copy.environment.acceleration = (0.0, 0.0)
+    particles, rods = copy.particles, copy.rods
+    for name in ("force", "acceleration", "displacement"):
+        copy.assign(list(particles), name, [(0.0, 0.0)] * particles.count)
+    for name in ("moment", "rotation"):
+        copy.assign(list(particles), name, [0.0] * particles.count)
+    copy.assign(list(rods), "distributed_force", [(0.0, 0.0)] * rods.count)
+    for name in ("plastic_strain", "temperature_change", "temperature_gradient"):
+        copy.assign(list(rods), name, [0.0] * rods.count)
+    copy.assign(list(rods), "prescribed_rest_length", rods.original_length.tolist())
+    return copy
+
+
+def loaded(model: Model, released: Sequence[Unknown], amounts: Sequence[float]) -> Model:
+    """The released structure under so much of its unknowns, and nothing else."""
+    copy = unloaded(model, released)
+    force = np.zeros((model.particles.count, 3))
+    for unknown, amount in zip(released, amounts, strict=True):
+        unit = unit_force(model, unknown)
+        force[:, : unit.shape[1]] += amount * unit
+        if unknown.of_end:  # seen on the joint; the other of the pair acts on the rod
+            joint = model.rods.between[unknown.element.row, unknown.axis]
+            force[joint, 2] += amount * (1.0 if unknown.axis == 0 else -1.0)
+    copy.assign(list(copy.particles), "force", force[:, :2].tolist())
+    copy.assign(list(copy.particles), "moment", force[:, 2].tolist())
+    return copy
+
+
+def still(copy: Model, whole: Model, state: SetState) -> Model:
+    """A copy of a structure, perhaps without some of its rods, undeformed and with the forces of a state; no run may go on
+    in it."""
+    rods = copy.rods
+    here = [whole.rods[name].row for name in rods.names]
+    copy.writable("particles.displacement")[...] = 0.0
+    copy.writable("particles.rotation")[...] = 0.0
+    if rods.bending_stiffness.any():
+        copy.writable("rods.bending_stiffness")[...] *= _STIFF
+    load = external_forces(copy).at(1.0)
+    told = {
+        "particles.reaction": state.reaction[:, :2],
+        "particles.applied_force": load[:, :2],
+        "rods.axial_force": state.axial_force[here],
+    }
+    if len(state.end_moment):
+        told |= {
+            "particles.reaction_moment": state.reaction[:, 2],
+            "rods.end_moment": state.end_moment[here],
+        }
+    for name in told:
+        table, _, column = name.partition(".")
+        copy.tables[table].column(column)  # up to date first, so that what is told stays
+    for name, values in told.items():
+        copy.writable(name)[...] = values
+    return copy
+
+
+def exact_forces(model: Model, unknowns: Sequence[Unknown]) -> list[float] | None:
+    """The unknowns by exact geometry (kN, kN·m), without yielding; None if there is no equilibrium."""
+    if not unknowns:
+        return []
+    final = settle(elastic_copy(model)).final
+    if not final.balanced:
+        return None
+    found = []
+    for unknown in unknowns:
+        row, axis = unknown.element.row, unknown.axis
+        if axis is None:
+            found.append(float(final.axial_force[row]))
+        elif unknown.of_end:
+            found.append(float(final.diagrams["bending_moment"][row, axis]))
+        else:
+            found.append(float(final.reaction_moment[row] if axis == 2 else final.reaction[row, axis]))
+    return found
+
+
+def _release(model: Model, unknown: Unknown) -> None:
+    name, axis = unknown.element.name, unknown.axis
+    if unknown.of_bar:
+        model.delete([model.rods[name]])
+    elif unknown.of_end:
+        start, end = model.rods[name].hinged
+        model.rods[name].hinged = (start or axis == 0, end or axis == 1)
+    elif axis == 2:
+        model.particles[name].fixed_rotation = False
+    else:
+        x, y = model.particles[name].fixed
+        model.particles[name].fixed = (x and axis != 0, y and axis != 1)
