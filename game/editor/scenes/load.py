@@ -51,7 +51,7 @@ class Load(FileScene):
         learn = _tasks()
         held = tr("{tasks} to do, {films} to watch", tasks=len(learn), films=len(lessons()))
         rest = Offer(tr(LESSONS), tr("All lessons"), held, "", ALL, symbol="»", rest=True)
-        offers = [*learn[:1], new, *learn[1:], *_lessons(), rest, *_yours(context), *_examples()]
+        offers = [*_yours(context), *learn[:1], new, *learn[1:], *_lessons(), rest, *_examples()]
         form = self.new_form(tr(WELCOME) if self.welcome else tr("Open a model"), "", offers, tr("Open"))
         form.boxes[0].note = tr("type to search, or click a picture")
         return form
