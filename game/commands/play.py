@@ -15,8 +15,10 @@ from game.commands.progress import follow
 from game.commands.window import in_window
 from game.documents import library, models
 from game.documents.open_documents import file_of
+from game.lessons import progress
 from game.lessons.checking import check_lesson
 from game.scripts import playing, script
+from game.scripts.script import EMPTY
 from game.session import Session
 from game.streams import tell
 
@@ -48,7 +50,8 @@ def command(words: Sequence[str]) -> int:
             loaded.has_data = True
         if options.window:
             tell(playing.check_mods(loaded))
-            failures = in_window(models.load(loaded.source), file_of(loaded.source), lesson=loaded)
+            source = EMPTY if loaded.has_tasks else loaded.source  # tasks open their models themselves
+            failures = in_window(models.load(source), file_of(source), lesson=loaded)
         elif loaded.has_tasks:
             playing.check_mods(loaded)
             kept.enter_context(library.data_apart())
@@ -58,7 +61,8 @@ def command(words: Sequence[str]) -> int:
             tell(session.notice)
             if not loaded.has_data:  # so that it ends alike however often it is played
                 kept.enter_context(library.data_apart())
-            failures = playing.play(loaded, session)
+            with progress.not_kept():
+                failures = playing.play(loaded, session)
     found = {
         "script": options.script,
         "lines": len(loaded.lines) - 1,

@@ -215,7 +215,7 @@ class OpenDocument:
     @property
     def unsaved(self) -> bool:
         """True if a person changed the model since it was opened or saved, or let time pass in one of theirs."""
-        return (self.edited and not self.practice) or (self.file.path is not None and self.newest > self.saved)
+        return self.edited or (self.file.path is not None and self.newest > self.saved)
 
     def leave(self) -> None:
         """End the run and the pull of a hand, and drop the checkpoints."""
@@ -226,8 +226,8 @@ class OpenDocument:
 
     @property
     def edited(self) -> bool:
-        """True if a person changed the model since it was opened or saved."""
-        return self._last_edit > self.saved
+        """True if a person changed the model since it was opened or saved; never of one that belongs to a lesson."""
+        return self._last_edit > self.saved and not self.practice
 
 
 class OpenDocuments:

@@ -19,7 +19,7 @@ from game.scripts.lines import perform
 from game.scripts.script import ScriptError
 
 RIGHT, WRONG, HINT = "right", "wrong", "hint"  # moods of what is said
-IN_NUMBERS = frozenset("0123456789.,-−+eE")
+IN_NUMBERS = frozenset("0123456789.,-−+")  # not e, which is a key
 LONGEST = 16  # characters of a number that is typed
 SOLVED = marked("That was one way to do it. Now try it: Again starts the task once more; Next goes on.")
 FINISHED = marked("This lesson is done.")
@@ -166,7 +166,8 @@ class Course:
     def type(self, text: str) -> None:
         """Type a part of a number."""
         kept = "".join(character for character in text if character in IN_NUMBERS)
-        self.typed = (self.typed + kept)[:LONGEST]
+        before = "" if self.mood == WRONG else self.typed  # after a wrong answer, another one begins
+        self.typed = (before + kept)[:LONGEST]
         self.said = self.mood = ""
 
     def erase(self) -> None:
@@ -301,7 +302,7 @@ class Course:
             return tr("Selected: {names}", names=", ".join(self._selected()) or "–")
         if self.task.kind != NUMBER:
             return None
-        return f"{decimals(self.typed)}{'' if self.accepted else '▏'} {self._unit}".rstrip()
+        return f"{decimals(self.typed)}{'' if self.accepted else '|'} {self._unit}".rstrip()
 
     def _buttons(self, *, last: bool) -> tuple[CardButton, ...]:
         onward = tr("Next lesson") if last else tr("Next")

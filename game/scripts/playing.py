@@ -84,9 +84,7 @@ class Recorder:
         self._write({"action": "fit"})
 
     def _resized(self) -> None:
-        view = self._session.view
-        window = view.camera.viewport
-        size = [window.width, window.height, view.pixel_ratio]
+        size = [*self._session.extent, self._session.view.pixel_ratio]
         self._write({**self._now, "resize": size})
 
     @property
