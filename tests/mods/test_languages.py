@@ -19,7 +19,7 @@ def test_what_a_mod_says_is_translated_while_it_is_loaded(unloaded):
     with spoken("pt"):
         (panel,) = (readout for readout in session.panels() if readout.title == "Vento")
         assert panel.rows == (("velocidade", "0 m/s"),)
-        session.environment.wind_velocity = (0.5, 0.0)
+        session.environment.wind_velocity = (0.5, 0.0)  # type: ignore[attr-defined]
         (panel,) = (readout for readout in session.panels() if readout.title == "Vento")
         assert panel.rows == (("velocidade", "0,5 m/s"),)
         assert tr("wind velocity") == "velocidade do vento"

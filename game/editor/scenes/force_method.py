@@ -11,7 +11,7 @@ import numpy as np
 
 from components.camera import Camera, Viewport
 from components.field import Vector
-from components.language import tr
+from components.language import joined, tr
 from components.model import Model
 from components.settings import Settings
 from components.slider import SliderStack
@@ -164,7 +164,7 @@ class ForceMethod(Scene):
         part = tr("Part {part} of {parts}", part=guide.part, parts=PARTS) if guide else tr("Not possible")
         if self._work is not None:
             self._head.heading, part = self._work.text, tr("Working")
-        hint = f"{tr('still moving')}{BETWEEN}{self.hint(context)}" if self._moving() else self.hint(context)
+        hint = joined([tr("still moving") if self._moving() else "", self.hint(context)], BETWEEN)
         self._foot.status = Status(time=None, state=part, hint=hint)
         self._foot.page = self._working()
         self._head.legend = context.view.legend and whole.height >= LEAST_EXPLAINED * ratio
@@ -173,7 +173,7 @@ class ForceMethod(Scene):
         wanted = page_height(self._foot.page, whole.width, ratio)
         foot = min(wanted, round(MOST_OF_HEIGHT * whole.height))
         if foot < wanted:
-            self._foot.status = replace(self._foot.status, hint=f"{tr('Wheel more rows')}{BETWEEN}{hint}")
+            self._foot.status = replace(self._foot.status, hint=joined([tr("Wheel more rows"), hint], BETWEEN))
         middle = Viewport(whole.left, whole.top + head, whole.width, max(whole.height - head - foot, 1))
         _place(self._head, Viewport(whole.left, whole.top, whole.width, head), ratio)
         _place(self._foot, Viewport(whole.left, middle.top + middle.height, whole.width, foot), ratio)
