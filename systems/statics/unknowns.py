@@ -9,7 +9,7 @@ import numpy as np
 from scipy.linalg import qr
 
 from components.field import ENDS
-from components.language import tr
+from components.language import marked, tr
 from components.model import Model
 from components.particle import Particle
 from components.rod import Rod, bends
