@@ -119,10 +119,10 @@ def _checked_plot(plot: Plot) -> Plot:
         if x.ndim != 1 or x.shape != y.shape:
             raise ValueError(
                 tr(
-                    "the curve '{name}' has x of shape {x} and y of {y}; give (n,) and (n,)",
+                    "the curve '{name}' has x of shape {x} and y of shape {y}; both must be (n,)",
                     name=name,
-                    x=x.shape,
-                    y=y.shape,
+                    x=str(x.shape),
+                    y=str(y.shape),
                 )
             )
     curves = tuple((readable(tr(name)), x, y) for name, x, y in plot.curves)

@@ -13,6 +13,7 @@ PROPERTIES, SAVE, LOAD, FORCE_METHOD = "properties", "save", "load", "force meth
 LIVE = (SIMULATION, PAUSE)
 FORMS = (PROPERTIES, SAVE, LOAD)
 EVERY = (*LIVE, *FORMS, FORCE_METHOD)
+IN_LESSONS = (*LIVE, PROPERTIES, FORCE_METHOD)
 MENU = "menu"  # no scene: the keys while a menu is open
 
 TEXT = "text "  # prefix of the "key" of typed text, such as "text a"
@@ -183,6 +184,13 @@ _BY_PURPOSE: dict[str, tuple[Binding, ...]] = {
         Binding("f12", "screenshot", EVERY, marked("save a picture")),
         Binding("shift+f12", "picture as svg", EVERY, marked("save a picture as SVG")),
         Binding("ctrl+f12", "picture as pdf", EVERY, marked("save a picture as PDF")),
+    ),
+    marked("Lessons"): (
+        Binding("f5", "check answer", IN_LESSONS, marked("check the task of the lesson, or go on")),
+        Binding("f6", "hint", IN_LESSONS, marked("show a hint for the task")),
+        Binding("f7", "show solution", IN_LESSONS, marked("show how the task is done")),
+        Binding("f8", "task again", IN_LESSONS, marked("begin the task again")),
+        Binding("f9", "leave lesson", IN_LESSONS, marked("leave the lesson")),
     ),
     marked("Files"): (
         Binding("s", "save", (PAUSE,), marked("save as")),
