@@ -27,7 +27,7 @@ class Work:
 
     length, stiffness, bending_stiffness: L₀, EA, EI (rods,). base_axial: N₀ (rods,); unit_axial: n (m, rods).
     base_moment: M₀ (rods, 2), at the ends; unit_moment: m (m, rods, 2). load: q L₀², of which M₀ bulges by −1/8 at
-    the middle (rods,). free: ΔL (rods,). curvature: κ (rods,).
+    the middle (rods,). free: ΔL (rods,). curvature: κ (rods,). turned: L₀/EI, 0 of bars (rods,).
 
     of_base, of_bending, of_free: n N₀ L/EA, ∫ m M₀ dx/EI, and n ΔL with ∫ m κ dx (m, rods). settled: rows and axes of
     moved supports (k, 2); of_supports: −r c (m, k).
@@ -43,6 +43,7 @@ class Work:
     load: Array
     free: Array
     curvature: Array
+    turned: Array
     of_base: Array
     of_bending: Array
     of_free: Array
@@ -65,13 +66,6 @@ class Work:
             found[i] += (self.turned * products(self.unit_moment[i], self.unit_moment, _NOTHING)).sum(axis=1)
         total: Array = found
         return total
-
-    @property
-    def turned(self) -> Array:
-        """L₀/EI, 0 of bars (rods,)."""
-        bends = self.bending_stiffness > 0.0
-        softness: Array = np.divide(self.length, self.bending_stiffness, out=np.zeros(len(bends)), where=bends)
-        return softness
 
     def of_units(self, i: int, j: int) -> Array:
         """n n' L/EA of two unknowns (rods,)."""
@@ -98,7 +92,7 @@ def virtual_work(model: Model, solution: Solution) -> Work:
     load = (rods.distributed_force[:, 1] * x - rods.distributed_force[:, 0] * y) * length**2
     softness = length / stiffness
     bends = rods.bending_stiffness > 0.0
-    rotated = np.divide(length, rods.bending_stiffness, out=np.zeros(rods.count), where=bends)
+    turned = np.divide(length, rods.bending_stiffness, out=np.zeros(rods.count), where=bends)
     free = length * rods.plastic_strain - rods.misfit
     curvature = -rods.thermal_expansion * rods.temperature_gradient * bends
     settled = _settled(model, solution)
@@ -117,8 +111,9 @@ def virtual_work(model: Model, solution: Solution) -> Work:
         load,
         free,
         curvature,
+        turned,
         of_base=unit_axial * solution.base.axial_force * softness,
-        of_bending=rotated * products(unit_moment, base_moment, load),
+        of_bending=turned * products(unit_moment, base_moment, load),
         of_free=unit_axial * free + length * curvature * unit_moment.mean(axis=2),
         settled=settled,
         of_supports=-reactions * place,
