@@ -20,6 +20,7 @@ from game.scripts.script import ScriptError
 
 RIGHT, WRONG, HINT = "right", "wrong", "hint"  # moods of what is said
 IN_NUMBERS = frozenset("0123456789.,-−+")  # not e, which is a key
+MOST_LINES = 40  # by which a card is scrolled
 LONGEST = 16  # characters of a number that is typed
 SOLVED = marked("That was one way to do it. Now try it: Again starts the task once more; Next goes on.")
 FINISHED = marked("This lesson is done.")
@@ -269,6 +270,10 @@ class Course:
         seen = [value for value in vars(session.view).values() if isinstance(value, bool | str | Shape | None)]
         chosen = self._selected() if self.task.kind == SELECT else ()
         return id(session.document), session.model.revision, session.simulation.halted, seen, chosen
+
+    def scroll(self, lines: int) -> None:
+        """Move what is said on the card up by some lines, down if negative."""
+        self.first = min(max(self.first + lines, -MOST_LINES), MOST_LINES)
 
     # --- the card ----------------------------------------------------------------------------------
 
