@@ -302,7 +302,7 @@ class Field(Generic[T]):
             raise self._refusal(marked("{where}: {title} is {value}; it must be a text."), where, value)
         if is_broken(value):
             message = marked(
-                "{where}: {title} is {value}; it holds half of a character, which no file can store. Type it again."
+                "{where}: {title} is {value}; half of a character cannot be kept in a file. Type it again."
             )
             raise self._refusal(message, where, value)
         return str(value)  # numpy's texts are of another type

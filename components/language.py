@@ -45,6 +45,7 @@ class _Spoken:
 
 
 _SPOKEN = _Spoken()
+_OF_MODS: dict[str, Path] = {}  # their folders of catalogues, by domain
 
 
 def language() -> str:
@@ -55,12 +56,42 @@ def language() -> str:
 def speak(code: str) -> None:
     """Say everything in a language from now on. Raises ValueError if there is no such language."""
     if code not in LANGUAGES:
-        raise ValueError(f"There is no language '{code}'; use one of {', '.join(LANGUAGES)}.")
-    english = code == ENGLISH
-    _SPOKEN.catalogue = (
-        gettext.NullTranslations() if english else gettext.translation(DOMAIN, LOCALE, languages=[code])
-    )
-    _SPOKEN.code = code
+        raise ValueError(
+            tr(
+                "There is no language '{code}'; use one of {languages}.",
+                code=code,
+                languages=", ".join(LANGUAGES),
+            )
+        )
+    catalogue = gettext.NullTranslations()
+    if code != ENGLISH:
+        catalogue = gettext.translation(DOMAIN, LOCALE, languages=[code])
+        for domain, folder in _OF_MODS.items():
+            catalogue.add_fallback(gettext.translation(domain, folder, languages=[code], fallback=True))
+    _SPOKEN.code, _SPOKEN.catalogue = code, catalogue
+
+
+def add_catalogues(domain: str, folder: Path) -> None:
+    """Look up what ours do not hold in the catalogues of a mod, too: FOLDER/pt/LC_MESSAGES/DOMAIN.mo.
+
+    Raises ValueError if one cannot be read.
+    """
+    for code in LANGUAGES:
+        try:
+            gettext.translation(domain, folder, languages=[code], fallback=True)
+        except Exception as error:  # whatever damaged bytes lead to
+            place = folder / code / "LC_MESSAGES" / f"{domain}.mo"
+            raise ValueError(
+                tr("The catalogue {file} cannot be read; compile it again.", file=place)
+            ) from error
+    _OF_MODS[domain] = folder
+    speak(_SPOKEN.code)
+
+
+def remove_catalogues(domain: str) -> None:
+    """Take back what `add_catalogues` did."""
+    del _OF_MODS[domain]
+    speak(_SPOKEN.code)
 
 
 @contextmanager
@@ -108,25 +139,35 @@ def english(said: object) -> Any:
 def joined(parts: Iterable[str], separator: str = " ") -> str:
     """Sentences that are said one after the other, without those that are empty."""
     known = [part for part in parts if part]
-    return _said(separator.join(known), separator.join(map(english, known)))
+    return in_both(separator.join(known), separator.join(map(english, known)))
 
 
 def begun(text: str) -> str:
     """A text as a sentence begins with it: "Rod AB"."""
     same = str(english(text))
-    return _said(text[:1].upper() + text[1:], same[:1].upper() + same[1:])
+    return in_both(text[:1].upper() + text[1:], same[:1].upper() + same[1:])
 
 
 def listed(names: Sequence[str]) -> str:
     """Names as a sentence lists them: "A, B and C"."""
     if len(names) < 2:
-        return "".join(names)
-    return tr("{names} and {last}", names=", ".join(names[:-1]), last=names[-1])
+        return names[0] if names else ""
+    return tr("{names} and {last}", names=joined(names[:-1], ", "), last=names[-1])
 
 
 def decimals(text: str) -> str:
-    """A number as it is written in the present language: with a comma for the point, or as it is."""
-    return text.replace(".", ",") if _SPOKEN.code in _COMMA else text
+    """A number in English as it is written in the present language: with a comma for the point, or as it is."""
+    if _SPOKEN.code not in _COMMA or "." not in text:
+        return text
+    return in_both(text.replace(".", ","), text)
+
+
+def several(numbers: Iterable[str]) -> str:
+    """Numbers one after the other: "120, −160", or "120,5; −160" where commas are decimal signs."""
+    parts = list(numbers)
+    if _SPOKEN.code not in _COMMA:
+        return ", ".join(parts)
+    return in_both("; ".join(parts), ", ".join(map(english, parts)))
 
 
 class _Filling(Formatter):
@@ -140,7 +181,7 @@ class _Filling(Formatter):
 _FILLING = _Filling()
 
 
-def _said(shown: str, same: str) -> str:
+def in_both(shown: str, same: str) -> str:
     """What is shown, with what it is in English unless that is the same."""
     if shown == same:
         return same

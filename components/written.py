@@ -1,7 +1,7 @@
 """Written: numbers as people read them on screen, with few digits and one unit for each kind of thing.
 
 Lengths, displacements among them, are in cm, forces in kN, strains in ‰, shares in %. Minus signs are real ones,
-and what is nothing but rounding is 0.
+what is nothing but rounding is 0, and the decimal sign is that of the language.
 """
 
 from __future__ import annotations
@@ -10,6 +10,7 @@ import math
 from collections.abc import Iterable
 
 from components.field import CM
+from components.language import decimals, english, joined, several, tr
 
 DIGITS = 4  # significant ones of a result
 GIVEN_DIGITS = 6  # of a number that a person set, without zeros at its end
@@ -24,6 +25,10 @@ _PREFIXES = ((1.0, ""), (1e-3, "m"), (1e-6, "µ"), (1e-9, "n"))
 
 def number(value: float, digits: int = DIGITS, *, nothing: float = 0.0) -> str:
     """A result to so many significant digits: "−28.22", "1.235·10⁻⁷", and "0" if it is at most `nothing`."""
+    return decimals(_number(value, digits, nothing))
+
+
+def _number(value: float, digits: int, nothing: float = 0.0) -> str:
     if not math.isfinite(value):
         return "—" if math.isnan(value) else f"{'−' * (value < 0)}∞"
     if abs(value) <= nothing or value == 0.0:
@@ -37,38 +42,42 @@ def number(value: float, digits: int = DIGITS, *, nothing: float = 0.0) -> str:
 
 def given(value: float, digits: int = GIVEN_DIGITS) -> str:
     """A number that a person set, or a round one, as short as it is: "0.5"."""
-    head, dot, power = number(value, digits).partition("·")
-    return (head.rstrip("0").rstrip(".") if "." in head else head) + dot + power
+    head, dot, power = _number(value, digits).partition("·")
+    return decimals((head.rstrip("0").rstrip(".") if "." in head else head) + dot + power)
+
+
+def _with_unit(number: str, unit: str) -> str:
+    return f"{number} {unit}" if type(number) is str else joined((number, unit))  # the latter keeps the English
 
 
 def force(kilonewtons: float, *, nothing: float = 0.0) -> str:
     """A force that was computed."""
-    return f"{number(kilonewtons, nothing=nothing)} kN"
+    return _with_unit(number(kilonewtons, nothing=nothing), "kN")
 
 
 def moment(kilonewton_metres: float, *, nothing: float = 0.0) -> str:
     """A moment that was computed."""
-    return f"{number(kilonewton_metres, nothing=nothing)} kN·m"
+    return _with_unit(number(kilonewton_metres, nothing=nothing), "kN·m")
 
 
 def displacement(metres: float, *, nothing: float = 0.0) -> str:
     """A displacement or an elongation."""
-    return f"{number(_PER_METRE * metres, nothing=_PER_METRE * nothing)} {_LENGTH}"
+    return _with_unit(number(_PER_METRE * metres, nothing=_PER_METRE * nothing), _LENGTH)
 
 
 def length(metres: float, digits: int = GIVEN_DIGITS) -> str:
     """A length that a person set."""
-    return f"{given(_PER_METRE * metres, digits)} {_LENGTH}"
+    return _with_unit(given(_PER_METRE * metres, digits), _LENGTH)
 
 
 def place(metres: Iterable[float], digits: int = GIVEN_DIGITS) -> str:
     """A point of the plane."""
-    return f"{vector((_PER_METRE * part for part in metres), digits)} {_LENGTH}"
+    return _with_unit(vector((_PER_METRE * part for part in metres), digits), _LENGTH)
 
 
 def vector(values: Iterable[float], digits: int = GIVEN_DIGITS) -> str:
     """The two parts of what a person set: "(120, −160)"."""
-    return f"({', '.join(given(value, digits) for value in values)})"
+    return joined(("(", several(given(value, digits) for value in values), ")"), "")
 
 
 def total(terms: Iterable[float]) -> str:
@@ -85,27 +94,27 @@ def total(terms: Iterable[float]) -> str:
     found = sum(known)
     found = 0.0 if abs(found) <= ROUNDING * largest else found
     sign = "="
-    for decimals in range(usual, usual + MORE_DIGITS + 1):
-        rounded = [round(term, decimals) for term in known]
-        if abs(sum(rounded) - round(found, decimals)) < 0.5 * 10.0**-decimals:
+    for places in range(usual, usual + MORE_DIGITS + 1):
+        rounded = [round(term, places) for term in known]
+        if abs(sum(rounded) - round(found, places)) < 0.5 * 10.0**-places:
             break
     else:
-        decimals, sign = usual, "≈"
-    shown = [term for term in known if round(term, decimals)]
-    first, *others = (f"{abs(term):.{decimals}f}" for term in shown)
+        places, sign = usual, "≈"
+    shown = [term for term in known if round(term, places)]
+    first, *others = (f"{abs(term):.{places}f}" for term in shown)
     signed = [f"{'−' if term < 0.0 else '+'} {text}" for term, text in zip(shown[1:], others, strict=True)]
-    result = f"{round(found, decimals) + 0.0:.{decimals}f}".replace("-", "−") if found else "0"
-    return " ".join([f"{'−' * (shown[0] < 0.0)}{first}", *signed, sign, result])
+    result = f"{round(found, places) + 0.0:.{places}f}".replace("-", "−") if found else "0"
+    return decimals(" ".join([f"{'−' * (shown[0] < 0.0)}{first}", *signed, sign, result]))
 
 
 def strain(value: float, *, nothing: float = 0.0) -> str:
     """Elongation per length."""
-    return f"{number(1000.0 * value, nothing=1000.0 * nothing)} ‰"
+    return _with_unit(number(1000.0 * value, nothing=1000.0 * nothing), "‰")
 
 
 def share(value: float, digits: int = 3) -> str:
     """A part of a whole."""
-    return f"{number(100.0 * value, digits)} %"
+    return _with_unit(number(100.0 * value, digits), "%")
 
 
 def time(seconds: float, digits: int = DIGITS) -> str:
@@ -114,8 +123,8 @@ def time(seconds: float, digits: int = DIGITS) -> str:
         return "0 s"
     rounded = float(f"{seconds:.{digits - 1}e}")
     factor, prefix = next((f, p) for f, p in _PREFIXES if abs(rounded) >= 0.1 * f or f == 1e-9)
-    decimals = max(digits - 1 - math.floor(math.log10(abs(rounded) / factor) + 1e-9), 0)
-    return f"{seconds / factor:.{decimals}f} {prefix}s".replace("-", "−")
+    places = max(digits - 1 - math.floor(math.log10(abs(rounded) / factor) + 1e-9), 0)
+    return decimals(f"{seconds / factor:.{places}f} {prefix}s".replace("-", "−"))
 
 
 def pace(speed: float) -> str:
@@ -123,7 +132,7 @@ def pace(speed: float) -> str:
     if speed == 0.0:
         return ""
     if abs(speed - 1.0) < 0.005:
-        return "real time"
-    shown, unit = time(speed, 3).split(" ")
+        return tr("real time")
+    shown, unit = english(time(speed, 3)).split(" ")
     shown = shown.rstrip("0").rstrip(".") if "." in shown else shown
-    return f"1 s shown = {shown} {unit} simulated"
+    return tr("1 s shown = {time} simulated", time=decimals(f"{shown} {unit}"))

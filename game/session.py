@@ -14,7 +14,7 @@ from components.camera import Viewport
 from components.card import share_of
 from components.environment import Environment
 from components.field import FieldError, Vector
-from components.language import begun, joined, listed, tr
+from components.language import begun, joined, listed, marked, tr
 from components.load import Load
 from components.model import Model
 from components.particle import Particle
@@ -116,7 +116,7 @@ class Session(Context):
 
     def __reduce_ex__(self, protocol: object) -> NoReturn:
         raise TypeError(
-            tr("A session cannot be copied or pickled; save its model, and open that in another session.")
+            tr("A session cannot be copied or pickled. Save its model, and open that in another session.")
         )
 
     def __repr__(self) -> str:
@@ -144,7 +144,7 @@ class Session(Context):
     def table(self, name: str) -> Table[Any]:
         """The elements of any kind by name, those that mods add included: session.table("walls")["floor"]."""
         if name not in self.model.tables:
-            raise KeyError(missing("tables", name, self.model.tables))
+            raise KeyError(missing(marked("tables"), name, self.model.tables))
         return self.model.tables[name]
 
     @property
@@ -354,7 +354,7 @@ class Session(Context):
     def act(self, name: str, pixel: Vector | None = None) -> None:
         """Perform a named action with the pointer at a pixel; what it refuses is said in `notice`."""
         if name not in ACTIONS:
-            raise ValueError(missing("actions", name, ACTIONS))
+            raise ValueError(missing(marked("actions"), name, ACTIONS))
         if name not in WHILE_DRAWING:
             self.leave_gesture()
         if name not in IN_MENU:

@@ -9,7 +9,7 @@ from typing import Any
 from components.box import Box
 from components.field import Field
 from components.handle import Handle
-from components.language import begun, joined, marked, tr
+from components.language import begun, decimals, joined, marked, tr
 from components.load import Load, factor_at
 from components.model import Model
 from components.numeric_range import incomputable
@@ -94,7 +94,7 @@ def _now(handle: Handle, field: str, time: float) -> str:
 
 def _written(value: float, unit: str) -> str:
     """A number to four digits with its unit."""
-    return f"{float(f'{value:.4g}'):.10g} {unit}".strip().replace("-", "−")
+    return decimals(f"{float(f'{value:.4g}'):.10g} {unit}".strip().replace("-", "−"))
 
 
 def _title(model: Model, aim: Aim, handle: Handle, field: Field[Any]) -> str:
@@ -104,7 +104,7 @@ def _title(model: Model, aim: Aim, handle: Handle, field: Field[Any]) -> str:
         if aim.element is None
         else getattr(handle, "name", model.describe(handle))
     )
-    number = f"{tr(field.title)} {aim.axis}".rstrip()
+    number = joined([tr(field.title), aim.axis])
     return tr("{element}: {value}", element=whose, value=number)
 
 

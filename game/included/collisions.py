@@ -108,5 +108,5 @@ def _speeds(speed: Array, mean_square: float, revision: int) -> Readout:
 def plugin(app: App) -> None:
     """Register the panels and the key."""
     app.panel(panels)
-    live, title = ("simulation", "pause"), marked("speeds beside Rayleigh's curve")
+    live, title = ("simulation", "pause"), marked("show or hide the speeds of particles")
     app.action("collisions.speeds", key="u", scenes=live, title=title, icon=ICON)(toggle_speeds)

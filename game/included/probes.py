@@ -284,7 +284,7 @@ def run(words: list[str]) -> int:
     if output.suffix not in (".csv", ".png"):
         raise UsageError(tr("--output {file}: write a file that ends with .csv or .png.", file=output))
     record(session, probe, options.until, options.samples)
-    with writing(output, "--output"):
+    with writing(output):
         (write_png if output.suffix == ".png" else write_csv)(probe, output)
     return 0
 
@@ -307,12 +307,12 @@ def plugin(app: App) -> None:
     app.panel(panels)
     app.command("plot", run, marked("write or draw what a run does, against time or another quantity"))
     live = ("simulation", "pause")
-    app.action("probes.plot", key="o", scenes=live, title=marked("plot of the selection"), icon=ICON)(plot_next)
-    app.action("probes.save", key="ctrl+e", scenes=live, title=marked("plots as CSV and PNG"))(save)
+    app.action("probes.plot", key="o", scenes=live, title=marked("plot the selection"), icon=ICON)(plot_next)
+    app.action("probes.save", key="ctrl+e", scenes=live, title=marked("save plots as CSV and PNG"))(save)
     app.action("probes.close", while_drawing=True)(close)
     for name, key, factor, title in (
-        ("longer", "[", 2.0, marked("longer plots")),
-        ("shorter", "]", 0.5, marked("shorter plots")),
+        ("longer", "[", 2.0, marked("show a longer time in plots")),
+        ("shorter", "]", 0.5, marked("show a shorter time in plots")),
     ):
         app.action(f"probes.{name}", key=key, scenes=live, title=title, while_drawing=True)(
             lambda session, pixel, factor=factor: zoom(factor, session)  # type: ignore[misc]

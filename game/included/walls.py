@@ -29,18 +29,18 @@ class Wall(Handle):
     """A straight line from one point to another; both of its sides and its ends are hard and smooth."""
 
     __slots__ = ()
-    table, noun = marked("walls"), marked("wall")
+    table, noun = "walls", "wall"
     points = ("start", "end")
 
-    name: Field[str] = Field(doc=marked("Unique among the walls."), dtype=str)
-    start: Field[Vector] = Field("m", shape=(2,), doc=marked("Where it begins."), shown=CM)
-    end: Field[Vector] = Field("m", shape=(2,), doc=marked("Where it ends."), shown=CM)
+    name: Field[str] = Field(doc="Unique among the walls.", dtype=str)
+    start: Field[Vector] = Field("m", shape=(2,), doc="Where it begins.", shown=CM)
+    end: Field[Vector] = Field("m", shape=(2,), doc="Where it ends.", shown=CM)
     restitution: Field[float | None] = Field(
         default=None,
         nullable=True,
         minimum=0.0,
         maximum=1.0,
-        doc=marked("Of impacts with it, whatever that of the particles is; automatic: that of the settings."),
+        doc="Of impacts with it, whatever that of the particles is; automatic: that of the settings.",
     )
 
     @classmethod
@@ -109,4 +109,4 @@ def plugin(app: App) -> None:
     app.kind(Wall)
     app.shape(Wall, as_pieces)
     app.layer(draw, below=True)
-    app.tool(Wall, key="w", title=marked("wall or floor, from point to point"), icon=ICON)
+    app.tool(Wall, key="w", title=marked("draw a wall or floor"), icon=ICON)

@@ -8,6 +8,7 @@ from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass
 from typing import Any
 
+from components.language import tr
 from components.wording import as_json, cut
 from game.editor.context import FAULTS
 from game.mods.mod import ModError
@@ -27,7 +28,12 @@ class Failure:
     got: Any
 
     def __str__(self) -> str:
-        return f"line {self.line}: expected {self.expected}, got {self.got}"
+        return tr(
+            "line {line}: expected {expected}, got {got}",
+            line=self.line,
+            expected=self.expected,
+            got=str(self.got),
+        )
 
 
 def play_line(script: Script, number: int, entry: Mapping[str, Any], session: Session) -> list[Failure]:
@@ -42,8 +48,10 @@ def play_line(script: Script, number: int, entry: Mapping[str, Any], session: Se
         pass  # it is among FAULTS
     except (ValueError, LookupError, TypeError) as error:
         reason = error.args[0] if error.args else error
-        raise ScriptError(f"{script.path} line {number}: {reason}") from error
-    return failures + [Failure(number, "mods that work", fault) for fault in FAULTS[known:]]
+        raise ScriptError(
+            tr("{file} line {line}: {error}", file=script.path, line=number, error=reason)
+        ) from error
+    return failures + [Failure(number, tr("mods that work"), fault) for fault in FAULTS[known:]]
 
 
 _EXAMPLES: dict[str, Any] = {  # by key of a line: a value of the required shape
@@ -77,11 +85,20 @@ def _check_line(entry: Mapping[str, Any]) -> None:
     """Raise ValueError unless every key is known and every value has the shape of its example."""
     for key, value in entry.items():
         if key not in _EXAMPLES:
-            raise ValueError(f"there is no '{cut(key)}'; use one of {', '.join(_EXAMPLES)}.")
+            raise ValueError(
+                tr("there is no '{key}'; use one of {keys}.", key=cut(key), keys=", ".join(_EXAMPLES))
+            )
         example = _EXAMPLES[key]
         fits = (_is_like(value, example) or key == "answer") and not (key in _SIZES and min(value) <= 0)
         if not fits and (key, value) != ("run", "rest"):
-            raise ValueError(f"{key} is {as_json(value)}; write it like {json.dumps({key: example})}.")
+            raise ValueError(
+                tr(
+                    "{key} is {value}; write it like {form}.",
+                    key=key,
+                    value=as_json(value),
+                    form=json.dumps({key: example}),
+                )
+            )
 
 
 def _is_like(value: Any, example: Any) -> bool:
@@ -109,7 +126,12 @@ def perform(session: Session, entry: Mapping[str, Any]) -> Iterator[tuple[str, A
         session.clipboard = rest.pop("clipboard")
     button, pixel = rest.pop("button", "click"), rest.pop("pixel", None)
     if len(rest) > 1:
-        raise ValueError(f"a line does one thing, this one says {', '.join(map(cut, rest))}; split it.")
+        raise ValueError(
+            tr(
+                "a line can do one thing only, but this one has {keys}; write several lines.",
+                keys=", ".join(map(cut, rest)),
+            )
+        )
     for verb, value in rest.items():
         if verb == "expect":
             yield from check(session, value)

@@ -8,6 +8,7 @@ from collections.abc import Mapping
 from typing import Any, Protocol
 
 from components.field import Vector
+from components.language import language, marked, spoken, tr
 from components.view import Page, Status, View
 from game.documents import library
 from game.documents.open_documents import ModelFile
@@ -25,7 +26,7 @@ REACH = 0.4  # s of a movement of the pointer
 READING = 1.2, 0.055  # s that a sentence stays: at least, and for each character
 PATIENCE = 6.0  # s of a run shown at its natural pace, before it goes faster and faster
 HURRY = ("space", "return", "right", "click")
-DONE = "That was it. Go on from here as you like; Ctrl+Z goes back through all of it."
+DONE = marked("This is the end. Go on from here as you like; Ctrl+Z goes back, step by step.")
 
 _UNSEEN = {"expect", "resize", "window"}  # verbs without a pause after them
 
@@ -73,11 +74,15 @@ class Performance:
         return failures
 
     def _play(self) -> list[Failure]:
+        with spoken(self._script.language or language()):
+            return self._perform_all()
+
+    def _perform_all(self) -> list[Failure]:
         session, failures = self._screen.session, list[Failure]()
         session.performing, session.footer = True, View()
         grown = min(round(FOOTER), self._screen.room_below)
         self._grow(grown)
-        self._say(self._script.title)
+        self._say(tr(self._script.title))
         try:
             for number, entry in self._script.lines[1:]:
                 self._hurried = False
@@ -90,7 +95,7 @@ class Performance:
             session.performing, session.footer = False, None
             self._grow(-grown)
         if not self._ended:
-            session.notice = DONE
+            session.notice = tr(DONE)
         return failures
 
     # --- one line ------------------------------------------------------------------------------------
@@ -144,7 +149,7 @@ class Performance:
             width, height, ratio = (*entry["resize"], 1.0)[:3]
             self._screen.size = round(width / ratio), round(height / ratio + FOOTER)
         if "say" in entry:
-            self._say(str(entry["say"]))
+            self._say(tr(entry["say"]))
         elif not _UNSEEN & set(entry):
             self._wait(BEAT if "input" not in entry else 0.1 * BEAT)
 
@@ -152,7 +157,7 @@ class Performance:
         footer = self._screen.session.footer
         if text and footer is not None:
             footer.page = Page((text,))
-            footer.status = Status(time=None, state="Lesson", hint="Space goes on     Esc ends it")
+            footer.status = Status(time=None, state=tr("Lesson"), hint=tr("Space goes on     Esc ends it"))
             least, each = READING
             self._wait(max(least, each * len(text)))
 

@@ -9,6 +9,7 @@ from contextlib import suppress
 from typing import Any, TextIO
 
 from components.field import Vector
+from components.language import ENGLISH, joined, language, spoken, tr
 from components.wording import is_broken
 from game.documents.format import ModelError
 from game.mods.loading import MODS
@@ -26,8 +27,10 @@ def session_of(script: Script) -> Session:
     try:
         session = Session.open(script.source)
     except ModelError as error:
-        raise ScriptError(f"{script.path} line {script.lines[0][0]}: {error}") from None
-    session.notice = " ".join(filter(None, (session.notice, different)))
+        raise ScriptError(
+            tr("{file} line {line}: {error}", file=script.path, line=script.lines[0][0], error=error)
+        ) from None
+    session.notice = joined((session.notice, different))
     return session
 
 
@@ -41,18 +44,19 @@ def check_mods(script: Script) -> str:
     here = _loaded_mods()
     if missing := [f"{name} {version}" for name, version in script.mods.items() if name not in here]:
         raise ScriptError(
-            f"{script.path} was recorded with the mod {', '.join(missing)}, which is not loaded; name its folder:"
-            " --mods FOLDER."
+            tr(
+                "{file} was recorded with mods that are not loaded: {mods}. Name their folder: --mods FOLDER.",
+                file=script.path,
+                mods=", ".join(missing),
+            )
         )
-    others = [
-        f"{name} {version} {f'instead of {script.mods[name]}' if name in script.mods else 'besides'}"
-        for name, version in here.items()
-        if version != script.mods.get(name)
-    ]
+    others = [f"{name} {version}" for name, version in here.items() if version != script.mods.get(name)]
     if not others:
         return ""
-    return (
-        f"{script.path} was recorded with other mods, there is now {', '.join(others)}: it may play otherwise."
+    return tr(
+        "{file} was recorded without the mods {mods} that are loaded now, so it may run differently.",
+        file=script.path,
+        mods=", ".join(others),
     )
 
 
@@ -64,9 +68,12 @@ def _loaded_mods() -> dict[str, str]:
 def play(script: Script, session: Session | None = None) -> list[Failure]:
     """Play all lines in a session (None: that of the header); returns failed expectations. Raises ScriptError."""
     session = session or session_of(script)
-    return [
-        failure for number, entry in script.lines[1:] for failure in play_line(script, number, entry, session)
-    ]
+    with spoken(script.language or language()):
+        return [
+            failure
+            for number, entry in script.lines[1:]
+            for failure in play_line(script, number, entry, session)
+        ]
 
 
 # --- recording -------------------------------------------------------------------------------------------
@@ -79,7 +86,8 @@ class Recorder:
         self._file = file
         self._session = session
         session.on_press, session.on_resize = self._pressed, self._resized
-        self._write({**HEADER, "model": model, "mods": _loaded_mods()})
+        spoken = {"language": language()} if language() != ENGLISH else {}
+        self._write({**HEADER, "model": model, "mods": _loaded_mods(), **spoken})
         self._resized()
         self._write({"action": "fit"})
 
@@ -112,6 +120,10 @@ class Recorder:
             with suppress(OSError):
                 self._file.close()  # else its end would try again
             self._session.on_press = self._session.on_resize = None
-            said = f"The recording ends here: {self._file.name} cannot be written: {error.strerror}."
+            said = tr(
+                "The recording ends here: {file} cannot be written: {reason}.",
+                file=self._file.name,
+                reason=error.strerror,
+            )
             self._session.notice = said
             LOG.warning(said)

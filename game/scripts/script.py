@@ -2,8 +2,8 @@
 
 The first line is a header, {"format": "pinjoint session", "version": 1, "model": "isostatic"} (a bundled
 name, a path relative to the script, or a whole document; left out: an empty model), perhaps with a "title" and
-a "description", and the "mods" that it was recorded with, {"wind": "1.0"}, without which it is not played. Every
-further line does one thing:
+a "description", the "mods" that it was recorded with, {"wind": "1.0"}, without which it is not played, and the
+"language" of a recording, "pt", unless that is English. Every further line does one thing:
 
     {"press": "space"}                          a key; "over": [x, y] first moves the pointer there (m)
     {"click": [1.0, 1.0]}                       at a point of the model (m); "button": "ctrl+click"
@@ -38,12 +38,13 @@ from importlib.resources.abc import Traversable
 from pathlib import Path
 from typing import Any
 
+from components.language import ENGLISH, LANGUAGES, tr
 from components.mistake import Mistake
 from components.suggestions import remedy
 from components.wording import as_json, cut
 
 HEADER = {"format": "pinjoint session", "version": 1}
-_HEADER_KEYS = (*HEADER, "model", "title", "description", "mods")
+_HEADER_KEYS = (*HEADER, "model", "title", "description", "mods", "language")
 EMPTY = {"format": "pinjoint model", "version": 1}
 
 
@@ -81,12 +82,13 @@ def _found(source: str | Path) -> Path | Traversable:
 class Script:
     """A script read from a file, or a lesson by its name, ready to be played in a session.
 
-    title, description: from its header, or "". mods: versions, by name, of those that it was recorded with; None: the
-    header says nothing of mods. has_data: whether a folder is chosen in which the script saves and
-    loads; else it must be kept away from the models that the person saved.
+    title, description: from its header, or "". language: in which it is played, since a recording says where panels and
+    menus were hit, which are as wide as their words; "": any. mods: versions, by name, of those that it was recorded with;
+    None: the header says nothing of mods. has_data: whether a folder is chosen in which the script saves and loads; else
+    it must be kept away from the models that the person saved.
     """
 
-    has_data = False
+    has_data, language = False, ""
 
     def __init__(self, source: str | Path) -> None:
         self.path = _found(source)
@@ -94,22 +96,54 @@ class Script:
         header = self.lines[0][1] if self.lines else {}
         if header.get("format") != HEADER["format"]:
             form = json.dumps({**HEADER, "model": "isostatic"})
-            raise ScriptError(f"{source}: its first line must be like {form}.")
+            raise ScriptError(tr("{file}: write the first line like {form}.", file=source, form=form))
         if header.get("version") != HEADER["version"]:
             raise ScriptError(
-                f"{source}: version {as_json(header.get('version'))} is not known; update Pinjoint."
+                tr(
+                    "{file}: this program cannot read version {version}; update Pinjoint.",
+                    file=source,
+                    version=as_json(header.get("version")),
+                )
             )
         for key in header:
             if key not in _HEADER_KEYS:
                 raise ScriptError(
-                    f"{source} line 1: there is no '{cut(key)}'; use one of {', '.join(_HEADER_KEYS)}."
+                    tr(
+                        "{file} line 1: there is no '{key}'; use one of {keys}.",
+                        file=source,
+                        key=cut(key),
+                        keys=", ".join(_HEADER_KEYS),
+                    )
                 )
         if not isinstance(model := header.get("model", EMPTY), str | dict):
-            raise ScriptError(f"{source} line 1: model is {as_json(model)}; write a name or a document.")
+            raise ScriptError(
+                tr(
+                    "{file} line 1: model is {value}; write the name of a model, or a whole model.",
+                    file=source,
+                    value=as_json(model),
+                )
+            )
         self.mods: dict[str, str] | None = header.get("mods")
         if self.mods is not None and not _are_mods(self.mods):
+            value = as_json(self.mods)
             raise ScriptError(
-                f'{source} line 1: mods is {as_json(self.mods)}; write names and versions, {{"wind": "1.0"}}.'
+                tr(
+                    "{file} line 1: mods is {value}; write names and versions, such as {form}.",
+                    file=source,
+                    value=value,
+                    form='{"wind": "1.0"}',
+                )
+            )
+        recorded = any("pixel" in entry for _, entry in self.lines)
+        self.language = header.get("language", ENGLISH if recorded else "")
+        if self.language not in ("", *LANGUAGES):
+            raise ScriptError(
+                tr(
+                    "{script} line 1: the language is {code}; write one of {languages}.",
+                    script=source,
+                    code=as_json(self.language),
+                    languages=", ".join(LANGUAGES),
+                )
             )
         self.title, self.description = (str(header.get(key, "")) for key in ("title", "description"))
 
@@ -125,25 +159,51 @@ class Script:
         try:
             text = self.path.read_text(encoding="utf-8-sig")
         except FileNotFoundError:
-            known = [*lessons_with_tasks(), *lessons()]
-            reason = f"There is no file and no lesson '{self.path}'; {remedy(str(self.path), known)}"
-            raise ScriptError(reason) from None
+            near = remedy(str(self.path), [*lessons_with_tasks(), *lessons()])
+            raise ScriptError(
+                tr("There is no file and no lesson '{file}'; {remedy}", file=self.path, remedy=near)
+            ) from None
         except OSError as error:
-            raise ScriptError(f"{self.path} cannot be read: {error.strerror}. Check its path.") from None
+            raise ScriptError(
+                tr("{file} cannot be read: {reason}. Check its path.", file=self.path, reason=error.strerror)
+            ) from None
         except UnicodeDecodeError as error:
-            raise ScriptError(f"{self.path} is no script in UTF-8: {error}.") from None
+            raise ScriptError(
+                tr("{file} is not in UTF-8 ({error}); save it in UTF-8.", file=self.path, error=error)
+            ) from None
         for number, line in enumerate(text.splitlines(), start=1):
             if not line.strip() or line.lstrip().startswith("#"):
                 continue
             try:
                 entry = json.loads(line)
             except RecursionError:
-                raise ScriptError(f"{self.path} line {number}: this is nested too deeply.") from None
+                raise ScriptError(
+                    tr(
+                        "{file} line {line}: this is nested too deeply; write it simpler.",
+                        file=self.path,
+                        line=number,
+                    )
+                ) from None
             except ValueError as error:  # also numbers of thousands of digits
                 reason = getattr(error, "msg", str(error))
-                raise ScriptError(f"{self.path} line {number}: this is not JSON ({reason}).") from None
+                raise ScriptError(
+                    tr(
+                        "{file} line {line}: this is not JSON ({reason}); correct it.",
+                        file=self.path,
+                        line=number,
+                        reason=reason,
+                    )
+                ) from None
             if not isinstance(entry, dict):
-                raise ScriptError(f'{self.path} line {number}: write an object, such as {{"press": "space"}}.')
+                form = '{"press": "space"}'
+                raise ScriptError(
+                    tr(
+                        "{file} line {line}: write an object, such as {form}.",
+                        file=self.path,
+                        line=number,
+                        form=form,
+                    )
+                )
             yield number, entry
 
     @property

@@ -74,10 +74,10 @@ def heading(model: Model, selected: Sequence[Handle]) -> str:
     if len(selected) == 1:
         return model.describe(selected[0])
     counts = Counter(handle.noun for handle in selected)
-    return joined((_counted(noun, count) for noun, count in counts.items()), ", ")
+    return joined((counted(noun, count) for noun, count in counts.items()), ", ")
 
 
-def _counted(noun: str, count: int) -> str:
+def counted(noun: str, count: int) -> str:
     """So many elements of a kind: "2 particles"."""
     if noun == Particle.noun:
         return plural("{count} particle", "{count} particles", count)

@@ -125,14 +125,14 @@ _BY_PURPOSE: dict[str, tuple[Binding, ...]] = {
         Binding("k", "force method", (PAUSE,), marked("force method")),
     ),
     marked("Force method"): (
-        Binding("k", "next part", (FORCE_METHOD,), marked("next part")),
+        Binding("k", "next part", (FORCE_METHOD,), marked("go to the next part")),
         Binding("click", "pick unknown", (FORCE_METHOD,), marked("choose the redundant in set 1")),
         Binding("n", "release another", (FORCE_METHOD,), marked("release one more redundant")),
         Binding("x", "release x", (FORCE_METHOD,), marked("release the support along x")),
         Binding("y", "release y", (FORCE_METHOD,), marked("release the support along y")),
         Binding("m", "release moment", (FORCE_METHOD,), marked("release the moment of the clamp")),
-        Binding("c", "next convention", (FORCE_METHOD,), marked("convention: textbook or thesis")),
-        Binding("p", "report", (FORCE_METHOD,), marked("report of the solution as a PDF")),
+        Binding("c", "next convention", (FORCE_METHOD,), marked("change the convention: textbook or thesis")),
+        Binding("p", "report", (FORCE_METHOD,), marked("save a report of the solution as a PDF")),
         Binding("i", "toggle diagrams of sets", (FORCE_METHOD,), marked("show or hide force diagrams")),
         Binding("escape", "back", (FORCE_METHOD,), marked("leave the force method")),
     ),
@@ -355,7 +355,7 @@ def key_named(text: str) -> str:
     name = ALSO_CALLED.get(name, name)
     known = {binding.key.removeprefix("ctrl+").removeprefix("shift+") for binding in BINDINGS} | {*UNBOUND}
     if len(name) != 1 and name not in known:
-        raise ValueError(missing("keys", text, sorted(key for key in known if len(key) > 1)))
+        raise ValueError(missing(marked("keys"), text, sorted(key for key in known if len(key) > 1)))
     if len(name) == 1 and "ctrl+" not in held:
         held.clear()
     return "".join(sorted(held)) + name  # ctrl comes before shift

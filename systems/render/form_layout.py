@@ -12,7 +12,7 @@ from components.box import Box
 from components.camera import Rectangle, Viewport
 from components.field import Vector
 from components.form import Form, Reading, Tile
-from components.language import marked, tr
+from components.language import marked, tr, tr_in
 from systems.render.typography import font_size, in_rows, text_width, wrapped
 
 WIDEST = 1500.0  # points that tiles spread over
@@ -20,6 +20,7 @@ EDGE, CLOSE_EDGE, SLIM = 16.0, 10.0, 325.0  # points around all; in a viewport l
 LOW = 330.0  # points: a viewport less high does without explanations
 
 TITLE, BOX, BELOW = 18.0, 26.0, 10.0  # points: title above a box, the box, to what follows
+BOX_TITLE = 11.5  # points, size of type
 PROBLEM = 14.0  # points that the reason for which a box is refused takes below it
 READING, MOST_READINGS = 20.0, 0.4  # points of a row; share of the height that they take without being scrolled
 MESSAGE, MESSAGE_LINE = 12.0, 16.0  # points, size of type and distance of lines of a message or explanation
@@ -113,7 +114,7 @@ def lay_out(form: Form, viewport: Viewport, unit: float) -> FormLayout:
         top = accept.bottom + 22.0 * u
         rows = list(_tile_rows(form, width / u))
     else:
-        rows = list(_box_rows(form, width / u))
+        rows = list(_box_rows(form, width / u, u))
     readings = list(_reading_rows(form))
     if len(readings) * READING * u > MOST_READINGS * (bottom - top):
         rows, readings = readings + rows, []
@@ -232,14 +233,25 @@ def _reading_rows(form: Form) -> Iterator[Row]:
         yield from in_rows(list(readings), 1)
 
 
-def _box_rows(form: Form, width: float) -> Iterator[Row]:
-    """Sections and boxes: the two components of a vector share a row, and so do single boxes."""
+def _box_rows(form: Form, width: float, u: float) -> Iterator[Row]:
+    """Sections and boxes: the two components of a vector share a row, and so do single boxes, if their titles fit."""
     half = (width - COLUMN_GAP) / 2
     for section, boxes in groupby(form.boxes, lambda box: box.section):
         if section != form.heading.text or len(form.readings):
             yield section if section != form.heading.text else PROPERTIES
-        for vector, partners in groupby(boxes, _partner):
-            yield from in_rows(list(partners), 2 if half >= (NARROWEST if vector else NARROW) else 1)
+        for (vector, short), partners in groupby(boxes, lambda box: (_partner(box), _is_short(box, half, u))):
+            yield from in_rows(list(partners), 2 if short and half >= (NARROWEST if vector else NARROW) else 1)
+
+
+def _is_short(box: Box, width: float, u: float) -> bool:
+    """True if the title of a box stands whole above it in so many points, with what is noted of its value."""
+    said = f"{box.said_title} {short_note(box.note)}".rstrip()
+    return text_width(said, font_size(BOX_TITLE, u)) + 8.0 * u * bool(box.note) <= width * u
+
+
+def short_note(note: str) -> str:
+    """What is noted of the value of a box, where there is little room."""
+    return note.replace(tr("automatic"), tr_in("note of a box", "auto"))
 
 
 def _partner(box: Box) -> str:
@@ -320,7 +332,8 @@ def _placed(
     elif isinstance(row[0], Box):
         gap = COLUMN_GAP * u
         half = (width - gap) / 2
-        each = half if len(row) > 1 or half >= NARROW * u else width
+        alone = half < NARROW * u or not _is_short(row[0], half / u, u)
+        each = width if alone and len(row) == 1 else half
         for column, box in enumerate(row):
             yield Place(left + column * (each + gap), top + TITLE * u, each, BOX * u, box)
     elif _are_pills(row):

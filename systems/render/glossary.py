@@ -129,7 +129,7 @@ TERMS: tuple[tuple[str, str, str], ...] = (
     ),
     (
         marked("exact theory"),
-        marked("geometrically nonlinear theory"),
+        marked("nonlinear theory"),
         marked("Equilibrium in the deformed shape, however large the displacements are."),
     ),
     (

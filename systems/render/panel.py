@@ -7,9 +7,10 @@ import numpy as np
 from components.box import NAME, NUMBER, WORD, Box, number_and_unit
 from components.camera import Rectangle, Viewport
 from components.form import Form, Reading, Tile
-from components.language import begun, tr, tr_in
+from components.language import begun, tr
 from components.view import BETWEEN, View
 from systems.render.form_layout import (
+    BOX_TITLE,
     CAPTION,
     HINT,
     MESSAGE,
@@ -20,6 +21,7 @@ from systems.render.form_layout import (
     explanation_type,
     lay_out,
     message_lines,
+    short_note,
 )
 from systems.render.help import draw_help
 from systems.render.marks import Fills, Mark, Panel, Picture, Stamps, Text, boxes, cross
@@ -28,6 +30,7 @@ from systems.render.thumbnails import thumbnail
 from systems.render.typography import at_most, fitting, font_size, shortened, text_width, wrapped
 
 _TEXT = 13.0  # points, size of type in a box
+_HEADING = (19.0, 16.0, 14.0)  # points, the largest that fits
 _SMALL, _GAP = 11.0, 4.0  # points: size of type of units and notes, between a number and its unit
 _PAD = 8.0  # points between a box's edge and its text
 
@@ -70,8 +73,11 @@ class _Writer:
     def header(self) -> list[Mark]:
         """The heading, and the message below the boxes that stay."""
         layout, heading = self.layout, self.form.heading
-        size, small, u = self.font(19.0), self.font(MESSAGE), self.unit
-        text = shortened(begun(tr(heading.text)), layout.heading_width, size, "semibold")
+        small, u, said = self.font(MESSAGE), self.unit, begun(tr(heading.text))
+        sizes = [self.font(points) for points in _HEADING]
+        fitting_sizes = (s for s in sizes if text_width(said, s, "semibold") <= layout.heading_width)
+        size = next(fitting_sizes, sizes[-1])
+        text = shortened(said, layout.heading_width, size, "semibold")
         marks: list[Mark] = [Text(text, layout.left, layout.header, size, self.theme.text, "semibold")]
         for number, line in enumerate(message_lines(self.form, layout.right - layout.left, u)):
             y = layout.message + number * MESSAGE_LINE * u
@@ -159,7 +165,7 @@ class _Writer:
         ]
 
     def _box(self, place: Place, box: Box) -> list[Mark]:
-        u, theme, size = self.unit, self.theme, self.font(11.5)
+        u, theme, size = self.unit, self.theme, self.font(BOX_TITLE)
         above, below = place.top - 9.0 * u, place.bottom + 9.0 * u
         marks = [*self._frame(place, box is self.selected, box is self.hovered), *self._contents(place, box)]
         if box.target != "name":
@@ -167,7 +173,7 @@ class _Writer:
             if self._has_room_for_unit(place, box):
                 unit = "" if box.changed or self._has_room_for_note(place, box) else box.note
                 if text_width(f"{box.said_title} {unit}", size) + 8.0 * u > place.width:
-                    unit = unit.replace(tr("automatic"), tr_in("note of a box", "auto"))
+                    unit = short_note(unit)
             taken = text_width(unit, size) + 8.0 * u if unit else 0.0
             title = shortened(box.said_title, place.width - taken, size)
             marks.append(Text(title, place.left, above, size, theme.muted))
@@ -237,7 +243,7 @@ class _Writer:
         u, theme, size, small = self.unit, self.theme, self.font(12.5), self.font(11.0)
         middle, left = place.middle[1], place.left + 40.0 * u
         room = place.right - left - 6.0 * u
-        x, title = place.left + 21.0 * u, shortened(tr(tile.title), room, size, "semibold")
+        x, title = place.left + 21.0 * u, shortened(tile.title, room, size, "semibold")
         at = np.array([[x, middle]])
         return [
             *self._card(place, tile, 8.0 * u),
@@ -274,7 +280,7 @@ class _Writer:
     def _legend(self, tile: Tile, left: float, top: float, width: float) -> list[Mark]:
         """The title in at most two lines, and the caption if one is enough."""
         u, theme, size, small = self.unit, self.theme, self.font(12.5), self.font(11.0)
-        lines = at_most(wrapped(tr(tile.title), width, size, "semibold"), 2, width, size, "semibold")
+        lines = at_most(wrapped(tile.title, width, size, "semibold"), 2, width, size, "semibold")
         marks: list[Mark] = [
             Text(line, left, top + (13.0 + 15.5 * number) * u, size, theme.text, "semibold")
             for number, line in enumerate(lines)

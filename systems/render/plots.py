@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 
 from components import written
 from components.field import Vector
+from components.language import several
 from components.round_numbers import round_up
 from components.view import Plot
 from systems.render.marks import Mark, Panel, Points, Stamps, Strokes, Text
@@ -127,7 +128,7 @@ class _Drawing:
             if len(points) and distance.min() <= reach:
                 at, reach = int(distance.argmin()), float(distance.min())
                 pixel = float(points[at, 0]), float(points[at, 1])
-                found = pixel, f"{written.given(x[at], 4)}, {written.given(y[at], 4)}", colour
+                found = pixel, several((written.given(x[at], 4), written.given(y[at], 4))), colour
         return found
 
 

@@ -181,7 +181,7 @@ class Simulation:
                 collides = any(system.impulsive for system in self.plan)
                 parted = part_overlaps(self.model) if collides else ""  # what edits left in one place
                 self.program.commit()  # rods that edits left beyond a strength yield
-                self.note = " ".join(filter(None, [self.programs.note, parted, idle_moment(self.model)]))
+                self.note = joined([self.programs.note, parted, idle_moment(self.model)])
                 self._account.close()
                 self._sleep.review(self.program)
                 self.step_size.begin(self.step_size.first())

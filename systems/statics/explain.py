@@ -20,10 +20,13 @@ ONE_WAY = 1e-3  # ratio of a particle's motions across and along, below which it
 
 def listed(names: Sequence[str]) -> str:
     """Up to NAMED names, as in "B, C and D", and the number of the others."""
-    shown = [cut(name) for name in names[:NAMED]]
-    if len(names) > NAMED:
-        return tr("{names} and {count} more", names=", ".join(shown), count=len(names) - NAMED)
-    return language.listed(shown)
+    return _few([cut(name) for name in names])
+
+
+def _few(parts: Sequence[str]) -> str:
+    if len(parts) > NAMED:
+        return tr("{names} and {count} more", names=joined(parts[:NAMED], ", "), count=len(parts) - NAMED)
+    return language.listed(parts)
 
 
 def rod_names(model: Model, rows: Rows) -> str:
@@ -56,8 +59,8 @@ def slack_named(model: Model, slack: Flags) -> str:
 def divide_named(model: Model, rows: Rows, parts: Rows) -> str:
     """A sentence about rods that bend within themselves, and into how many to divide each; parts: of all rods."""
     names = model.rods.column("name")
-    into = listed(
-        [tr("{rod} into {parts}", rod=str(names[row]), parts=int(parts[row])) for row in rows.tolist()]
+    into = _few(
+        [tr("{rod} into {parts}", rod=cut(str(names[row])), parts=int(parts[row])) for row in rows.tolist()]
     )
     return plural(
         "{rods} bends more between its ends than one rod can follow. Divide {parts}, with"

@@ -123,7 +123,7 @@ def test_saved_and_loaded_and_continued_is_the_same(tmp_path) -> None:  # type: 
 def test_a_moment_that_can_turn_nothing_is_told_with_the_remedy() -> None:
     session = portal(hinged=[True, True])
     session.run(steps=10)
-    assert "Particle B: a moment of 1.5 kN·m acts on it, but there are no rigid rod ends" in session.message
+    assert "Particle B: a moment of 1.5 kN·m acts on it, but no rod is rigidly joined to it" in session.message
     session.rods["AB"].hinged = (True, False)
     session.loads[0].moment = 0.0
     session.run(steps=10)
@@ -136,7 +136,7 @@ def test_a_moment_that_can_turn_nothing_is_told_with_the_remedy() -> None:
         ({"bending_stiffness": float("nan")}, "rod AB.*bending stiffness is nan; it must be a finite number"),
         ({"bending_stiffness": float("inf")}, "bending stiffness is inf"),
         ({"bending_stiffness": -1.0}, "bending stiffness is -1 kN·m²; it must be at least 0"),
-        ({"second_moment": 0.0}, "second moment is 0 m⁴; it must be greater than 0|not that of IPE 200"),
+        ({"second_moment": 0.0}, "second moment is 0 m⁴; it must be greater than 0|IPE 200 has another value"),
         ({"hinged": [True]}, r"hinged has 1 entries; it must have two, \[start, end\]"),
         ({"hinged": "yes"}, r"hinged is 'yes'; it must be a pair of true or false, \[start, end\]"),
         ({"hinged": [1, 0]}, "must be true or false"),

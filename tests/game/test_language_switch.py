@@ -4,9 +4,12 @@ from __future__ import annotations
 
 import pytest
 
-from components.language import language
+from components.language import language, spoken
 from game.documents.preferences import CONFIG_VARIABLE, preferred_language
+from game.editor.scenes.form import FormScene
 from game.session import Session
+from systems.render.picture import compose_all
+from systems.render.theme import load_theme
 
 
 def test_f2_goes_from_language_to_language_and_begins_again():
@@ -28,7 +31,9 @@ def test_what_was_typed_into_a_form_stays(scene):
     session.press("ctrl+a")
     session.type("12.")
     session.press("f2")
-    form = session.scenes.active.form
+    scene_of_form = session.scenes.active
+    assert isinstance(scene_of_form, FormScene)
+    form = scene_of_form.form
     assert form.selected is not None
     assert form.selected.text == "12."
     session.press("escape")
@@ -52,3 +57,22 @@ def test_a_window_remembers_the_choice(monkeypatch, tmp_path):
     assert app.render.drawn
     assert preferred_language() == "pt"
     app.close()
+
+
+def test_boxes_show_and_take_a_comma_in_portuguese_and_give_scripts_the_point():
+    session = Session.open("isostatic")
+    with spoken("pt"):
+        session.click(1.0, 1.0)
+        session.act("properties")
+        session.click_box("load x")
+        session.press("ctrl+a")
+        session.type("12,5")
+        texts = [text for picture in compose_all(session.stages, load_theme()) for text in picture.texts]
+        assert "12,5" in texts
+        session.press("ctrl+a")
+        session.press("ctrl+x")
+        assert session.clipboard == "12,5"
+        session.press("ctrl+v")
+        session.press("return")
+        assert session.scenes.active.boxes["load x"] == "12.5"
+    assert session.particles["B"].force[0] == 12.5

@@ -214,8 +214,8 @@ def test_what_a_shape_says_is_collided_with_and_what_fails_switches_the_mod_off(
     ("shape", "said"),
     [
         ("raise KeyError('gone')", "the shape of gates failed: KeyError"),
-        ("return 3", "the shape of gates failed: TypeError: as_pieces returned 3, not Pieces"),
-        ("return Pieces(np.zeros((1, 2, 3)), np.zeros(1, dtype=int))", "ends of shape"),
+        ("return 3", "the shape of gates failed: TypeError: as_pieces returned 3; it must return Pieces"),
+        ("return Pieces(np.zeros((1, 2, 3)), np.zeros(1, dtype=int))", "`ends` has the shape"),
         ("return Pieces(np.full((1, 2, 2), np.nan), np.zeros(1, dtype=int))", "not finite"),
         ("return Pieces(np.zeros((1, 2, 2)), np.array([7]))", "row 7"),
         ("return Pieces(np.zeros((1, 2, 2)), np.array([0]), radius=-1.0)", "radius"),
@@ -236,13 +236,13 @@ def test_a_shape_that_fails_switches_the_mod_off(write_mod: Write, shape: str, s
 @pytest.mark.parametrize(
     ("change", "said"),
     [
-        (('"gates"', '"rods"'), "its table 'rods' is missing or taken"),
+        (('"gates"', '"rods"'), "its table 'rods' is missing or already used"),
         (('"gates"', '"settings of mine"'), "cannot be the name of a table"),
         (('"gates"', '"execute"'), "cannot be the name of a table"),
-        (('"gate",', '"rod",'), "its noun 'rod' is missing or taken"),
-        (('"foot", "top"', '"foot", "tip"'), "its point 'tip' is no Field"),
+        (('"gate",', '"rod",'), "its noun 'rod' is missing or already used"),
+        (('"foot", "top"', '"foot", "tip"'), "its point 'tip' must be one of its Fields"),
         (("    name:", "    label:"), "needs a Field 'name'"),
-        (("Role.STATE", "Role.DERIVED"), "derived columns cannot be added"),
+        (("Role.STATE", "Role.DERIVED"), "cannot add derived columns"),
         (
             ("    name:", "    wide: Field[float] = Field(title='width', doc='', above=0.0)\n    name:"),
             r"Gate\.wide, its default: width is 0; it must be greater than 0\. With nullable=True",

@@ -9,6 +9,7 @@ from hypothesis import given as generated
 from hypothesis import strategies as st
 
 from components import written
+from components.language import english, spoken
 
 
 @pytest.mark.parametrize(
@@ -97,3 +98,22 @@ def test_the_pace_and_rulers() -> None:
 )
 def test_a_sum_adds_up_as_it_is_written(terms: list[float], text: str) -> None:
     assert written.total(terms) == text
+
+
+def test_numbers_are_written_with_the_signs_of_the_language_and_known_in_english():
+    def all_kinds() -> list[str]:
+        return [
+            *(written.number(-28.2843), written.number(1.2345e-7), written.given(0.5), written.given(120.0)),
+            *(written.force(-70.71), written.moment(0.5), written.displacement(0.012), written.strain(0.0012)),
+            *(written.total([20.123, -140.123, 120.0]), written.time(0.001234), written.share(0.869)),
+        ]
+
+    in_english = all_kinds()
+    with spoken("pt"):
+        said = all_kinds()
+        assert said == [text.replace(".", ",") for text in in_english]
+        assert [english(text) for text in said] == in_english
+        assert written.place((1.205, -1.6)) == "(120,5; −160) cm"
+        assert written.vector((120.0, -160.0)) == "(120; −160)"
+        assert english(written.place((1.205, -1.6))) == "(120.5, −160) cm"
+        assert english(written.pace(0.00035)) == "1 s shown = 0.35 ms simulated"

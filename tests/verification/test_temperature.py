@@ -151,6 +151,6 @@ def test_from_the_command_line_and_in_a_file(capsys: pytest.CaptureFixture[str])
 
 def test_a_rod_cannot_cool_to_nothing() -> None:
     session = Session.open(between_walls())
-    with pytest.raises(FieldError, match="rod AM: a temperature change of -90000 K leaves it no length"):
+    with pytest.raises(FieldError, match="rod AM: a temperature change of -90000 K would leave it no length"):
         session.rods["AM"].temperature_change = -90000.0
     assert session.rods["AM"].temperature_change == 0.0

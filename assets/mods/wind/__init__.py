@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 
-from game.api import App, Component, Context, Environment, Field, Law, Model, Particle, Readout, compiled
+from game.api import App, Component, Context, Environment, Field, Law, Model, Particle, Readout, compiled, tr
 
 DENSITY = 1.2  # kg/m³, of air
 
@@ -42,7 +42,7 @@ class Push(Law):
 
 def panel(session: Context) -> Readout:
     speed = math.hypot(*session.environment.wind_velocity)
-    return Readout("Wind", (("speed", f"{speed:.3g} m/s"),))
+    return Readout(tr("Wind"), ((tr("speed"), tr("{speed:.3g} m/s", speed=speed)),))
 
 
 def plugin(app: App) -> None:

@@ -11,9 +11,7 @@ from components.field import Vector
 from components.grid import Grid
 from components.handle import Handle
 from components.language import begun, listed, marked, plural, tr
-from components.load import Load
 from components.particle import Particle
-from components.rod import Rod
 from game.editor.clipboard import Part, as_text, part_in, part_of, paste, selected_rows
 from game.editor.context import Context, action
 from systems.edit import Refusal
@@ -22,7 +20,7 @@ from systems.edit.picking import pick_particle
 from systems.edit.placing import place, snapped
 from systems.edit.rods import delete
 from systems.edit.supports import next_support
-from systems.forms.properties import heading
+from systems.forms.properties import counted, heading
 
 
 @action("place", while_drawing=True)
@@ -51,19 +49,10 @@ def _delete(context: Context, pixel: Vector) -> None:
     if sum(gone.values()) == 1:
         context.notice = tr("{element} deleted.", element=named)
     else:
-        counted = [_counted(context.model.tables[name].kind, count) for name, count in gone.items() if count]
-        context.notice = tr("{elements} deleted.", elements=listed(counted))
-
-
-def _counted(kind: type[Handle], count: int) -> str:
-    """A number of elements of a kind, such as "2 rods"."""
-    if kind is Particle:
-        return plural("{count} particle", "{count} particles", count)
-    if kind is Rod:
-        return plural("{count} rod", "{count} rods", count)
-    if kind is Load:
-        return plural("{count} load", "{count} loads", count)
-    return f"{count} {tr(kind.noun if count == 1 else kind.table)}"
+        elements = [
+            counted(context.model.tables[name].kind.noun, count) for name, count in gone.items() if count
+        ]
+        context.notice = tr("{elements} deleted.", elements=listed(elements))
 
 
 @action("support")

@@ -11,7 +11,7 @@ import numpy as np
 
 from components.camera import Camera, Viewport
 from components.field import Vector
-from components.language import tr
+from components.language import joined, tr
 from components.model import Model
 from components.settings import Settings
 from components.slider import SliderStack
@@ -35,7 +35,7 @@ LEAST_WIDTH, LEAST_HEIGHT, LEAST_LOW = 140.0, 160.0, 90.0  # points of a set; be
 HIGH = 340.0  # points of a set in which a slider has room below supports and reactions
 MOVED = 0.08  # of the size of a structure: about what drawn displacements add to it
 LEAST_EXPLAINED = 300.0  # points of a window; lower ones have no legend
-_NOTHING = (-1, False)  # no part is shown yet
+_NOTHING = (-1, False, "")  # no part is shown yet
 CAPTION, SCALE, MARGIN = 66.0, 48.0, 40.0  # points above, below (its slider), at most about a structure
 
 
@@ -164,7 +164,7 @@ class ForceMethod(Scene):
         part = tr("Part {part} of {parts}", part=guide.part, parts=PARTS) if guide else tr("Not possible")
         if self._work is not None:
             self._head.heading, part = self._work.text, tr("Working")
-        hint = f"{tr('still moving')}{BETWEEN}{self.hint(context)}" if self._moving() else self.hint(context)
+        hint = joined([tr("still moving") if self._moving() else "", self.hint(context)], BETWEEN)
         self._foot.status = Status(time=None, state=part, hint=hint)
         self._foot.page = self._working()
         self._head.legend = context.view.legend and whole.height >= LEAST_EXPLAINED * ratio
@@ -173,7 +173,7 @@ class ForceMethod(Scene):
         wanted = page_height(self._foot.page, whole.width, ratio)
         foot = min(wanted, round(MOST_OF_HEIGHT * whole.height))
         if foot < wanted:
-            self._foot.status = replace(self._foot.status, hint=f"{tr('Wheel more rows')}{BETWEEN}{hint}")
+            self._foot.status = replace(self._foot.status, hint=joined([tr("Wheel more rows"), hint], BETWEEN))
         middle = Viewport(whole.left, whole.top + head, whole.width, max(whole.height - head - foot, 1))
         _place(self._head, Viewport(whole.left, whole.top, whole.width, head), ratio)
         _place(self._foot, Viewport(whole.left, middle.top + middle.height, whole.width, foot), ratio)
@@ -190,9 +190,10 @@ class ForceMethod(Scene):
         guide = self.shown_guide
         if guide is None:
             return Page()
-        if (guide.part, guide.in_thesis) != self._page_of:
+        shown = (guide.part, guide.in_thesis, guide.quantity)
+        if shown != self._page_of:
             self._page = Page(words.working(guide), words.table(guide))
-            self._page_of, self._first = (guide.part, guide.in_thesis), 0
+            self._page_of, self._first = shown, 0
         return replace(self._page, first=self._first)
 
     def _sets(self, context: Context, middle: Viewport, ratio: float) -> list[tuple[Model, View]]:
@@ -215,7 +216,7 @@ class ForceMethod(Scene):
                 _fit(model, view)
             view.caption = captions[index]
             shown.append((model, view))
-        if self.shown_guide is not None:
+        if self.shown_guide is not None and not self.shown_guide.is_frame:
             control = scale_control(self.shown_guide.sets[0].model.settings)
             high = shown[0][1].camera.viewport.height >= HIGH * ratio
             for number, (_, view) in enumerate(shown):

@@ -6,11 +6,11 @@ from collections.abc import Sequence
 from dataclasses import replace
 from typing import ClassVar
 
-from components.box import NAME, WORD, Box
+from components.box import NAME, NUMBER, WORD, Box
 from components.camera import Camera, Viewport
 from components.field import Vector
 from components.form import Form, Tile
-from components.language import english, joined
+from components.language import decimals, english, joined, marked, tr
 from components.suggestions import missing
 from game.editor.context import Context, Scene
 from systems.forms import typing
@@ -186,16 +186,16 @@ class FormScene(Scene):
         return Texts((english(box.title), box.text) for box in self.form.boxes)
 
     def click_box(self, context: Context, title: str) -> None:
-        """Select the box with that title, as a click on it does. Raises LookupError."""
+        """Select the box with that title, in English or as it is shown, as a click on it does. Raises LookupError."""
         wanted = title.strip().lower()
         wanted = FORMER.get(wanted, wanted)
         for box in self.form.boxes:
-            if english(box.title).lower() == wanted:
+            if wanted in (english(box.title).lower(), tr(box.title).lower()):
                 self.reveal(context, box)
                 typing.select(self.form, box)
                 return
         titles = [english(box.title) for box in self.form.boxes]
-        raise LookupError(missing("boxes", title, titles))
+        raise LookupError(missing(marked("boxes"), title, titles))
 
     def scroll(self, context: Context, rows: int) -> None:
         """Scroll by a number of rows."""
@@ -225,9 +225,9 @@ class FormScene(Scene):
     # --- clipboard ---------------------------------------------------------------------------------
 
     def copy(self, context: Context) -> None:
-        """Put the text of the selected box on the clipboard."""
-        if self.form.selected is not None:
-            context.clipboard = self.form.selected.text
+        """Put the text of the selected box on the clipboard, numbers as other programs of the language write them."""
+        if (box := self.form.selected) is not None:
+            context.clipboard = decimals(box.text) if box.accepts == NUMBER else box.text
 
     def cut(self, context: Context) -> None:
         """Copy, then empty the box."""

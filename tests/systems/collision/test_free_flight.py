@@ -234,7 +234,7 @@ def test_a_collision_state_that_makes_no_sense_is_refused(change: dict[str, Any]
     session.run(time=0.1)
     saved = document(session.model)
     saved["state"]["collision_state"] |= change
-    with pytest.raises(ValueError, match=r"collision_state.*: it is not what a saved run holds"):
+    with pytest.raises(ValueError, match=r"collision_state.*: this is not what Pinjoint saves here"):
         Session.open(saved)
 
 

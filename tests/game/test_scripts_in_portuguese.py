@@ -1,0 +1,116 @@
+"""Scripts, results and files are the same in every language."""
+
+from __future__ import annotations
+
+import json
+import re
+from pathlib import Path
+
+import pytest
+
+from components.language import language, spoken
+from game.commands.command_line import main
+from game.documents import library
+from game.scripts.playing import Recorder, play, session_of
+from game.scripts.script import Script, ScriptError, lessons
+from game.session import Session
+
+SCRIPTED = sorted((Path(__file__).parents[1] / "scripted").glob("*.jsonl"))
+
+
+@pytest.mark.parametrize("source", [*lessons(), *SCRIPTED], ids=lambda source: Path(source).stem)
+def test_scripts_play_in_portuguese_as_in_english(source):
+    with spoken("pt"), library.data_apart():
+        assert not play(Script(source))
+
+
+TAKEN = re.compile(r'"[a-z_]*seconds": [0-9.e-]+')  # how long it took
+RESULTS = (
+    ["run", "isostatic"],
+    ["run", "isostatic_collapse", "--static"],
+    ["run", "hyperstatic_yield", "--at", "0.01,0.02"],
+    ["verify", "isostatic"],
+    ["buckling", "eulers_columns"],
+    ["force-method", "hyperstatic", "--all"],
+    ["curve", "von_mises"],
+    ["plan", "isostatic"],
+)
+
+
+@pytest.mark.parametrize("words", RESULTS, ids=lambda words: " ".join(words[:2]))
+@pytest.mark.parametrize("form", ["json", "csv"])
+def test_results_for_machines_are_the_same_in_both_languages(words, form, capsys):
+    def written() -> tuple[int, str]:
+        return main([*words, "--format", form]), TAKEN.sub("", capsys.readouterr().out)
+
+    first = written()
+    assert first[1]
+    with spoken("pt"):
+        assert written() == first
+
+
+@pytest.mark.parametrize("name", ["isostatic", "portal", "newtons_cradle"])
+def test_files_are_the_same_in_both_languages(name, tmp_path):
+    def saved(file: str) -> bytes:
+        session = Session.open(name)
+        session.run(time=0.05)
+        session.act("new slider")
+        session.save_as(tmp_path / file)
+        return (tmp_path / file).read_bytes()
+
+    first = saved("a.json")
+    with spoken("pt"):
+        assert saved("b.json") == first
+
+
+def recorded(path: Path) -> list[dict]:
+    session = Session.open("isostatic")
+    with path.open("w", encoding="utf-8") as file:
+        Recorder(session, file, "isostatic")
+        session.press("t", (300.0, 200.0))
+        session.press("right click", (500.0, 300.0))
+    return [json.loads(line) for line in path.read_text(encoding="utf-8").splitlines()]
+
+
+def test_recordings_say_their_language_unless_it_is_english(tmp_path):
+    assert "language" not in recorded(tmp_path / "en.jsonl")[0]
+    with spoken("pt"):
+        assert recorded(tmp_path / "pt.jsonl")[0]["language"] == "pt"
+    assert Script(tmp_path / "en.jsonl").language == "en"
+    assert Script(tmp_path / "pt.jsonl").language == "pt"
+    assert not any(Script(name).language for name in lessons())
+
+
+@pytest.mark.parametrize(
+    ("header", "around", "expected"), [("en", "pt", "en"), ("pt", "en", "pt"), ("", "pt", "pt")]
+)
+def test_scripts_are_played_in_their_language(tmp_path, monkeypatch, header, around, expected):
+    path = tmp_path / "script.jsonl"
+    first = {"format": "pinjoint session", "version": 1} | ({"language": header} if header else {})
+    path.write_text(f'{json.dumps(first)}\n{{"action": "fit"}}\n')
+    heard = []
+    monkeypatch.setattr(Session, "act", lambda session, name: heard.append(language()))
+    with spoken(around):
+        play(Script(path), session_of(Script(path)))
+        assert language() == around
+    assert heard == [expected]
+
+
+def test_a_language_that_there_is_not_is_refused(tmp_path):
+    path = tmp_path / "script.jsonl"
+    path.write_text('{"format": "pinjoint session", "version": 1, "language": "xx"}\n')
+    with pytest.raises(ScriptError, match='the language is "xx"; write one of en, pt'):
+        Script(path)
+
+
+def test_the_command_plays_in_english_unless_another_language_is_asked_for(monkeypatch):
+    from game.scripts import playing
+
+    heard = []
+    monkeypatch.setattr(playing, "play", lambda script, session: heard.append(language()) or [])
+    with spoken("pt"):
+        monkeypatch.setenv("PINJOINT_LANGUAGE", "")
+        main(["play", "4_collisions"])
+        monkeypatch.setenv("PINJOINT_LANGUAGE", "pt")
+        main(["play", "4_collisions"])
+    assert heard == ["en", "pt"]
