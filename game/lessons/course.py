@@ -43,6 +43,7 @@ class Course:
         self.first = 0
         self._hints = 0  # that were shown
         self._begun: Document = {}
+        self._opened = ""  # the name of its model
         self._unit = ""
         self._seen: object = None
         self._scored = ""
@@ -114,6 +115,7 @@ class Course:
             session.scenes.apply(session)
         own = not session.document.practice and session.model.particles.count > 0
         session.adopt(model, ModelFile(None, name), keep=own)
+        self._opened = name
         session.document.practice = True
         session.notice = ""
 
@@ -129,7 +131,7 @@ class Course:
 
     def again(self) -> None:
         """Begin the task anew, from the model with which it began."""
-        self._open(load(self._begun), self._session.file.name)
+        self._open(load(self._begun), self._opened)
         self._forget()
 
     def next(self) -> bool:
