@@ -25,6 +25,7 @@ from game.documents.autosave import Autosave, unkept
 from game.documents.open_documents import ModelFile, OpenDocument
 from game.documents.preferences import (
     DEFAULT_THEME,
+    preferred_convention,
     preferred_magnification,
     preferred_place,
     preferred_theme,
@@ -180,7 +181,7 @@ class App:
         self.render = PygameRender(self.window.get_surface(), raster)
         further = [system for system in (autosave, preparation) if system is not None]
         systems: list[System] = [self.input, Hover(symbol_at), *further, self.render]
-        self.session = Session(model, systems, View(theme=theme), file)
+        self.session = Session(model, systems, View(theme=theme, convention=preferred_convention()), file)
         self.session.window = self
         self.session.faults_seen = 0  # so that mods that were left out are shown
         self.session.autosave = self.autosave = autosave
@@ -188,6 +189,7 @@ class App:
         if preparation is not None:
             preparation.open()
         self._theme, self._language = theme, language()
+        self._convention = self.session.view.convention
         self._magnification = magnification
         self._clock, self._before = pygame.time.Clock(), time.perf_counter()
         self._follow_size()
@@ -319,6 +321,9 @@ class App:
         if language() != self._language and not self.session.performing:
             self._language = language()
             remember("language", self._language)
+        if self.session.view.convention != self._convention and not self.session.performing:
+            self._convention = self.session.view.convention
+            remember("convention", self._convention)
 
     def point(self, pixel: Vector) -> None:
         """Take the pointer to a pixel."""
@@ -362,6 +367,12 @@ class App:
             return str(path)
         path = _unused(Path.cwd() / f"pinjoint{suffix}")
         write(drawn, path, self.render.surface.get_size(), self.session.view.theme)
+        return str(path)
+
+    def save(self, name: str, contents: bytes) -> str:
+        """Save a file in the working folder under this name, or one like it that is free; returns the path."""
+        path = _unused(Path.cwd() / name)
+        models.replace(path, contents)
         return str(path)
 
 

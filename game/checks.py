@@ -12,6 +12,7 @@ from typing import Any
 import numpy as np
 
 from components.field import SAVED, Column, Role, same
+from components.language import marked, tr
 from components.model import Model
 from components.suggestions import missing
 from game.documents import models
@@ -31,6 +32,8 @@ STEPS = 40  # that step systems are run for
 FRAMES = 3  # that frame systems are run for
 FRAME = 1.0 / 60.0  # s
 NEARBY = 1e-5  # of a distance, over which the slope of a potential is taken
+UNDECLARED = marked("{name}: it changed {column}, which it does not declare in writes or adds.")
+NOT_REPEATED = marked("{name}: run twice, it gives another {column}; nothing may depend on chance.")
 
 # Supports, springs that yield, dampers, drag, a load that varies, and a free body.
 EVERYTHING: Mapping[str, Any] = {
@@ -107,9 +110,12 @@ def check_system(
     needed = [source for source in models if (_drives if drives else _is_needed)(system, source)]
     name = system().name
     if not needed:
+        if drives:
+            raise SystemCheckError(
+                tr("No model uses {name}; give check_system models=[…] with rods or drag.", name=name)
+            )
         raise SystemCheckError(
-            f"No model needs {name}; give check_system models=[…] "
-            + ("whose steps it takes: with rods or drag." if drives else "for which needs() is true.")
+            tr("No model needs {name}; give check_system models=[…] for which needs() is true.", name=name)
         )
     check = _check_steps if isinstance(system(), StepSystem) else _check_frames
     cost = max(check(system, source) for source in needed)
@@ -133,9 +139,15 @@ def _is_needed(system: Callable[[], System], source: Source) -> bool:
     model = _model(source)
     before = columns_of(model)
     answers = {bool(system().needs(model)) for _ in range(2)}
-    compare(system().name, before, columns_of(model), set(), "asking it needs(model) changed")
+    undeclared = marked("{name}: needs(model) changed {column}; it must not change the model.")
+    compare(system().name, before, columns_of(model), set(), undeclared)
     if len(answers) > 1:
-        raise SystemCheckError(f"{system().name} answers needs(model) now with yes, now with no.")
+        raise SystemCheckError(
+            tr(
+                "{name}: needs(model) is sometimes true and sometimes false for the same model.",
+                name=system().name,
+            )
+        )
     return answers.pop()
 
 
@@ -157,13 +169,16 @@ def columns_of(model: Model) -> dict[str, Column]:
 
 
 def compare(
-    name: str, before: Mapping[str, Column], after: Mapping[str, Column], allowed: set[str], did: str
+    name: str, before: Mapping[str, Column], after: Mapping[str, Column], allowed: set[str], refusal: str
 ) -> None:
-    """Raise SystemCheckError if other columns than those allowed, by name or table, differ."""
+    """Raise SystemCheckError if other columns than those allowed, by name or table, differ.
+
+    refusal: its sentence, with {name} and {column}.
+    """
     for column, old in before.items():
         if column in allowed or column.partition(".")[0] in allowed or same(old, after[column]):
             continue
-        raise SystemCheckError(f"{name}: {did} {column}, which it does not declare in writes or adds.")
+        raise SystemCheckError(tr(refusal, name=name, column=column))
 
 
 # --- laws, commits and integrators ---------------------------------------------------------------------------
@@ -184,12 +199,15 @@ def _check_steps(system: Callable[[], System], source: Source) -> float:
     allowed |= {column for other in beside for column in other.writes}
     if isinstance(made, Integrator):
         allowed.add("settings.integrator")
-    compare(made.name, before, after, allowed, "running it changed")
+    compare(made.name, before, after, allowed, UNDECLARED)
     _check_finite(made.name, first)
     again = columns_of(_run(system(), source, backwards=False))
-    _check_alike(made.name, after, again, "run twice, it gives different")
+    _check_alike(made.name, after, again, NOT_REPEATED)
     turned = columns_of(_run(system(), source, backwards=True))
-    _check_alike(made.name, after, turned, "registered in another order, it gives different")
+    refusal = marked(
+        "{name}: registered in another order, it gives another {column}; the order must not matter."
+    )
+    _check_alike(made.name, after, turned, refusal)
     if isinstance(made, Law) and made.each == "pairs":
         _check_pairs(made, first)
     has_kernel = isinstance(made, Law | Commit)
@@ -202,8 +220,10 @@ def _check_pairs(law: Law, model: Model) -> None:
     force = KernelRows(model).of(bound)
     if not np.allclose(force, -KernelRows(model, turned=True).of(bound), rtol=1e-9, atol=0.0):
         raise SystemCheckError(
-            f"{law.name}: the forces on two particles are not opposite if the other one comes first; which of them does"
-            " must not matter."
+            tr(
+                "{name}: the forces on two particles change if the two are swapped; they must be opposite in any order.",
+                name=law.name,
+            )
         )
     if not law.potential:
         return
@@ -218,8 +238,14 @@ def _check_pairs(law: Law, model: Model) -> None:
         if wrong.any():
             row = int(np.argmax(wrong))
             raise SystemCheckError(
-                f"{law.name}: at a distance of {apart[row]:g} m its potential has the slope {slope[row]:g} kN, but the"
-                f" force on the first particle is {force[row, axis]:g} kN along the same axis."
+                tr(
+                    "{name}: at a distance of {distance:g} m the slope of its potential is {slope:g} kN, but the force"
+                    " on the first particle along the same axis is {force:g} kN; they must be equal.",
+                    name=law.name,
+                    distance=float(apart[row]),
+                    slope=float(slope[row]),
+                    force=float(force[row, axis]),
+                )
             )
 
 
@@ -233,7 +259,13 @@ def _run(system: System, source: Source, *, backwards: bool) -> Model:
     except (ScheduleError, ProgramError) as error:
         raise SystemCheckError(str(error)) from None
     if simulation.reason is StopReason.DIVERGED:
-        raise SystemCheckError(f"{system.name}: a run with it does not stay finite. {simulation.message}")
+        raise SystemCheckError(
+            tr(
+                "{name}: in a run with it, numbers grow without limit. {message}",
+                name=system.name,
+                message=simulation.message,
+            )
+        )
     return model
 
 
@@ -259,15 +291,21 @@ def _check_finite(name: str, model: Model) -> None:
     for table in model.tables.values():
         for field in table.fields_in(Role.STATE):
             if field.dtype is float and not field.nullable and not np.isfinite(table.column(field.name)).all():
+                column = f"{table.name}.{field.name}"
                 raise SystemCheckError(
-                    f"{name}: after {STEPS} steps with it, {table.name}.{field.name} is not finite."
+                    tr(
+                        "{name}: after {count} steps with it, {column} is not finite.",
+                        name=name,
+                        count=STEPS,
+                        column=column,
+                    )
                 )
 
 
-def _check_alike(name: str, one: Mapping[str, Column], other: Mapping[str, Column], did: str) -> None:
+def _check_alike(name: str, one: Mapping[str, Column], other: Mapping[str, Column], refusal: str) -> None:
     for column, values in one.items():
         if not same(values, other[column]):
-            raise SystemCheckError(f"{name}: {did} {column}; nothing may depend on chance or on the order.")
+            raise SystemCheckError(tr(refusal, name=name, column=column))
 
 
 # --- frame systems -----------------------------------------------------------------------------------------
@@ -280,7 +318,7 @@ def _check_frames(system: Callable[[], System], source: Source) -> float:
     other = Session(_model(source))
     run_frames(system(), other)
     one, two = columns_of(session.model), columns_of(other.model)
-    _check_alike(made.name, one, two, "run twice, it gives different")
+    _check_alike(made.name, one, two, NOT_REPEATED)
     return 1e9 * seconds / FRAMES / max(session.particles.count + session.rods.count, 1)
 
 
@@ -295,7 +333,8 @@ def run_frames(system: System, session: Session) -> float:
         try:
             system.process(Frame(session, FRAME))
         except Exception as error:
-            raise SystemCheckError(f"{system.name} raises {type(error).__name__}: {error}") from error
+            told = {"name": system.name, "kind": type(error).__name__, "error": error}
+            raise SystemCheckError(tr("{name} raises {kind}: {error}", **told)) from error
     seconds, declared = time.perf_counter() - started, {*system.writes, *system.adds}
-    compare(system.name, before, columns_of(session.model), declared, "a frame of it changed")
+    compare(system.name, before, columns_of(session.model), declared, UNDECLARED)
     return seconds

@@ -17,6 +17,7 @@ import msgspec
 
 from components.field import ENDS, SAVED, Field, FieldError, Role
 from components.handle import Handle
+from components.language import joined, marked, tr
 from components.mistake import Mistake
 from components.model import Model
 from components.suggestions import missing, remedy
@@ -35,8 +36,8 @@ ENERGIES = (  # that are reported, in this order
     "work",
     "imbalance",
 )
-OVERRIDE_FORM = "write it like particles.B.force=120,-160 or settings.restitution=0.5"
-QUANTITY_FORM = "write it like rods.AB.axial_force, particles.B.displacement.y, energy.kinetic or time"
+OVERRIDE_FORM = marked("write it like particles.B.force=120,-160 or settings.restitution=0.5")
+QUANTITY_FORM = marked("write it like rods.AB.axial_force, particles.B.displacement.y, energy.kinetic or time")
 
 _SET_BY_TIME = ("clock",)  # tables
 _FLAGS = {"true": True, "false": False}
@@ -91,7 +92,7 @@ def locate(model: Model, text: str, keys: Keys) -> tuple[Target, str]:
     """
     section, _, rest = text.partition(".")
     tables = {name: known for name, table in model.tables.items() if (known := keys(table))}
-    name = _known(section.strip(), tables, "table")
+    name = _known(section.strip(), tables, marked("there is no table '{name}'; {remedy}"))
     table, known = model.tables[name], tables[name]
     element, rest = _element(table, rest, known)
     handles = list(table) if element in ("", EVERY) else [table[element]]
@@ -99,16 +100,19 @@ def locate(model: Model, text: str, keys: Keys) -> tuple[Target, str]:
     key, _, axis = path.strip().partition(".")
     if keys is settable:
         _refuse_unsettable(table, key, known)
-    field = known[_known(key, known, "key")]
+    field = known[_known(key, known, marked("there is no key '{name}'; {remedy}"))]
     if axis and (not field.shape or axis not in field.axes):
-        parts = _parts(key, field) if field.shape else f"{key} only"
-        raise PathError(f"{field.title} has no part '{cut(axis)}'; write {parts}.")
+        told = {"field": field.title, "part": cut(axis), "key": key}
+        if field.shape:
+            parts = _parts(key, field)
+            raise PathError(tr("{field} has no part '{part}'; write one of {parts}.", parts=parts, **told))
+        raise PathError(tr("{field} has no parts, such as '{part}'; write {key}.", **told))
     return Target(table, handles, element, field, key, axis), rest[len(path) :]
 
 
 def _parts(key: str, field: Field[Any]) -> str:
     """The paths of the parts of a fact, as a choice."""
-    return " or ".join(f"{key}.{axis}" for axis in field.axes)
+    return ", ".join(f"{key}.{axis}" for axis in field.axes)
 
 
 def locate_one(model: Model, path: str, keys: Keys = readable) -> Target:
@@ -116,15 +120,18 @@ def locate_one(model: Model, path: str, keys: Keys = readable) -> Target:
     with _quoted(path):
         target, rest = locate(model, path, keys)
         if rest:
-            raise PathError(f"'{cut(rest)}' follows the path; leave it out.")
+            raise PathError(tr("'{rest}' does not belong to the path; leave it out.", rest=cut(rest)))
         if target.element == EVERY:
-            raise PathError(f"it names every {target.table.kind.noun}; write a name in place of {EVERY}.")
+            kind = tr(target.table.kind.noun)
+            raise PathError(
+                tr("it names every {kind}; write a name in place of {star}.", kind=kind, star=EVERY)
+            )
     return target
 
 
 def energy_named(name: str) -> str:
     """The name of an energy that is reported. Raises PathError."""
-    return _known(name, ENERGIES, "energy")
+    return _known(name, ENERGIES, marked("there is no energy '{name}'; {remedy}"))
 
 
 @contextmanager
@@ -133,12 +140,12 @@ def _quoted(text: str) -> Iterator[None]:
     try:
         yield
     except (PathError, FieldError) as error:
-        raise PathError(f"{cut(text)}: {error}") from None
+        raise PathError(joined([f"{cut(text)}:", str(error)])) from None
 
 
-def _known(name: str, names: Collection[str], what: str) -> str:
+def _known(name: str, names: Collection[str], refusal: str) -> str:
     if name not in names:
-        raise PathError(f"there is no {what} '{cut(name)}'; {remedy(name, names)}")
+        raise PathError(tr(refusal, name=cut(name), remedy=remedy(name, names)))
     return name
 
 
@@ -165,15 +172,26 @@ def _refuse_name(table: Table[Any], rest: str) -> None:
     name = ".".join(parts[: -2 if parts[-1] in ("x", "y", *ENDS) else -1])
     if not name:
         raise PathError(
-            f"it names no {table.kind.noun}; write {table.name}.NAME.{rest or 'KEY'}, or {EVERY} for every name."
+            tr(
+                "the name of the {kind} is missing; write {form}, or {star} for every name.",
+                kind=tr(table.kind.noun),
+                form=f"{table.name}.NAME.{rest or 'KEY'}",
+                star=EVERY,
+            )
         )
     raise PathError(missing(table.name, name, table.names))
 
 
 def _refuse_unsettable(table: Table[Any], key: str, known: Mapping[str, Any]) -> None:
     if key not in known and key in table.fields:
-        made_by = "is computed" if table.fields[key].role is Role.DERIVED else "refers to other elements"
-        raise PathError(f"'{key}' {made_by} and cannot be set here; choose one of {', '.join(known)}.")
+        keys = ", ".join(known)
+        if table.fields[key].role is Role.DERIVED:
+            raise PathError(
+                tr("'{key}' is computed and cannot be set; choose one of {keys}.", key=key, keys=keys)
+            )
+        raise PathError(
+            tr("'{key}' names other elements and cannot be set here; choose one of {keys}.", key=key, keys=keys)
+        )
 
 
 # --- setting -------------------------------------------------------------------------------------------
@@ -191,9 +209,11 @@ def apply_override(model: Model, override: str) -> None:
     with _quoted(override):
         target, rest = locate(model, override, settable)
         if not rest.startswith("="):
-            raise PathError(f"it has no value; {OVERRIDE_FORM}.")
+            raise PathError(tr("it has no value; {form}.", form=tr(OVERRIDE_FORM)))
         if not target.handles:
-            raise PathError(f"the model has no {target.table.name}; add some, or leave this out.")
+            raise PathError(
+                tr("the model has no {table}; add some, or leave this out.", table=target.table.name)
+            )
         model.assign(target.handles, target.field.name, _values(target, rest[1:].strip()))
 
 
@@ -262,7 +282,7 @@ class Quantity:
     @property
     def title(self) -> str:
         """Name and unit."""
-        return f"{self.name} ({self.unit})" if self.unit else self.name
+        return joined([self.name, f"({self.unit})" if self.unit else ""])
 
 
 def quantity(model: Model, path: str) -> Quantity:
@@ -275,10 +295,11 @@ def quantity(model: Model, path: str) -> Quantity:
             name = energy_named(rest)
         return Quantity(path, name.replace("_", " "), "J", lambda session: session.energy.as_dict()[name])
     if table not in model.tables or not rest:
-        raise PathError(f"There is no quantity '{cut(path)}'; {QUANTITY_FORM}.")
+        raise PathError(tr("There is no quantity '{path}'; {form}.", path=cut(path), form=tr(QUANTITY_FORM)))
     target = locate_one(model, path, _numbers)
     if target.field.shape and not target.axis:
-        raise PathError(f"{path}: write {_parts(target.key, target.field)}.")
+        parts = _parts(target.key, target.field)
+        raise PathError(tr("{path}: write one of {parts}.", path=path, parts=parts))
     return _of_element(path, target)
 
 
@@ -290,8 +311,8 @@ def _of_element(path: str, target: Target) -> Quantity:
     handle, field = target.handles[0], target.field
     unit, factor = field.shown
     unit = field.unit_of(target.axis) if unit == field.unit else unit
-    of = handle.world.describe(handle)
-    name = f"{field.title}{f' {target.axis}' if target.axis else ''} of {of}"
+    told = {"quantity": tr(field.title), "axis": target.axis, "element": handle.world.describe(handle)}
+    title = marked("{quantity} {axis} of {element}") if target.axis else marked("{quantity} of {element}")
 
     def read(session: Readable) -> float:
         if not handle.exists or handle.world is not session.model:
@@ -299,4 +320,4 @@ def _of_element(path: str, target: Target) -> Quantity:
         value = session.model.column(f"{handle.table}.{field.name}")[handle.row]
         return float(target.part(value)) * factor
 
-    return Quantity(path, name, unit, read)
+    return Quantity(path, tr(title, **told), unit, read)

@@ -8,6 +8,7 @@ import re
 from collections.abc import Callable
 from typing import Any, NoReturn
 
+from components.language import marked, tr
 from components.mistake import Mistake
 from game.streams import put
 
@@ -20,6 +21,25 @@ class UsageError(Mistake):
     def __init__(self, sentence: str, status: int = BAD_INPUT) -> None:
         super().__init__(sentence)
         self.status = status
+
+
+argparse._ = tr  # type: ignore[attr-defined]  # what it looks its own words up with; these are:
+OF_ARGPARSE = (
+    marked("usage: "),
+    marked("positional arguments"),
+    marked("options"),
+    marked("show this help message and exit"),
+    marked("show program's version number and exit"),
+    marked("the following arguments are required: %s"),
+    marked("unrecognized arguments: %s"),
+    marked("argument %(argument_name)s: %(message)s"),
+    marked("expected one argument"),
+    marked("expected at least one argument"),
+    marked("invalid choice: %(value)r (choose from %(choices)s)"),
+    marked("invalid %(type)s value: %(value)r"),
+    marked("not allowed with argument %s"),
+    marked("ambiguous option: %(option)s could match %(matches)s"),
+)
 
 
 class Parser(argparse.ArgumentParser):
@@ -35,31 +55,34 @@ class Parser(argparse.ArgumentParser):
         super().exit(status, message)
 
     def error(self, message: str) -> NoReturn:
-        raise UsageError(f"{message[:1].upper()}{message[1:]}. See: {self.prog} --help")
+        sentence = message[:1].upper() + message[1:]
+        raise UsageError(tr("{sentence}. See: {program} --help", sentence=sentence, program=self.prog))
 
 
 def positive(text: str) -> float:
     """A finite number above 0."""
-    return _number(text, float, lambda value: 0.0 < value < math.inf, "a number of seconds above 0")
+    refusal = tr("{text} is not a number of seconds above 0", text=text)
+    return _number(text, float, lambda value: 0.0 < value < math.inf, refusal)
 
 
 def count(text: str, least: int = 2) -> int:
     """A whole number of at least `least`."""
-    return int(_number(text, int, lambda value: value >= least, f"a whole number of at least {least}"))
+    refusal = tr("{text} is not a whole number of at least {least}", text=text, least=least)
+    return int(_number(text, int, lambda value: value >= least, refusal))
 
 
 def finite(text: str) -> float:
     """A finite number."""
-    return _number(text, float, math.isfinite, "a finite number")
+    return _number(text, float, math.isfinite, tr("{text} is not a finite number", text=text))
 
 
-def _number(text: str, kind: type[float], fits: Callable[[float], bool], wanted: str) -> float:
+def _number(text: str, kind: type[float], fits: Callable[[float], bool], refusal: str) -> float:
     try:
         if fits(value := kind(text)):
             return value
     except ValueError:
         pass
-    raise argparse.ArgumentTypeError(f"{text} is not {wanted}")
+    raise argparse.ArgumentTypeError(refusal)
 
 
 def numbers(option: str, text: str) -> tuple[float, ...]:
@@ -67,9 +90,12 @@ def numbers(option: str, text: str) -> tuple[float, ...]:
     try:
         found = tuple(float(part) for part in text.split(","))
     except ValueError:
-        raise UsageError(f"{option} {text}: write numbers separated by commas, such as 0.1,0.5.") from None
+        message = tr(
+            "{option} {text}: write numbers separated by commas, such as 0.1,0.5.", option=option, text=text
+        )
+        raise UsageError(message) from None
     if not all(map(math.isfinite, found)):
-        raise UsageError(f"{option} {text}: write finite numbers.")
+        raise UsageError(tr("{option} {text}: write finite numbers.", option=option, text=text))
     return found
 
 
@@ -77,5 +103,7 @@ def times(text: str) -> tuple[float, ...]:
     """Ascending times (s) of at least 0. Raises UsageError."""
     found = numbers("--at", text)
     if found[0] < 0.0 or list(found) != sorted(found):
-        raise UsageError(f"--at {text}: times must be at least 0 s and ascending.")
+        raise UsageError(
+            tr("--at {text}: write the times in ascending order, each at least 0 (in seconds).", text=text)
+        )
     return found

@@ -10,6 +10,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
+from components.language import tr
 from game.commands.arguments import Parser, UsageError
 from game.commands.options import ANSWERED
 from game.commands.output import Row, add_format, aligned, formatted, write, writing
@@ -27,19 +28,36 @@ Tables = Mapping[str, Sequence[Mapping[str, Any]]]  # rows by the title of their
 def command(words: Sequence[str]) -> int:
     """Do what the words after the command ask for; returns the exit status."""
     parser = Parser(
-        prog="pinjoint bench", description="Measure speed and accuracy, against peers in the same run."
+        prog="pinjoint bench",
+        description=tr("Measure speed and accuracy, and compare them with other programs in the same run."),
     )
-    parser.add_argument("names", nargs="*", metavar="NAME", help=f"any of {', '.join(NAMES)}; default all")
-    parser.add_argument("--quick", action="store_true", help="smaller sizes; ends within a minute")
-    parser.add_argument("--seed", type=int, metavar="N", help="of differential: this one model, in full")
+    parser.add_argument(
+        "names",
+        nargs="*",
+        metavar="NAME",
+        help=tr("the benchmarks to run, of {names}; default: all", names=", ".join(NAMES)),
+    )
+    parser.add_argument("--quick", action="store_true", help=tr("use smaller models, to end within a minute"))
+    parser.add_argument(
+        "--seed", type=int, metavar="N", help=tr("with differential: only the model with this number, in full")
+    )
     add_format(parser)
-    parser.add_argument("--output", metavar="DIR", help="also write CSV files and pictures there")
+    parser.add_argument(
+        "--output", metavar="DIR", help=tr("also write CSV files and pictures into this folder")
+    )
     options = parser.parse_args(words)
     for name in options.names:
         if name not in NAMES:
-            raise UsageError(f"There is no benchmark '{name}'; choose from {', '.join(NAMES)}.")
+            raise UsageError(
+                tr("There is no benchmark '{name}'; choose from {names}.", name=name, names=", ".join(NAMES))
+            )
     if options.seed is not None and (options.names != [NUMBERED] or options.seed < 0):
-        raise UsageError(f"--seed takes a whole number from 0 on and goes with one benchmark: {NUMBERED}.")
+        raise UsageError(
+            tr(
+                "--seed takes a whole number of at least 0 and works with one benchmark only: {name}.",
+                name=NUMBERED,
+            )
+        )
     chosen = {"quick": options.quick} | ({} if options.seed is None else {"seed": options.seed})
     measured: dict[str, Tables] = {}
     for name in options.names or NAMES:
@@ -48,7 +66,7 @@ def command(words: Sequence[str]) -> int:
             print(f"== {name} ==\n{as_text(tables)}")
         measured[name] = tables
         if options.output:
-            with writing(options.output, "--output"):
+            with writing(options.output):
                 write_files(name, tables, Path(options.output))
     if options.format != "table":
         write(formatted(options.format, _finite(measured), _rows), None)
@@ -59,15 +77,18 @@ def run(name: str, **options: Any) -> Tables:
     """The tables of one benchmark, whose report takes the options. Raises UsageError outside a source checkout."""
     if not (CHECKOUT / "tests" / "benchmarks").is_dir():
         raise UsageError(
-            "The benchmarks live in the source tree, not in the installed package; clone it and"
-            ' install it with: pip install -e ".[bench]"'
+            tr(
+                "The benchmarks are part of the source code, not of the installed package. Clone the repository and"
+                ' install it with: pip install -e ".[bench]"'
+            )
         )
     if str(CHECKOUT) not in sys.path:
         sys.path.insert(0, str(CHECKOUT))
     try:
         tables: Tables = importlib.import_module(f"tests.benchmarks.{name}").report(**options)
     except ImportError as error:
-        raise UsageError(f'{error}; install the peers with: pip install -e ".[bench]"') from None
+        message = tr('{error}. Install the programs to compare with: pip install -e ".[bench]"', error=error)
+        raise UsageError(message) from None
     return tables
 
 

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from components.language import joined
+from components.language import joined, tr
 from components.model import Model
 from game.commands.arguments import Parser, UsageError, count
 from game.commands.options import ANSWERED, NOT_ANSWERED, add_model, session_of
@@ -23,11 +23,17 @@ def command(words: Sequence[str]) -> int:
     """Do what the words after the command ask for; returns the exit status."""
     parser = Parser(
         prog="pinjoint buckling",
-        description="Linear buckling: the factors of forces and loads at which the structure gives way, and how.",
+        description=tr(
+            "Linear buckling: the load factors at which the structure buckles, and how it moves then."
+        ),
     )
     add_model(parser)
     parser.add_argument(
-        "--modes", type=partial(count, least=1), default=5, metavar="N", help="at most so many; default 5"
+        "--modes",
+        type=partial(count, least=1),
+        default=5,
+        metavar="N",
+        help=tr("find at most N modes; default 5"),
     )
     add_output(parser)
     options = parser.parse_args(words)
@@ -41,7 +47,7 @@ def command(words: Sequence[str]) -> int:
     laws = session.schedule.left_out_of_statics(session.model)
     write_result(options, _data(session.model, found) | {"left_out": laws}, _rows, _lines)
     if laws:
-        tell(f"Buckling leaves out the laws of mods: {', '.join(laws)}.")
+        tell(tr("Buckling leaves out the laws of mods: {laws}.", laws=", ".join(laws)))
     if options.format != "table":
         tell(joined([found.message, *found.notes]))
     return ANSWERED if len(found.factors) and not laws else NOT_ANSWERED
@@ -92,19 +98,27 @@ def _lines(found: Mapping[str, Any]) -> Iterator[str]:
     if not found["factors"]:
         yield found["message"]
         return
-    rows = [["critical load", "factor", "of the lowest", "moves most", "led by", "effective length, m"]]
+    titles = [tr("buckling mode"), tr("load factor"), tr("over the lowest"), tr("moves most")]
+    rows = [[*titles, tr("most compressed"), tr("effective length, m")]]
     for number, (factor, mode, by) in enumerate(
         zip(found["factors"], found["modes"], found["leading"], strict=True), start=1
     ):
         most = max(mode, key=lambda name: max(map(abs, mode[name])))
         values = [as_written(factor), as_written(factor / found["factors"][0]), most]
-        rows.append([f"mode {number}", *values, by["rod"], as_written(by["effective_length"])])
+        length = as_written(by["effective_length"])
+        rows.append([tr("mode {number}", number=number), *values, by["rod"], length])
     yield from aligned(rows)
     pressed = {name: of for name, of in found["axial_force"].items() if of["critical"] < 0.0}
     if pressed:
         yield ""
         table = [
-            ["compressed, kN", "at factor 1", "at the lowest", "effective length, m", "over its own length"]
+            [
+                tr("axial force, kN"),
+                tr("at load factor 1"),
+                tr("at the lowest factor"),
+                tr("effective length, m"),
+                tr("over its own length"),
+            ]
         ]
         for name, of in pressed.items():
             lengths = [found[key].get(name) for key in ("effective_length", "effective_length_factor")]

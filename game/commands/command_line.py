@@ -7,6 +7,7 @@ import sys
 from collections.abc import Callable, Sequence
 from importlib import import_module
 
+from components.language import marked, tr
 from components.mistake import Mistake
 from game.commands import COMMANDS, Command
 from game.commands.arguments import BAD_INPUT
@@ -33,7 +34,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
         tell(str(error))
         return getattr(error, "status", BAD_INPUT)
     except KeyboardInterrupt:
-        tell("Interrupted.")
+        tell(tr("Interrupted."))
         return STOPPED
     except BrokenPipeError:  # the reader has seen enough, such as `head`
         discard_output()
@@ -41,8 +42,9 @@ def main(arguments: Sequence[str] | None = None) -> int:
     except OSError as error:
         if error.filename is None:
             discard_output()
-        place = error.filename or "Standard output"
-        tell(f"{place} cannot be used: {error.strerror or error}.")
+        place = error.filename or tr("Standard output")
+        reason = error.strerror or error
+        tell(tr("{file} cannot be read or written: {reason}.", file=place, reason=reason))
         return BAD_INPUT
 
 
@@ -57,16 +59,20 @@ def _of(module: str) -> Callable[[list[str]], int]:
 
 
 COMMANDS |= {
-    "open": Command(_of("window"), "show a model in the window, as without a command"),
-    "run": Command(_of("run"), "compute a model without a window, and print the result"),
-    "verify": Command(_of("verify"), "simulation beside linear and exact theory; influence lines"),
-    "curve": Command(_of("curve"), "load–displacement curve, through limit points"),
-    "buckling": Command(_of("buckling"), "critical load factors, modes and effective lengths"),
-    "force-method": Command(_of("force_method"), "hyperstatic forces by the force method"),
-    "sweep": Command(_of("sweep"), "compute many variants of a model"),
-    "plan": Command(_of("plan"), "which systems run in a scene with a model, and why others do not"),
-    "render": Command(_of("render"), "draw a model, or its run, without a display"),
-    "play": Command(_of("play"), "play a scripted session or a lesson"),
-    "mods": Command(_of("mods"), "list, check and begin extensions"),
-    "bench": Command(_of("bench"), "measure speed and accuracy"),
+    "open": Command(_of("window"), marked("open a model in the window; the word may be left out")),
+    "run": Command(_of("run"), marked("compute a model without a window, and print the result")),
+    "verify": Command(
+        _of("verify"), marked("compare simulation with linear and exact theory; influence lines")
+    ),
+    "curve": Command(_of("curve"), marked("compute a load–displacement curve, through limit points")),
+    "buckling": Command(_of("buckling"), marked("find buckling loads, modes and effective lengths")),
+    "force-method": Command(
+        _of("force_method"), marked("solve a statically indeterminate truss by the force method")
+    ),
+    "sweep": Command(_of("sweep"), marked("compute many variants of a model")),
+    "plan": Command(_of("plan"), marked("list the systems that run in a scene, and why others do not")),
+    "render": Command(_of("render"), marked("draw a model, or its run, to a file")),
+    "play": Command(_of("play"), marked("play a lesson or a recorded session")),
+    "mods": Command(_of("mods"), marked("list and check mods (extensions), and write new ones")),
+    "bench": Command(_of("bench"), marked("measure speed and accuracy")),
 }

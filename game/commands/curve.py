@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from components.field import ENDS
-from components.language import joined
+from components.language import joined, marked, plural, tr
 from components.model import Model
 from components.rod import bends
 from game.commands.arguments import Parser, UsageError, count, finite
@@ -28,26 +28,33 @@ def command(words: Sequence[str]) -> int:
     """Do what the words after the command ask for; returns the exit status."""
     parser = Parser(
         prog="pinjoint curve",
-        description="Load–displacement curve: the equilibria while the load grows, and falls behind limit points.",
+        description=tr(
+            "Load–displacement curve: equilibria while the load grows, and while it falls again past limit points."
+        ),
     )
     add_model(parser)
     goal = parser.add_mutually_exclusive_group()
     goal.add_argument(
-        "--factor", type=finite, default=1.0, help="end where the load factor first reaches this; default 1"
+        "--factor", type=finite, default=1.0, help=tr("end where the load factor first reaches this; default 1")
     )
     goal.add_argument(
         "--until",
         metavar="B.y=-2.5",
-        help="end where a particle first has this displacement (m), or B.rotation=1 (rad)",
+        help=tr("end where a particle first has this displacement (m), or rotation, as B.rotation=1 (rad)"),
     )
     parser.add_argument(
         "--branch",
         type=int,
         default=0,
         metavar="N",
-        help="leave along the mode of the Nth bifurcation, against it if negative; default: straight on",
+        help=tr(
+            "at the Nth bifurcation, take the branch that buckles along its mode, or against it if N is negative;"
+            " default: stay on the main branch"
+        ),
     )
-    parser.add_argument("--points", type=count, default=500, metavar="N", help="at most so many equilibria")
+    parser.add_argument(
+        "--points", type=count, default=500, metavar="N", help=tr("compute at most N equilibria; default 500")
+    )
     add_output(parser, default="csv")
     options = parser.parse_args(words)
     session = session_of(options)
@@ -63,7 +70,7 @@ def command(words: Sequence[str]) -> int:
     said = {"complete": found.complete, "message": message, "left_out": laws}
     write_result(options, said | _data(session.model, found), _rows)
     if laws:
-        tell(f"The curve leaves out the laws of mods: {', '.join(laws)}.")
+        tell(tr("The curve leaves out the laws of mods: {laws}.", laws=", ".join(laws)))
     for event in found.events:
         tell(event.message)
     tell(message)
@@ -75,19 +82,35 @@ def _what_is_missing(curve: Curve, branch: int) -> str:
     there = sum(event.kind == "bifurcation" for event in curve.events)
     if abs(branch) <= there:
         return ""
-    passed = "no bifurcation" if there == 0 else f"only {there} bifurcation{'s' * (there > 1)}"
-    return f"The curve passes {passed}, so that there is no branch {branch} to follow."
+    if there == 0:
+        return tr(
+            "The curve has no bifurcations, so there is no branch {branch}; leave out --branch.", branch=branch
+        )
+    return plural(
+        "The curve has one bifurcation, so there is no branch {branch}; choose 1 or -1.",
+        "The curve has {count} bifurcations, so there is no branch {branch}; choose from 1 to {count}, or -1 to -{count}.",
+        there,
+        branch=branch,
+    )
 
 
 def _why_it_ends(model: Model, curve: Curve, most: int) -> str:
     """Where and why a curve ends before its goal."""
     count = len(curve.load_factor)
-    message = f"The curve ends at the load factor {curve.load_factor[-1]:.6g}"
+    factor = float(curve.load_factor[-1])
     if count == most:
-        return f"{message}, after {count} points; give it more: --points {10 * count}."
+        return tr(
+            "The curve stops at the load factor {factor:.6g}, after {count} points; allow more: --points {more}.",
+            factor=factor,
+            count=count,
+            more=10 * count,
+        )
     if count > 1:
-        return f"{message}: no equilibria could be found that go on from there."
-    return f"{message}.{_why_nothing_follows(model)}"
+        return tr(
+            "The curve ends at the load factor {factor:.6g}: no further equilibrium was found.", factor=factor
+        )
+    ends = tr("The curve ends where it begins, at the load factor {factor:.6g}.", factor=factor)
+    return joined([ends, _why_nothing_follows(model)])
 
 
 def _why_nothing_follows(model: Model) -> str:
@@ -98,8 +121,9 @@ def _why_nothing_follows(model: Model) -> str:
     moving = mechanisms(model)
     if not len(moving):
         return ""
-    return (
-        f" The structure is a mechanism: {describe_motion(model, moving)} can move. Add rods or supports there."
+    return tr(
+        "The structure is a mechanism: {moving} can move. Add rods or supports there.",
+        moving=describe_motion(model, moving),
     )
 
 
@@ -157,5 +181,5 @@ def _rows(found: Mapping[str, Any]) -> Iterator[Row]:
         for quantity, unit in _UNITS.items()
         for name, values in found.get(quantity, {}).items()
     }
-    yield "load factor", "stable", *columns
+    yield marked("load factor"), marked("stable"), *columns
     yield from zip(found["load_factor"], found["stable"], *columns.values(), strict=True)

@@ -69,7 +69,7 @@ def command(words: Sequence[str]) -> int:
     if options.report is not None:
         from game.force_method.report import write_report
 
-        with writing(options.report, "--report"):
+        with writing(options.report):
             write_report(tables, options.report, options.convention)
     if laws:
         tell(tr("The force method leaves out the laws of mods: {laws}.", laws=", ".join(laws)))

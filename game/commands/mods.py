@@ -6,6 +6,7 @@ from collections.abc import Iterator, Sequence
 from pathlib import Path
 from typing import Any
 
+from components.language import tr
 from game.commands.arguments import Parser
 from game.commands.options import ANSWERED, NOT_ANSWERED
 from game.commands.output import Row, add_output, write_result
@@ -19,17 +20,19 @@ from game.version import __version__
 
 def command(words: Sequence[str]) -> int:
     """Do what the words after the command ask for; returns the exit status. Raises ModError."""
-    parser = Parser(prog="pinjoint mods", description="Extensions of the program; see assets/mods/README.md.")
+    parser = Parser(prog="pinjoint mods", description=tr("Mods extend the program; see assets/mods/README.md."))
     commands = parser.add_subparsers(dest="command", required=True, metavar="list|check|new")
-    add_output(commands.add_parser("list", help="which mods there are, and why some were left out"))
+    add_output(commands.add_parser("list", help=tr("list the mods, and why some were left out")))
     check = commands.add_parser(
-        "check", help="try all that a mod can do with a model of its own, and say what is wrong"
+        "check", help=tr("try everything that a mod adds, on a small model, and report what is wrong")
     )
     check.add_argument("folder", metavar="FOLDER")
     add_output(check)
-    new = commands.add_parser("new", help="write the skeleton of a mod, with a test that passes")
+    new = commands.add_parser("new", help=tr("write a new mod that works, with its test"))
     new.add_argument("name", metavar="NAME")
-    new.add_argument("--into", default=".", metavar="FOLDER", help="default: the present folder")
+    new.add_argument(
+        "--into", default=".", metavar="FOLDER", help=tr("where to write it; default: the present folder")
+    )
     options = parser.parse_args(list(words))
     if options.command == "new":
         return _new(options.name, Path(options.into))
@@ -44,10 +47,11 @@ def command(words: Sequence[str]) -> int:
 
 def _new(name: str, into: Path) -> int:
     for path in write_skeleton(name, into, __version__):
-        print(f"wrote {path}")
+        print(tr("wrote {path}", path=path))
     folder = into / name
-    print(f"test it:    pytest {folder}\ntry it:     pinjoint pendulum --mods {folder}")
-    print(f"to keep it, move it to {mods_folder()}")
+    print(tr("To test it: {command}", command=f"pytest {folder}"))
+    print(tr("To try it: {command}", command=f"pinjoint pendulum --mods {folder}"))
+    print(tr("To load it at every start, move it to {folder}.", folder=mods_folder()))
     return ANSWERED
 
 
@@ -68,10 +72,12 @@ def _described(mod: Mod) -> dict[str, Any]:
 def _checked(folder: Path) -> list[dict[str, Any]]:
     """The mods in a folder, each with its problems. Raises ModError if there is none."""
     if not folder.is_dir():
-        raise ModError(f"{folder} is no folder.")
+        raise ModError(tr("There is no folder {folder}; check its name.", folder=folder))
     found = load([folder])
     if not found:
-        raise ModError(f"There is no mod in {folder}; `pinjoint mods new NAME` writes one to begin with.")
+        raise ModError(
+            tr("There is no mod in {folder}; to write one, use: pinjoint mods new NAME", folder=folder)
+        )
     return [_described(mod) | ({} if mod.off else {"problems": mistakes_of(mod)}) for mod in found]
 
 
@@ -84,13 +90,20 @@ def _rows(found: Sequence[dict[str, Any]]) -> Iterator[Row]:
 
 def _lines_of_list(found: Sequence[dict[str, Any]]) -> Iterator[str]:
     for mod in found:
-        state = mod["state"].upper() if mod["state"] == "left out" else mod["state"]
-        yield f"{mod['name']} {mod['version']}: {state}, from {mod['source']}"
+        names = {name: mod[name] for name in ("name", "version", "source")}
+        if mod["state"] == "left out":
+            yield tr("{name} {version}: LEFT OUT, from {source}", **names)
+        else:
+            yield tr("{name} {version}: loaded, from {source}", **names)
         yield from (f"    {line}" for line in (mod["description"], *mod["problems"], *mod["notes"]) if line)
-    yield f"Your mods belong into {mods_folder()}"
+    yield tr("Put your mods into {folder}", folder=mods_folder())
 
 
 def _lines_of_check(found: Sequence[dict[str, Any]]) -> Iterator[str]:
     for mod in found:
-        yield f"{mod['name']} {mod['version']}: {'WRONG' if mod['problems'] else 'all is well'}"
+        names = {name: mod[name] for name in ("name", "version")}
+        if mod["problems"]:
+            yield tr("{name} {version}: PROBLEMS", **names)
+        else:
+            yield tr("{name} {version}: no problems", **names)
         yield from (f"    {line}" for line in (*mod["problems"], *mod["notes"]))

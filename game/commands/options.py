@@ -7,6 +7,7 @@ import os
 from collections.abc import Iterable, Sequence
 from functools import partial
 
+from components.language import tr
 from components.settings import INTEGRATORS
 from game.commands.arguments import Parser, UsageError, count, numbers, positive, times
 from game.commands.progress import follow
@@ -32,24 +33,27 @@ def use_cores_as_asked(words: Sequence[str]) -> list[str]:
 
 def add_model(parser: argparse.ArgumentParser) -> None:
     """Add the argument MODEL and the options that change the model before anything is computed."""
-    parser.add_argument("model", help="a model file, or the name of a bundled model")
+    parser.add_argument("model", help=tr("a model file, or the name of a bundled model"))
     change = partial(parser.add_argument, dest="set", action="append", default=[])
     change(
         "--integrator",
         type="settings.integrator={}".format,
         metavar="NAME",
-        help=f"one of {', '.join(INTEGRATORS)}",
+        help=tr("how to step through time: {names}", names=", ".join(INTEGRATORS)),
     )
     change(
         "--time-step",
         type=lambda text: f"settings.time_step={positive(text)}",
         metavar="S",
-        help="fixed time step in seconds",
+        help=tr("use a fixed time step, in seconds"),
     )
     change(
         "--set",
         metavar="PATH=VALUE",
-        help="change the model first, such as particles.B.force=120,-160 or rods.*.damping=0",
+        help=tr(
+            "change a value of the model first, such as particles.B.force=120,-160 or rods.*.damping=0;"
+            " may be given several times"
+        ),
     )
 
 
@@ -65,18 +69,22 @@ def session_of(options: argparse.Namespace, systems: Iterable[System] = ()) -> S
 def add_analysis(parser: argparse.ArgumentParser) -> None:
     """Add the options of the analysis: equilibria, the state at certain times, or the state at rest."""
     how = parser.add_mutually_exclusive_group()
-    how.add_argument("--until-rest", action="store_true", help="run until nothing moves (the default)")
+    how.add_argument("--until-rest", action="store_true", help=tr("run until nothing moves (the default)"))
     how.add_argument(
-        "--static", action="store_true", help="equilibrium by settling, not by running through time"
+        "--static", action="store_true", help=tr("find the equilibrium directly, without running through time")
     )
-    how.add_argument("--at", metavar="T1,T2,…", help="report the state at exactly these times (s)")
-    parser.add_argument("--load-factors", metavar="F1,F2,…", help="with --static: settle at each in turn")
+    how.add_argument("--at", metavar="T1,T2,…", help=tr("report the state at exactly these times (s)"))
+    parser.add_argument(
+        "--load-factors",
+        metavar="F1,F2,…",
+        help=tr("with --static: find the equilibrium at each of these load factors, one after the other"),
+    )
     parser.add_argument(
         "--limit",
         type=positive,
         default=DEFAULT_LIMIT,
         metavar="SECONDS",
-        help="simulated time to wait for rest",
+        help=tr("stop waiting for rest after this much simulated time"),
     )
 
 
@@ -84,7 +92,7 @@ def analysis_of(options: argparse.Namespace) -> Analysis:
     """The analysis of `add_analysis`. Raises UsageError."""
     factors = numbers("--load-factors", options.load_factors) if options.load_factors is not None else None
     if factors is not None and not options.static:
-        raise UsageError("--load-factors goes with --static; add it.")
+        raise UsageError(tr("--load-factors works only together with --static; add it."))
     return Analysis(
         load_factors=(factors or (1.0,)) if options.static else None,
         times=times(options.at) if options.at is not None else None,

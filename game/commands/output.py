@@ -14,7 +14,7 @@ from typing import Any, Literal
 
 import numpy as np
 
-from components.language import ENGLISH, Said, decimals, spoken
+from components.language import ENGLISH, Said, decimals, spoken, tr
 from components.mistake import Mistake
 from components.wording import printable
 from game.commands.arguments import UsageError
@@ -38,20 +38,27 @@ def writable(text: str) -> str:
     """The name of a file that can be written, checked before the computation."""
     path = Path(text)
     if path.is_dir():
-        reason = "it is a folder"
+        refusal = tr("{file} cannot be written, it is a folder; choose another file", file=text)
     elif not path.parent.is_dir():
-        reason = f"there is no folder {path.parent}"
+        refusal = tr(
+            "{file} cannot be written, there is no folder {folder}; choose another file",
+            file=text,
+            folder=path.parent,
+        )
     elif not os.access(path if path.exists() else path.parent, os.W_OK):
-        reason = "permission denied"
+        refusal = tr("{file} cannot be written, you have no permission; choose another file", file=text)
     else:
         return text
-    raise argparse.ArgumentTypeError(f"{text} cannot be written, {reason}; choose another file")
+    raise argparse.ArgumentTypeError(refusal)
 
 
 def add_format(parser: argparse.ArgumentParser, default: Format = "table") -> None:
     """Add the option --format alone, to commands whose --output is not a file."""
     parser.add_argument(
-        "--format", choices=FORMATS, default=default, help=f"of what is printed; default {default}"
+        "--format",
+        choices=FORMATS,
+        default=default,
+        help=tr("the format of the output; default {format}", format=default),
     )
 
 
@@ -59,7 +66,10 @@ def add_output(parser: argparse.ArgumentParser, default: Format = "table") -> No
     """Add the options --format and --output of `write_result`."""
     add_format(parser, default)
     parser.add_argument(
-        "--output", type=writable, metavar="FILE", help="write to a file instead of standard output"
+        "--output",
+        type=writable,
+        metavar="FILE",
+        help=tr("write the output to this file instead of the terminal"),
     )
 
 
@@ -91,13 +101,13 @@ def formatted(
             data = plain(data, "result")
             return laid_out(data, depth=4) + "\n" if chosen == "json" else _as_csv(rows(data))
     data = plain(data, "result", as_said=True)
-    made = lines(data) if lines else aligned([[as_written(value) for value in row] for row in rows(data)])
+    made = lines(data) if lines else aligned(_cells(rows(data)))
     return "".join(f"{line}\n" for line in made)
 
 
 def write(text: str, path: str | None) -> None:
     """Write a text to a file, whole or not at all, or to standard output if None. Raises UsageError."""
-    with writing(path or "Standard output"):
+    with writing(path or tr("Standard output")):
         if path is None:
             put(text)
         else:
@@ -105,14 +115,15 @@ def write(text: str, path: str | None) -> None:
 
 
 @contextmanager
-def writing(place: object, remedy: str = "file") -> Iterator[None]:
-    """Turn an OSError of writing to a place into a UsageError that asks for another file or option."""
+def writing(place: object) -> Iterator[None]:
+    """Turn an OSError of writing to a place into a UsageError that asks for another one."""
     try:
         yield
     except BrokenPipeError:
         raise
     except OSError as error:
-        message = f"{place} cannot be written: {error.strerror or error}. Choose another {remedy}."
+        reason = error.strerror or error
+        message = tr("{file} cannot be written: {reason}. Choose another file.", file=place, reason=reason)
         raise UsageError(message) from None
 
 
@@ -126,6 +137,12 @@ def _as_csv(rows: Iterable[Row]) -> str:
     for row in rows:
         writer.writerow([int(value) if isinstance(value, bool) else value for value in row])
     return text.getvalue()
+
+
+def _cells(rows: Iterable[Row]) -> list[list[str]]:
+    """Rows as tables show them, with the headings in the language of the person."""
+    titles, *others = rows
+    return [[tr(title) for title in titles], *([as_written(value) for value in row] for row in others)]
 
 
 def aligned(rows: Sequence[Sequence[str]]) -> Iterator[str]:
@@ -142,7 +159,7 @@ def as_written(value: Any) -> str:
     if value is None:
         return "–"
     if isinstance(value, bool):
-        return "yes" if value else "no"
+        return tr("yes") if value else tr("no")
     return value if isinstance(value, str) else decimals(f"{value + 0.0:.7g}")  # + 0.0: no minus before a zero
 
 
@@ -154,7 +171,13 @@ def plain(value: Any, where: str, *, as_said: bool = False) -> Any:
     if isinstance(value, np.ndarray | np.generic):
         value = value.tolist()
     if isinstance(value, float) and not math.isfinite(value):
-        raise ResultError(f"{where} is {value}, not finite; report a state before it.")
+        raise ResultError(
+            tr(
+                "{where} is {value}, not a finite number; report an earlier state.",
+                where=where,
+                value=str(value),
+            )
+        )
     if isinstance(value, Said):
         return value if as_said else value.english
     if isinstance(value, str):

@@ -7,6 +7,7 @@ from collections.abc import Iterator, Sequence
 from pathlib import Path
 from typing import Any
 
+from components.language import tr
 from game.commands.arguments import Parser, UsageError
 from game.commands.options import ANSWERED, add_model, session_of
 from game.commands.output import Row, add_output, write_result
@@ -18,10 +19,14 @@ def command(words: Sequence[str]) -> int:
     """Do what the words after the command ask for; returns the exit status."""
     parser = Parser(
         prog="pinjoint plan",
-        description="The systems that run in the window in a scene with a model, by phase of the frame and in order.",
+        description=tr(
+            "List the systems (parts of the program) that run in a scene of the window, in their order in a frame."
+        ),
     )
     add_model(parser)
-    parser.add_argument("--scene", default="simulation", metavar="NAME", help="default: simulation")
+    parser.add_argument(
+        "--scene", default="simulation", metavar="NAME", help=tr("the scene; default simulation")
+    )
     add_output(parser)
     options = parser.parse_args(words)
     from game.app import window_systems  # pygame takes a while to import
@@ -35,7 +40,13 @@ def command(words: Sequence[str]) -> int:
 def plan(session: Session, scene: str) -> dict[str, Any]:
     """The plan of a session, as names: {"scene", "phases": {phase: […]}, "left_out": {name: why}}."""
     if scene not in session.scenes.names:
-        raise UsageError(f"There is no scene '{scene}'; there are {', '.join(session.scenes.names)}.")
+        raise UsageError(
+            tr(
+                "There is no scene '{scene}'; choose from {names}.",
+                scene=scene,
+                names=", ".join(session.scenes.names),
+            )
+        )
     found = session.plan(scene)
     return {
         "scene": found.scene,
@@ -46,13 +57,13 @@ def plan(session: Session, scene: str) -> dict[str, Any]:
 
 def _lines(found: dict[str, Any], model: str) -> Iterator[str]:
     width = max(map(len, (*found["left_out"], *found["phases"])))
-    yield f"Scene {found['scene']}, model {model}"
+    yield tr("Scene {scene}, model {model}", scene=found["scene"], model=model)
     yield ""
     for phase, names in found["phases"].items():
         for index, name in enumerate(names or ["–"]):
             yield f"{phase if index == 0 else '':{width}}  {name}"
     yield ""
-    yield "Left out"
+    yield tr("Left out")
     yield from (f"{system:{width}}  {why}" for system, why in found["left_out"].items())
 
 

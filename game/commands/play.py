@@ -7,7 +7,7 @@ from contextlib import ExitStack
 from pathlib import Path
 from typing import Any
 
-from components.language import ENGLISH, spoken
+from components.language import ENGLISH, plural, spoken, tr
 from game.commands.arguments import Parser
 from game.commands.language import asked_language
 from game.commands.options import ANSWERED, NOT_ANSWERED
@@ -24,18 +24,20 @@ def command(words: Sequence[str]) -> int:
     """Do what the words after the command ask for; returns the exit status."""
     parser = Parser(
         prog="pinjoint play",
-        description="Play a recorded or written session, or a lesson, in the real program.",
-        epilog=f"lessons: {', '.join(script.lessons())}",
+        description=tr("Play a lesson, or a session that was recorded or written, in the real program."),
+        epilog=tr("Lessons: {names}", names=", ".join(script.lessons())),
     )
-    parser.add_argument("script", metavar="SCRIPT", help="a file of JSON lines, or the name of a lesson")
+    parser.add_argument("script", metavar="SCRIPT", help=tr("a file of JSON lines, or the name of a lesson"))
     parser.add_argument(
-        "--window", action="store_true", help="show it in a window, at a pace to follow, and go on from there"
+        "--window",
+        action="store_true",
+        help=tr("show it in a window, slowly enough to follow; then go on by hand"),
     )
     parser.add_argument(
         "--data",
         type=Path,
         metavar="FOLDER",
-        help="where the session saves and loads; default: an empty folder that is deleted afterwards",
+        help=tr("where the session saves and opens files; default: an empty folder that is deleted afterwards"),
     )
     add_output(parser)
     options = parser.parse_args(words)
@@ -72,6 +74,13 @@ def _rows(found: Mapping[str, Any]) -> Iterator[Row]:
 
 
 def _lines(found: Mapping[str, Any]) -> Iterator[str]:
-    failed = len(found["failures"])
-    ended = f"{failed} expectation{'s' if failed > 1 else ''} failed" if failed else "all as expected"
-    yield f"{found['script']}: {found['lines']} lines, {ended}"
+    played = {"script": found["script"], "lines": found["lines"]}
+    if not found["failures"]:
+        yield tr("{script}: {lines} lines, all as expected", **played)
+        return
+    yield plural(
+        "{script}: {lines} lines, one expectation failed",
+        "{script}: {lines} lines, {count} expectations failed",
+        len(found["failures"]),
+        **played,
+    )

@@ -7,6 +7,7 @@ import time
 from collections.abc import Iterator
 from contextlib import contextmanager
 
+from components.language import tr
 from game.session import Session
 from game.streams import tell
 from systems.run.simulation import Simulation
@@ -35,7 +36,7 @@ def told() -> Iterator[None]:
             wait = FURTHER
             if not _followed:
                 continue
-            tell(f"after {time.monotonic() - began:.0f} s: {how_far()}. Ctrl+C stops it.")
+            tell(how_far(time.monotonic() - began))
 
     voice = threading.Thread(target=speak, daemon=True)
     voice.start()
@@ -46,9 +47,15 @@ def told() -> Iterator[None]:
         _followed.clear()
 
 
-def how_far() -> str:
-    """What the command does and how far it is, as a part of a sentence."""
+def how_far(seconds: float) -> str:
+    """How far the command is after some seconds."""
     progress = _followed[-1].progress
     if progress.steps == 0 and progress.impacts == 0:
-        return "computing, and no time has passed yet"
-    return f"t = {progress.time:.9g} s, {progress.steps} steps, {progress.impacts} impacts"
+        return tr("after {seconds:.0f} s: preparing, no step was made yet. Ctrl+C stops it.", seconds=seconds)
+    return tr(
+        "after {seconds:.0f} s: t = {time:.9g} s, {steps} steps, {impacts} impacts. Ctrl+C stops it.",
+        seconds=seconds,
+        time=progress.time,
+        steps=progress.steps,
+        impacts=progress.impacts,
+    )

@@ -8,6 +8,7 @@ from collections.abc import Sequence
 from pathlib import Path
 
 from components.bent import QUANTITIES
+from components.language import tr
 from game import pictures
 from game.commands.arguments import Parser, UsageError, positive
 from game.commands.options import ANSWERED, NOT_ANSWERED, add_model, session_of
@@ -24,57 +25,77 @@ _LIGHT = 128  # of 255: themes with a darker background are not made for white p
 
 def command(words: Sequence[str]) -> int:
     """Do what the words after the command ask for; returns the exit status."""
-    parser = Parser(prog="pinjoint render", description="Draw a model, or its run as a GIF, without a display.")
+    parser = Parser(prog="pinjoint render", description=tr("Draw a model, or its run as a GIF, to a file."))
     add_model(parser)
     parser.add_argument(
         "--output",
         type=writable,
         required=True,
         metavar="FILE",
-        help="a .png, .svg or .pdf, or a .gif that shows the run",
+        help=tr("the file to write: .png, .svg or .pdf, or .gif to show the run"),
     )
-    parser.add_argument("--size", default="1280x800", metavar="WIDTHxHEIGHT", help="pixels")
-    parser.add_argument("--until-rest", action="store_true", help="run until at rest first (a GIF's default)")
-    parser.add_argument("--at", type=positive, metavar="T", help="run to this time (s) first")
-    parser.add_argument("--diagrams", action="store_true", help="show all force diagrams")
+    parser.add_argument(
+        "--size", default="1280x800", metavar="WIDTHxHEIGHT", help=tr("the size in pixels; default 1280x800")
+    )
+    parser.add_argument(
+        "--until-rest", action="store_true", help=tr("run until at rest first (the default of a .gif)")
+    )
+    parser.add_argument("--at", type=positive, metavar="T", help=tr("run to this time (s) first"))
+    parser.add_argument("--diagrams", action="store_true", help=tr("draw all force diagrams"))
     parser.add_argument(
         "--diagrams-of",
         choices=QUANTITIES,
-        help="show all diagrams, where rods bend of the axial force N, the bending moment M or the shear V",
+        help=tr(
+            "draw all diagrams of one quantity: the axial force N, or where rods bend the bending moment M or the shear"
+            " force V"
+        ),
     )
     parser.add_argument(
-        "--utilisation", action="store_true", help="colour rods by the share of their strength that they bear"
+        "--utilisation", action="store_true", help=tr("colour rods by utilisation: force over strength")
     )
     shape = parser.add_mutually_exclusive_group()
-    shape.add_argument("--mechanism", type=int, metavar="N", help="draw a motion that elongates no rod over it")
+    shape.add_argument(
+        "--mechanism",
+        type=int,
+        metavar="N",
+        help=tr("also draw the Nth mechanism: a motion that stretches no rod"),
+    )
     shape.add_argument(
         "--mode",
         type=int,
         metavar="N",
-        help="draw a natural mode over it, 1 the lowest; at rest, that under load",
+        help=tr("also draw the Nth natural mode, 1 the lowest; of the loaded structure if it is at rest"),
     )
     shape.add_argument(
-        "--buckling-mode", type=int, metavar="N", help="draw a mode in which it gives way over it, 1 the lowest"
+        "--buckling-mode", type=int, metavar="N", help=tr("also draw the Nth buckling mode, 1 the lowest")
     )
-    parser.add_argument("--theme", choices=theme_names(), default="light", help="colours")
+    parser.add_argument(
+        "--theme", choices=theme_names(), default="light", help=tr("the colours; default light")
+    )
     parser.add_argument(
         "--background",
         choices=("theme", "white", "transparent"),
         default="theme",
-        help="of a picture for a report",
+        help=tr("the background, for pictures in reports; default theme"),
     )
     parser.add_argument("--limit", type=positive, default=DEFAULT_LIMIT, help=argparse.SUPPRESS)
     options = parser.parse_args(words)
     width, height = _size(options.size)
     if Path(options.output).suffix.lower() not in _PICTURES:
-        raise UsageError(f"--output {options.output}: write a file that ends with {' or '.join(_PICTURES)}.")
+        raise UsageError(
+            tr(
+                "--output {file}: choose a file that ends with one of {endings}.",
+                file=options.output,
+                endings=", ".join(_PICTURES),
+            )
+        )
     _check_background(options)
     session = session_of(options)
     session.view.all_diagrams = options.diagrams or options.diagrams_of is not None
     session.view.quantity = options.diagrams_of or session.view.quantity
     session.view.utilisation = options.utilisation
     draw = _animate if options.output.lower().endswith(".gif") else _draw
-    with writing(options.output, "--output"):
+    with writing(options.output):
         status = draw(session, options, (width, height))
     return ANSWERED if status in FOUND else NOT_ANSWERED
 
@@ -83,12 +104,26 @@ def _check_background(options: argparse.Namespace) -> None:
     """Raise UsageError where a background does not go with a format or a theme."""
     background, suffix = options.background, Path(options.output).suffix.lower()
     if background != "theme" and suffix == ".gif":
-        raise UsageError(f"--background {background}: the run in a .gif has that of its theme; leave it out.")
+        raise UsageError(
+            tr(
+                "--background {background}: a .gif always has the background of its theme; leave out --background.",
+                background=background,
+            )
+        )
     if background == "transparent" and suffix not in _CLEAR:
-        raise UsageError(f"--background transparent: a {suffix} has none; write a {' or '.join(_CLEAR)}.")
+        raise UsageError(
+            tr(
+                "--background transparent: a {ending} cannot be transparent; choose one of {endings}.",
+                ending=suffix,
+                endings=", ".join(_CLEAR),
+            )
+        )
     if background == "white" and max(load_theme(options.theme).background[:3]) < _LIGHT:
         raise UsageError(
-            f"--background white: the texts of the theme {options.theme} are light; choose a theme for light paper."
+            tr(
+                "--background white: the theme {theme} has light text, which cannot be read on white; choose a light theme.",
+                theme=options.theme,
+            )
         )
 
 
@@ -122,5 +157,10 @@ def _size(text: str) -> tuple[int, int]:
     found = re.fullmatch("([0-9]{2,5})x([0-9]{2,5})", text)
     width, height = map(int, found.groups()) if found else (0, 0)
     if not (16 <= width <= 16384 and 16 <= height <= 16384):
-        raise UsageError(f"--size {text}: write it like 1280x800, each from 16 to 16384 pixels.")
+        raise UsageError(
+            tr(
+                "--size {size}: write width x height in pixels, such as 1280x800, each from 16 to 16384.",
+                size=text,
+            )
+        )
     return width, height

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import replace
 
+from components.language import tr
 from game.commands.arguments import Parser
 from game.commands.options import (
     ANSWERED,
@@ -23,16 +24,18 @@ from game.commands.reports.results import run_lines, run_rows
 def command(words: Sequence[str]) -> int:
     """Do what the words after the command ask for; returns the exit status."""
     parser = Parser(
-        prog="pinjoint run", description="Compute a model without a window and print what came of it."
+        prog="pinjoint run", description=tr("Compute a model without a window, and print the result.")
     )
     add_model(parser)
     add_analysis(parser)
     add_output(parser)
-    parser.add_argument("--events", type=writable, metavar="FILE", help="write all impacts to a file, as CSV")
+    parser.add_argument(
+        "--events", type=writable, metavar="FILE", help=tr("write all impacts to this file, as CSV")
+    )
     parser.add_argument(
         "--measure-error",
         action="store_true",
-        help="measure the error by a run with finer steps, even if that takes long",
+        help=tr("measure the error by a second run with finer steps, even if that takes long"),
     )
     options = parser.parse_args(words)
     session = session_of(options)

@@ -6,6 +6,7 @@ import sys
 from collections.abc import Sequence
 from pathlib import Path
 
+from components.language import plural, tr
 from game.commands.arguments import Parser, UsageError
 from game.commands.options import ANSWERED, NOT_ANSWERED, STOPPED, add_analysis, add_model, analysis_of
 from game.commands.reports.report import FOUND
@@ -39,40 +40,69 @@ def command(words: Sequence[str]) -> int:
         if options.plot is not None:
             results.plot(options.plot)
     except KeyboardInterrupt:
-        tell("Interrupted; the same command goes on with what is finished.")
+        tell(tr("Interrupted. Use the same command again to go on from here."))
         return STOPPED
     except OSError as error:
-        raise UsageError(
-            f"{error.filename or options.output} cannot be written: {error.strerror}. Choose another file."
-        ) from None
+        file, reason = error.filename or options.output, error.strerror
+        message = tr("{file} cannot be written: {reason}. Choose another file.", file=file, reason=reason)
+        raise UsageError(message) from None
     for fault, count in results.faults.items():
         print(
-            f"{count} variants were computed one by one, which takes longer, since together it failed: {fault}",
+            plural(
+                "One variant was computed alone, because computing it together with others failed: {fault}",
+                "{count} variants were computed one by one, which is slower, because computing them together failed:"
+                " {fault}",
+                count,
+                fault=fault,
+            ),
             file=sys.stderr,
         )
     counts = results.counts()
-    why = "" if set(counts) <= set(FOUND) else "; its column 'message' says why"
-    print(f"{options.output}: {', '.join(f'{count} {status}' for status, count in counts.items())}{why}")
+    told = {
+        "file": options.output,
+        "counts": ", ".join(f"{count} {tr(status)}" for status, count in counts.items()),
+    }
+    if set(counts) <= set(FOUND):
+        print(tr("{file}: {counts}", **told))
+    else:
+        print(tr("{file}: {counts}; its column 'message' says why", **told))
     return ANSWERED if any(status in FOUND for status in counts) else NOT_ANSWERED
 
 
 def _parser() -> Parser:
     parser = Parser(
         prog="pinjoint sweep",
-        description="Compute many variants of a model; one that fails is recorded with its reason.",
+        description=tr(
+            "Compute many variants of a model, and write one line of results for each; a variant that fails is recorded"
+            " with the reason."
+        ),
     )
     add_model(parser)
     add_analysis(parser)
     add = parser.add_argument
-    add("--vary", action="append", required=True, metavar="PATH=…", help=FORMS)
-    add("--measure", action="append", required=True, metavar="PATH,…", help="such as rods.CD.plastic_strain")
-    add("--output", required=True, metavar="FILE", help="results.csv or results.parquet")
-    add("--plot", metavar="FILE.png", help="draw the measures against what is varied first")
-    add("--samples", type=int, metavar="N", help="how many are drawn from distributions (~)")
-    add("--seed", type=int, default=0, metavar="N", help="of what is drawn; default 0")
+    add("--vary", action="append", required=True, metavar="PATH=…", help=tr(FORMS))
+    add(
+        "--measure",
+        action="append",
+        required=True,
+        metavar="PATH,…",
+        help=tr("what to write of each variant, such as rods.CD.plastic_strain"),
+    )
+    add(
+        "--output",
+        required=True,
+        metavar="FILE",
+        help=tr("the file of results, such as results.csv or results.parquet"),
+    )
+    add("--plot", metavar="FILE.png", help=tr("also draw the results over the first varied value"))
+    add("--samples", type=int, metavar="N", help=tr("how many variants to draw from distributions (~)"))
+    add("--seed", type=int, default=0, metavar="N", help=tr("the seed of the random numbers; default 0"))
     where = parser.add_mutually_exclusive_group()
     where.add_argument(
-        "--workers", type=int, metavar="N", help="processes on this machine; default: as many as suit"
+        "--workers",
+        type=int,
+        metavar="N",
+        help=tr("how many processes to use on this machine; chosen automatically by default"),
     )
-    where.add_argument("--scheduler", metavar="tcp://…", help="compute on a running Dask cluster")
+    where.add_argument("--scheduler", metavar="tcp://…", help=tr("compute on a running Dask cluster"))
     return parser

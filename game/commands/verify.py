@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
+from components.language import tr
 from game.commands.arguments import BAD_INPUT, Parser, UsageError, positive
 from game.commands.options import ANSWERED, NOT_ANSWERED, add_model, session_of
 from game.commands.output import add_output, write_result
@@ -14,19 +15,27 @@ def command(words: Sequence[str]) -> int:
     """Do what the words after the command ask for; returns the exit status."""
     parser = Parser(
         prog="pinjoint verify",
-        description="Simulation run to rest, linear theory and exact theory side by side, with their differences.",
+        description=tr(
+            "Run the simulation to rest, and compare it with linear theory and with exact theory (large displacements)."
+        ),
     )
     add_model(parser)
     parser.add_argument(
         "--influence",
         nargs="+",
         metavar="NAME",
-        help="influence lines instead: of a rod AB, its moments AB.start, AB.end and AB.shear, a reaction A.y or"
-        " A.rotation, or a displacement B.y (unit-load method)",
+        help=tr(
+            "print influence lines instead: of the axial force of rod AB; of its moments, AB.start and AB.end, or its"
+            " shear force, AB.shear; of a reaction, A.y or A.rotation; or of a displacement, B.y (unit-load method)"
+        ),
     )
-    parser.add_argument("--theory-only", action="store_true", help="without the simulation")
+    parser.add_argument("--theory-only", action="store_true", help=tr("leave out the simulation"))
     parser.add_argument(
-        "--limit", type=positive, default=DEFAULT_LIMIT, metavar="SECONDS", help="simulated time for rest"
+        "--limit",
+        type=positive,
+        default=DEFAULT_LIMIT,
+        metavar="SECONDS",
+        help=tr("stop waiting for rest after this much simulated time"),
     )
     add_output(parser)
     options = parser.parse_args(words)

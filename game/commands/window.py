@@ -8,7 +8,7 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
-from components.language import LANGUAGES
+from components.language import LANGUAGES, tr
 from components.model import Model
 from components.suggestions import nearest
 from game.commands import COMMANDS
@@ -28,21 +28,24 @@ def _refuse_misspelt(word: str) -> None:
     """Raise UsageError for a word that is not a model but nearly a command."""
     near = nearest(word, COMMANDS, cutoff=0.75)
     if near and word not in models.bundled() and not Path(word).exists():
-        raise UsageError(f"There is no command '{word}'; did you mean '{near}'?")
+        raise UsageError(tr("There is no command '{word}'; did you mean '{near}'?", word=word, near=near))
 
 
 def _epilog() -> str:
     """The commands, the options that all have, and the bundled models."""
     width = max(map(len, COMMANDS))
     paragraphs = [
-        "Every command takes --mods DIR, for mods in a folder, --no-mods, to leave yours out, --cores N, to use"
-        f" no more, and --language {'|'.join(LANGUAGES)}.",
-        f"Bundled models: {', '.join(models.bundled())}",
+        tr(
+            "Every command also takes --mods DIR, to load the mods in a folder; --no-mods, to leave out your mods;"
+            " --cores N, to use at most N processor cores; and --language {languages}.",
+            languages="|".join(LANGUAGES),
+        ),
+        tr("Bundled models: {names}", names=", ".join(models.bundled())),
     ]
     return "\n".join(
         [
-            "commands (each with --help):",
-            *(f"  {name.ljust(width)}  {COMMANDS[name].about}".rstrip() for name in sorted(COMMANDS)),
+            tr("commands (each with --help):"),
+            *(f"  {name.ljust(width)}  {tr(COMMANDS[name].about)}".rstrip() for name in sorted(COMMANDS)),
             *(f"\n{textwrap.fill(paragraph, 78)}" for paragraph in paragraphs),
         ]
     )
@@ -54,20 +57,23 @@ def command(words: Sequence[str]) -> int:
         _refuse_misspelt(words[0])
     parser = Parser(
         prog="pinjoint",
-        description="A laboratory for particles and pin-jointed structures.",
+        description=tr("A laboratory for particles, trusses and frames."),
         epilog=_epilog(),
         formatter_class=RawDescriptionHelpFormatter,
     )
-    parser.add_argument("model", nargs="?", help="a model file, or the name of a bundled model")
+    parser.add_argument("model", nargs="?", help=tr("a model file, or the name of a bundled model"))
     parser.add_argument(
-        "--record", type=writable, metavar="FILE", help="write the session to a script for: pinjoint play"
+        "--record",
+        type=writable,
+        metavar="FILE",
+        help=tr("record the session to this file, for: pinjoint play FILE"),
     )
-    parser.add_argument("--theme", choices=theme_names(), help="colours; default: the theme that was used last")
+    parser.add_argument("--theme", choices=theme_names(), help=tr("the colours; default: those used last"))
     parser.add_argument("--version", action="version", version=f"pinjoint {__version__}")
     options = parser.parse_args(words)
     source = options.model or script.EMPTY
     model, file = models.load(source), file_of(source)
-    with writing(options.record, "--record"):
+    with writing(options.record):
         in_window(model, file, options.theme, record=(options.record, source))
     return ANSWERED
 
@@ -77,15 +83,17 @@ def in_window(model: Model, file: ModelFile, theme: str | None = None, **further
     try:
         from game.app import NoDisplay, open_window
     except ImportError as error:
-        raise UsageError(
-            f"The window needs pygame-ce, which cannot be imported: {error}.", NO_DISPLAY
-        ) from None
+        message = tr("The window needs pygame-ce, which cannot be imported: {error}. Install it.", error=error)
+        raise UsageError(message, NO_DISPLAY) from None
     try:
         with in_use():
             return open_window(model, file, theme, **further)
     except NoDisplay as error:
         raise UsageError(
-            f"No window can be opened: {error}. Without a display, use: pinjoint run MODEL,"
-            " or pinjoint play SCRIPT without --window.",
+            tr(
+                "No window can be opened: {error}. Without a display, use: pinjoint run MODEL,"
+                " or pinjoint play SCRIPT without --window.",
+                error=error,
+            ),
             NO_DISPLAY,
         ) from None

@@ -8,6 +8,7 @@ from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from pathlib import Path
 
+from components.language import marked, tr
 from game.commands import COMMANDS
 from game.commands.arguments import Parser
 from game.documents.library import data_folder
@@ -17,7 +18,7 @@ from game.mods.loading import MODS, load
 from game.mods.mod import INCLUDED, LOG, ModError
 from game.streams import tell
 
-LEFT_OUT = (
+LEFT_OUT = marked(
     "Pinjoint crashed while your mods were loaded, so they are left out this time. The next"
     " start loads them again; --no-mods always leaves them out."
 )
@@ -36,17 +37,19 @@ def load_as_asked(words: Sequence[str]) -> list[str]:
     options, others = parser.parse_known_args(list(words))
     for folder in options.mods:
         if not Path(folder).is_dir():
-            raise ModError(f"--mods {folder}: there is no such folder.")
+            raise ModError(tr("--mods {folder}: there is no such folder; check its name.", folder=folder))
     unsafe = not options.no_mods and others[:1] not in [[name] for name in COMMANDS] and crashed()
     if unsafe:
-        FAULTS.append(LEFT_OUT)
+        FAULTS.append(tr(LEFT_OUT))
     named = {Path(folder).resolve() for folder in options.mods}
     computes = set(others[:1]) & set(COMMANDS) - {"open"}
     for mod in load(options.mods, installed=not (options.no_mods or unsafe)):
         if mod.off and others[:1] != ["mods"]:
             if computes and mod.folder is not None and {mod.folder, mod.folder.parent} & named:
-                raise ModError(f"The mod '{mod.name}' cannot be used: {mod.problem}")
-            tell(f"the mod '{mod.name}' was left out: {mod.problem}")
+                raise ModError(
+                    tr("The mod '{name}' cannot be used: {problem}", name=mod.name, problem=mod.problem)
+                )
+            tell(tr("The mod '{name}' was left out: {problem}", name=mod.name, problem=mod.problem))
     return others
 
 

@@ -15,6 +15,7 @@ import msgspec
 
 from components.field import SAVED, Column
 from components.handle import Handle
+from components.language import tr
 from components.model import Model
 from components.table import Table
 from game.documents import library, models
@@ -35,9 +36,12 @@ def recovered_name(path: Path) -> str:
 
 def unkept(folder: Path, error: OSError) -> str:
     """The sentence that unsaved work would not survive a crash, and why."""
-    return (
-        f"Unsaved work is not kept against a crash: {folder}: {error.strerror}. Make room there, or start Pinjoint with"
-        f" {library.DATA_VARIABLE} naming another folder."
+    return tr(
+        "Unsaved work cannot be kept in {folder}, so a crash would lose it: {reason}. Make room there, or set {variable} to"
+        " another folder and start Pinjoint again.",
+        folder=folder,
+        reason=error.strerror,
+        variable=library.DATA_VARIABLE,
     )
 
 

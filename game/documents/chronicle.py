@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
 
 from components import written
 from components.field import Column, Role
+from components.language import joined, plural, tr
 from components.load import load_factor
 from components.model import Model
 from components.obstacles import obstacles
@@ -42,7 +44,8 @@ class Happening:
         """The time, and the share of the load unless that is all of it: "0.4345 s, 86.9 % of the load"."""
         if self.load_factor is None or self.load_factor == 1.0:
             return written.time(self.time)
-        return f"{written.time(self.time)}, {written.share(self.load_factor)} of the load"
+        share = written.share(self.load_factor)
+        return tr("{time}, {share} of the load", time=written.time(self.time), share=share)
 
 
 class Chronicle:
@@ -99,7 +102,7 @@ class Chronicle:
         left = [(happening, seconds - elapsed) for happening, seconds in self._telling if seconds > elapsed]
         self._telling = [pair for pair in left if pair[0] in self._known] + [(one, TOLD) for one in new]
         del self._telling[:-MOST_TOLD]
-        return " ".join(f"{one.message[:-1]} ({one.when})." for one, _ in self._telling)
+        return joined(tr("{when}: {message}", when=one.when, message=one.message) for one, _ in self._telling)
 
     # --- from the state ------------------------------------------------------------------------------
 
@@ -114,7 +117,8 @@ class Chronicle:
         names, found = rods.column("name"), []
         for time in np.unique(at[~np.isnan(at)]).tolist():
             some = tuple(names[at == time].tolist())
-            found.append(self._happening("yield", time, f"{_rods(some)} yield{'s' * (len(some) == 1)}.", some))
+            said = plural("Rod {rods} yields.", "Rods {rods} yield.", len(some), rods=_listed(some))
+            found.append(self._happening("yield", time, said, some))
         self._yielded = at.copy(), found
         return found
 
@@ -142,7 +146,10 @@ class Chronicle:
         if shown == count:
             return told
         last = float(time[-1]) if len(time) else self._model.clock.time
-        further = f"{count - shown} {'more ' * (shown > 0)}impact{'s' * (count - shown > 1)}."
+        if shown:
+            further = plural("One more impact.", "{count} more impacts.", count - shown)
+        else:
+            further = plural("One impact.", "{count} impacts.", count)
         return [*told, Happening("impacts", last, further)]
 
     def _collisions(self, time: Column) -> tuple[list[Happening], int]:
@@ -154,9 +161,12 @@ class Chronicle:
             those = np.flatnonzero(instant == number)
             pairs = np.stack([impacts.first[those], impacts.second[those]], axis=1)
             shown += len(pairs)
-            said = _listed(tuple(f"{names[first]} and {names[second]}" for first, second in pairs.tolist()))
+            met = [
+                tr("{first} and {second}", first=names[first], second=names[second])
+                for first, second in pairs.tolist()
+            ]
             some = tuple(names[row] for row in dict.fromkeys(pairs.ravel().tolist()))
-            message = f"{said[:1].upper()}{said[1:]} collide."
+            message = tr("Impact of {pairs}.", pairs=_listed(met))
             found.append(self._happening("impact", float(time[those[0]]), message, some))
         return found, shown
 
@@ -166,8 +176,9 @@ class Chronicle:
         if not simulation.halted:
             return []
         if simulation.reason is StopReason.DIVERGED:
-            return [self._happening("diverged", self._model.clock.time, "The run stops: it diverges.")]
-        return [self._happening("rest", simulation.moved_until, "All comes to rest.")] * bool(
+            said = tr("The run stops, because its numbers grow without limit.")
+            return [self._happening("diverged", self._model.clock.time, said)]
+        return [self._happening("rest", simulation.moved_until, tr("Everything comes to rest."))] * bool(
             self._model.clock.steps
         )
 
@@ -193,7 +204,7 @@ class Chronicle:
         slack = rods.tension_only & (rods.axial_force <= 0.0)
         names = frozenset(rods.column("name")[slack].tolist())
         for name in sorted(names - (names if self._slack is None else self._slack)):
-            self._see("slack", f"Cable {name} goes slack.", (name,))
+            self._see("slack", tr("Cable {name} goes slack.", name=name), (name,))
         self._slack = names
 
     def _look_at_stability(self) -> None:
@@ -211,18 +222,19 @@ class Chronicle:
         worn = yielding[np.abs(rods.plastic_strain[yielding]) > COLLAPSED * limit[yielding]]
         if len(worn):  # what yields less may do so in an overshoot that ends before it matters
             names, at = tuple(rods.column("name")[worn].tolist()), rods.column("yielded_at")[worn].max()
-            why = f"{_rods(names)} yield{'s' * (len(names) == 1)} and nothing else resists"
-            self._see("collapse", f"The structure collapses: {why}.", time=float(at))
+            said = plural(
+                "The structure collapses: rod {rods} yields, and nothing else resists.",
+                "The structure collapses: rods {rods} yield, and nothing else resists.",
+                len(names),
+                rods=_listed(names),
+            )
+            self._see("collapse", said, time=float(at))
         elif not len(yielding) and not any(seen.kind == "collapse" for seen in self._seen):
-            self._see("snap-through", "The structure snaps through: its shape holds no more.")
+            self._see("snap-through", tr("The structure snaps through into another shape."))
 
 
-def _rods(names: tuple[str, ...]) -> str:
-    return f"{'Rod' if len(names) == 1 else 'Rods'} {_listed(names)}"
-
-
-def _listed(names: tuple[str, ...]) -> str:
+def _listed(names: Sequence[str]) -> str:
     """Names, of many the first and how many more."""
     if len(names) <= MOST_NAMED:
         return ", ".join(names)
-    return f"{', '.join(names[:MOST_NAMED])} and {len(names) - MOST_NAMED} more"
+    return tr("{names} and {count} more", names=", ".join(names[:MOST_NAMED]), count=len(names) - MOST_NAMED)

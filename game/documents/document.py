@@ -16,6 +16,7 @@ from components.departure import Departure
 from components.field import Column, Field, FieldError
 from components.grid import Grid
 from components.handle import Handle
+from components.language import joined, marked, tr
 from components.model import ADDED, Model
 from components.particle import Particle, check_spin, check_velocities
 from components.rod import Rod
@@ -54,9 +55,11 @@ def parse(document: Mapping[str, Any], source: str = "") -> Model:
     try:
         return _parsed(document)
     except RecursionError:
-        raise ModelError(f"{source or 'The document'} is nested too deeply to be a model.") from None
+        if not source:
+            raise ModelError(tr("The document is nested too deeply to be a model.")) from None
+        raise ModelError(tr("{source} is nested too deeply to be a model.", source=source)) from None
     except (ModelError, FieldError) as error:
-        raise ModelError(f"{source}: {error}" if source else str(error)) from None
+        raise ModelError(joined([f"{source}:", str(error)]) if source else str(error)) from None
 
 
 def document(model: Model) -> dict[str, Any]:
@@ -132,10 +135,10 @@ def _read_added(model: Model, kinds: Any) -> None:
     """Read the elements of mods' kinds; those of mods that are not loaded are kept as they are."""
     path = f"$.{FOREIGN}"
     if not isinstance(kinds, Mapping):
-        fail(path, f"it must be an object, not {_kind_of(kinds)}.")
+        fail(path, tr("it must be an object, not {found}.", found=_kind_of(kinds)))
     for name, elements in kinds.items():
         if not isinstance(name, str) or "." not in name or not isinstance(elements, list | tuple):
-            fail(path, f'{quoted(name)} must be like "mod.Kind": […].')
+            fail(path, tr("{name} must have the form {form}.", name=quoted(name), form='"mod.Kind": […]'))
         if name not in ADDED:
             _refuse_misspelt(name, ADDED, path)
             model.foreign_kinds[name] = copied(elements, f"{path}.{name}")
@@ -152,25 +155,41 @@ def _by_elements(document: Any) -> Any:
     try:
         return spread(msgspec.convert(document, Gathered))
     except (msgspec.ValidationError, ValueError, IndexError, TypeError, AttributeError) as error:
-        fail("$", f"its columns do not fit together ({error}); it was damaged or changed by hand.")
+        fail("$", tr("its columns do not fit together ({error}); copy the model again.", error=error))
 
 
 def _migrated(document: Any) -> Mapping[str, Any]:
     """The document in the present version of the format."""
     if not isinstance(document, Mapping):
-        fail("$", f"it must be an object with the key 'format', not {_kind_of(document)}.")
+        fail("$", tr("it must be an object with the key 'format', not {found}.", found=_kind_of(document)))
     stated = document.get("format")
     if not isinstance(stated, str) or stated != FORMAT:
-        fail("$.format", f'it is {quoted(stated)}; a model file has "format": "{FORMAT}".')
+        form = f'"format": "{FORMAT}"'
+        fail("$.format", tr("it is {value}; a model file has {form}.", value=quoted(stated), form=form))
     version = document.get("version")
     if isinstance(version, bool) or not isinstance(version, int):
-        fail("$.version", f'it is {quoted(version)}; it must be a whole number, now "version": {VERSION}.')
+        form, value = f'"version": {VERSION}', quoted(version)
+        fail("$.version", tr("it is {value}; write a whole number, at present {form}.", value=value, form=form))
     if version > VERSION:
-        fail("$.version", f"it is {version}, but this program reads up to {VERSION}; update Pinjoint.")
+        fail(
+            "$.version",
+            tr(
+                "it is {version}, but this program reads versions up to {newest} only; update Pinjoint.",
+                version=version,
+                newest=VERSION,
+            ),
+        )
     migrated = dict(document)
     for old in range(version, VERSION):
         if old not in MIGRATIONS:
-            fail("$.version", f"there never was a version {version}; the present one is {VERSION}.")
+            fail(
+                "$.version",
+                tr(
+                    "there is no version {version}; the present one is {newest}.",
+                    version=version,
+                    newest=VERSION,
+                ),
+            )
         migrated = MIGRATIONS[old](migrated)
     state = migrated.get("state")
     if isinstance(state, Mapping) and "paths" in state and "collision_state" not in state:  # its earlier name
@@ -182,20 +201,21 @@ def _migrated(document: Any) -> Mapping[str, Any]:
 def _text(document: Mapping[str, Any], key: str) -> str:
     text = document.get(key, "")
     if not isinstance(text, str):
-        fail(f"$.{key}", f"it is {quoted(text)}; it must be a text.")
+        fail(f"$.{key}", tr("it is {value}; it must be a text.", value=quoted(text)))
     if is_broken(text):
-        fail(f"$.{key}", f"it is {text!a}; half of a character cannot be kept in a file.")
+        fail(f"$.{key}", tr("it is {text!a}; a file cannot hold half of a character.", text=text))
     return text
 
 
 def _section(path: str, kind: type[Handle], value: Any) -> _Section:
     """The section at a path once its shape and all its keys are checked."""
     if not kind.single and not isinstance(value, list | tuple):
-        fail(path, f"it must be a list, not {_kind_of(value)}.")
+        fail(path, tr("it must be a list, not {found}.", found=_kind_of(value)))
     elements = [value] if kind.single else value
     for row, element in enumerate(elements):
         if not isinstance(element, Mapping):
-            fail(path if kind.single else f"{path}[{row}]", f"it must be an object, not {_kind_of(element)}.")
+            place = path if kind.single else f"{path}[{row}]"
+            fail(place, tr("it must be an object, not {found}.", found=_kind_of(element)))
     section = _Section(path, kind, elements, set().union(*elements))
     known = [*(field.key for field in saved_fields(kind) if not field.component), FOREIGN]
     if not section.keys <= set(known):
@@ -204,7 +224,8 @@ def _section(path: str, kind: type[Handle], value: Any) -> _Section:
     for key in required(kind):
         for row, element in enumerate(elements):
             if key not in element:
-                fail(section.where(row), f"its '{key}' is missing; every {kind.noun} needs one.")
+                message = tr("its '{key}' is missing; every {kind} needs one.", key=key, kind=tr(kind.noun))
+                fail(section.where(row), message)
     return section
 
 
@@ -224,15 +245,24 @@ def _refuse_unknown(
         if key in keys:
             continue
         if kind is not None and key in {field.key for field in fields_of(kind) if not field.component}:
-            fail(where, f"'{key}' is computed from the rest and is no part of a model file; remove it.")
+            fail(
+                where,
+                tr(
+                    "'{key}' is computed by the program and does not belong in a model file; remove it.",
+                    key=key,
+                ),
+            )
         if added := [name for name, of in ADDED.items() if kind is None and str(key) in (name, of.table)]:
-            fail(where, f'there is no key \'{key}\' here; write "{FOREIGN}": {{"{added[0]}": […]}}.')
-        fail(where, f"there is no key '{cut(str(key))}' here; {remedy(str(key), keys)}")
+            form = f'"{FOREIGN}": {{"{added[0]}": […]}}'
+            fail(where, tr("there is no key '{key}' here; write {form}.", key=key, form=form))
+        key = str(key)
+        fail(where, tr("there is no key '{key}' here; {remedy}", key=cut(key), remedy=remedy(key, keys)))
 
 
 def _kind_of(value: Any) -> str:
-    names = {dict: "an object", list: "a list", str: "a text", bool: "true or false", NoneType: "null"}
-    return names.get(type(value), "a number" if isinstance(value, int | float) else quoted(value))
+    names = {dict: tr("an object"), list: tr("a list"), str: tr("a text"), bool: tr("true or false")}
+    names |= {NoneType: "null", int: tr("a number"), float: tr("a number")}
+    return names.get(type(value)) or quoted(value)
 
 
 def _read(model: Model, section: _Section) -> None:
@@ -254,7 +284,7 @@ def _read(model: Model, section: _Section) -> None:
         try:
             handles = model.create(kind, len(section.elements), **columns)
         except FieldError as error:  # the rules of the kind of a mod
-            raise ModelError(f"{section.path}: {error}") from None
+            raise ModelError(joined([f"{section.path}:", str(error)])) from None
     if FOREIGN in section.keys:
         _keep_foreign(model, section, handles)
 
@@ -306,10 +336,12 @@ def _names(section: _Section, field: Field[Any]) -> Column:
     for row, element in enumerate(section.elements):
         name = element["name"] if "name" in element else next(free)
         if not isinstance(name, str) or not name.strip():
-            fail(section.where(row, "name"), f"it is {quoted(name)}; it must be a text that is not empty.")
+            message = tr("it is {value}; it must be a text that is not empty.", value=quoted(name))
+            fail(section.where(row, "name"), message)
         if name in row_of:
             first = section.where(row_of[name])
-            fail(section.where(row, "name"), f"{first} has this name already; choose another.")
+            message = tr("{first} has this name already; choose another name.", first=first)
+            fail(section.where(row, "name"), message)
         row_of[name] = row
         column[row] = str(name)
     return column
@@ -326,8 +358,11 @@ def _rows_by_name(model: Model, section: _Section, field: Field[Any]) -> Column:
         names = value if field.shape else [value]
         count = field.shape[0] if field.shape else 1
         if not isinstance(names, list | tuple) or [isinstance(n, str) for n in names] != [True] * count:
-            form = 'the names of two particles, ["A", "B"]' if field.shape else "the name of a particle"
-            fail(section.where(row, field.key), f"it is {quoted(value)}; it must be {form}.")
+            if field.shape:
+                message = marked('it is {value}; it must be the names of two particles, such as ["A", "B"].')
+            else:
+                message = marked("it is {value}; it must be the name of a particle.")
+            fail(section.where(row, field.key), tr(message, value=quoted(value)))
         for name in names:
             if name not in row_of:
                 fail(section.where(row, field.key), missing(target.name, name, row_of))
@@ -351,13 +386,17 @@ def _check_particles(model: Model, section: _Section, columns: Columns) -> None:
 def _check_rods(model: Model, section: _Section, columns: Columns) -> None:
     ends = np.sort(columns["between"].astype(np.int64), axis=1)
     for row in np.flatnonzero(ends[:, 0] == ends[:, 1])[:1].tolist():
-        problem = f"both ends are '{model.particles.names[ends[row, 0]]}'; a rod needs two different particles."
-        fail(section.where(row, "between"), problem)
+        particle = model.particles.names[ends[row, 0]]
+        fail(
+            section.where(row, "between"),
+            tr("both ends are '{particle}'; a rod needs two different particles.", particle=particle),
+        )
     pairs = ends[:, 0] * model.particles.count + ends[:, 1]
     _, first, pair = np.unique(pairs, return_index=True, return_inverse=True)
     for row in np.flatnonzero(first[pair] != np.arange(len(ends)))[:1].tolist():
         other = section.where(int(first[pair[row]]))
-        fail(section.where(row, "between"), f"{other} joins these particles already; remove one of the two.")
+        message = tr("{other} joins these particles already; remove one of the two.", other=other)
+        fail(section.where(row, "between"), message)
     _check_lengths(model, section, columns)
 
 
@@ -366,15 +405,21 @@ def _check_lengths(model: Model, section: _Section, columns: Columns) -> None:
     lengths = np.hypot(*(position[:, 1] - position[:, 0]).T)
     usable = (lengths > 0.0) | ~np.isnan(columns["prescribed_rest_length"])
     for row in np.flatnonzero(~usable)[:1].tolist():
-        remedy = "give it a 'rest_length' or place them apart"
-        fail(section.where(row), f"the distance between its ends is 0 m; {remedy}.")
+        message = tr("the distance between its ends is 0 m; give it a 'rest_length' or move its ends apart.")
+        fail(section.where(row), message)
 
 
 def _check_grids(model: Model, section: _Section, columns: Columns) -> None:
     shown = np.flatnonzero(columns["shown"]).tolist()
     if len(shown) > 1:
-        problem = f'{section.where(shown[0])} is shown already; give all but one grid "shown": false.'
-        fail(section.where(shown[1], "shown"), problem)
+        fail(
+            section.where(shown[1], "shown"),
+            tr(
+                "{first} is shown already; only one grid can be shown, give the others {form}.",
+                first=section.where(shown[0]),
+                form='"shown": false',
+            ),
+        )
 
 
 _CHECKS: Mapping[type[Handle], Callable[[Model, _Section, Columns], None]] = MappingProxyType(
@@ -393,10 +438,11 @@ def _check_components(section: _Section) -> None:
             continue
         where, components = section.where(row, FOREIGN), element[FOREIGN]
         if not isinstance(components, Mapping):
-            fail(where, f"it must be an object, not {_kind_of(components)}.")
+            fail(where, tr("it must be an object, not {found}.", found=_kind_of(components)))
         for name, values in components.items():
             if not isinstance(name, str) or "." not in name or not isinstance(values, Mapping):
-                fail(where, f'{quoted(name)} must be like "mod.Component": {{…}}.')
+                form = '"mod.Component": {…}'
+                fail(where, tr("{name} must have the form {form}.", name=quoted(name), form=form))
             if name not in known:
                 _refuse_misspelt(name, known, where)
             if name in known:
@@ -408,7 +454,15 @@ def _refuse_misspelt(name: str, known: Collection[str], where: str) -> None:
     components = itertools.chain.from_iterable(map(_components, (*SECTIONS.values(), *ADDED.values())))
     mod = name.partition(".")[0]
     if mod in {loaded.partition(".")[0] for loaded in (*ADDED, *components)}:
-        fail(where, f"the mod '{mod}' has no '{cut(name)}' here; {remedy(name, known)}")
+        fail(
+            where,
+            tr(
+                "the mod '{mod}' has no '{name}' here; {remedy}",
+                mod=mod,
+                name=cut(name),
+                remedy=remedy(name, known),
+            ),
+        )
 
 
 def _component_section(section: _Section, component: str) -> _Section:

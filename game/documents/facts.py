@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 from components.clock import Clock
 from components.field import MADE, Column, Field
 from components.handle import Handle
+from components.language import tr
 from components.model import ADDED, Model
 from components.table import Table
 from game.documents.format import (
@@ -193,6 +194,10 @@ def _refuse_non_finite(
     for row in np.argwhere(~finite)[:1, 0].tolist():
         element, value = table.handles[rows[row]], field.loaded(column, row)
         raise ModelError(
-            f"{model.describe(element)}: {field.title} is {value}, which no file can hold;"
-            " rewind or undo to a state before it."
+            tr(
+                "{element}: {field} is {value}, which no file can hold; undo, or go back to the beginning.",
+                element=model.describe(element),
+                field=field.title,
+                value=str(value),
+            )
         )

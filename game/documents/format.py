@@ -12,6 +12,7 @@ from components.environment import Environment
 from components.field import SAVED, Field
 from components.grid import Grid
 from components.handle import Handle
+from components.language import joined, tr
 from components.load import Load
 from components.mistake import Mistake
 from components.model import ADDED, Model
@@ -45,7 +46,7 @@ class ModelError(Mistake, ValueError):
 
 
 def fail(path: str, problem: str) -> NoReturn:
-    raise ModelError(f"{path}: {problem}")
+    raise ModelError(joined([f"{path}:", problem]))
 
 
 def required(kind: type[Handle]) -> Sequence[str]:
@@ -66,10 +67,10 @@ def copied(value: Any, where: str) -> Any:
     if isinstance(value, list | tuple):
         return [copied(item, where) for item in value]
     if isinstance(value, str) and is_broken(value):
-        fail(where, f"{value!a} holds half of a character, which cannot be kept in a file.")
+        fail(where, tr("{value!a} contains half of a character, which a file cannot hold.", value=value))
     if value is None or isinstance(value, str | int) or (isinstance(value, float) and math.isfinite(value)):
         return value
-    fail(where, f"{quoted(value)} cannot be kept in a model file.")
+    fail(where, tr("a model file cannot hold {value}.", value=quoted(value)))
 
 
 def missing_mods(model: Model) -> list[str]:

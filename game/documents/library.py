@@ -14,6 +14,7 @@ from platformdirs import user_data_path
 
 from components import suggestions
 from components.box import fits_file_names
+from components.language import plural, tr
 from game.documents import models
 
 DATA_VARIABLE = "PINJOINT_DATA"  # names another folder than the system's own
@@ -69,18 +70,29 @@ def path_of(name: str) -> Path:
     name = unicodedata.normalize("NFC", name.strip())  # the way to write é that all systems find
     wrong = sorted({character for character in name if not fits_file_names(character)})
     if not name:
-        raise NameRefused("The name is empty; type at least one character.")
+        raise NameRefused(tr("The name is empty; type at least one character."))
     if wrong:
-        raise NameRefused(f"A name cannot contain {wrong[0]!r}; use letters, digits, spaces, - and _.")
+        raise NameRefused(
+            tr(
+                "A name cannot contain {character!r}; use letters, digits, spaces, - and _.",
+                character=wrong[0],
+            )
+        )
     if name.startswith(".") or name.endswith("."):
-        raise NameRefused("A name cannot begin or end with a dot.")
+        raise NameRefused(tr("A name cannot begin or end with a dot; remove it."))
     if name.partition(".")[0].rstrip().lower() in _KEPT_BY_WINDOWS:
-        raise NameRefused(f"'{name}' means a device on some systems; choose another name.")
+        raise NameRefused(tr("Windows cannot have files called '{name}'; choose another name.", name=name))
     if len(name) > LONGEST_NAME:
-        raise NameRefused(f"The name has {len(name)} characters; use at most {LONGEST_NAME}.")
+        raise NameRefused(
+            tr("The name has {count} characters; use at most {most}.", count=len(name), most=LONGEST_NAME)
+        )
     if len(name.encode()) > MOST_BYTES:
         raise NameRefused(
-            f"The name takes {len(name.encode())} bytes in a file system; use at most {MOST_BYTES}."
+            tr(
+                "The name takes {count} bytes in a file system; use at most {most}.",
+                count=len(name.encode()),
+                most=MOST_BYTES,
+            )
         )
     return models_folder() / f"{name}.json"
 
@@ -125,10 +137,12 @@ def written_age(path: Path) -> str:
         seconds = max(time.time() - path.stat().st_mtime, 0.0)
     except OSError:
         return ""
-    for length, unit in ((86400.0, "day"), (3600.0, "hour"), (60.0, "minute")):
-        count = int(seconds / length)
-        if count >= 60 and unit == "day":
-            return time.strftime("%Y-%m-%d", time.localtime(time.time() - seconds))
-        if count:
-            return f"{count} {unit}{'s' * (count > 1)} ago"
-    return "just now"
+    if (days := int(seconds / 86400.0)) >= 60:
+        return time.strftime("%Y-%m-%d", time.localtime(time.time() - seconds))
+    if days:
+        return plural("1 day ago", "{count} days ago", days)
+    if hours := int(seconds / 3600.0):
+        return plural("1 hour ago", "{count} hours ago", hours)
+    if minutes := int(seconds / 60.0):
+        return plural("1 minute ago", "{count} minutes ago", minutes)
+    return tr("just now")

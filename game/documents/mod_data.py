@@ -6,6 +6,7 @@ import copy
 from collections.abc import Callable, Iterator, Mapping
 from typing import Any
 
+from components.language import tr
 from components.wording import quoted
 
 DATA = "components"  # the key of the data of mods, at elements and in the document
@@ -62,10 +63,16 @@ def _data_in(document: Mapping[str, Any]) -> Iterator[Mapping[Any, Any]]:
 
 def _check(stated: Any) -> None:
     if not isinstance(stated, Mapping):
-        raise ValueError('it must be an object like {"wind": "1.0"}.')
+        raise ValueError(tr("it must be an object such as {form}.", form='{"wind": "1.0"}'))
     for name, version in stated.items():
         if not isinstance(version, str) or not _is_version(version):
-            raise ValueError(f'the version of {name} is {quoted(version)}; it must be like "1.0".')
+            raise ValueError(
+                tr(
+                    'the version of {name} is {version}; write it like "1.0".',
+                    name=name,
+                    version=quoted(version),
+                )
+            )
 
 
 def _is_version(text: str) -> bool:

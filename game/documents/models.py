@@ -20,6 +20,7 @@ from typing import Any, NoReturn
 
 import msgspec
 
+from components.language import joined, marked, tr
 from components.model import Model
 from components.suggestions import nearest
 from components.wording import quoted
@@ -90,16 +91,26 @@ def load(source: str | Path | Mapping[str, Any]) -> Model:
     if isinstance(source, Mapping):
         return parse(source)
     if not isinstance(source, str | os.PathLike):
-        raise ModelError(f"{quoted(source)} is no model; give a file, a bundled model's name or a document.")
+        raise ModelError(
+            tr(
+                "{source} is not a model; give a file, the name of a bundled model, or a document.",
+                source=quoted(source),
+            )
+        )
     try:
         raw = _found(source).read_bytes()
     except IsADirectoryError:
-        raise ModelError(f"'{source}' is a folder; name a model file in it.") from None
+        raise ModelError(tr("'{source}' is a folder; name a model file in it.", source=source)) from None
     except FileNotFoundError:
         raise _missing(source) from None
     except (OSError, ValueError) as error:
-        problem = f"{source} cannot be read: {_reason(error)}. Check its path and permissions."
-        raise ModelError(problem) from None
+        raise ModelError(
+            tr(
+                "{source} cannot be read: {reason}. Check its path and permissions.",
+                source=source,
+                reason=_reason(error),
+            )
+        ) from None
     with _nothing_collected():
         return parse(_decoded(raw, str(source)), str(source))
 
@@ -129,9 +140,12 @@ def name_of(path: Path) -> str:
 
 def _missing(source: str | Path) -> ModelError:
     near = nearest(Path(source).stem, bundled(), cutoff=0.6)
-    hint = f"; did you mean '{near}'?" if near else "."
+    if near:
+        message = marked("There is no file and no bundled model '{source}'; did you mean '{near}'?")
+    else:
+        message = marked("There is no file and no bundled model '{source}'.")
     return ModelError(
-        f"There is no file and no bundled model '{source}'{hint} pinjoint --help lists the bundled models."
+        joined([tr(message, source=source, near=near), tr("pinjoint --help lists the bundled models.")])
     )
 
 
@@ -152,7 +166,7 @@ def _decoded(raw: bytes, source: str) -> Any:
         _decoded_strictly(raw, source)  # names the line
         raise _not_json(source, error) from None
     except RecursionError:
-        raise ModelError(f"{source} is nested too deeply to be a model.") from None
+        raise ModelError(tr("{source} is nested too deeply to be a model.", source=source)) from None
     return content
 
 
@@ -167,7 +181,9 @@ class _Pairs(list[tuple[str, Any]]):
 
 def _decoded_strictly(raw: bytes, source: str) -> Any:
     def refuse(constant: str) -> NoReturn:
-        raise ModelError(f"{source} contains {constant}; every number must be finite.")
+        raise ModelError(
+            tr("{source} contains {number}; every number must be finite.", source=source, number=constant)
+        )
 
     def finite(number: str) -> float:
         return (
@@ -183,22 +199,32 @@ def _decoded_strictly(raw: bytes, source: str) -> Any:
     except UnicodeDecodeError as error:
         line = 1 + raw[: error.start].count(b"\n")
         raise ModelError(
-            f"{source} has a character in line {line} that is not UTF-8; save it in UTF-8."
+            tr(
+                "{source}: line {line} has a character that is not UTF-8; save the file in UTF-8.",
+                source=source,
+                line=line,
+            )
         ) from None
     except json.JSONDecodeError as error:
         raise _not_json(source, error) from None
 
 
 def _not_json(source: str, error: Exception) -> ModelError:
-    return ModelError(f"{source} is not a JSON file ({error}); correct it or save the model anew.")
+    return ModelError(
+        tr(
+            "{source} is not a JSON file ({error}); correct it, or save the model again.",
+            source=source,
+            error=error,
+        )
+    )
 
 
 def _check_encoding(raw: bytes, source: str) -> None:
     """Raise ModelError for what editors and shells write besides UTF-8, or if there is nothing."""
     if raw.startswith((codecs.BOM_UTF16_LE, codecs.BOM_UTF16_BE)):
-        raise ModelError(f"{source} is written in UTF-16; save it in UTF-8.")
+        raise ModelError(tr("{source} is written in UTF-16; save it in UTF-8.", source=source))
     if not raw.strip():
-        raise ModelError(f"{source} is empty; save the model anew.")
+        raise ModelError(tr("{source} is empty; save the model again.", source=source))
 
 
 def _refuse_repeated_keys(value: Any, path: str) -> None:
@@ -206,7 +232,12 @@ def _refuse_repeated_keys(value: Any, path: str) -> None:
         keys: set[str] = set()
         for key, item in value:
             if key in keys:
-                raise ModelError(f"{path}.{key}: this key stands twice in one object; keep one of the two.")
+                raise ModelError(
+                    tr(
+                        "{path}: this key stands twice in one object; keep one of the two.",
+                        path=f"{path}.{key}",
+                    )
+                )
             keys.add(key)
             _refuse_repeated_keys(item, f"{path}.{key}")
     elif isinstance(value, list):
@@ -224,8 +255,11 @@ def save(model: Model, path: str | Path) -> None:
         replace(path, laid_out(content, depth=2).encode() + b"\n")
     except (OSError, ValueError) as error:
         raise ModelError(
-            f"{path} was not saved: {_reason(error)}. What it held is unchanged; choose another folder"
-            " or name, or remove the cause."
+            tr(
+                "{path} was not saved: {reason}. The file is as it was before; choose another folder or name.",
+                path=path,
+                reason=_reason(error),
+            )
         ) from None
 
 

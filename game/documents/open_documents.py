@@ -12,7 +12,7 @@ import numpy as np
 
 from components.collision_state import PersistentContacts
 from components.field import SAVED
-from components.language import joined
+from components.language import joined, plural, tr
 from components.load import load_ends
 from components.model import Model
 from components.rod import bends, idle_moment
@@ -69,7 +69,7 @@ def without_mods(status: str, left_out: Sequence[str]) -> tuple[str, str]:
     if not left_out:
         return status, ""
     status = EQUILIBRIUM_WITHOUT_MODS if status == "equilibrium" else status
-    return status, f"Settling leaves out the laws of mods: {', '.join(left_out)}."
+    return status, tr("The equilibrium leaves out the laws of mods: {laws}.", laws=", ".join(left_out))
 
 
 class OpenDocument:
@@ -197,11 +197,13 @@ class OpenDocument:
         account, yielded = [found.account], np.flatnonzero(found.final.plastic_strain != strain)
         if len(yielded) and not found.events:  # at once: what it began from is beyond the strengths
             rod = model.describe(model.rods[yielded[0]])
-            account.append(
-                f"{len(yielded)} rods have yielded at once."
-                if len(yielded) > 1
-                else f"{rod[:1].upper()}{rod[1:]} has yielded at once."
+            said = plural(
+                "Even before the load grew, {rod} yielded.",
+                "Even before the load grew, {count} rods yielded.",
+                len(yielded),
+                rod=rod,
             )
+            account.append(said)
         status, note = without_mods(found.status, self._schedule.left_out_of_statics(model))
         return status, joined([*account, note, idle_moment(model)])
 
@@ -277,7 +279,7 @@ class OpenDocuments:
         self.current.leave()
         opened = self._documents[max(self._at, target)].file.name
         self._at = target
-        return f"opening {opened or 'a new model'}"
+        return tr("opening {name}", name=opened) if opened else tr("opening a new model")
 
 
 def file_of(source: Source) -> ModelFile:

@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 
 from components import written
 from components.field import Role
+from components.language import marked, tr
 from components.mistake import Mistake
 from components.model import Model
 from components.view import Shape
@@ -81,10 +82,17 @@ class Shapes:
 
 def _first_ones(model: Model) -> list[Shape]:
     if model.rods.count > LARGEST:
-        raise NoShape(f"Of more than {LARGEST} rods this takes a while; use: pinjoint render --mode 1")
+        raise NoShape(
+            tr(
+                "This takes long for more than {count} rods; use the command: pinjoint render --mode 1",
+                count=LARGEST,
+            )
+        )
     found = [*mechanism_shapes(model, LOWEST), *_meant(model), *mode_shapes(model, LOWEST)]
     if not found:
-        raise NoShape("There are no mechanisms or modes: no rod has an end that is free to move.")
+        raise NoShape(
+            tr("There are no mechanisms and no modes, because no rod has an end that is free to move.")
+        )
     return found
 
 
@@ -95,7 +103,16 @@ def mechanism_shapes(model: Model, most: int | None = None) -> list[Shape]:
 
     motions, count = mechanisms(model), indeterminacy(model).mechanisms
     return [
-        _shape(model, f"Mechanism {number} of {count}: moves {describe_motion(model, motion[None])}", motion)
+        _shape(
+            model,
+            tr(
+                "Mechanism {number} of {count}: moves {moving}",
+                number=number,
+                count=count,
+                moving=describe_motion(model, motion[None]),
+            ),
+            motion,
+        )
         for number, motion in enumerate(motions[:most], start=1)
     ]
 
@@ -131,12 +148,17 @@ def _buckled(model: Model, found: Buckling) -> list[Shape]:
     """The modes with their factors, and the effective length of the rod whose compression leads each."""
     shapes = []
     for number, (factor, motion) in enumerate(zip(found.factors, found.modes, strict=True), start=1):
-        title = f"Buckling mode {number}: load × {written.number(factor)}"
         row, length = int(found.leading[number - 1]), float(found.leading_length[number - 1])
+        told = {
+            "number": number,
+            "factor": written.number(factor),
+            "length": written.displacement(length),
+            "rod": cut(str(model.rods.column("name")[row])),
+        }
+        title = marked("Buckling mode {number}: load × {factor}")
         if math.isfinite(length):
-            rod = cut(str(model.rods.column("name")[row]))
-            title += f"; effective length {written.displacement(length)} ({rod})"
-        shapes.append(_shape(model, title, motion))
+            title = marked("Buckling mode {number}: load × {factor}; effective length {length} ({rod})")
+        shapes.append(_shape(model, tr(title, **told), motion))
     return shapes
 
 
@@ -159,9 +181,16 @@ def mode_shapes(model: Model, most: int | None = None) -> list[Shape]:
     found = vibrations(model, about, count=degrees.mechanisms + wanted)
     still = degrees.mechanisms if about is None else int((found.angular_squared <= 0.0).sum())
     modes = list(zip(found.hertz[still:].tolist(), found.modes[still:], strict=True))
-    under, places = ("", None) if about is None else (" under load", about.displacement)
+    title, places = marked("Mode {number} of {count}: {hertz} Hz"), None
+    if about is not None:
+        title, places = marked("Mode {number} of {count} under load: {hertz} Hz"), about.displacement
     return [
-        _shape(model, f"Mode {number} of {unknowns - still}{under}: {written.number(hertz)} Hz", motion, places)
+        _shape(
+            model,
+            tr(title, number=number, count=unknowns - still, hertz=written.number(hertz)),
+            motion,
+            places,
+        )
         for number, (hertz, motion) in enumerate(modes[:wanted], start=1)
     ]
 
@@ -175,12 +204,17 @@ def numbered(model: Model, kind: str, number: int) -> Shape:
     }
     found = find[kind](model)
     if not found:
-        why = "every motion elongates a rod" if kind == "mechanism" else "nothing can vibrate"
-        raise NoShape(f"There is no {kind}: {why}.")
+        if kind == "mechanism":
+            raise NoShape(tr("There is no mechanism: every motion stretches a rod."))
+        raise NoShape(tr("There is no mode: nothing can vibrate."))
     if not 1 <= number <= len(found):
-        there = "is only 1" if len(found) == 1 else f"are only {len(found)}"
-        plural = "" if len(found) == 1 else "s"
-        raise NoShape(f"There is no {kind} {number}; there {there} {kind}{plural} to draw, counted from 1.")
+        raise NoShape(
+            tr(
+                "There is no number {number} to draw; choose a number from 1 to {count}.",
+                number=number,
+                count=len(found),
+            )
+        )
     return found[number - 1]
 
 

@@ -7,6 +7,7 @@ from collections.abc import Iterator, Mapping
 from typing import Any
 
 from components.field import Field, FieldError
+from components.language import joined, tr
 from components.mistake import Mistake
 from components.model import Model
 from components.slider import Aim, Slider
@@ -25,33 +26,74 @@ class SliderError(Mistake, ValueError):
 def read_sliders(model: Model, entries: Any) -> tuple[Slider, ...]:
     """The sliders that a document describes, of a model that has all elements. Raises SliderError."""
     if not isinstance(entries, list | tuple):
-        raise SliderError(f"$.{KEY}: it is {quoted(entries)}; it must be a list.")
+        raise SliderError(
+            tr("{where}: it is {value}; it must be a list.", where=f"$.{KEY}", value=quoted(entries))
+        )
     return tuple(_read(model, entry, f"$.{KEY}[{place}]") for place, entry in enumerate(entries))
 
 
 def _read(model: Model, entry: Any, where: str) -> Slider:
     if not isinstance(entry, Mapping):
-        raise SliderError(f'{where}: it is {quoted(entry)}; write {{"of": "PATH", "from": 0, "to": 1}}.')
-    for key in entry:
+        form = '{"of": "PATH", "from": 0, "to": 1}'
+        raise SliderError(
+            tr("{where}: it is {value}; write it like {form}.", where=where, value=quoted(entry), form=form)
+        )
+    for key in map(str, entry):
         if key not in KEYS:
-            raise SliderError(f"{where}: there is no key '{cut(str(key))}' here; {remedy(str(key), KEYS)}")
+            raise SliderError(
+                tr(
+                    "{where}: there is no key '{key}' here; {remedy}",
+                    where=where,
+                    key=cut(key),
+                    remedy=remedy(key, KEYS),
+                )
+            )
     for key in KEYS[:3]:
         if key not in entry:
-            raise SliderError(f"{where}: its '{key}' is missing; every slider needs one.")
+            raise SliderError(
+                tr("{where}: its '{key}' is missing; every slider needs one.", where=where, key=key)
+            )
     paths = entry["of"] if isinstance(entry["of"], list | tuple) else [entry["of"]]
     if not paths or not all(isinstance(path, str) for path in paths):
-        raise SliderError(f"{where}.of: it is {quoted(entry['of'])}; it must be a path or a list of paths.")
+        raise SliderError(
+            tr(
+                "{where}: it is {value}; it must be a path or a list of paths.",
+                where=f"{where}.of",
+                value=quoted(entry["of"]),
+            )
+        )
     logarithmic, title = entry.get("logarithmic", False), entry.get("title", "")
     if not isinstance(logarithmic, bool):
-        raise SliderError(f"{where}.logarithmic: it is {quoted(logarithmic)}; it must be true or false.")
+        raise SliderError(
+            tr(
+                "{where}: it is {value}; it must be true or false.",
+                where=f"{where}.logarithmic",
+                value=quoted(logarithmic),
+            )
+        )
     if not isinstance(title, str) or is_broken(title):
-        raise SliderError(f"{where}.title: it is {title!a:.60}; it must be a text.")
+        raise SliderError(
+            tr("{where}: it is {value}; it must be a text.", where=f"{where}.title", value=f"{title!a:.60}")
+        )
     fields, aims = zip(*(_aim(model, path, f"{where}.of") for path in paths), strict=True)
     ends = [_end(entry[key], fields, f"{where}.{key}") for key in ("from", "to")]
     if ends[0] == ends[1]:
-        raise SliderError(f"{where}: it goes from {ends[0]:g} to {ends[1]:g}; its ends must differ.")
+        raise SliderError(
+            tr(
+                "{where}: it goes from {start:g} to {end:g}; its ends must differ.",
+                where=where,
+                start=ends[0],
+                end=ends[1],
+            )
+        )
     if logarithmic and not min(ends) > 0.0:
-        raise SliderError(f"{where}: a logarithmic slider has both ends above 0, not {min(ends):g}.")
+        raise SliderError(
+            tr(
+                "{where}: both ends of a logarithmic slider must be above 0, not {end:g}.",
+                where=where,
+                end=min(ends),
+            )
+        )
     return Slider(aims, ends[0], ends[1], logarithmic, title)
 
 
@@ -60,11 +102,17 @@ def _aim(model: Model, path: str, where: str) -> tuple[Field[Any], Aim]:
     try:
         target, rest = locate(model, path, settable)
     except (PathError, FieldError) as error:
-        raise SliderError(f"{where}: {cut(path)}: {error}") from None
+        raise SliderError(joined([f"{where}: {cut(path)}:", str(error)])) from None
     if rest:
-        raise SliderError(f"{where}: {cut(path)}: '{cut(rest)}' follows the path; leave it out.")
+        raise SliderError(
+            tr(
+                "{where}: '{rest}' does not belong to the path; leave it out.",
+                where=f"{where}: {cut(path)}",
+                rest=cut(rest),
+            )
+        )
     if problem := unmovable(target.field, target.axis):
-        raise SliderError(f"{where}: {cut(path)}: {problem}")
+        raise SliderError(joined([f"{where}: {cut(path)}:", problem]))
     every = target.element == EVERY
     return target.field, Aim(
         target.table.name, None if every else target.handles[0], target.field.name, target.axis
@@ -74,19 +122,29 @@ def _aim(model: Model, path: str, where: str) -> tuple[Field[Any], Aim]:
 def unmovable(field: Field[Any], axis: str) -> str:
     """Why no slider can move a Field, or its component along an axis; "" if one can."""
     if field.dtype is not float:
-        return f"{field.title} is no number, which alone a slider moves."
+        return tr("{field} is not a number, so a slider cannot change it.", field=field.title)
     if field.shape and not axis:
-        return f"{field.title} is two numbers; write {field.key}.x or {field.key}.y."
+        return tr("{field} has two components; write {key}.x or {key}.y.", field=field.title, key=field.key)
     return ""
 
 
 def _end(value: Any, fields: tuple[Field[Any], ...], where: str) -> float:
     number = isinstance(value, int | float) and not isinstance(value, bool) and math.isfinite(value)
     if not number:
-        raise SliderError(f"{where}: it is {quoted(value)}; it must be a finite number.")
+        raise SliderError(
+            tr("{where}: it is {value}; it must be a finite number.", where=where, value=quoted(value))
+        )
     for field in fields:
         if problem := field.limit_broken_by(float(value)):
-            raise SliderError(f"{where}: {field.title} is {float(value):g}; it must be {problem}.")
+            raise SliderError(
+                tr(
+                    "{where}: {field} is {value:g}; it must be {limit}.",
+                    where=where,
+                    field=field.title,
+                    value=float(value),
+                    limit=problem,
+                )
+            )
     return float(value)
 
 

@@ -20,6 +20,9 @@ class Window(Protocol):
     def screenshot(self, suffix: str) -> str:
         """Save a picture in the format of that suffix; returns where. Raises OSError."""
 
+    def save(self, name: str, contents: bytes) -> str:
+        """Save a file under this name, or one like it that is free; returns where. Raises OSError."""
+
     def copied(self) -> str:
         """The text on the system's clipboard."""
 

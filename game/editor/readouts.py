@@ -217,6 +217,8 @@ def _overview(context: Context, theory: Theories, comparison: Comparison) -> Ite
         if worst is not None:
             error = _error(getattr(worst, f"{way}_error"))
             yield tr(title), tr("{error} ({where})", error=error, where=tr(worst.title))
+    if any(comparison.worst(way) is not None for way in _WORST):
+        yield tr("errors: in % of the largest value of that kind"), ""
     disturbed = context.document.assessment.disturbed
     if disturbed and not context.at_beginning:
         yield tr(_DISTURBED[disturbed]), tr("theory leaves this out")

@@ -9,6 +9,8 @@ import numpy as np
 from components.commands import Assign
 from components.field import MADE
 from components.model import Model
+from components.written import ROUNDING
+from systems.statics.equations import largest
 from systems.statics.external import external_forces
 from systems.statics.force_method import unit_force
 from systems.statics.released import SetState
@@ -91,14 +93,16 @@ def still(copy: Model, whole: Model, state: SetState) -> Model:
     if rods.bending_stiffness.any():
         copy.writable("rods.bending_stiffness")[...] *= _STIFF
     load = external_forces(copy).at(1.0)
+    reaction = np.where(np.abs(state.reaction) > ROUNDING * largest(state.axial_force), state.reaction, 0.0)
     told = {
-        "particles.reaction": state.reaction[:, :2],
+        "particles.reaction": reaction[:, :2],
         "particles.applied_force": load[:, :2],
         "rods.axial_force": state.axial_force[here],
     }
     if len(state.end_moment):
         told |= {
-            "particles.reaction_moment": state.reaction[:, 2],
+            "particles.applied_moment": load[:, 2] if load.shape[1] > 2 else np.zeros(len(load)),
+            "particles.reaction_moment": reaction[:, 2],
             "rods.end_moment": state.end_moment[here],
         }
     for name in told:

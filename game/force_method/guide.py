@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 
-from components.bent import MOMENT
+from components.bent import AXIAL, MOMENT, SHEAR
 from components.field import Column, Vector
 from components.handle import Handle
 from components.language import tr
@@ -133,7 +133,8 @@ class Guide:
     """The present part of the force method, and the answers so far.
 
     part: 1 to PARTS. released: the static unknowns, the newest last. solution: with all of them. sets: those
-    that exist so far. mechanism: that which a refused release would leave. Raises ForceMethodError at the start
+    that exist so far. mechanism: that which a refused release would leave. quantity: of which frames show
+    diagrams. Raises ForceMethodError at the start
     if the structure cannot carry its load.
     """
 
@@ -147,6 +148,7 @@ class Guide:
         self.mechanism: Mechanism | None = None
         self.axis_wanted: Particle | None = None
         self._tables: Tables | None = None
+        self.quantity = MOMENT
         real = solve(model, [])
         self.count = counted(model)
         self.sets: list[AnySet] = []
@@ -167,6 +169,18 @@ class Guide:
     def in_thesis(self) -> bool:
         """True if texts follow the thesis' convention, p = (Δ − Δ₀) / Δ₁, not the textbook's."""
         return self._view.convention == THESIS
+
+    @property
+    def is_frame(self) -> bool:
+        """True if members bend, so that the sets stay still."""
+        return isinstance(self.sets[0], Still)
+
+    def next_quantity(self) -> None:
+        """Show diagrams of M, V or N in all sets of a frame."""
+        order = (MOMENT, SHEAR, AXIAL)
+        self.quantity = order[(order.index(self.quantity) + 1) % len(order)]
+        for one in self.sets:
+            one.view.quantity = self.quantity
 
     @property
     def tables(self) -> Tables:
@@ -193,7 +207,7 @@ class Guide:
         copy.settings.displacement_scale = known.prescribed_displacement_scale if known is not None else None
         if len(state.end_moment):
             view = view_like(self._view)
-            view.all_diagrams, view.quantity = True, MOMENT
+            view.all_diagrams, view.quantity = True, self.quantity
             return Still(still(copy, self.model, state), view)
         live = RealTimeRunner(Simulation(copy, self._schedule, "force method"))
         made = Set(copy, view_like(self._view), live)

@@ -203,22 +203,21 @@ def _printed(table: Table, heading: Sequence[Flowable] = (), width: float = WIDT
 def _virtual_work(solved: Tables) -> list[Flowable]:
     """Gaps and flexibilities as sums, rod by rod."""
     every = range(len(solved.solution.unknowns))
-    formulas = [text(line, "equation") for line in _formulas(solved)]
-    found: list[Flowable] = [text(tr("3  Displacements by virtual work"), "heading"), *formulas]
+    formulas = [text(tr("3  Displacements by virtual work"), "heading")]
+    formulas += [text(line, "equation") for line in _formulas(solved)]
     if len(every) > _PRODUCTS:
-        found += _printed(solved.forces(every))
         note = tr(
             "The products of more than {count} unknowns are not printed; their sums stand below.",
             count=_PRODUCTS,
         )
-        return [*found, text(note, "caption")]
+        return [*_printed(solved.forces(every), formulas), text(note, "caption")]
+    found: list[Flowable] = []
     if solved.bends:
-        found += _printed(solved.bending(every), [text(tr("Bending moments"), "text")])
-        found += _printed(solved.virtual_work(every), [text(tr("Axial forces"), "text")])
+        found += _printed(solved.bending(every), [*formulas, text(tr("Bending moments"), "text")])
         ends = tr("M and M′ are the moments at both ends of a rod; qL²/8 is how far M bulges between them.")
         found.append(text(ends, "caption"))
-    else:
-        found += _printed(solved.virtual_work(every))
+        formulas = [text(tr("Axial forces"), "text")]
+    found += _printed(solved.virtual_work(every), formulas)
     settlements = solved.settlements()
     if settlements is not None:
         found += _printed(settlements, [text(tr("Supports that have moved by c"), "text")])
@@ -297,18 +296,15 @@ def _forces(solved: Tables) -> list[Flowable]:
         for quantity in quantities
     ]
     heading = text(tr("5  Forces in the structure"), "heading")
-    first, second = (solved.moments(), solved.axial_forces()) if solved.bends else (solved.axial_forces(), None)
-    if len(first.names) > _BESIDE or len(solution.unknowns) > 1:
-        parts = [
-            heading,
-            *_printed(first),
-            *(_printed(second) if second else []),
-            *_printed(solved.reactions()),
-        ]
-        return [*parts, *_rows_of(figures)]
-    left = [*_printed(first, width=HALF), *(_printed(second, width=HALF) if second else [])]
-    row = beside([*left, *_printed(solved.reactions(), width=HALF)], figures)
-    return [together(heading, row)]
+    first, second = (solved.moments(), [solved.axial_forces()]) if solved.bends else (solved.axial_forces(), [])
+    others = [*second, solved.reactions()]
+    if len(first.names) > _BESIDE or len(solution.unknowns) > _PRODUCTS:
+        whole = [part for table in (first, *others) for part in _printed(table)]
+        return [heading, *whole, *_rows_of(figures)]
+    half = [part for table in others for part in _printed(table, width=HALF)]
+    if solved.bends:
+        return [together(heading, beside(_printed(first, width=HALF), half)), *_rows_of(figures)]
+    return [together(heading, beside([*_printed(first, width=HALF), *half], figures))]
 
 
 def _checks(solved: Tables) -> list[Flowable]:
@@ -357,6 +353,8 @@ def _balance(model: Model, state: SetState) -> Iterator[tuple[str, list[float]]]
             else:
                 parts = (x - x[about]) * forces[:, 1] - (y - y[about]) * forces[:, 0]
                 parts = parts + forces[:, 2] if forces.shape[1] > 2 else parts
-            parts = parts[used & (parts != 0.0)]
+            parts = parts[used & (np.abs(parts) > written.ROUNDING * largest(parts))]
             terms += parts.tolist() if len(parts) <= _TERMS else [float(parts.sum())]
+        size = largest(state.reaction)
+        terms = [term for term in terms if abs(term) > written.ROUNDING * size]
         yield name, terms

@@ -273,6 +273,20 @@ class Tables:
             tr("support"), [f"{names[row]}.{AXES[axis]}" for row, axis in work.settled.tolist()], columns
         )
 
+    def sums(self, i: int) -> tuple[str, ...]:
+        """What δᵢ₀ and δᵢᵢ of a frame are sums of: bending, axial forces, and what acts without force."""
+        if not self.bends:
+            return ()
+        work, units = self.work, self.units
+        ways = (work.of_bending, work.of_base, work.of_free, work.of_supports)
+        gap = written.total(units.factor * float(way[i].sum()) for way in ways)
+        flexibility = [work.of_unit_bending[i, i], work.of_units[i, i]]
+        own = written.total(units.factor * float(part.sum()) for part in flexibility)
+        return (
+            f"δ{index(i + 1, 0)} = {gap} {units.gap(i)},"
+            f"  δ{index(i + 1, i + 1)} = {own} {units.flexibility(i, i)}",
+        )
+
     # --- superposition -----------------------------------------------------------------------------
 
     def axial_forces(self) -> Table:
@@ -346,7 +360,7 @@ class Tables:
         ]
         columns = [
             *(Column(*of, digits=_FINER, size=largest) for of in shown),
-            Column(tr("difference from theory"), "", off, digits=1),
+            Column(tr("difference"), "", off, digits=1),
         ]
         return Table(tr("rod") if symbol != "R" else tr("support"), names, columns)
 

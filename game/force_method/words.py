@@ -6,6 +6,7 @@ from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
 from components import written
+from components.bent import AXIAL
 from components.language import listed, marked, plural, tr
 from components.view import BETWEEN
 from game.force_method import PARTS, thesis
@@ -54,7 +55,11 @@ def message(guide: Guide) -> str:
 
 def hint(guide: Guide) -> str:
     """The next possible step."""
-    steps = [tr("I forces"), tr("C convention"), tr("Esc back to pause")]
+    steps = [
+        tr("I next of M, V, N") if guide.is_frame else tr("I forces"),
+        tr("C convention"),
+        tr("Esc back to pause"),
+    ]
     if guide.part == 2 and guide.axis_wanted is not None:
         steps = [tr("X horizontal"), tr("Y vertical")]
         if guide.clamp_wanted:
@@ -179,7 +184,7 @@ def explained(guide: Guide) -> tuple[str, ...]:
         return (gap_of(guide.solution.unknowns[-1], index(number, 0), index(number)),)
     if guide.part == 5:
         return (tr("The forces that {unknown} = 1 causes are the factors n.", unknown=f"X{index(number)}"),)
-    return formulas(guide.tables.bends, index(number))
+    return (*formulas(guide.tables.bends, index(number)), *guide.tables.sums(number - 1))
 
 
 def formulas(bends: bool, number: str) -> tuple[str, ...]:
@@ -261,4 +266,4 @@ def table(guide: Guide) -> Sequence[tuple[str, ...]]:
     tables, last = guide.tables, [len(guide.released) - 1]
     if guide.part == 6:
         return tables.bending(last) if tables.bends else tables.virtual_work(last)
-    return tables.moments() if tables.bends else tables.axial_forces()
+    return tables.moments() if tables.bends and guide.quantity != AXIAL else tables.axial_forces()

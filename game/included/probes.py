@@ -284,7 +284,7 @@ def run(words: list[str]) -> int:
     if output.suffix not in (".csv", ".png"):
         raise UsageError(tr("--output {file}: write a file that ends with .csv or .png.", file=output))
     record(session, probe, options.until, options.samples)
-    with writing(output, "--output"):
+    with writing(output):
         (write_png if output.suffix == ".png" else write_csv)(probe, output)
     return 0
 

@@ -11,7 +11,7 @@ from typing import Any, TypeVar
 from components.component import Component, add_component
 from components.handle import Handle
 from components.kind import add_kind
-from components.language import add_catalogues, remove_catalogues
+from components.language import add_catalogues, joined, remove_catalogues, tr
 from components.load import HISTORIES, HistoryKind, register_history
 from components.model import ADDED
 from components.obstacles import SHAPES, Shape
@@ -104,14 +104,17 @@ class App:
         upgrade(document, version) changes the document, what a model file says, before it is read. version: of the
         mod that wrote the file, older than the present one; "" if the file does not say.
         """
-        name, what = self.name, "upgrading its data in a file"
+        name, what = self.name, tr("upgrading its data in a file")
 
         def upgraded(document: dict[str, Any], version: str) -> None:
             self._mod.call(what, upgrade, document, version)
             if self._mod.off:
-                wrote = version or "of an unknown version"
                 raise ValueError(
-                    f"the data of {name} {wrote} could not be upgraded; --no-mods opens it without the mod."
+                    tr(
+                        "the data of {mod} {version} could not be upgraded; --no-mods opens it without the mod.",
+                        mod=name,
+                        version=version or "?",
+                    )
                 )
 
         UPGRADES[name] = upgraded
@@ -123,16 +126,24 @@ class App:
         The action is "<mod>.<noun>". icon: lines and areas, as in systems/render/icons.py; none, no button.
         """
         if len(kind.points) != 2:
-            raise ModError(f"A tool draws from point to point; {kind.__name__} has {len(kind.points)} points.")
+            raise ModError(
+                tr(
+                    "A tool draws from one point to another; {kind} must have 2 points, not {count}.",
+                    kind=kind.__name__,
+                    count=len(kind.points),
+                )
+            )
         name = f"{self.name}.{kind.noun}"
         TOOLS[name] = drawing_of(kind, name, key)
-        TOOL_HINTS[name] = (
-            f"{kind.table}: click two points, or drag from one to the other     {key.upper()} or Esc done"
+        TOOL_HINTS[name] = tr(
+            "{table}: click two points, or drag from one to the other     {key} or Esc done",
+            table=kind.table,
+            key=key.upper(),
         )
         self._undo += [lambda: TOOLS.pop(name), lambda: TOOL_HINTS.pop(name)]
-        self.action(name, key=key, title=title or f"{kind.noun}, from point to point", while_drawing=True)(
-            TOOLS[name].use
-        )
+        self.action(
+            name, key=key, title=title or tr("{kind}, from point to point", kind=kind.noun), while_drawing=True
+        )(TOOLS[name].use)
         if icon:
             self._icon(name, icon)
             add_tool(name)
@@ -141,7 +152,9 @@ class App:
     def shape(self, kind: type[Handle], shape: Shape) -> None:
         """Let particles collide with elements of a kind: `shape(table)` returns the Pieces that they are."""
         if kind in SHAPES:
-            raise ModError(f"What {kind.table} collide as is registered already.")
+            raise ModError(
+                tr("The shape of {table} is registered already; register it once.", table=kind.table)
+            )
         SHAPES[kind] = guarded_shape(self._mod, kind, shape)
         self._undo.append(lambda: SHAPES.pop(kind))
 
@@ -157,7 +170,9 @@ class App:
         made = guarded_integrator(self._mod, integrator())
         key = made.key
         if key in INTEGRATORS:
-            raise ModError(f"There is an integrator '{key}' already; call {made.name} something else.")
+            raise ModError(
+                tr("There is an integrator '{key}' already; give {name} another name.", key=key, name=made.name)
+            )
         register_integrator(made)
         self._undo.append(lambda: remove_integrator(key))
 
@@ -174,10 +189,12 @@ class App:
         """Let the models in a folder be opened by name, like those that come with Pinjoint."""
         path = Path(folder)
         if not path.is_dir():
-            raise ModError(f"The folder of models {path} is not there.")
+            raise ModError(tr("There is no folder of models {folder}; check its path.", folder=path))
         taken = {entry.name for entry in path.glob("*.json")} & {f"{name}.json" for name in models.bundled()}
         if taken:
-            raise ModError(f"There is a bundled model '{min(taken)}' already; give the file another name.")
+            raise ModError(
+                tr("There is a bundled model '{name}' already; give the file another name.", name=min(taken))
+            )
         self._add(models.FOLDERS, path)
 
     # --- scenes, actions, keys -------------------------------------------------------------------------
@@ -185,14 +202,21 @@ class App:
     def scene(self, scene: type[Scene]) -> None:
         """Add a mode. Its `sources` are the scenes from which it can be reached; "pause" must be a target."""
         if scene.name in {other.name for other in all_scenes()}:
-            raise ModError(f"There is a scene '{scene.name}' already; call this one something else.")
+            raise ModError(
+                tr("There is a scene '{name}' already; give this one another name.", name=scene.name)
+            )
         made = guarded_scene(self._mod, scene)
         if "pause" not in scene.targets:
-            raise ModError(f"From the scene '{scene.name}' one must be able to go to pause; add it to targets.")
+            raise ModError(
+                tr("The scene '{name}' must lead to pause; add 'pause' to its targets.", name=scene.name)
+            )
         if hasattr(scene, "advance"):
             raise ModError(
-                f"The scene '{scene.name}' has a method 'advance', which nothing calls any more; write a System with"
-                f" phase = Phase.STEP and scenes = ('{scene.name}',), and register it by app.system."
+                tr(
+                    "The scene '{name}' has a method 'advance', which is no longer called; write a System with"
+                    " phase = Phase.STEP and scenes = ('{name}',), and register it by app.system.",
+                    name=scene.name,
+                )
             )
         self._add(SCENES, made)
 
@@ -215,7 +239,9 @@ class App:
 
         def register(function: Action) -> Action:
             if name in ACTIONS:
-                raise ModError(f"There is an action '{name}' already; call this one something else.")
+                raise ModError(
+                    tr("There is an action '{name}' already; give this one another name.", name=name)
+                )
             action(name, while_drawing=while_drawing)(guarded_action(self._mod, name, function))
             self._undo += [lambda: ACTIONS.pop(name), lambda: WHILE_DRAWING.discard(name)]
             if key:
@@ -235,14 +261,27 @@ class App:
         otherwise in the settings file, {"keys": {"pause": {"w": "wind.toggle"}}}.
         """
         if name not in ACTIONS:
-            raise ModError(f"The key '{key}' is for an action '{name}' that is not registered.")
+            raise ModError(
+                tr(
+                    "The key '{key}' is for the action '{name}', which is not registered; register the action first.",
+                    key=key,
+                    name=name,
+                )
+            )
         key = _checked_key(key)
         binding = Binding(key, name, tuple(scenes), title or name)
         self._undo.append(lambda: remove_binding(binding))
         for other in add_binding(binding):
             self._mod.notes.append(
-                f"The key '{key}' for {name} does '{other.action}' already in {', '.join(other.scenes)}; to"
-                f' change that: {{"keys": {{"{other.scenes[0]}": {{"{key}": "{name}"}}}}}} in the settings file.'
+                tr(
+                    "The key '{key}' for {name} already does '{other}' in {scenes}; to change that, write {form} in the"
+                    " settings file.",
+                    key=key,
+                    name=name,
+                    other=other.action,
+                    scenes=", ".join(other.scenes),
+                    form=f'{{"keys": {{"{other.scenes[0]}": {{"{key}": "{name}"}}}}}}',
+                )
             )
 
     def command(self, name: str, run: Callable[[list[str]], int], about: str = "") -> None:
@@ -251,7 +290,7 @@ class App:
         UsageError, ModelError, FieldError and PathError that it raises are shown as mistakes of the person.
         """
         if name in COMMANDS:
-            raise ModError(f"There is a command '{name}' already; call this one something else.")
+            raise ModError(tr("There is a command '{name}' already; give this one another name.", name=name))
         COMMANDS[name] = Command(guarded_command(self._mod, name, run), about)
         self._undo.append(lambda: COMMANDS.pop(name))
 
@@ -280,7 +319,7 @@ class App:
         try:
             check_icon(icon)
         except ValueError as error:
-            raise ModError(f"The icon of '{name}': {error}") from None
+            raise ModError(tr("The icon of '{name}': {error}", name=name, error=error)) from None
         ADDED_ICONS[name] = tuple(icon)
         self._undo.append(lambda: ADDED_ICONS.pop(name))
 
@@ -303,7 +342,14 @@ class App:
 
     def _check_prefix(self, what: str, name: str) -> None:
         if not name.startswith(f"{self.name}."):
-            raise ModError(f"The {what} '{name}' must be named after its mod, such as '{self.name}.{name}'.")
+            raise ModError(
+                tr(
+                    "The name of the {kind} '{name}' must begin with the name of its mod, such as '{better}'.",
+                    kind=what,
+                    name=name,
+                    better=f"{self.name}.{name}",
+                )
+            )
 
 
 def _checked_key(key: str) -> str:
@@ -311,16 +357,23 @@ def _checked_key(key: str) -> str:
     try:
         named = key_named(key)
     except ValueError as error:
-        raise ModError(f"{error} Names of keys are like 'w', 'ctrl+w', 'page up' or 'f5'.") from None
+        names = tr("Keys have names such as 'w', 'ctrl+w', 'page up' or 'f5'.")
+        raise ModError(joined([str(error), names])) from None
     if "shift" in key.lower() and "shift" not in named:
-        raise ModError(f"The key '{key}' is the same as '{named}'; take that, or 'ctrl+shift+{named}'.")
+        raise ModError(
+            tr(
+                "The key '{key}' is the same as '{named}'; use that, or 'ctrl+shift+{named}'.",
+                key=key,
+                named=named,
+            )
+        )
     return named
 
 
 def check_plugin(plugin: object) -> Callable[[App], object]:
     """The function `plugin(app)` of a mod. Raises ModError."""
     if not callable(plugin):
-        raise ModError("It has no function plugin(app); write `def plugin(app): …` in its __init__.py.")
+        raise ModError(tr("It has no function plugin(app); write `def plugin(app): …` in its __init__.py."))
     if len(inspect.signature(plugin).parameters) != 1:
-        raise ModError("Its function plugin must take one argument: def plugin(app).")
+        raise ModError(tr("Its function plugin must take one argument: def plugin(app)."))
     return plugin

@@ -20,7 +20,7 @@ from typing import Any, Literal, TypeVar, Union, get_args, get_origin, get_type_
 
 import numpy as np
 
-from components.language import Said, in_both
+from components.language import Said, in_both, marked, tr
 from components.wording import quoted
 
 C = TypeVar("C")
@@ -112,8 +112,12 @@ def _maker(declared: Any) -> Made:
     return _instance(declared, origin, arguments)
 
 
-def _refused(value: Any, called: str, wanted: str) -> TypeError:
-    return TypeError(f"{called} is {quoted(value)}; it must be {wanted}")
+_OF_TYPE = marked("{called} is {value}; it must be of type {type}")
+_ONE_OF = marked("{called} is {value}; it must be one of {names}")
+
+
+def _refused(value: Any, called: str, refusal: str, **told: Any) -> TypeError:
+    return TypeError(tr(refusal, called=called, value=quoted(value), **told))
 
 
 def _anything(value: Any, called: str) -> Any:
@@ -123,7 +127,12 @@ def _anything(value: Any, called: str) -> Any:
             if isinstance(value, CoroutineType):
                 value.close()  # or Python warns of it
             raise TypeError(
-                f"{called} is a {kind.__name__}, of which nothing has run; write it without '{word}'"
+                tr(
+                    "{called} is a {kind}, whose code has not run; write it without '{word}'",
+                    called=called,
+                    kind=kind.__name__,
+                    word=word,
+                )
             )
     return value
 
@@ -133,7 +142,7 @@ def _number(kind: type) -> Made:
         if type(value) is kind:
             return value
         if not isinstance(value, _NUMBERS[kind]) or (kind is not bool and isinstance(value, bool | np.bool_)):
-            raise _refused(value, called, f"of type {kind.__name__}")
+            raise _refused(value, called, _OF_TYPE, type=kind.__name__)
         return kind(value)
 
     return number
@@ -145,7 +154,7 @@ def _text(value: Any, called: str) -> str:
     if type(value) is Said:
         return in_both(str.__str__(value), _text(value.english, called))
     if not isinstance(value, str):
-        raise _refused(value, called, "a text")
+        raise _refused(value, called, marked("{called} is {value}; it must be a text"))
     return str.__str__(value)  # of a class derived from it
 
 
@@ -162,7 +171,7 @@ def _one_of(declared: Any, options: Sequence[Any]) -> Made:
                 refusals.append(error)
                 if isinstance(option, type) and isinstance(value, option):
                     raise
-        raise _refused(value, called, f"one of {', '.join(map(_said, options))}") from refusals[-1]
+        raise _refused(value, called, _ONE_OF, names=", ".join(map(_said, options))) from refusals[-1]
 
     return one
 
@@ -170,7 +179,7 @@ def _one_of(declared: Any, options: Sequence[Any]) -> Made:
 def _choice(choices: Sequence[Any]) -> Made:
     def choice(value: Any, called: str) -> Any:
         if value not in choices:
-            raise _refused(value, called, f"one of {', '.join(map(repr, choices))}")
+            raise _refused(value, called, _ONE_OF, names=", ".join(map(repr, choices)))
         return choices[choices.index(value)]
 
     return choice
@@ -178,10 +187,10 @@ def _choice(choices: Sequence[Any]) -> Made:
 
 def _items(value: Any, called: str) -> list[Any]:
     if isinstance(value, str | bytes) or not isinstance(value, Iterable):
-        raise _refused(value, called, "several, as a list or tuple")
+        raise _refused(value, called, marked("{called} is {value}; it must be a list or a tuple"))
     items = list(islice(value, MOST + 1))
     if len(items) > MOST:
-        raise ValueError(f"{called} has more than {MOST:,} entries")
+        raise ValueError(tr("{called} has more than {count:,} entries; give fewer", called=called, count=MOST))
     return items
 
 
@@ -199,7 +208,9 @@ def _entries(types: Sequence[Any]) -> Made:
             return value  # as colours usually are, of which pictures hold many
         items = _items(value, called)
         if len(items) != len(makers):
-            raise _refused(value, called, f"{len(makers)} entries: {', '.join(map(_said, types))}")
+            told = {"count": len(makers), "types": ", ".join(map(_said, types))}
+            refusal = marked("{called} is {value}; it must have {count} entries: {types}")
+            raise _refused(value, called, refusal, **told)
         return tuple(make(item, f"an entry of {called}") for make, item in zip(makers, items, strict=True))
 
     return entries
@@ -210,7 +221,7 @@ def _mapping(key: Any, entry: Any) -> Made:
 
     def mapping(value: Any, called: str) -> dict[Any, Any]:
         if not isinstance(value, Mapping):
-            raise _refused(value, called, "a dictionary")
+            raise _refused(value, called, marked("{called} is {value}; it must be a dictionary"))
         return {keys(k, f"a key of {called}"): entries(v, f"{called}[{quoted(k)}]") for k, v in value.items()}
 
     return mapping
@@ -224,9 +235,9 @@ def _array(number: Any = Any) -> Made:
         try:
             made = np.asarray(value)
         except ValueError:  # lists of unequal lengths
-            raise _refused(value, called, "an array") from None
+            raise _refused(value, called, marked("{called} is {value}; it must be an array")) from None
         if made.dtype.kind not in ("fiub" if dtype is None else _KINDS[dtype.kind]):
-            raise _refused(value, called, "an array of numbers")
+            raise _refused(value, called, marked("{called} is {value}; it must be an array of numbers"))
         return made if dtype is None else made.astype(dtype, copy=False)
 
     return array
@@ -244,7 +255,7 @@ def _instance(declared: Any, origin: Any, arguments: Sequence[Any]) -> Made:
 
     def instance(value: Any, called: str) -> Any:
         if not isinstance(value, kind):
-            raise _refused(value, called, f"of type {kind.__name__}")
+            raise _refused(value, called, _OF_TYPE, type=kind.__name__)
         return value if make is None else make(value)
 
     return instance
@@ -270,13 +281,16 @@ def _fields(kind: Any) -> dict[str, Any]:
 def _is_class(value: Any, base: Any, called: str) -> Any:
     base = object if base is Any or isinstance(base, TypeVar) else base
     if not (isinstance(value, type) and issubclass(value, base)):
-        raise _refused(value, called, f"a class derived from {base.__name__}; give the class, not one of it")
+        refusal = marked(
+            "{called} is {value}; it must be a class derived from {base}; give the class, not an object of it"
+        )
+        raise _refused(value, called, refusal, base=base.__name__)
     return value
 
 
 def _is_function(value: Any, called: str) -> Any:
     if not callable(value):
-        raise _refused(value, called, "a function")
+        raise _refused(value, called, marked("{called} is {value}; it must be a function"))
     return value
 
 

@@ -8,6 +8,7 @@ from collections.abc import Iterable, Iterator, Sequence
 from graphlib import CycleError, TopologicalSorter
 from pathlib import Path
 
+from components.language import tr
 from game.documents.library import data_folder
 from game.mods.mod import MANIFEST, Mod, read_manifest
 
@@ -58,7 +59,8 @@ def _of_package(name: str, module: str) -> Mod:
     except (ImportError, ValueError):
         spec = None
     if spec is None or spec.origin is None:
-        return Mod(name, module, source=source, problem=f"There is no module '{module}'; install it again.")
+        problem = tr("There is no module '{module}'; install it again.", module=module)
+        return Mod(name, module, source=source, problem=problem)
     made = read_manifest(Path(spec.origin).parent, source, name)
     made.module = module
     return made
@@ -86,7 +88,10 @@ def in_order(found: Iterable[Mod], version: str, loaded: Sequence[Mod] = ()) -> 
     new: dict[str, Mod] = {}
     for mod in found:
         if mod.name in by_name:
-            taken = f"There is a mod of this name already, from {by_name[mod.name].source}."
+            taken = tr(
+                "There is a mod of this name already, from {source}; rename one of them.",
+                source=by_name[mod.name].source,
+            )
             mod.problem = mod.problem or taken
         else:
             by_name[mod.name] = new[mod.name] = mod
@@ -115,7 +120,10 @@ def _sorted(mods: dict[str, Mod]) -> Iterator[str]:
         except CycleError as error:
             chain: list[str] = error.args[1][::-1]
             for name in chain[:-1]:
-                mods[name].problem = f"These mods require each other: {' → '.join(chain)}; drop one."
+                mods[name].problem = tr(
+                    "These mods require each other: {chain}; remove one of the requirements.",
+                    chain=" → ".join(chain),
+                )
             continue
         break
     ready: list[str] = []
@@ -143,11 +151,23 @@ def _unmet(mod: Mod, by_name: dict[str, Mod], version: str) -> str:
         if name == PROGRAM:
             present = version
         elif other is None:
-            return f"It requires the mod '{name}', which is not there; install it, or drop the requirement."
+            return tr(
+                "It requires the mod '{name}', which is not installed; install it, or remove the requirement.",
+                name=name,
+            )
         elif other.off:
-            return f"It requires the mod '{name}', which cannot be used: {other.problem}"
+            return tr(
+                "It requires the mod '{name}', which cannot be used: {problem}",
+                name=name,
+                problem=other.problem,
+            )
         else:
             present = other.version
         if not SpecifierSet(allowed).contains(present, prereleases=True):
-            return f"It requires {name} {allowed}, but there is {name} {present}; take another version of one."
+            return tr(
+                "It requires {name} {allowed}, but {name} {present} is installed; use another version of one of them.",
+                name=name,
+                allowed=allowed,
+                present=present,
+            )
     return ""

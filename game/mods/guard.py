@@ -18,6 +18,7 @@ from numpy.typing import NDArray
 
 from components.field import Column, Field, FieldError, Role
 from components.handle import Handle
+from components.language import tr
 from components.load import HistoryKind
 from components.model import Model
 from components.obstacles import Pieces, Shape, check_pieces
@@ -44,7 +45,7 @@ def guarded_maker(mod: Mod, system: Callable[[], System]) -> Callable[[], System
     name = guarded_system(mod, system()).name
 
     def make() -> System:
-        made = mod.call(f"making the system '{name}'", lambda: guarded_system(mod, system()))
+        made = mod.call(tr("making the system '{name}'", name=name), lambda: guarded_system(mod, system()))
         return made if made is not None else _nothing(name)
 
     return make
@@ -54,11 +55,15 @@ def check_declarations(system: Any) -> System:
     """A system whose class attributes are of the types that its role declares. Raises ModError, TypeError."""
     role = next((role for role in _ROLES if isinstance(system, role)), None)
     if role is None:
-        raise ModError(f"{type(system).__name__} is no System; derive it from one of systems.base.")
+        raise ModError(
+            tr("{name} is not a System; derive it from a class in systems.base.", name=type(system).__name__)
+        )
     for name, hint in get_type_hints(role).items():
         if get_origin(hint) is ClassVar:
             if isinstance(getattr_static(system, name), property):  # might answer differently, or fail, later
-                raise ModError(f"{type(system).__name__}.{name} is a property; give the value itself.")
+                raise ModError(
+                    tr("{name} is a property; give the value itself.", name=f"{type(system).__name__}.{name}")
+                )
             as_declared(getattr(system, name), get_args(hint)[0], f"{type(system).__name__}.{name}")
     made: System = system
     return made
@@ -67,7 +72,7 @@ def check_declarations(system: Any) -> System:
 def _nothing(name: str) -> System:
     """A system of that name that no model needs."""
     made = System()
-    vars(made).update(name=name, unneeded="its mod is switched off", needs=lambda model: False)
+    vars(made).update(name=name, unneeded=tr("its mod is switched off"), needs=lambda model: False)
     return made
 
 
@@ -79,7 +84,7 @@ def guarded_system(mod: Mod, made: System) -> System:
     in `writes` and `adds` are restored.
     """
     system = check_declarations(made)
-    what, process = f"the system '{system.name}'", system.process
+    what, process = tr("the system '{name}'", name=system.name), system.process
     system.mod = mod
     _guard_question(mod, system, "needs", bool, otherwise=False)
     if isinstance(system, StepSystem):
@@ -101,7 +106,7 @@ def guarded_system(mod: Mod, made: System) -> System:
 
 def _guard_question(mod: Mod, system: System, name: str, declared: Any, otherwise: Any) -> None:
     """Let a question about a model that a system answers switch its mod off if it fails."""
-    own, what = getattr(system, name), f"{name} of '{system.name}'"
+    own, what = getattr(system, name), tr("{method} of '{name}'", method=name, name=system.name)
     vars(system)[name] = lambda model: mod.call(what, own, model, otherwise=otherwise, declared=declared)
 
 
@@ -145,7 +150,7 @@ def view_kept(context: Context) -> Iterator[None]:
     try:
         yield
         check_view(context.view)
-        as_declared(context.notice, str, "the session's notice")
+        as_declared(context.notice, str, tr("the session's notice"))
     except BaseException:
         vars(view).update(attributes, camera=camera)
         context.view, context.notice = view, notice
@@ -157,7 +162,13 @@ def check_view(view: View) -> None:
     check_fields(view, View)
     numbers = (*view.camera.centre, view.camera.scale, view.pixel_ratio)
     if not (all(map(math.isfinite, numbers)) and view.camera.scale > 0.0 < view.pixel_ratio):
-        raise ValueError(f"the view's camera is at {numbers[:2]} with {numbers[2]} pixels per metre")
+        raise ValueError(
+            tr(
+                "the view's camera is at {centre} with {scale} pixels per metre; give finite numbers, and a scale above 0",
+                centre=str(numbers[:2]),
+                scale=str(numbers[2]),
+            )
+        )
 
 
 def interruptible(change: Callable[[], object], model: Model, patience: float) -> None:
@@ -168,7 +179,7 @@ def interruptible(change: Callable[[], object], model: Model, patience: float) -
     """
     model.before_command = stop_after(patience)
     try:
-        as_declared(change(), None, "what it returned")
+        as_declared(change(), None, tr("what it returned"))
     finally:
         model.before_command = None
         model.check_entities()
@@ -181,7 +192,8 @@ def guarded_history(mod: Mod, kind: HistoryKind) -> HistoryKind:
     """The history of a mod, whose Python functions switch the mod off if they fail."""
 
     def guarded(name: str, declared: Any, otherwise: Any, *mistakes: type[Exception]) -> Any:
-        own, what = getattr(kind, name), f"{name} of the history '{kind.name}'"
+        own = getattr(kind, name)
+        what = tr("{method} of the history '{name}'", method=name, name=kind.name)
         return lambda *given: mod.call(
             what, own, *given, otherwise=otherwise, declared=declared, mistakes=mistakes
         )
@@ -203,11 +215,13 @@ def guarded_integrator(mod: Mod, integrator: Integrator) -> Integrator:
     def stable_step(frequency: float, decay: float) -> float:
         size: float = as_declared(own(frequency, decay), float, "it")
         if not size >= 0.0:
-            raise ValueError(f"it is {size} s; return a step of at least 0, which says that none is stable")
+            raise ValueError(
+                tr("it is {size} s; return a number of at least 0 (0: no step is stable)", size=str(size))
+            )
         return size
 
     def called(frequency: float, decay: float) -> float:
-        what = f"the stable step of the integrator '{integrator.name}'"
+        what = tr("the stable step of the integrator '{name}'", name=integrator.name)
         size: float = mod.call(what, stable_step, frequency, decay, otherwise=math.nan)
         return VelocityVerlet.stable_step(frequency, decay) if math.isnan(size) else size
 
@@ -224,11 +238,11 @@ def guarded_shape(mod: Mod, kind: type[Handle], shape: Shape) -> Shape:
     def pieces(table: Table[Any]) -> Pieces:
         made = shape(table)
         if not isinstance(made, Pieces):
-            raise TypeError(f"{source} returned {made!r}, not Pieces")
+            raise TypeError(tr("{source} returned {value!r}; it must return Pieces", source=source, value=made))
         return check_pieces(table, as_declared(made, Pieces, source), source)
 
     def called(table: Table[Any]) -> Pieces:
-        found: Pieces = mod.call(f"the shape of {kind.table}", pieces, table, otherwise=nothing)
+        found: Pieces = mod.call(tr("the shape of {table}", table=kind.table), pieces, table, otherwise=nothing)
         return found
 
     return called
@@ -244,11 +258,17 @@ def guard_checkers(mod: Mod, fields: Iterable[Field[Any]]) -> None:
 def _guarded_checker(mod: Mod, field: Field[Any], own: Callable[[Any, str], Any]) -> Callable[[Any, str], Any]:
     def checker(value: Any, where: str) -> Any:
         was_off = mod.off
-        made = mod.call(
-            f"the checker of {field.name}", own, value, where, otherwise=value, mistakes=(FieldError,)
-        )
+        what = tr("the checker of {field}", field=field.name)
+        made = mod.call(what, own, value, where, otherwise=value, mistakes=(FieldError,))
         if mod.off and not was_off:
-            raise FieldError(f"{where}: {field.title} cannot be checked; {mod.problem}")
+            raise FieldError(
+                tr(
+                    "{where}: {field} cannot be checked; {problem}",
+                    where=where,
+                    field=field.title,
+                    problem=mod.problem,
+                )
+            )
         return made
 
     return checker

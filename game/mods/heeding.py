@@ -7,6 +7,7 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 
 from components import written
+from components.language import joined, tr
 from game.mods.loading import MODS
 from game.mods.mod import Mod, ModError
 from systems.run.simulation import Simulation
@@ -21,15 +22,16 @@ def check_mods(known: list[Mod] | None = None, time: float | None = None) -> Non
     """Raise ModError if a mod failed, besides those that are known to. time: where a run stopped therefore (s)."""
     for mod in switched_off():
         if mod not in (known or []):
-            stopped = "" if time is None else f" The run stopped at t = {written.time(time)}."
-            raise ModError(f"The mod '{mod.name}' was switched off: {mod.problem}{stopped}")
+            said = tr("The mod '{name}' was switched off: {problem}", name=mod.name, problem=mod.problem)
+            stopped = "" if time is None else tr("The run stopped at t = {time}.", time=written.time(time))
+            raise ModError(joined([said, stopped]))
 
 
 def blamed_on_mod(error: BaseException) -> bool:
     """Switch off the mod from whose code an error came past all guards; False if it came from no mod's."""
     for mod in MODS:
         if mod.loaded and not mod.off and mod.place_of(error):
-            mod.fail("code that the program called", error)
+            mod.fail(tr("code that the program called"), error)
             return True
     return False
 

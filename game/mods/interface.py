@@ -9,7 +9,7 @@ from inspect import getattr_static
 from typing import Any
 
 from components.field import FieldError, Vector
-from components.language import tr
+from components.language import english, in_both, tr
 from components.view import Plot, Readout, View
 from components.wording import printable
 from game.commands.arguments import BAD_INPUT, UsageError
@@ -36,11 +36,11 @@ LONGEST = 400  # characters of a text in the window
 
 def guarded_action(mod: Mod, name: str, function: Action) -> Action:
     """An action of a mod: one step of undo, dropped whole if it fails."""
-    what = f"the action '{name}'"
+    what = tr("the action '{name}'", name=name)
 
     def act(context: Context, pixel: Vector) -> None:
         if mod.off:
-            raise Refusal(f"The mod '{mod.name}' is switched off: {mod.problem}")
+            raise Refusal(tr("The mod '{name}' is switched off: {problem}", name=mod.name, problem=mod.problem))
         mod.call(what, changed, context, pixel, mistakes=(Refusal, FieldError))
 
     def changed(context: Context, pixel: Vector) -> None:
@@ -56,7 +56,7 @@ def guarded_command(mod: Mod, name: str, run: Callable[[list[str]], int]) -> Cal
 
     def command(words: list[str]) -> int:
         status: int = mod.call(
-            f"the command '{name}'",
+            tr("the command '{name}'", name=name),
             run,
             list(words),
             otherwise=BAD_INPUT,
@@ -79,22 +79,22 @@ def guarded_layer(mod: Mod, draw: Layer) -> Layer:
         if mod.source == INCLUDED:
             return list(draw(sheet))
         own = replace(sheet, marks=list(sheet.marks), labels=[], legend=[], notes=[])
-        marks = as_declared(draw(own), Iterable[Mark], "what the layer draws")
+        marks = as_declared(draw(own), Iterable[Mark], tr("what the layer draws"))
         return [part for mark in marks for part in framed(mark, sheet.viewport, sheet.unit)]
 
-    return lambda sheet: mod.call("its drawing layer", drawn, sheet, otherwise=[])
+    return lambda sheet: mod.call(tr("its drawing layer"), drawn, sheet, otherwise=[])
 
 
 def guarded_panel(mod: Mod, read: Panel) -> Callable[[Context], Sequence[Readout]]:
     """The panels that a function of a mod makes, as several or none."""
-    called = f"what {getattr(read, '__name__', 'a panel')} returned"
+    called = tr("what {function} returned", function=getattr(read, "__name__", "a panel"))
 
     def readouts(context: Context) -> Sequence[Readout]:
         made = as_declared(read(context), Readout | Sequence[Readout] | None, called)
         several = () if made is None else (made,) if isinstance(made, Readout) else made
         return tuple(map(_checked_readout, several))
 
-    return lambda context: mod.call("its panel", readouts, context, otherwise=())
+    return lambda context: mod.call(tr("its panel"), readouts, context, otherwise=())
 
 
 def _checked_readout(readout: Readout) -> Readout:
@@ -103,7 +103,13 @@ def _checked_readout(readout: Readout) -> Readout:
     """
     rows = tuple((readable(tr(name)), readable(value)) for name, value in readout.rows)
     if readout.closes and readout.closes not in ACTIONS:
-        raise ValueError(f"the panel '{readout.title}' closes by '{readout.closes}'; there is no such action")
+        raise ValueError(
+            tr(
+                "the panel '{title}' names '{action}' to close it; there is no such action",
+                title=readout.title,
+                action=readout.closes,
+            )
+        )
     plot = readout.plot and _checked_plot(readout.plot)
     return Readout(readable(tr(readout.title)), rows, plot, readout.closes)
 
@@ -120,7 +126,7 @@ def _checked_plot(plot: Plot) -> Plot:
 
 def readable(text: str) -> str:
     """A text of a mod as it can be shown."""
-    return printable(text[:LONGEST])
+    return in_both(printable(text[:LONGEST]), printable(str(english(text))[:LONGEST]))
 
 
 # --- scenes ------------------------------------------------------------------------------------------------
@@ -142,7 +148,7 @@ def guarded_scene(mod: Mod, kind: type[Scene]) -> Callable[[], Scene]:
     plain: type[Scene] = type(kind.__name__, (Scene,), {"name": kind.name, "sources": kind.sources, "mod": mod})
 
     def make() -> Scene:
-        made = mod.call(f"making the scene '{kind.name}'", guarded)
+        made = mod.call(tr("making the scene '{name}'", name=kind.name), guarded)
         return made if made is not None else plain()
 
     return make
@@ -155,11 +161,11 @@ def _guarded_method(mod: Mod, kind: type[Scene], name: str) -> Callable[..., Any
     mistakes = (LookupError,) if name == "click_box" else ()
 
     def asked(scene: Scene, *arguments: Any) -> Any:
-        made = as_declared(own(scene, *arguments), declared, f"what {name} returned")
+        made = as_declared(own(scene, *arguments), declared, tr("what {function} returned", function=name))
         return None if declared is None else _shown(made)
 
     def method(scene: Scene, *arguments: Any) -> Any:
-        what = f"the scene '{kind.name}'"
+        what = tr("the scene '{name}'", name=kind.name)
         made = mod.call(what, asked, scene, *arguments, otherwise=mod, mistakes=mistakes)
         return plain(scene, *arguments) if made is mod else made
 
@@ -182,7 +188,8 @@ def _guarded_property(mod: Mod, kind: type[Scene], name: str) -> property:
         else:
             vars(scene)[name] = value
 
-    return property(lambda scene: mod.call(f"the scene '{kind.name}'", asked, scene, otherwise=empty), write)
+    what = tr("the scene '{name}'", name=kind.name)
+    return property(lambda scene: mod.call(what, asked, scene, otherwise=empty), write)
 
 
 def _shown(made: Any) -> Any:

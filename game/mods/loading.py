@@ -10,6 +10,7 @@ from collections.abc import Iterable, Mapping, Sequence
 from pathlib import Path
 from types import ModuleType
 
+from components.language import tr
 from game.documents.preferences import preferred_keys
 from game.editor.context import FAULTS
 from game.interrupts import is_persons, mark_interrupts
@@ -45,7 +46,11 @@ def load(folders: Iterable[str | Path] = (), *, installed: bool = False) -> list
         mark_interrupts()
     for mod in ordered:
         _load(mod)
-    FAULTS.extend(f"The mod '{mod.name}' was left out: {mod.problem}" for mod in new if mod.off)
+    FAULTS.extend(
+        tr("The mod '{name}' was left out: {problem}", name=mod.name, problem=mod.problem)
+        for mod in new
+        if mod.off
+    )
     for scene, key, action in preferred_keys() if new else ():
         prefer(scene, key, action)
     return [known.get(mod.folder, mod) for mod in found]
@@ -56,10 +61,18 @@ def load_all(folders: Iterable[str | Path]) -> None:
     for folder in folders:
         found = load([folder])
         if not found:
-            raise ModError(f"There is no mod in {folder}; a mod is a folder with a {MANIFEST}.")
+            raise ModError(
+                tr(
+                    "There is no mod in {folder}; a mod is a folder with a file {manifest}.",
+                    folder=folder,
+                    manifest=MANIFEST,
+                )
+            )
         for mod in found:
             if mod.off:
-                raise ModError(f"The mod '{mod.name}' cannot be used: {mod.problem}")
+                raise ModError(
+                    tr("The mod '{name}' cannot be used: {problem}", name=mod.name, problem=mod.problem)
+                )
 
 
 def include(module: ModuleType, description: str) -> None:
@@ -88,7 +101,7 @@ def _load(mod: Mod) -> None:
     try:
         for name in required(mod):
             if any(other.name == name and other.off for other in MODS):
-                raise ModError(f"It requires the mod '{name}', which cannot be used.")
+                raise ModError(tr("It requires the mod '{name}', which cannot be used.", name=name))
         mod.within(PATIENCE, lambda: _plug_in(mod, app))
         _check_left_behind(modules, threads, streams)
     except ModError as error:
@@ -98,9 +111,10 @@ def _load(mod: Mod) -> None:
             raise
         mod.problem = mod.describe(error)
         if isinstance(error, ModuleNotFoundError) and error.name == "numba":
-            mod.problem = (
-                f"It imports numba, which is not installed ({mod.place_of(error)}); declare kernels by @compiled of"
-                " game.api instead, which needs no compiler."
+            mod.problem = tr(
+                "It imports numba, which is not installed ({place}); mark kernels with @compiled from game.api instead,"
+                " which works without numba.",
+                place=mod.place_of(error),
             )
     sys.modules.update(modules)
     vars(sys).update(streams)
@@ -115,7 +129,7 @@ def _plug_in(mod: Mod, app: App) -> None:
     """Import a mod and let it register what it has. Raises ModError, or whatever its code raises."""
     app.catalogues()
     module = _import(mod)
-    as_declared(check_plugin(getattr(module, "plugin", None))(app), None, "what plugin(app) returned")
+    as_declared(check_plugin(getattr(module, "plugin", None))(app), None, tr("what plugin(app) returned"))
     Schedule(all_systems())
 
 
@@ -125,15 +139,25 @@ def _check_left_behind(
     """Raise ModError if a mod changed these modules or streams, or left a thread running besides these."""
     for name, stream in streams.items():
         if getattr(sys, name, None) is not stream:
-            raise ModError(f"It replaced or removed sys.{name}, which the program writes to or reads.")
+            raise ModError(
+                tr("It replaced or removed sys.{name}, which the program needs; leave it as it is.", name=name)
+            )
     for name, module in modules.items():
         if sys.modules.get(name) is not module:
-            raise ModError(f"It replaced or removed the module '{name}' in sys.modules, which others use.")
+            raise ModError(
+                tr(
+                    "It replaced or removed the module '{name}' in sys.modules, which others use; leave it there.",
+                    name=name,
+                )
+            )
     for thread in set(threading.enumerate()) - threads:
         if thread.is_alive() and not thread.daemon:
             raise ModError(
-                f"Its plugin(app) left the thread '{thread.name}' running, which would keep the program from ending;"
-                " start it with daemon=True."
+                tr(
+                    "Its plugin(app) left the thread '{name}' running, which would keep the program from ending; start"
+                    " the thread with daemon=True.",
+                    name=thread.name,
+                )
             )
 
 
@@ -148,10 +172,12 @@ def _find(mod: Mod) -> None:
     assert mod.folder is not None
     file = mod.folder / "__init__.py"
     if not file.is_file():
-        raise ModError("It has no __init__.py with a function plugin(app).")
+        raise ModError(tr("It has no __init__.py; write one with a function plugin(app)."))
     origin = finding.origin_of_module(mod.name)
     if origin is not None and not _is_from(origin, file):
-        raise ModError(f"There is a Python module '{mod.name}' already; give the mod another name.")
+        raise ModError(
+            tr("There is a Python module '{name}' already; give the mod another name.", name=mod.name)
+        )
     if mod.name in sys.modules:
         return
     spec = importlib.util.spec_from_file_location(mod.name, file, submodule_search_locations=[str(mod.folder)])

@@ -11,6 +11,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any, TypeVar
 
+from components.language import english, tr
 from components.mistake import Mistake
 from components.wording import is_identifier, printable, quoted
 from game.editor.context import FAULTS
@@ -67,16 +68,20 @@ class Mod:
 
     def fail(self, what: str, error: BaseException) -> None:
         """Switch the mod off because `what` of it failed."""
-        self.switch_off(f"{what} failed: {self.describe(error)}", error)
+        self.switch_off(tr("{what} failed: {error}", what=what, error=self.describe(error)), error)
 
     def switch_off(self, reason: str, error: BaseException | None = None) -> None:
         """Switch the mod off, unless it is already: from now on `call` calls nothing of it."""
         if self.off:
             return
         self.problem = reason
-        sentence = f"The mod '{self.name}' was switched off: {reason} Your model is as it was before."
+        sentence = tr(
+            "The mod '{name}' was switched off: {reason} Your model is as it was before.",
+            name=self.name,
+            reason=reason,
+        )
         FAULTS.append(sentence)
-        LOG.error(sentence)
+        LOG.error(english(sentence))
         if error is not None:  # without its message, which is code of the mod
             places = "".join(traceback.format_tb(error.__traceback__)).rstrip()
             LOG.debug("Traceback of the mod '%s':\n%s", self.name, places)
@@ -99,15 +104,15 @@ class Mod:
         except BaseException as other:  # of code that is not ours
             if is_persons(other):
                 raise
-            return "its message cannot be read"
+            return tr("its message cannot be read")
 
     def place_of(self, error: BaseException) -> str:
         """The file and the line of this mod in which an error happened; "" if in none."""
         if isinstance(error, SyntaxError) and isinstance(error.filename, str):
-            return f"{_short(error.filename)}, line {error.lineno}"
+            return tr("{file}, line {line}", file=_short(error.filename), line=error.lineno)
         frames = traceback.extract_tb(error.__traceback__)
         own = [f for f in frames if self.folder is not None and Path(f.filename).is_relative_to(self.folder)]
-        return f"{_short(own[-1].filename)}, line {own[-1].lineno}" if own else ""
+        return tr("{file}, line {line}", file=_short(own[-1].filename), line=own[-1].lineno) if own else ""
 
     def call(
         self,
@@ -131,7 +136,7 @@ class Mod:
             if self.source == INCLUDED:
                 return function(*arguments)
             return self.within(
-                patience, lambda: as_declared(function(*arguments), declared, "what it returned")
+                patience, lambda: as_declared(function(*arguments), declared, tr("what it returned"))
             )
         except mistakes:
             raise
@@ -173,32 +178,64 @@ def _entries(path: Path) -> dict[str, Any]:
         return tomllib.loads(path.read_text(encoding="utf-8"))
     except (OSError, UnicodeDecodeError) as error:
         reason = (error.strerror if isinstance(error, OSError) else None) or str(error)
-        raise ModError(f"{MANIFEST} cannot be read: {reason}.") from None
+        raise ModError(tr("{file} cannot be read: {reason}.", file=MANIFEST, reason=reason)) from None
     except RecursionError:
-        raise ModError(f"{MANIFEST} is nested too deeply.") from None
+        raise ModError(tr("{file} is nested too deeply; write it simpler.", file=MANIFEST)) from None
     except tomllib.TOMLDecodeError as error:
-        raise ModError(f"{MANIFEST} is not TOML: {error}.") from None
+        raise ModError(tr("{file} is not TOML: {error}.", file=MANIFEST, error=error)) from None
 
 
 def _fill(made: Mod, entries: dict[str, Any], named: str | None) -> None:
     for key in entries:
         if key not in _KEYS:
-            raise ModError(f"{MANIFEST} has the key '{key}'; the keys are {', '.join(_KEYS)}.")
+            raise ModError(
+                tr(
+                    "{file} has the key '{key}', which means nothing; use only {keys}.",
+                    file=MANIFEST,
+                    key=key,
+                    keys=", ".join(_KEYS),
+                )
+            )
     for key in ("name", "version", "description"):
         value = entries.get(key, "")
         if not isinstance(value, str):
-            raise ModError(f'{MANIFEST}: {key} is {quoted(value)}; it must be a text, such as {key} = "…".')
+            raise ModError(
+                tr(
+                    '{file}: {key} is {value}; it must be a text, such as {key} = "…".',
+                    file=MANIFEST,
+                    key=key,
+                    value=quoted(value),
+                )
+            )
         if value or key != "name":
             setattr(made, key, value)
     made.module = named or made.name
     if not is_identifier(made.name) or "__" in made.name:
-        raise ModError(f"{MANIFEST}: the name '{made.name}' must be like a Python name, such as 'wind'.")
+        raise ModError(
+            tr(
+                "{file}: the name '{name}' must be a Python name without __, such as 'wind'.",
+                file=MANIFEST,
+                name=made.name,
+            )
+        )
     if named is not None and made.name != named:
-        raise ModError(f"{MANIFEST}: the name is '{made.name}', but the entry point calls it '{named}'.")
+        raise ModError(
+            tr(
+                "{file}: the name is '{name}', but the entry point calls it '{other}'; use the same name.",
+                file=MANIFEST,
+                name=made.name,
+                other=named,
+            )
+        )
     requires = entries.get("requires", [])
     if not isinstance(requires, list) or not all(isinstance(entry, str) for entry in requires):
         raise ModError(
-            f'{MANIFEST}: requires is {quoted(requires)}; write a list like ["pinjoint>=0.1", "gusts"].'
+            tr(
+                "{file}: requires is {value}; write a list such as {form}.",
+                file=MANIFEST,
+                value=quoted(requires),
+                form='["pinjoint>=0.1", "gusts"]',
+            )
         )
     made.requires = tuple(requires)
     _check_versions(made)
@@ -211,9 +248,17 @@ def _check_versions(made: Mod) -> None:
     try:
         Version(made.version)
     except InvalidVersion:
-        raise ModError(f"{MANIFEST}: the version '{made.version}' must be like '1.0'.") from None
+        raise ModError(
+            tr("{file}: the version is '{version}'; write it like '1.0'.", file=MANIFEST, version=made.version)
+        ) from None
     for entry in made.requires:
         try:
             Requirement(entry)
         except InvalidRequirement:
-            raise ModError(f"{MANIFEST}: requires '{entry}', which must be like 'pinjoint>=0.1,<2'.") from None
+            raise ModError(
+                tr(
+                    "{file}: requires has '{entry}'; write it like 'pinjoint>=0.1,<2'.",
+                    file=MANIFEST,
+                    entry=entry,
+                )
+            ) from None

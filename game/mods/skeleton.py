@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from pathlib import Path
 
+from components.language import tr
 from components.wording import is_identifier
 from game.mods.finding import origin_of_module
 from game.mods.mod import MANIFEST, ModError
@@ -73,10 +74,10 @@ _FILES = {MANIFEST: _MANIFEST, "__init__.py": _CODE, "test_{name}.py": _TEST}
 def write_skeleton(name: str, parent: Path, version: str) -> list[Path]:
     """Write a new mod into a folder of its name; returns its files. Raises ModError."""
     if not is_identifier(name) or "__" in name:
-        raise ModError(f"The name '{name}' must be like a Python name, such as 'wind'.")
+        raise ModError(tr("The name '{name}' must be a Python name without __, such as 'wind'.", name=name))
     folder = parent / name
     if not folder.exists() and origin_of_module(name) is not None:
-        raise ModError(f"There is a Python module '{name}' already; give the mod another name.")
+        raise ModError(tr("There is a Python module '{name}' already; give the mod another name.", name=name))
     try:
         folder.mkdir(parents=True)
         paths = []
@@ -84,7 +85,13 @@ def write_skeleton(name: str, parent: Path, version: str) -> list[Path]:
             paths.append(folder / pattern.format(name=name))
             paths[-1].write_text(text.format(name=name, version=version), encoding="utf-8")
     except FileExistsError:
-        raise ModError(f"{folder} is there already; choose another name.") from None
+        raise ModError(tr("{folder} exists already; choose another name.", folder=folder)) from None
     except OSError as error:
-        raise ModError(f"{folder} cannot be written: {error.strerror}.") from None
+        raise ModError(
+            tr(
+                "{folder} cannot be written: {reason}. Choose another folder with --into.",
+                folder=folder,
+                reason=error.strerror,
+            )
+        ) from None
     return paths

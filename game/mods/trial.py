@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import Any
 
 from components.field import MADE, Field, FieldError
+from components.language import joined, tr
 from components.load import HISTORIES
 from components.model import ADDED, Model
 from components.suggestions import missing
@@ -115,7 +116,7 @@ class _Trial:
             table, _, column = name.partition(".")
             if column and (table not in model.tables or column not in model.tables[table].fields):
                 known = [f"{t.name}.{f}" for t in model.tables.values() for f in t.fields]
-                self._note(f"{system.name}: {missing('columns', name, known)}")
+                self._note(joined([f"{system.name}:", missing("columns", name, known)]))
         if isinstance(system, StepSystem):
             system.leaves_flight_exact(model)
         if isinstance(system, Integrator):
@@ -131,7 +132,12 @@ class _Trial:
             if binding.action.startswith(f"{self.mod.name}."):
                 for scene in sorted(set(binding.scenes) - scenes):
                     self._note(
-                        f"The key '{binding.key}' for {binding.action}: {missing('scenes', scene, scenes)}"
+                        tr(
+                            "The key '{key}' for {action}: {problem}",
+                            key=binding.key,
+                            action=binding.action,
+                            problem=missing("scenes", scene, scenes),
+                        )
                     )
 
     # --- what must be tried ----------------------------------------------------------------------------
@@ -175,7 +181,13 @@ class _Trial:
         session.settings.integrator = integrator
         session.run(steps=STEPS)
         if session.message and self.mod.off is False and session.simulation.halted:
-            self._note(f"A run with it ends after {session.model.clock.steps} steps: {session.message}")
+            self._note(
+                tr(
+                    "A run with it ends after {count} steps: {message}",
+                    count=session.model.clock.steps,
+                    message=session.message,
+                )
+            )
 
 
 # --- the model -------------------------------------------------------------------------------------------
@@ -200,7 +212,12 @@ def _way_to(session: Session, scene: str) -> list[str]:
                 ways[name] = [*ways[here], name]
                 pending.append(name)
     if scene not in ways:
-        raise ValueError(f"The scene '{scene}' cannot be reached; name those that lead to it in its sources")
+        raise ValueError(
+            tr(
+                "The scene '{name}' cannot be reached; list the scenes that lead to it in its sources",
+                name=scene,
+            )
+        )
     return ways[scene]
 
 

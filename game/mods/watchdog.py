@@ -9,6 +9,8 @@ import time
 from collections.abc import Callable
 from typing import TypeVar
 
+from components.language import tr
+
 T = TypeVar("T")
 
 RETRY = 1e-4  # s
@@ -21,7 +23,7 @@ class TooLong(BaseException):
     limit = 0.0
 
     def __init__(self) -> None:
-        super().__init__(f"it ran for more than {self.limit:g} s")
+        super().__init__(tr("it ran for more than {seconds:g} s", seconds=self.limit))
 
 
 class _Watchdog:

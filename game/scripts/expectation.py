@@ -8,7 +8,7 @@ import re
 from collections.abc import Iterator, Mapping
 from typing import Any, Protocol
 
-from components.language import english
+from components.language import english, tr
 from components.suggestions import missing
 from components.wording import quoted
 from game.paths import Readable, locate_one
@@ -44,42 +44,59 @@ class Shown(Readable, Protocol):
 def expect(session: Shown, text: str) -> None:
     """Raise ExpectationError unless a text holds; ValueError or LookupError if it cannot be tested."""
     for expected, got in check(session, text):
-        raise ExpectationError(f"expected {expected}, got {got}")
+        raise ExpectationError(tr("expected {expected}, got {got}", expected=expected, got=str(got)))
 
 
 def check(session: Shown, text: str) -> Iterator[tuple[str, Any]]:
     """(expected, got) if a text does not hold. Raises ValueError, LookupError."""
     match = _EXPECTATION.match(text)
     if match is None:
-        raise ValueError(f"'{text}' is no expectation; write it like rods.AB.axial_force ≈ -28.34 ± 0.01.")
-    got = english(read(session, match["path"]))
+        raise ValueError(
+            tr("'{text}' is not an expectation; write it like rods.AB.axial_force ≈ -28.34 ± 0.01.", text=text)
+        )
+    got = english(read(session, match["path"]))  # a script is the same in every language
     if not _holds(got, match["relation"], match["value"], match["slack"]):
         yield text, got
 
 
 def _holds(got: Any, relation: str, value: str, slack: str | None) -> bool:
     if relation not in (*_SAMENESS, *_ORDERS):
-        raise ValueError(f"'{relation}' is no relation; write one of {', '.join((*_SAMENESS, *_ORDERS))}.")
+        raise ValueError(
+            tr(
+                "'{relation}' does not compare anything; write one of {relations}.",
+                relation=relation,
+                relations=", ".join((*_SAMENESS, *_ORDERS)),
+            )
+        )
     if isinstance(got, bool | str) or got is None:
         if relation in _ORDERS:
             raise ValueError(
-                f"it is {quoted(got)}, which is neither more nor less; write = or, for a part of a text, ≈."
+                tr(
+                    "it is {value}, which is not a number; compare it with =, or with ≈ for a part of a text.",
+                    value=quoted(got),
+                )
             )
         said, wanted_text = (_typed(text) for text in (str(got), value.strip("\"'")))
         if got is None:
             return wanted_text in _NOTHING
         return said == wanted_text if relation == "=" else isinstance(got, str) and wanted_text in said
     if isinstance(got, tuple):
-        raise ValueError(f"it has two components, {got}; ask for .x or .y.")
+        raise ValueError(tr("it has two components, {value}; add .x or .y.", value=str(got)))
     if value.lower() in _NOTHING:
         return False
     try:
         wanted, within = float(value), float(slack or 0.0)
     except ValueError:
         said = f"{value} ± {slack}" if slack else value
-        raise ValueError(f"it is {got}, which cannot be compared with '{said}'; write a number.") from None
+        raise ValueError(
+            tr(
+                "it is {value}, which cannot be compared with '{wanted}'; write a number.",
+                value=str(got),
+                wanted=said,
+            )
+        ) from None
     if not within >= 0.0:
-        raise ValueError(f"± {slack}: nothing is as near as that; write a number of at least 0.")
+        raise ValueError(tr("± {tolerance}: write a tolerance of at least 0.", tolerance=slack))
     if relation in _ORDERS:
         return bool(_ORDERS[relation](got, wanted))
     tolerance = within if slack is not None or relation == "=" else 1e-9 * abs(wanted)
@@ -123,13 +140,13 @@ def _of_force_method(session: Shown, quantity: str) -> Any:
     if quantity == "message" and session.scene == "force method":
         return session.scenes.active.message
     if guide is None:
-        raise LookupError("the force method is not active; press K in pause first.")
+        raise LookupError(tr("the force method is not open; press K in pause first."))
     if quantity == "unknown":
         return guide.unknown.name if guide.unknown else None
     if quantity == "part":
         return guide.part
     if guide.solution is None:
-        raise LookupError("nothing is released yet; pick an unknown in part 2 first.")
+        raise LookupError(tr("no redundant is chosen yet; choose one in part 2 first."))
     what, _, rod = quantity.partition(".")
     if rod:  # a row of the final table
         of_set = _one_of({name: getattr(guide.solution, name) for name in _SETS}, what, "sets")

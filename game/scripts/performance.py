@@ -8,7 +8,7 @@ from collections.abc import Mapping
 from typing import Any, Protocol
 
 from components.field import Vector
-from components.language import language, spoken, tr
+from components.language import language, marked, spoken, tr
 from components.view import Page, Status, View
 from game.documents import library
 from game.documents.open_documents import ModelFile
@@ -26,7 +26,7 @@ REACH = 0.4  # s of a movement of the pointer
 READING = 1.2, 0.055  # s that a sentence stays: at least, and for each character
 PATIENCE = 6.0  # s of a run shown at its natural pace, before it goes faster and faster
 HURRY = ("space", "return", "right", "click")
-DONE = "That was it. Go on from here as you like; Ctrl+Z goes back through all of it."
+DONE = marked("This is the end. Go on from here as you like; Ctrl+Z goes back, step by step.")
 
 _UNSEEN = {"expect", "resize", "window"}  # verbs without a pause after them
 
@@ -95,7 +95,7 @@ class Performance:
             session.performing, session.footer = False, None
             self._grow(-grown)
         if not self._ended:
-            session.notice = DONE
+            session.notice = tr(DONE)
         return failures
 
     # --- one line ------------------------------------------------------------------------------------
@@ -157,7 +157,7 @@ class Performance:
         footer = self._screen.session.footer
         if text and footer is not None:
             footer.page = Page((text,))
-            footer.status = Status(time=None, state="Lesson", hint="Space goes on     Esc ends it")
+            footer.status = Status(time=None, state=tr("Lesson"), hint=tr("Space goes on     Esc ends it"))
             least, each = READING
             self._wait(max(least, each * len(text)))
 

@@ -11,7 +11,7 @@ from dataclasses import dataclass
 from typing import Any, TextIO
 
 from components.field import Vector
-from components.language import ENGLISH, joined, language, spoken
+from components.language import ENGLISH, joined, language, spoken, tr
 from components.wording import as_json, cut, is_broken
 from game.documents.format import ModelError
 from game.editor.context import FAULTS
@@ -34,7 +34,12 @@ class Failure:
     got: Any
 
     def __str__(self) -> str:
-        return f"line {self.line}: expected {self.expected}, got {self.got}"
+        return tr(
+            "line {line}: expected {expected}, got {got}",
+            line=self.line,
+            expected=self.expected,
+            got=str(self.got),
+        )
 
 
 def session_of(script: Script) -> Session:
@@ -43,7 +48,9 @@ def session_of(script: Script) -> Session:
     try:
         session = Session.open(script.source)
     except ModelError as error:
-        raise ScriptError(f"{script.path} line {script.lines[0][0]}: {error}") from None
+        raise ScriptError(
+            tr("{file} line {line}: {error}", file=script.path, line=script.lines[0][0], error=error)
+        ) from None
     session.notice = joined((session.notice, different))
     return session
 
@@ -58,18 +65,19 @@ def check_mods(script: Script) -> str:
     here = _loaded_mods()
     if missing := [f"{name} {version}" for name, version in script.mods.items() if name not in here]:
         raise ScriptError(
-            f"{script.path} was recorded with the mod {', '.join(missing)}, which is not loaded; name its folder:"
-            " --mods FOLDER."
+            tr(
+                "{file} was recorded with mods that are not loaded: {mods}. Name their folder: --mods FOLDER.",
+                file=script.path,
+                mods=", ".join(missing),
+            )
         )
-    others = [
-        f"{name} {version} {f'instead of {script.mods[name]}' if name in script.mods else 'besides'}"
-        for name, version in here.items()
-        if version != script.mods.get(name)
-    ]
+    others = [f"{name} {version}" for name, version in here.items() if version != script.mods.get(name)]
     if not others:
         return ""
-    return (
-        f"{script.path} was recorded with other mods, there is now {', '.join(others)}: it may play otherwise."
+    return tr(
+        "{file} was recorded without the mods {mods} that are loaded now, so it may run differently.",
+        file=script.path,
+        mods=", ".join(others),
     )
 
 
@@ -101,8 +109,10 @@ def play_line(script: Script, number: int, entry: Mapping[str, Any], session: Se
         pass  # it is among FAULTS
     except (ValueError, LookupError, TypeError) as error:
         reason = error.args[0] if error.args else error
-        raise ScriptError(f"{script.path} line {number}: {reason}") from error
-    return failures + [Failure(number, "mods that work", fault) for fault in FAULTS[known:]]
+        raise ScriptError(
+            tr("{file} line {line}: {error}", file=script.path, line=number, error=reason)
+        ) from error
+    return failures + [Failure(number, tr("mods that work"), fault) for fault in FAULTS[known:]]
 
 
 _EXAMPLES: dict[str, Any] = {  # by key of a line: a value of the required shape
@@ -135,11 +145,20 @@ def _check_line(entry: Mapping[str, Any]) -> None:
     """Raise ValueError unless every key is known and every value has the shape of its example."""
     for key, value in entry.items():
         if key not in _EXAMPLES:
-            raise ValueError(f"there is no '{cut(key)}'; use one of {', '.join(_EXAMPLES)}.")
+            raise ValueError(
+                tr("there is no '{key}'; use one of {keys}.", key=cut(key), keys=", ".join(_EXAMPLES))
+            )
         example = _EXAMPLES[key]
         fits = _is_like(value, example) and not (key in _SIZES and min(value) <= 0)
         if not fits and (key, value) != ("run", "rest"):
-            raise ValueError(f"{key} is {as_json(value)}; write it like {json.dumps({key: example})}.")
+            raise ValueError(
+                tr(
+                    "{key} is {value}; write it like {form}.",
+                    key=key,
+                    value=as_json(value),
+                    form=json.dumps({key: example}),
+                )
+            )
 
 
 def _is_like(value: Any, example: Any) -> bool:
@@ -167,7 +186,12 @@ def perform(session: Session, entry: Mapping[str, Any]) -> Iterator[tuple[str, A
         session.clipboard = rest.pop("clipboard")
     button, pixel = rest.pop("button", "click"), rest.pop("pixel", None)
     if len(rest) > 1:
-        raise ValueError(f"a line does one thing, this one says {', '.join(map(cut, rest))}; split it.")
+        raise ValueError(
+            tr(
+                "a line can do one thing only, but this one has {keys}; write several lines.",
+                keys=", ".join(map(cut, rest)),
+            )
+        )
     for verb, value in rest.items():
         if verb == "expect":
             yield from check(session, value)
@@ -241,6 +265,10 @@ class Recorder:
             with suppress(OSError):
                 self._file.close()  # else its end would try again
             self._session.on_press = self._session.on_resize = None
-            said = f"The recording ends here: {self._file.name} cannot be written: {error.strerror}."
+            said = tr(
+                "The recording ends here: {file} cannot be written: {reason}.",
+                file=self._file.name,
+                reason=error.strerror,
+            )
             self._session.notice = said
             LOG.warning(said)

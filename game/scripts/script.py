@@ -76,7 +76,7 @@ class Script:
     it must be kept away from the models that the person saved.
     """
 
-    has_data = False
+    has_data, language = False, ""
 
     def __init__(self, source: str | Path) -> None:
         self.path = _found(source)
@@ -84,22 +84,43 @@ class Script:
         header = self.lines[0][1] if self.lines else {}
         if header.get("format") != HEADER["format"]:
             form = json.dumps({**HEADER, "model": "isostatic"})
-            raise ScriptError(f"{source}: its first line must be like {form}.")
+            raise ScriptError(tr("{file}: write the first line like {form}.", file=source, form=form))
         if header.get("version") != HEADER["version"]:
             raise ScriptError(
-                f"{source}: version {as_json(header.get('version'))} is not known; update Pinjoint."
+                tr(
+                    "{file}: this program cannot read version {version}; update Pinjoint.",
+                    file=source,
+                    version=as_json(header.get("version")),
+                )
             )
         for key in header:
             if key not in _HEADER_KEYS:
                 raise ScriptError(
-                    f"{source} line 1: there is no '{cut(key)}'; use one of {', '.join(_HEADER_KEYS)}."
+                    tr(
+                        "{file} line 1: there is no '{key}'; use one of {keys}.",
+                        file=source,
+                        key=cut(key),
+                        keys=", ".join(_HEADER_KEYS),
+                    )
                 )
         if not isinstance(model := header.get("model", EMPTY), str | dict):
-            raise ScriptError(f"{source} line 1: model is {as_json(model)}; write a name or a document.")
+            raise ScriptError(
+                tr(
+                    "{file} line 1: model is {value}; write the name of a model, or a whole model.",
+                    file=source,
+                    value=as_json(model),
+                )
+            )
         self.mods: dict[str, str] | None = header.get("mods")
         if self.mods is not None and not _are_mods(self.mods):
+            value = as_json(self.mods)
             raise ScriptError(
-                f'{source} line 1: mods is {as_json(self.mods)}; write names and versions, {{"wind": "1.0"}}.'
+                tr(
+                    "{file} line 1: mods is {value}; write names and versions, such as {form}.",
+                    file=source,
+                    value=value,
+                    form='{"wind": "1.0"}',
+                )
             )
         recorded = any("pixel" in entry for _, entry in self.lines)
         self.language = header.get("language", ENGLISH if recorded else "")
@@ -118,24 +139,51 @@ class Script:
         try:
             text = self.path.read_text(encoding="utf-8-sig")
         except FileNotFoundError:
-            reason = f"There is no file and no lesson '{self.path}'; {remedy(str(self.path), lessons())}"
-            raise ScriptError(reason) from None
+            near = remedy(str(self.path), lessons())
+            raise ScriptError(
+                tr("There is no file and no lesson '{file}'; {remedy}", file=self.path, remedy=near)
+            ) from None
         except OSError as error:
-            raise ScriptError(f"{self.path} cannot be read: {error.strerror}. Check its path.") from None
+            raise ScriptError(
+                tr("{file} cannot be read: {reason}. Check its path.", file=self.path, reason=error.strerror)
+            ) from None
         except UnicodeDecodeError as error:
-            raise ScriptError(f"{self.path} is no script in UTF-8: {error}.") from None
+            raise ScriptError(
+                tr("{file} is not in UTF-8 ({error}); save it in UTF-8.", file=self.path, error=error)
+            ) from None
         for number, line in enumerate(text.splitlines(), start=1):
             if not line.strip() or line.lstrip().startswith("#"):
                 continue
             try:
                 entry = json.loads(line)
             except RecursionError:
-                raise ScriptError(f"{self.path} line {number}: this is nested too deeply.") from None
+                raise ScriptError(
+                    tr(
+                        "{file} line {line}: this is nested too deeply; write it simpler.",
+                        file=self.path,
+                        line=number,
+                    )
+                ) from None
             except ValueError as error:  # also numbers of thousands of digits
                 reason = getattr(error, "msg", str(error))
-                raise ScriptError(f"{self.path} line {number}: this is not JSON ({reason}).") from None
+                raise ScriptError(
+                    tr(
+                        "{file} line {line}: this is not JSON ({reason}); correct it.",
+                        file=self.path,
+                        line=number,
+                        reason=reason,
+                    )
+                ) from None
             if not isinstance(entry, dict):
-                raise ScriptError(f'{self.path} line {number}: write an object, such as {{"press": "space"}}.')
+                form = '{"press": "space"}'
+                raise ScriptError(
+                    tr(
+                        "{file} line {line}: write an object, such as {form}.",
+                        file=self.path,
+                        line=number,
+                        form=form,
+                    )
+                )
             yield number, entry
 
     @property

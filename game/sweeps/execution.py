@@ -8,7 +8,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Any
 
-from components.language import ENGLISH, spoken
+from components.language import ENGLISH, spoken, tr
 from game.sweeps.batches import Batches
 from game.sweeps.plan import Outcome, Plan, Record
 from game.sweeps.variant_runner import VariantRunner
@@ -118,7 +118,10 @@ def compute_all(
         import distributed
     except ImportError:
         raise SweepError(
-            f"Several workers need dask.distributed; use --workers 1, or install it with: {INSTALL}"
+            tr(
+                "Several workers need dask.distributed; use --workers 1, or install it with: {command}",
+                command=INSTALL,
+            )
         ) from None
     workers = min(workers, len(numbers))
     with (
@@ -143,14 +146,20 @@ def _client_of(distributed: Any, scheduler: str) -> Any:
         client = distributed.Client(scheduler, timeout=ANSWER_WITHIN)
     except (OSError, ValueError) as error:
         raise SweepError(
-            f"No Dask scheduler answers at {scheduler} ({error}). Start one with: dask scheduler, and workers"
-            f" with: dask worker {scheduler}"
+            tr(
+                "No Dask scheduler answers at {scheduler} ({error}). Start one with: dask scheduler, and workers"
+                " with: dask worker {scheduler}",
+                scheduler=scheduler,
+                error=error,
+            )
         ) from None
     try:
         client.wait_for_workers(1, timeout=ANSWER_WITHIN)
     except TimeoutError:
         client.close()
-        raise SweepError(f"{scheduler} has no workers. Start some with: dask worker {scheduler}") from None
+        raise SweepError(
+            tr("{scheduler} has no workers. Start some with: dask worker {scheduler}", scheduler=scheduler)
+        ) from None
     return client
 
 
@@ -174,7 +183,7 @@ def _distributed(
             yield found
     for number in sorted(suspects):  # one at a time, so that only what kills a worker is blamed for it
         found = _result(distributed, submit([number]))
-        why = "Every worker that computed it died; perhaps memory ran out."
+        why = "Every worker that computed this variant ended early; perhaps memory ran out."
         yield found or Computed([plan.failure(number, why)])
 
 
@@ -185,8 +194,10 @@ def _result(distributed: Any, future: Any) -> Computed | None:
     except distributed.KilledWorker:
         return None
     except Exception as error:
+        if isinstance(error, SweepError):
+            raise
         raise SweepError(
-            f"A worker cannot compute this: {error}. Install there what is installed here."
+            tr("A worker cannot compute this: {error}. Install the same software there as here.", error=error)
         ) from None
     future.release()
     return found

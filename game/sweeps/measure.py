@@ -10,6 +10,7 @@ from operator import getitem
 from typing import Any
 
 from components.field import Field
+from components.language import joined, marked, tr
 from components.model import Model
 from components.table import Table
 from game.commands.reports.results import State, reported
@@ -23,7 +24,7 @@ _SECTIONS = (*_TABLES, "energy")
 _BETWEEN = re.compile(
     rf",(?=\s*(?:(?:{'|'.join(_SECTIONS)})\.|(?:{'|'.join((*_OF_THE_RUN, *_ANYWAY))})\s*(?:,|$)))"
 )
-_FORM = "write it like rods.CD.axial_force, rods.*.strain, particles.C.displacement.y or energy.elastic"
+_FORM = marked("write it like rods.CD.axial_force, rods.*.strain, particles.C.displacement.y or energy.elastic")
 
 
 @dataclass(frozen=True)
@@ -52,7 +53,7 @@ def read_measures(model: Model, texts: Iterable[str]) -> tuple[Measure, ...]:
         for path in _BETWEEN.split(text):
             measures |= {measure.column: measure for measure in _read(model, path.strip())}
     if not measures:
-        raise SweepError(f"Nothing is measured; say what with --measure: {_FORM}.")
+        raise SweepError(tr("Nothing is measured; add --measure: {form}.", form=tr(_FORM)))
     return tuple(measures.values())
 
 
@@ -63,15 +64,18 @@ def _read(model: Model, path: str) -> list[Measure]:
     if path in _OF_THE_RUN:
         return [Measure(path, (path,), path, "")]
     if section not in _SECTIONS:
-        raise SweepError(f"--measure {path}: {_FORM}, or one of {', '.join(_OF_THE_RUN)}.")
+        names = ", ".join(_OF_THE_RUN)
+        raise SweepError(
+            tr("--measure {path}: {form}, or one of {names}.", path=path, form=tr(_FORM), names=names)
+        )
     try:
         if section == "energy":
             return [Measure(path, ("energy", energy_named(rest)), f"{rest.replace('_', ' ')} energy", "J")]
         target, rest = locate(model, path, partial(_reported, model))
         if rest:
-            raise PathError(f"'{rest}' follows the quantity; {_FORM}.")
+            raise PathError(tr("'{rest}' does not belong to the quantity; {form}.", rest=rest, form=tr(_FORM)))
     except PathError as error:
-        raise SweepError(f"--measure {path}: {error}") from None
+        raise SweepError(joined([f"--measure {path}:", str(error)])) from None
     elements = target.table.names if target.element == EVERY else [target.element]
     return [
         Measure(

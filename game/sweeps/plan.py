@@ -12,6 +12,7 @@ from typing import Any
 import msgspec
 import numpy as np
 
+from components.language import english, tr
 from game import __version__
 from game.commands.reports.report import Analysis
 from game.documents import models
@@ -70,16 +71,25 @@ class SoftwareEnvironment:
     def require(self) -> None:
         """Load the mods that this process lacks. Raises SweepError if its version or mods differ even then."""
         if self.version != __version__:
-            raise SweepError(f"it has Pinjoint {__version__}, the sweep is of {self.version}")
+            raise SweepError(
+                tr(
+                    "A worker has Pinjoint {present}, but the sweep needs {version}; install that version there.",
+                    present=__version__,
+                    version=self.version,
+                )
+            )
         missing = set(self.mods) - set(SoftwareEnvironment.present().mods)
         if missing:
             folders = [mod.folder for mod in self.mods if mod in missing and mod.folder]
             load(map(Path, folders), installed=len(folders) < len(missing))
             missing -= set(SoftwareEnvironment.present().mods)
         for mod in sorted(missing, key=lambda mod: mod.name):
-            raise SweepError(
-                f"it lacks the mod '{mod.name}' {mod.version}{' in ' if mod.folder else ''}{mod.folder}"
-            )
+            wanted = {"name": mod.name, "version": mod.version, "folder": mod.folder}
+            if mod.folder:
+                raise SweepError(
+                    tr("A worker lacks the mod '{name}' {version} in {folder}; install it there.", **wanted)
+                )
+            raise SweepError(tr("A worker lacks the mod '{name}' {version}; install it there.", **wanted))
 
 
 @dataclass(frozen=True)
@@ -135,7 +145,7 @@ class Plan:
 
     def failure(self, number: int, reason: str) -> Outcome:
         """The record of a variant that could not be computed."""
-        return number, [(FAILED, reason, *[None] * (len(RECORDED) - 2 + len(self.measures)))]
+        return number, [(FAILED, english(reason), *[None] * (len(RECORDED) - 2 + len(self.measures)))]
 
     def fingerprint(self) -> str:
         """Tells plans apart: model, variations, seed, what is asked and measured, versions."""
@@ -161,17 +171,19 @@ def plan_of(
     variations = read_variations(model, vary)
     drawn = any(isinstance(variation, Random) for variation in variations)
     if not variations:
-        raise SweepError(f"Nothing is varied; {FORMS}.")
+        raise SweepError(tr("Nothing is varied; {form}.", form=tr(FORMS)))
     if drawn and samples is None:
-        raise SweepError("What is drawn (~) needs the number of samples; say --samples 1000.")
+        raise SweepError(tr("A distribution (~) needs a number of samples; add, for example, --samples 1000."))
     if not drawn and samples is not None:
         raise SweepError(
-            "--samples goes with a distribution; write PATH~normal(MEAN,DEVIATION), or leave it out."
+            tr(
+                "--samples works only with a distribution; write PATH~normal(MEAN,DEVIATION), or leave out --samples."
+            )
         )
     if samples is not None and samples < 1:
-        raise SweepError(f"--samples {samples}: draw at least 1.")
+        raise SweepError(tr("--samples {samples}: draw at least 1.", samples=samples))
     if seed < 0:
-        raise SweepError(f"--seed {seed}: write a whole number from 0 on.")
+        raise SweepError(tr("--seed {seed}: write a whole number of at least 0.", seed=seed))
     plan = Plan(
         file_of(source).name,
         document,
@@ -185,6 +197,10 @@ def plan_of(
     )
     if plan.size > MOST_VARIANTS:
         raise SweepError(
-            f"These are {plan.size} variants; vary in fewer steps, at most {MOST_VARIANTS} together."
+            tr(
+                "These are {count} variants, more than {most}; vary in fewer steps.",
+                count=plan.size,
+                most=MOST_VARIANTS,
+            )
         )
     return plan

@@ -13,6 +13,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from components.language import tr
 from game.commands.reports.report import FOUND
 from game.documents.models import replace
 from game.sweeps.plan import RECORDED, Plan
@@ -51,7 +52,13 @@ class Results:
     def __getitem__(self, name: str) -> NDArray[Any]:
         """A column as an array; missing numbers are NaN."""
         if name not in self.columns:
-            raise KeyError(f"There is no column '{name}'; choose one of {', '.join(self.columns)}.")
+            raise KeyError(
+                tr(
+                    "There is no column '{name}'; choose one of {names}.",
+                    name=name,
+                    names=", ".join(self.columns),
+                )
+            )
         column = self.columns[name]
         numbers = all(value is None or isinstance(value, float) for value in column)
         return np.array(column, dtype=float if numbers else None)
@@ -160,11 +167,24 @@ def _short(value: Any) -> str:
 def check_output(path: Path, suffixes: Sequence[str] = SUFFIXES) -> None:
     """Refuse what could not be written in the end. Raises SweepError."""
     if path.suffix not in suffixes:
-        raise SweepError(f"{path}: write a file that ends with {' or '.join(suffixes)}.")
+        endings = ", ".join(suffixes)
+        raise SweepError(
+            tr("{path}: choose a file that ends with one of {endings}.", path=path, endings=endings)
+        )
     module = _NEEDED.get(path.suffix)
     if module is not None and importlib.util.find_spec(module) is None:
-        raise SweepError(f"A {path.suffix} file needs {module}; install it with: {INSTALL}")
+        raise SweepError(
+            tr(
+                "A {suffix} file needs {module}; install it with: {command}",
+                suffix=path.suffix,
+                module=module,
+                command=INSTALL,
+            )
+        )
     if path.is_dir() or not path.parent.is_dir():
         raise SweepError(
-            f"{path} cannot be written: it is a folder, or its folder is missing. Choose another file."
+            tr(
+                "{path} cannot be written: it is a folder, or its folder is missing. Choose another file.",
+                path=path,
+            )
         )

@@ -12,6 +12,7 @@ from typing import Any, BinaryIO, TextIO
 
 import msgspec
 
+from components.language import tr
 from game.commands.reports.report import Analysis
 from game.sweeps.execution import compute_all
 from game.sweeps.plan import FAILED, Outcome, Plan, plan_of
@@ -54,7 +55,7 @@ def sweep(
     """
     plan = plan_of(source, vary, measure, analysis, overrides, samples, seed)
     if workers is not None and workers < 1:
-        raise SweepError(f"{workers} workers cannot compute; ask for at least 1.")
+        raise SweepError(tr("--workers {workers}: use at least 1.", workers=workers))
     path = None if output is None else Path(output)
     if path is not None:
         check_output(path)
@@ -104,9 +105,11 @@ class Journal:
             lines = kept.split(b"\n")[:-1]  # what follows the last line end is part of a line
             if lines[:1] != [title] and not title.startswith(kept):
                 raise SweepError(
-                    f"{self.path} keeps an unfinished sweep of another model, variation, seed or version, or it is"
-                    " something else. Repeat its command to finish it, or delete that file, or choose another"
-                    " --output."
+                    tr(
+                        "{path} holds an unfinished sweep with another model, variation, seed or version, or something"
+                        " else. Finish that sweep with its own command, delete the file, or choose another --output.",
+                        path=self.path,
+                    )
                 )
             file.truncate(sum(len(line) + 1 for line in lines))
             if not lines:
@@ -159,8 +162,12 @@ class ProgressBar:
         now = time.monotonic()
         began, first = self._began = self._began or (now, done)
         left = (now - began) / (done - first) * (total - done) if done > first else None
-        text = f"{done}/{total} variants" + (f", {failed} failed" if failed else "")
-        text += f", {_duration(left)} left" if left is not None and done < total else ""
+        parts = [tr("{done}/{total} variants", done=done, total=total)]
+        if failed:
+            parts.append(tr("{failed} failed", failed=failed))
+        if left is not None and done < total:
+            parts.append(tr("{time} left", time=_duration(left)))
+        text = ", ".join(parts)
         if self._stream.isatty():
             if now - self._shown >= _EVERY or done == total:
                 self._shown = now

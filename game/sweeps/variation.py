@@ -11,6 +11,7 @@ from typing import Any
 
 import numpy as np
 
+from components.language import joined, marked, tr
 from components.mistake import Mistake
 from components.model import Model
 from components.wording import cut
@@ -18,7 +19,7 @@ from game.paths import EVERY, PathError, Target, locate, read_value, settable
 
 Value = float | bool | str | None
 
-FORMS = (
+FORMS = marked(
     "write PATH=START:STOP:COUNT (evenly spaced), PATH=START:STOP:COUNT:log (by equal ratios),"
     " PATH=VALUE,VALUE,… or PATH~normal(MEAN,DEVIATION)"
 )
@@ -100,12 +101,16 @@ def read_variations(model: Model, vary: Iterable[str] | Mapping[str, Sequence[Va
     paths = [path for variation in variations for path in variation.columns]
     for path, times in Counter(paths).items():
         if times > 1:
-            raise SweepError(f"{path} is varied twice; say it once.")
+            raise SweepError(tr("{path} is varied twice; leave out one of the two.", path=path))
     for place, path in enumerate(paths):
         for before in paths[:place] if EVERY in path else ():
             if _covers(path, before):
                 raise SweepError(
-                    f"Varying {path} would undo that of {before}, which comes before it; swap them."
+                    tr(
+                        "Varying {path} would overwrite {before}, which is varied before it; swap the two.",
+                        path=path,
+                        before=before,
+                    )
                 )
     return variations
 
@@ -118,7 +123,7 @@ def _covers(path: str, one: str) -> bool:
 
 def _listed(path: str, values: Sequence[Value]) -> str:
     if isinstance(values, str) or len(values) == 0:
-        raise SweepError(f"{path}: give it a list of values, at least one.")
+        raise SweepError(tr("{path}: give it a list of at least one value.", path=path))
     return ",".join(as_text(np.asarray(value).item()) for value in values)
 
 
@@ -126,18 +131,18 @@ def _read(model: Model, text: str) -> Variation:
     try:
         target, rest = locate(model, text, settable)
         if not target.handles:
-            raise PathError(f"the model has no {target.table.name}.")
+            raise PathError(tr("the model has no {table}; vary something else.", table=target.table.name))
         if target.field.shape and not target.axis:
-            raise PathError(f"vary one component, {target.field.key}.x or {target.field.key}.y.")
+            raise PathError(tr("vary one component, {key}.x or {key}.y.", key=target.field.key))
         if rest.startswith("="):
             return Values(
                 target.path(target.element), _values(target, rest[1:]), _label(target, target.element)
             )
         if rest.startswith("~"):
             return _random(target, rest[1:])
-        raise PathError(f"it has no values; {FORMS}.")
+        raise PathError(tr("it has no values; {form}.", form=tr(FORMS)))
     except PathError as error:
-        raise SweepError(f"--vary {cut(text)}: {error}") from None
+        raise SweepError(joined([f"--vary {cut(text)}:", str(error)])) from None
 
 
 def _label(target: Target, element: str) -> str:
@@ -153,19 +158,26 @@ def _values(target: Target, text: str) -> tuple[Value, ...]:
     values = tuple(read_value(target, part) for part in text.split(","))
     for value in values:
         if isinstance(value, str) and (target.field.dtype is not str or not value):
-            raise PathError(f"'{cut(str(value))}' is no value of {target.field.title}; {FORMS}.")
+            raise PathError(
+                tr(
+                    "'{value}' is not a value of {field}; {form}.",
+                    value=cut(str(value)),
+                    field=target.field.title,
+                    form=tr(FORMS),
+                )
+            )
     return values
 
 
 def _range(parts: Sequence[str]) -> tuple[float, ...]:
     spaced = np.geomspace if parts[3:] == ["log"] else np.linspace
     if len(parts) not in (3, 4) or (len(parts) == 4 and parts[3] != "log"):
-        raise PathError(f"a range has a start, a stop and a count; {FORMS}.")
+        raise PathError(tr("a range has a start, a stop and a count; {form}.", form=tr(FORMS)))
     start, stop = _finite(parts[0]), _finite(parts[1])
     if not (re.fullmatch("[0-9]{1,9}", parts[2]) and 1 <= int(parts[2]) <= MOST_VARIANTS):
-        raise PathError(f"'{cut(parts[2])}' is no count; write a whole number from 1 on.")
+        raise PathError(tr("'{text}' is not a count; write a whole number of at least 1.", text=cut(parts[2])))
     if spaced is np.geomspace and not start * stop > 0.0:
-        raise PathError("equal ratios do not reach or cross 0; leave :log out, or change the limits.")
+        raise PathError(tr("a :log range cannot reach or cross 0; leave out :log, or change the limits."))
     return tuple(spaced(start, stop, int(parts[2])).tolist())
 
 
@@ -174,21 +186,25 @@ def _random(target: Target, text: str) -> Random:
     kinds = ", ".join(DISTRIBUTIONS)
     if found is None or found[1] not in DISTRIBUTIONS:
         raise PathError(
-            f"'{text}' is no distribution; write one of {kinds} with its two parameters, such as"
-            " normal(164640,5%) or uniform(100,300)."
+            tr(
+                "'{text}' is not a distribution; write one of {kinds} with its two parameters, such as"
+                " normal(164640,5%) or uniform(100,300).",
+                text=text,
+                kinds=kinds,
+            )
         )
     if target.field.dtype is not float:
-        raise PathError(f"{target.field.title} is no number; list its values after =.")
+        raise PathError(tr("{field} is not a number; list its values after =.", field=target.field.title))
     kind, first, second = found[1], _finite(found[2]), found[3].strip()
     if kind == "uniform":
         parameters = (first, _finite(second))
         if not parameters[0] < parameters[1]:
-            raise PathError("write uniform(LOWEST,HIGHEST), the lowest first.")
+            raise PathError(tr("write uniform(LOWEST,HIGHEST), the lower value first."))
     else:
         deviation = abs(first) * _finite(second[:-1]) / 100.0 if second.endswith("%") else _finite(second)
         parameters = (first, deviation)
         if not deviation >= 0.0 or (kind == "lognormal" and not first > 0.0):
-            raise PathError("the deviation must be at least 0, and a lognormal mean above 0.")
+            raise PathError(tr("the deviation must be at least 0, and the mean of a lognormal above 0."))
     # Strengths and stiffnesses of different rods are independent: each has its own draw.
     elements = target.table.names if target.element == EVERY else [target.element]
     return Random(tuple(map(target.path, elements)), kind, parameters, _label(target, elements[0]))
@@ -200,7 +216,7 @@ def _finite(text: str) -> float:
     except ValueError:
         value = math.nan
     if not math.isfinite(value):
-        raise PathError(f"'{text.strip()}' is not a finite number; {FORMS}.")
+        raise PathError(tr("'{text}' is not a finite number; {form}.", text=text.strip(), form=tr(FORMS)))
     return value
 
 

@@ -243,7 +243,7 @@ class _Writer:
         u, theme, size, small = self.unit, self.theme, self.font(12.5), self.font(11.0)
         middle, left = place.middle[1], place.left + 40.0 * u
         room = place.right - left - 6.0 * u
-        x, title = place.left + 21.0 * u, shortened(tr(tile.title), room, size, "semibold")
+        x, title = place.left + 21.0 * u, shortened(tile.title, room, size, "semibold")
         at = np.array([[x, middle]])
         return [
             *self._card(place, tile, 8.0 * u),
@@ -280,7 +280,7 @@ class _Writer:
     def _legend(self, tile: Tile, left: float, top: float, width: float) -> list[Mark]:
         """The title in at most two lines, and the caption if one is enough."""
         u, theme, size, small = self.unit, self.theme, self.font(12.5), self.font(11.0)
-        lines = at_most(wrapped(tr(tile.title), width, size, "semibold"), 2, width, size, "semibold")
+        lines = at_most(wrapped(tile.title, width, size, "semibold"), 2, width, size, "semibold")
         marks: list[Mark] = [
             Text(line, left, top + (13.0 + 15.5 * number) * u, size, theme.text, "semibold")
             for number, line in enumerate(lines)

@@ -230,7 +230,7 @@ def test_that_no_recovery_file_can_be_written_is_said_once(data: Path, monkeypat
         assert keeper._thread is not None
         keeper._thread.join(10.0)
         session.frame(0.0)
-        assert ("not kept against a crash" in session.notice and "No space left" in session.notice) is said
+        assert ("a crash would lose it" in session.notice and "No space left" in session.notice) is said
     keeper.close(session.documents)
 
 

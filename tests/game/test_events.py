@@ -102,7 +102,7 @@ def test_a_collapse_begins_when_the_rod_that_lets_go_yields() -> None:
     assert collapse.load_factor == pytest.approx(0.8686, abs=2e-3), (
         "that of plastic theory, and a little inertia"
     )
-    assert collapse.message == "The structure collapses: Rod BC yields and nothing else resists."
+    assert collapse.message == "The structure collapses: rod BC yields, and nothing else resists."
 
 
 def test_a_structure_is_held_by_what_its_rods_resist() -> None:
@@ -121,7 +121,7 @@ def test_a_structure_is_held_by_what_its_rods_resist() -> None:
 def test_it_is_said_for_a_few_seconds() -> None:
     session = watched("hyperstatic_yield", 5.2)
     assert kinds(session) == ["yield"]
-    assert session.view.status.notice == "Rod CD yields (0.4620 s, 92.4 % of the load)."
+    assert session.view.status.notice == "0.4620 s, 92.4 % of the load: Rod CD yields."
     session.press("space")
     for _ in range(round(60 * TOLD)):
         session.frame(1 / 60)
@@ -229,7 +229,7 @@ def test_impacts_are_told_first_one_by_one_then_counted() -> None:
     session.run(time=0.1)
     [event] = session.events
     assert (event.kind, event.elements) == ("impact", ("particle 1", "particle 2"))
-    assert event.message == "Particle 1 and particle 2 collide."
+    assert event.message == "Impact of particle 1 and particle 2."
     assert event.time == session.impacts.time[0]
     session.restart()
     assert session.events == ()

@@ -117,8 +117,8 @@ REFUSED: dict[str, tuple[Any, str, str]] = {
     "no object": ([1], "$", "must be an object"),
     "no format": ({"version": 1}, "$.format", '"format": "pinjoint model"'),
     "no version": ({"format": "pinjoint model"}, "$.version", "it is None"),
-    "newer": (BASE | {"version": 2}, "$.version", "up to 1; update Pinjoint"),
-    "version never was": (BASE | {"version": -1}, "$.version", "never was a version -1"),
+    "newer": (BASE | {"version": 2}, "$.version", "up to 1 only; update Pinjoint"),
+    "version never was": (BASE | {"version": -1}, "$.version", "there is no version -1"),
     "version is a flag": (BASE | {"version": True}, "$.version", "it is True"),
     "format": (BASE | {"format": np.array([1.0, 2.0])}, "$.format", "it is array([1., 2.])"),
     "walls as a section": (BASE | {"walls": []}, "$", 'here; write "components": {"walls.Wall": […]}.'),
@@ -195,12 +195,12 @@ REFUSED_ELEMENTS: dict[str, tuple[str, dict[Any, Any], str, str]] = {
     "load on a list": ("loads", {"on": ["A"]}, ".on", "it must be the name of a particle"),
     "history": ("loads", {"on": "A", "history": {"kind": []}}, ".history", "it must be like"),
     "foreign list": ("loads", {"on": "A", "components": []}, ".components", "must be an object, not a list"),
-    "foreign name": ("loads", {"on": "A", "components": {"x": {}}}, ".components", "'x' must be like"),
+    "foreign name": ("loads", {"on": "A", "components": {"x": {}}}, ".components", "'x' must have the form"),
     "foreign nan": (
         "loads",
         {"on": "A", "components": {"m.C": {"a": [math.inf]}}},
         ".components",
-        "inf cannot",
+        "cannot hold inf",
     ),
 }
 
@@ -299,11 +299,14 @@ def test_an_unreadable_file_is_explained(tmp_path: Path) -> None:
 
 HEAD = b'{"format": "pinjoint model", "version": 1, '
 MALFORMED = {
-    "empty": (b" \n", "is empty; save the model anew"),
+    "empty": (b" \n", "is empty; save the model again"),
     "UTF-16": ('{"format": "pinjoint model"}'.encode("utf-16"), "written in UTF-16; save it in UTF-8"),
     "cut off": (HEAD + b'"rods": [', "line 1 column"),
     "trailing comma": (HEAD + b'\n"rods": [],}', "line 2 column"),
-    "Latin-1": (HEAD + b'\n"title": "\xe9"}', "has a character in line 2 that is not UTF-8; save it in UTF-8"),
+    "Latin-1": (
+        HEAD + b'\n"title": "\xe9"}',
+        "line 2 has a character that is not UTF-8; save the file in UTF-8",
+    ),
     "nan": (HEAD + b'"environment": {"drag": NaN}}', "contains NaN; every number must be finite"),
     "infinity": (HEAD + b'"environment": {"drag": -Infinity}}', "contains -Infinity"),
     "out of range": (HEAD + b'"environment": {"drag": 1e999}}', "contains 1e999; every number must be finite"),
@@ -504,7 +507,9 @@ def test_a_failure_keeps_the_old_file(step: str, tmp_path: Path, monkeypatch: py
     path = tmp_path / "model.json"
     path.write_text("old", encoding="utf-8")
     monkeypatch.setattr(os, step, fail)
-    with pytest.raises(ModelError, match=r"model\.json was not saved: No space left on device\. What it held"):
+    with pytest.raises(
+        ModelError, match=r"model\.json was not saved: No space left on device\. The file is as it was"
+    ):
         models.save(models.parse(triangle()), path)
     assert path.read_text(encoding="utf-8") == "old"
     assert list(tmp_path.iterdir()) == [path]
@@ -537,7 +542,7 @@ HALF = "half \ud800"
 )
 def test_half_a_character_is_refused(document: dict[str, Any]) -> None:
     """It could not be saved, copied, kept against a crash, or shown."""
-    with pytest.raises(ModelError, match="kept in a"):
+    with pytest.raises(ModelError, match=r"cannot hold|cannot be kept in a"):
         models.parse(document)
 
 

@@ -103,12 +103,12 @@ def test_a_load_path_and_a_pointer_need_finite_numbers(session: Session) -> None
     [
         ("energy.heat = 1", "no 'heat' among the energies"),
         ("count.beams = 1", "no 'beams' among the tables"),
-        ("rods.axial_force = 0", "names no rod; write rods.NAME.axial_force"),
+        ("rods.axial_force = 0", "the name of the rod is missing; write rods.NAME.axial_force"),
         ("rods.AB.axial_force ≈ 1 ± x", "cannot be compared with '1 ± x'"),
         ("rods.AB.axial_force ≈ 1 ± -1", "at least 0"),
         ("rods.AB.axial_force ≈ 1 ± nan", "at least 0"),
-        ("rods.AB.axial_force == 1", "'==' is no relation; write one of =, ≈"),
-        ("rods.AB.axial_force != 1", "'!=' is no relation"),
+        ("rods.AB.axial_force == 1", "'==' does not compare anything; write one of =, ≈"),
+        ("rods.AB.axial_force != 1", "'!=' does not compare anything"),
     ],
 )
 def test_an_expectation_of_nothing_says_so(session: Session, text: str, words: str) -> None:
@@ -182,7 +182,7 @@ def test_what_no_script_can_mean_is_refused() -> None:
         session.settle("1")  # type: ignore[arg-type]
     with pytest.raises(ValueError, match="no 'simulated' among the comparisons; did you mean 'simulation'"):
         session.compare().worst("simulated")
-    with pytest.raises(ValueError, match="5 is no model; give a file"):
+    with pytest.raises(ValueError, match="5 is not a model; give a file"):
         Session.open(5)  # type: ignore[arg-type]
     with pytest.raises(ValueError, match="rod AB: ends x is 'A'; it must be the row of an element"):
         session.rods["AB"].between = ("A", "C")  # type: ignore[assignment]

@@ -117,7 +117,10 @@ def test_each_model_has_its_own() -> None:
 def test_what_has_none_says_so() -> None:
     session = session_of("collision_i")
     session.press("b")
-    assert session.notice == "There are no mechanisms or modes: no rod has an end that is free to move."
+    assert (
+        session.notice
+        == "There are no mechanisms and no modes, because no rod has an end that is free to move."
+    )
     assert shown(session) == ""
 
 
@@ -159,9 +162,9 @@ def test_of_a_large_structure_some_are_found_and_all_are_counted() -> None:
 @pytest.mark.parametrize(
     ("kind", "number", "said"),
     [
-        ("mechanism", 1, "There is no mechanism: every motion elongates a rod."),
-        ("mode", 4, "There is no mode 4; there are only 3 modes to draw, counted from 1."),
-        ("mode", 0, "There is no mode 0; there are only 3 modes to draw, counted from 1."),
+        ("mechanism", 1, "There is no mechanism: every motion stretches a rod."),
+        ("mode", 4, "There is no number 4 to draw; choose a number from 1 to 3."),
+        ("mode", 0, "There is no number 0 to draw; choose a number from 1 to 3."),
     ],
 )
 def test_a_number_that_does_not_exist_is_refused(kind: str, number: int, said: str) -> None:
@@ -177,4 +180,4 @@ def test_pictures_of_modes_and_mechanisms(tmp_path: Path, capsys: pytest.Capture
     assert main(["render", "pendulum", "--mechanism", "1", "--output", str(mechanism), *size]) == 0
     assert len({path.read_bytes() for path in (plain, mode, mechanism)}) == 3
     assert main(["render", "pendulum", "--mode", "2", "--output", str(plain)]) == 2
-    assert "there is only 1 mode to draw" in capsys.readouterr().err
+    assert "choose a number from 1 to 1" in capsys.readouterr().err

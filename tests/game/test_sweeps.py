@@ -277,7 +277,7 @@ def test_a_damaged_line_is_computed_anew(tmp_path: Path, computed: list[int], da
 def test_a_file_that_is_no_journal_is_left_alone(tmp_path: Path, foreign: bytes) -> None:
     journal = tmp_path / "results.csv.journal"
     journal.write_bytes(foreign)
-    with pytest.raises(SweepError, match="or it is something else"):
+    with pytest.raises(SweepError, match="or something else"):
         sweep(MODEL, [DRAWN], MEASURES, STATIC, samples=20, output=tmp_path / "results.csv")
     assert journal.read_bytes() == foreign
 
@@ -307,7 +307,7 @@ def test_what_is_kept_of_another_sweep_is_not_mixed_in_or_lost(tmp_path: Path, c
     interrupted(output)
     kept = (tmp_path / "results.csv.journal").read_bytes()
     arguments = {"source": MODEL, "vary": [DRAWN], "measure": MEASURES, "analysis": STATIC, "samples": 20}
-    with pytest.raises(SweepError, match="keeps an unfinished sweep of another model, variation, seed"):
+    with pytest.raises(SweepError, match="holds an unfinished sweep with another model, variation, seed"):
         sweep(**(arguments | change), output=output)
     assert (tmp_path / "results.csv.journal").read_bytes() == kept
 
@@ -354,24 +354,24 @@ def test_a_plot_is_a_picture_with_a_panel_per_measure(found: Results, tmp_path: 
 VARY = {
     "rods.CX.stiffness=1:2:3": "There is no 'CX' among the rods; choose one of AB, BC, CA.",
     "rods.CA.stifness=1:2:3": "there is no key 'stifness'; did you mean 'stiffness'?",
-    "rods.CA.axial_force=1:2:3": "'axial_force' is computed and cannot be set here",
+    "rods.CA.axial_force=1:2:3": "'axial_force' is computed and cannot be set",
     "rods.CA.stiffness": "it has no values; write PATH=START:STOP:COUNT",
-    "rods.CA.stiffness=": "'' is no value of stiffness",
-    "rods.CA.stiffness=1,x": "'x' is no value of stiffness",
+    "rods.CA.stiffness=": "'' is not a value of stiffness",
+    "rods.CA.stiffness=1,x": "'x' is not a value of stiffness",
     "rods.CA.stiffness=1:2": "a range has a start, a stop and a count",
     "rods.CA.stiffness=1:2:3:lin": "a range has a start, a stop and a count",
-    "rods.CA.stiffness=1:2:0": "'0' is no count; write a whole number from 1 on",
+    "rods.CA.stiffness=1:2:0": "'0' is not a count; write a whole number of at least 1",
     "rods.CA.stiffness=1:inf:3": "'inf' is not a finite number",
-    "rods.CA.stiffness=0:5:3:log": "equal ratios do not reach or cross 0",
-    "rods.CA.stiffness=1:2:200000000": "'200000000' is no count",
+    "rods.CA.stiffness=0:5:3:log": "a :log range cannot reach or cross 0",
+    "rods.CA.stiffness=1:2:200000000": "'200000000' is not a count",
     "particles.B.force=1,2": "vary one component, force.x or force.y",
-    "particles.B.force.z=1,2": "load has no part 'z'; write force.x or force.y",
-    "rods.CA.stiffness~normal(1)": "'normal(1)' is no distribution; write one of normal, lognormal, uniform",
-    "rods.CA.stiffness~weibull(1,2)": "'weibull(1,2)' is no distribution",
+    "particles.B.force.z=1,2": "load has no part 'z'; write one of force.x, force.y",
+    "rods.CA.stiffness~normal(1)": "'normal(1)' is not a distribution; write one of normal, lognormal, uniform",
+    "rods.CA.stiffness~weibull(1,2)": "'weibull(1,2)' is not a distribution",
     "rods.CA.stiffness~normal(1,-2)": "the deviation must be at least 0",
-    "rods.CA.stiffness~lognormal(-1,2)": "a lognormal mean above 0",
-    "rods.CA.stiffness~uniform(2,1)": "write uniform(LOWEST,HIGHEST), the lowest first",
-    "settings.plasticity~normal(1,2)": "plasticity is no number; list its values after =",
+    "rods.CA.stiffness~lognormal(-1,2)": "the mean of a lognormal above 0",
+    "rods.CA.stiffness~uniform(2,1)": "write uniform(LOWEST,HIGHEST), the lower value first",
+    "settings.plasticity~normal(1,2)": "plasticity is not a number; list its values after =",
 }
 
 
@@ -386,7 +386,7 @@ def test_variations_that_make_no_sense(text: str, reason: str) -> None:
 MEASURE = {
     "rods.CX.strain": "There is no 'CX' among the rods; choose one of AB, BC, CA.",
     "rods.CA.stiffness": "there is no key 'stiffness'; choose one of axial_force, length",
-    "rods.CA.strain.x": "strain has no part 'x'; write strain only",
+    "rods.CA.strain.x": "strain has no parts, such as 'x'; write strain.",
     "energy.heat": "there is no energy 'heat'; choose one of kinetic, elastic",
     "grids.1.spacing": "write it like rods.CD.axial_force",
     "nonsense": "write it like rods.CD.axial_force",
@@ -410,17 +410,17 @@ def test_all_of_none_cannot_be_varied(values: str) -> None:
 SWEEPS = {
     "Nothing is varied": {"vary": []},
     "Nothing is measured": {"measure": []},
-    "give it a list of values, at least one": {"vary": {STIFFNESS: []}},
+    "give it a list of at least one value": {"vary": {STIFFNESS: []}},
     "rods.CA.stiffness is varied twice": {"vary": [f"{STIFFNESS}=1,2", f"{STIFFNESS}=3:4:2"]},
-    "would undo that of rods.CA.stiffness": {"vary": [f"{STIFFNESS}=1,2", "rods.*.stiffness=3,4"]},
-    "would undo that of particles.B.force.y": {"vary": [FORCE_Y, "particles.*.force.y=1"]},
-    "needs the number of samples": {"vary": [DRAWN]},
-    "--samples goes with a distribution": {"samples": 5},
+    "would overwrite rods.CA.stiffness": {"vary": [f"{STIFFNESS}=1,2", "rods.*.stiffness=3,4"]},
+    "would overwrite particles.B.force.y": {"vary": [FORCE_Y, "particles.*.force.y=1"]},
+    "needs a number of samples": {"vary": [DRAWN]},
+    "--samples works only with a distribution": {"samples": 5},
     "--samples 0: draw at least 1": {"vary": [DRAWN], "samples": 0},
     "--seed -1": {"seed": -1},
     "These are 100000000 variants": {"vary": [f"rods.{rod}.stiffness=1:2:10000" for rod in ("AB", "BC")]},
-    "0 workers cannot compute": {"workers": 0},
-    "results.txt: write a file that ends with .csv or .parquet": {"output": "results.txt"},
+    "--workers 0: use at least 1": {"workers": 0},
+    "results.txt: choose a file that ends with one of .csv, .parquet": {"output": "results.txt"},
     "its folder is missing": {"output": "no/such/folder/results.csv"},
 }
 
@@ -437,7 +437,7 @@ def test_an_installation_that_differs_does_not_compute() -> None:
     from dataclasses import replace
 
     plan = plan_of(MODEL, [FORCE_Y], MEASURES, STATIC, (), None, 0)
-    with pytest.raises(SweepError, match=r"the sweep is of 9\.9"):
+    with pytest.raises(SweepError, match=r"the sweep needs 9\.9"):
         list(compute_all(replace(plan, software=replace(plan.software, version="9.9")), [0], 1, None))
 
 

@@ -121,13 +121,13 @@ HOSTILE: dict[str, Hostile] = {
     # --- what never runs, or takes what others need ----------------------------------------------------------
     "a plugin that yields": Hostile(
         plugin("app.layer(draw); yield", "def draw(sheet):\n    return []\n"),
-        "what plugin(app) returned is a generator, of which",
+        "what plugin(app) returned is a generator, whose code",
         (LOAD,),
     ),
     "a plugin that waits": Hostile(
-        f"{HEAD}\nasync def plugin(app):\n    pass\n", "nothing has run; write it without 'async'", (LOAD,)
+        f"{HEAD}\nasync def plugin(app):\n    pass\n", "has not run; write it without 'async'", (LOAD,)
     ),
-    "a frame that yields": Hostile(system("yield"), "nothing has run; write it without 'yield'", ANYWHERE),
+    "a frame that yields": Hostile(system("yield"), "has not run; write it without 'yield'", ANYWHERE),
     "a frame that waits": Hostile(
         system("pass").replace("def process", "async def process"), "write it without 'async'", ANYWHERE
     ),
@@ -142,7 +142,7 @@ HOSTILE: dict[str, Hostile] = {
     ),
     # --- what marks are ------------------------------------------------------------------------------------
     "a colour without opacity": Hostile(
-        layer("[Text('hi', 9, 9, 12, (255, 0, 0))]"), "Text.colour is (255, 0, 0); it must be 4 entries"
+        layer("[Text('hi', 9, 9, 12, (255, 0, 0))]"), "Text.colour is (255, 0, 0); it must have 4 entries"
     ),
     "a colour out of range": Hostile(layer("[Panel(9, 9, 9, 9, 1, (256, 0, 0, 9))]"), "go from 0 to 255"),
     "a colour by name": Hostile(layer("[Text('hi', 9, 9, 12, 'red')]"), "Text.colour is 'red'"),
@@ -213,10 +213,10 @@ HOSTILE: dict[str, Hostile] = {
     "a number as a text": Hostile(
         panel("Readout('bad', (('speed', 1.5),))"), "Readout.rows is 1.5; it must be a text"
     ),
-    "rows of one": Hostile(panel("Readout('bad', (('speed',),))"), "it must be 2 entries"),
+    "rows of one": Hostile(panel("Readout('bad', (('speed',),))"), "it must have 2 entries"),
     "a text that ends the program when it is written": Hostile(panel("Readout(5)"), "Readout.title is 5"),
     "a button for nothing": Hostile(
-        panel("Readout('bad', closes='nothing')"), "closes by 'nothing'; there is no such action"
+        panel("Readout('bad', closes='nothing')"), "names 'nothing' to close it; there is no such action"
     ),
     "a text as several panels": Hostile(panel("'bad'"), "it must be one of Readout"),
     "curves of unequal lengths": Hostile(
@@ -337,7 +337,7 @@ HOSTILE: dict[str, Hostile] = {
     ),
     "a history that breaks at texts": Hostile(
         history("{}, factor, 1.0, lambda history: 0.0, breaks=lambda history: 'ab'"),
-        "several, as a list",
+        "a list or a tuple",
         (RUN,),
     ),
     # --- what is registered ------------------------------------------------------------------------------------

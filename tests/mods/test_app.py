@@ -214,7 +214,7 @@ def test_what_a_shape_says_is_collided_with_and_what_fails_switches_the_mod_off(
     ("shape", "said"),
     [
         ("raise KeyError('gone')", "the shape of gates failed: KeyError"),
-        ("return 3", "the shape of gates failed: TypeError: as_pieces returned 3, not Pieces"),
+        ("return 3", "the shape of gates failed: TypeError: as_pieces returned 3; it must return Pieces"),
         ("return Pieces(np.zeros((1, 2, 3)), np.zeros(1, dtype=int))", "`ends` has the shape"),
         ("return Pieces(np.full((1, 2, 2), np.nan), np.zeros(1, dtype=int))", "not finite"),
         ("return Pieces(np.zeros((1, 2, 2)), np.array([7]))", "row 7"),

@@ -101,7 +101,7 @@ def test_an_equilibrium_without_the_laws_of_mods_is_not_called_one(
     found = json.loads(capsys.readouterr().out)
     assert found["status"] == "equilibrium without mods"
     assert found["left_out"] == ["stiffening.cubic"]
-    assert found["message"].endswith("Settling leaves out the laws of mods: stiffening.cubic.")
+    assert found["message"].endswith("The equilibrium leaves out the laws of mods: stiffening.cubic.")
     assert main([*words, "--set", "rods.*.stiffening_cubic=0"]) == 0
     found = json.loads(capsys.readouterr().out)
     assert (found["status"], found["left_out"]) == ("equilibrium", [])
@@ -148,8 +148,8 @@ def test_mods_of_a_person_that_end_the_program_do_not_end_it(
     (tmp_path / "mods").rename(tmp_path / "data" / "mods")
     done = pinjoint("run", truss, "--static")
     assert done.returncode == 0
-    assert "the mod 'apple' was left out: KeyboardInterrupt (apple/__init__.py, line 1)." in done.stderr
-    assert "the mod 'pear' was left out: SystemExit (pear/__init__.py, line 2)." in done.stderr
+    assert "The mod 'apple' was left out: KeyboardInterrupt (apple/__init__.py, line 1)." in done.stderr
+    assert "The mod 'pear' was left out: SystemExit (pear/__init__.py, line 2)." in done.stderr
 
 
 # --- modules and threads ---------------------------------------------------------------------------------------

@@ -52,7 +52,7 @@ def test_the_guide_works_at_the_first_try(
             assert language == "text"
     output = capsys.readouterr()
     assert output.err == ""
-    assert "breeze 0.1: all is well" in output.out
+    assert "breeze 0.1: no problems" in output.out
     assert not mods.FAULTS
 
 

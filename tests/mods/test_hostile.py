@@ -95,5 +95,5 @@ def test_in_a_run_of_its_own(hostile: Hostile, bad: Any) -> None:
 def test_a_check_finds_it(hostile: Hostile, bad: Any, capsys: pytest.CaptureFixture[str]) -> None:
     assert main(["mods", "check", str(bad(hostile))]) == 1
     out = capsys.readouterr().out
-    assert "bad 1.0: WRONG" in out
+    assert "bad 1.0: PROBLEMS" in out
     assert hostile.said in out

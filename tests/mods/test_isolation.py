@@ -333,7 +333,7 @@ def plugin(app):
             "stable_step = staticmethod(lambda w, d: 1 / 0)",
             "the stable step of the integrator 'apple.mine' failed",
         ),
-        ("stable_step = staticmethod(lambda w, d: float('nan'))", "return a step of at least 0"),
+        ("stable_step = staticmethod(lambda w, d: float('nan'))", "return a number of at least 0"),
     ],
 )
 def test_without_an_integrator_that_fails_another_takes_the_steps(session: Any, line: str, said: str) -> None:

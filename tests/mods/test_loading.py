@@ -48,7 +48,7 @@ def test_a_mod_is_loaded_after_those_it_requires_else_by_name(tmp_path: Path, wr
 
 def test_a_missing_requirement_is_named(tmp_path: Path, write_mod: Write) -> None:
     write_mod("apple", manifest='requires = ["pear"]')
-    assert "'pear', which is not there" in load(tmp_path)["apple"].problem
+    assert "'pear', which is not installed" in load(tmp_path)["apple"].problem
 
 
 @pytest.mark.parametrize("requirement", ["pinjoint>=99", "pear>=2,<3"])
@@ -110,7 +110,7 @@ def test_what_requires_a_mod_that_fails_is_left_out(tmp_path: Path, write_mod: W
         ("def plugin(app): app.component(3)", "apple/__init__.py, line 1"),
         ("def plugin(app): app.action('toggle')(print)", "'apple.toggle'"),
         ("def plugin(app): app.command('run', print)", "command 'run' already"),
-        ("def plugin(app): app.models('nowhere')", "nowhere is not there"),
+        ("def plugin(app): app.models('nowhere')", "no folder of models nowhere"),
         (
             "from game.editor.scenes import Scene\nclass P(Scene):\n    name = 'pause'\n"
             "def plugin(app): app.scene(P)",
@@ -166,7 +166,7 @@ def test_a_version_is_needed(tmp_path: Path, write_mod: Write, version: str) -> 
 @pytest.mark.parametrize("name", ["my mod", "class", "a__b"])
 def test_a_name_that_python_cannot_use_is_refused(tmp_path: Path, write_mod: Write, name: str) -> None:
     write_mod(name)
-    assert "must be like a Python name" in load(tmp_path)[name].problem
+    assert "must be a Python name" in load(tmp_path)[name].problem
 
 
 def test_a_mod_cannot_take_the_name_of_a_python_module(tmp_path: Path, write_mod: Write) -> None:
@@ -223,8 +223,8 @@ def test_a_key_that_is_taken_stays_and_that_is_reported(tmp_path: Path, write_mo
     found = load(tmp_path)
     assert action_for("pause", "s") == "save"
     assert action_for("pause", FREE) == "pear.a"
-    assert "does 'save' already in pause" in found["apple"].notes[0]
-    assert "does 'pear.a' already" in found["plum"].notes[0]
+    assert "already does 'save' in pause" in found["apple"].notes[0]
+    assert "already does 'pear.a'" in found["plum"].notes[0]
     assert not any(mod.off for mod in found.values())
 
 
@@ -339,7 +339,7 @@ RIGHT = {
 @pytest.mark.parametrize(
     ("change", "said"),
     [
-        ({}, "apple 1.0: all is well"),
+        ({}, "apple 1.0: no problems"),
         ({"parameter": "particles_positon"}, "has a parameter 'particles_positon', but there is no column"),
         ({"parameter": "particles_mass"}, "does not declare that it reads 'particles.mass'"),
         ({"result": "0.0"}, "it must return a pair, the force (fx, fy) in kN"),
@@ -404,4 +404,4 @@ def test_installed_packages_bring_mods(
 def test_a_name_that_python_reads_as_another_one_is_refused(write_mod: Write) -> None:
     """The micro sign: attributes and parameters of that name have the Greek letter."""
     (found,) = mods.load([write_mod("\N{MICRO SIGN}m")])
-    assert "must be like a Python name" in found.problem
+    assert "must be a Python name" in found.problem

@@ -29,8 +29,8 @@ BOX = (0.0, 0.0, 300.0, 150.0)
     [
         ("rods.XY.axial_force", "There is no 'XY' among the rods"),
         ("rods.AB.colour", "there is no key 'colour'; choose one of .*axial_force"),
-        ("particles.B.displacement", "write displacement.x or displacement.y"),
-        ("rods.AB.strain.x", "write strain only"),
+        ("particles.B.displacement", "write one of displacement.x, displacement.y"),
+        ("rods.AB.strain.x", "write strain."),
         ("energy.heat", "there is no energy 'heat'; choose one of kinetic"),
         ("speed", "There is no quantity 'speed'; write it like"),
     ],

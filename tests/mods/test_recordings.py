@@ -58,7 +58,7 @@ def test_a_recording_with_a_mod_is_not_played_without_it(
     mods.unload(mods.MODS[-1:])
     assert main(["play", str(file)]) == 2
     output = capsys.readouterr()
-    assert "was recorded with the mod breeze 1.0, which is not loaded; name its folder: --mods" in output.err
+    assert "was recorded with mods that are not loaded: breeze 1.0. Name their folder: --mods" in output.err
     assert output.out == ""
     assert main(["play", str(file), "--mods", str(folder)]) == 0
 
@@ -71,9 +71,12 @@ def test_other_mods_than_recorded_are_told(
     file = recorded(tmp_path / "recorded.jsonl")
     mods.MODS[-1].version = "1.1"
     assert main(["play", str(file)]) == 0
-    assert "there is now breeze 1.1 instead of 1.0: it may play otherwise." in capsys.readouterr().err
+    assert (
+        "was recorded without the mods breeze 1.1 that are loaded now, so it may run differently."
+        in capsys.readouterr().err
+    )
     assert session_of(Script(without)).notice.endswith(
-        "there is now breeze 1.1 besides: it may play otherwise."
+        "was recorded without the mods breeze 1.1 that are loaded now, so it may run differently."
     )
 
 

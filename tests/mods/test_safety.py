@@ -57,4 +57,4 @@ def test_settling_says_which_laws_it_does_not_know(unloaded: None) -> None:
     assert "leaves out" not in session.notice
     session.rods[0].stiffening_cubic = 1.0  # type: ignore[attr-defined]
     assert session.settle() == "equilibrium without mods"
-    assert session.notice.endswith("Settling leaves out the laws of mods: stiffening.cubic.")
+    assert session.notice.endswith("The equilibrium leaves out the laws of mods: stiffening.cubic.")

@@ -124,9 +124,9 @@ def test_an_upgrade_that_fails_is_told_and_loses_nothing(charge: Any) -> None:
 @pytest.mark.parametrize(
     ("stated", "said"),
     [
-        (["charge"], "must be an object like"),
-        ({"charge": 1}, "charge is 1; it must be like"),
-        ({"charge": "x"}, "be like"),
+        (["charge"], "must be an object such as"),
+        ({"charge": 1}, "charge is 1; write it like"),
+        ({"charge": "x"}, "write it like"),
     ],
 )
 def test_versions_that_are_none_are_refused(stated: Any, said: str) -> None:

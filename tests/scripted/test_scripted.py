@@ -57,7 +57,7 @@ def test_an_expectation_that_fails_says_what_where_expected_and_got(
     assert main(["play", str(path)]) == 1
     said = capsys.readouterr()
     assert "line 3: expected rods.AB.axial_force ≈ -29 ± 0.1, got -28.34" in said.err
-    assert "1 expectation failed" in said.out
+    assert "one expectation failed" in said.out
 
 
 def test_a_session_expects_the_same_in_python() -> None:
@@ -82,7 +82,7 @@ def test_a_part_of_a_text_is_expected_too(tmp_path: Path, monkeypatch: pytest.Mo
     session.expect("message ≈ File not found")
     with pytest.raises(AssertionError, match="File not found: there is"):
         session.expect("message = File not found")
-    with pytest.raises(ValueError, match="neither more nor less"):
+    with pytest.raises(ValueError, match="which is not a number"):
         session.expect("message < a")
 
 
@@ -108,14 +108,14 @@ def test_settling_tells_what_yielded() -> None:
     session.press("e")
     session.rods["CD"].compressive_strength = 80.0
     session.press("e")
-    session.expect("message ≈ Rod CD has yielded at once")
+    session.expect("message ≈ rod CD yielded")
 
 
 @pytest.mark.parametrize(
     ("further", "words"),
     [
         ('"modle": "isostatic"', "line 1: there is no 'modle'"),
-        ('"model": null', "line 1: model is null; write a name"),
+        ('"model": null', "line 1: model is null; write the name"),
     ],
 )
 def test_wrong_headers_are_explained(tmp_path: Path, further: str, words: str) -> None:
@@ -129,13 +129,13 @@ def test_wrong_headers_are_explained(tmp_path: Path, further: str, words: str) -
     ("line", "words"),
     [
         ('{"pres": "k"}', r"line 2: there is no 'pres'"),
-        ('{"press": "k", "run": 1}', "line 2: a line does one thing"),
-        ('{"expect": "rods.AB"}', "is no expectation"),
+        ('{"press": "k", "run": 1}', "line 2: a line can do one thing"),
+        ('{"expect": "rods.AB"}', "is not an expectation"),
         ('{"expect": "rods.AX.strain = 0"}', "choose one of AB, BC, CA"),
         ('{"expect": "rods.*.strain = 0"}', "it names every rod; write a name"),
         ('{"expect": "settings.restition = 1"}', "did you mean 'restitution'"),
         ('{"expect": "speed = 1"}', "There is no 'speed' among the quantities"),
-        ('{"expect": "particles.B.position = 1"}', "ask for .x or .y"),
+        ('{"expect": "particles.B.position = 1"}', "add .x or .y"),
         ('{"expect": "rods.AB.axial_force = high"}', "cannot be compared with 'high'; write a number"),
         ('{"press": 5}', 'line 2: press is 5; write it like {"press": "space"}'),
         ('{"set": 5}', "line 2: set is 5; write it like"),

@@ -138,5 +138,5 @@ def test_paths_name_ends() -> None:
     apply_override(model, "rods.AB.hinged.end=true")
     assert model.rods["AB"].hinged == (False, True)
     assert locate_one(model, "rods.AB.bending_moment.start").axis == "start"
-    with pytest.raises(PathError, match=r"write hinged\.start or hinged\.end"):
+    with pytest.raises(PathError, match=r"write one of hinged\.start, hinged\.end"):
         apply_override(model, "rods.AB.hinged.x=true")

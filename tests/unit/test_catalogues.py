@@ -75,14 +75,14 @@ def test_translations_fill_in_the_same_values(domain, language):
         if isinstance(message.id, tuple):
             for source, said in zip(message.id, message.string, strict=True):
                 assert fields(said) - {("count", "", "")} == fields(source) - {("count", "", "")}
-        elif placeholders(message.id):
+        elif can_be_filled(message.id):
             assert fields(message.string) == fields(message.id)
 
 
-def placeholders(text: str) -> bool:
-    """True of a text that `format` fills in; others may contain braces, such as examples of JSON."""
+def can_be_filled(text: str) -> bool:
+    """False for examples with single braces."""
     try:
-        return bool(fields(text)) and all(name.isidentifier() for name, _, _ in fields(text))
+        return bool(fields(text))
     except ValueError:
         return False
 

@@ -14,6 +14,7 @@ from hypothesis import strategies as st
 import game  # noqa: F401 (its mods register further histories)
 from components.field import Field, FieldError, Role, same
 from components.handle import Handle
+from components.language import english, spoken
 from components.load import Load
 from components.model import KINDS, Model
 from components.particle import Particle
@@ -363,6 +364,15 @@ def test_an_override_is_checked_and_a_computed_field_cannot_be_set() -> None:
     with pytest.raises(FieldError, match=r"^rod AB: axial force is computed and cannot be set\.$"):
         model.rods["AB"].axial_force = 1.0
     assert model.particles["A"].prescribed_mass is None
+
+
+def test_scripts_read_a_refusal_in_english_whatever_the_language() -> None:
+    field: Field[float] = Field("kN", doc="How hard.", minimum=0.5)
+    field.__set_name__(object, "push")
+    with spoken("pt"), pytest.raises(FieldError) as refusal:
+        field.check(-0.25, "rod AB")
+    assert english(refusal.value) == "rod AB: push is -0.25 kN; it must be at least 0.5 kN."
+    assert "-0,25 kN" in str(refusal.value)
 
 
 def test_a_misspelt_attribute_is_refused() -> None:

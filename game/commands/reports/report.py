@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from components.language import joined
+from components.language import joined, marked, tr
 from components.mistake import Mistake
 from components.model import Model
 from components.rod import bends
@@ -32,9 +32,13 @@ from systems.statics.events import Event, event_record
 if TYPE_CHECKING:  # it imports scipy
     from systems.statics.state import StaticState
 
-INTERRUPTED = "interrupted"  # the status of a run that Ctrl+C ended
-MOD_FAILED = "mod failed"
-FOUND = ("equilibrium", "at rest", "time reached")  # statuses of a run that found what was asked for
+INTERRUPTED = marked("interrupted")  # the status of a run that Ctrl+C ended
+MOD_FAILED = marked("mod failed")
+FOUND = (  # statuses of a run that found what was asked for
+    marked("equilibrium"),
+    marked("at rest"),
+    marked("time reached"),
+)
 
 
 class AnalysisError(Mistake, ValueError):
@@ -101,8 +105,10 @@ def _interrupted(simulation: Simulation, name: str, states: list[State]) -> Run:
     if not states or simulation.model.clock.time > states[-1]["time"]:
         states = [*states, _state(simulation)]
     found = _run(simulation, name, INTERRUPTED, states)
-    reached = f"Interrupted at t = {found['time']:.9g} s, after {found['steps']} steps."
-    return {**found, "message": f"{reached} {found['message']}".rstrip(), "error_estimate": None}
+    reached = tr(
+        "Interrupted at t = {time:.9g} s, after {steps} steps.", time=found["time"], steps=found["steps"]
+    )
+    return {**found, "message": joined([reached, found["message"]]), "error_estimate": None}
 
 
 def _failed(simulation: Simulation, name: str, error: ModError) -> Run:
@@ -116,17 +122,18 @@ def _uncontrolled(simulation: Simulation) -> str:
     automatic = model.settings.integrator == AUTOMATIC and model.settings.time_step is None
     if not automatic or model.rods.count <= AFFORDABLE or simulation.integrator.exact:
         return ""
-    return (
-        f"With more than {AFFORDABLE} rods steps are as long as is stable, and how exact the run is was not measured:"
-        " --measure-error does so, the integrator dop853 controls the error."
+    return tr(
+        "With more than {count} rods, the time steps are the longest stable ones, and the error of the run was not"
+        " measured. Use --measure-error to measure it, or --integrator dop853 to keep it small.",
+        count=AFFORDABLE,
     )
 
 
 def run_until_rest(simulation: Simulation, name: str, limit: float) -> Run:
     """Run until at rest, at most `limit` s of simulated time."""
     simulation.run_until_rest(simulation.model.clock.time + limit)
-    ended = {StopReason.REST: "at rest", StopReason.DIVERGED: "diverged"}
-    status = ended.get(simulation.reason, "limit reached")
+    ended = {StopReason.REST: marked("at rest"), StopReason.DIVERGED: marked("diverged")}
+    status = ended.get(simulation.reason, marked("limit reached"))
     return _run(simulation, name, status, [_state(simulation)])
 
 
@@ -137,7 +144,11 @@ def run_at(simulation: Simulation, name: str, times: Sequence[float], states: li
     """
     if times[0] < (present := simulation.model.clock.time):
         raise AnalysisError(
-            f"The model is at t = {present:.9g} s already, after {times[0]:.9g} s; ask for later times."
+            tr(
+                "The model is at t = {present:.9g} s already, after {asked:.9g} s; ask for later times.",
+                present=present,
+                asked=times[0],
+            )
         )
     for target in times:
         simulation.run_to(target)

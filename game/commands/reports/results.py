@@ -9,6 +9,7 @@ import numpy as np
 
 from components.field import Column, Field
 from components.handle import Handle
+from components.language import marked, tr
 from components.model import Model
 from components.particle import Particle
 from components.rod import Rod, bends
@@ -37,12 +38,28 @@ _OF_BENDING: Mapping[str, tuple[Field[Any], ...]] = {
 }
 _KINDS: Mapping[str, type[Handle]] = {"particles": Particle, "rods": Rod}
 _ERRORS = {
-    "relative": "displacements",
-    "relative_velocity": "velocities",
-    "relative_axial_force": "axial forces",
-    "relative_rotation": "rotations",
-    "relative_bending_moment": "bending moments",
+    "relative": marked("displacements"),
+    "relative_velocity": marked("velocities"),
+    "relative_axial_force": marked("axial forces"),
+    "relative_rotation": marked("rotations"),
+    "relative_bending_moment": marked("bending moments"),
 }
+_ENERGIES = {
+    "kinetic": marked("kinetic"),
+    "elastic": marked("elastic"),
+    "dissipated_damping": marked("dissipated by damping"),
+    "dissipated_plastic": marked("dissipated by yielding"),
+    "dissipated_impact": marked("dissipated by impacts"),
+    "work": marked("work of loads"),
+    "imbalance": marked("imbalance"),
+}
+STATUSES = (  # that runs end with, beside those of report.py
+    marked("mechanism"),
+    marked("collapse"),
+    marked("neutral equilibrium"),
+    marked("unstable equilibrium"),
+    marked("equilibrium without mods"),
+)
 _IN_TABLES = {Particle.displacement.name: ("mm", 1000.0)}  # else units as in files
 
 
@@ -92,7 +109,14 @@ def _elements(model: Model, name: str, given: Mapping[str, Column]) -> dict[str,
         absent = np.isnan(column) if field.nullable else False
         for row in np.argwhere(~(np.isfinite(column) | absent))[:1, 0].tolist():
             element, value = model.describe(table[row]), field.loaded(column, row)
-            raise ResultError(f"{element}: {field.title} is {value}, not finite; report a state before it.")
+            raise ResultError(
+                tr(
+                    "{element}: {field} is {value}, not a finite number; report an earlier state.",
+                    element=element,
+                    field=field.title,
+                    value=str(value),
+                )
+            )
         values = column.tolist()
         columns.append([None if v != v else v for v in values] if field.nullable else values)
     keys = [field.name for field in reported(model, name)]
@@ -134,20 +158,26 @@ def _quantities(made: State) -> Iterator[tuple[Any, ...]]:
 
 def run_lines(run: Run) -> Iterator[str]:
     """A run as aligned tables to read: displacements in mm, all else in the units of files."""
-    yield f"{run['model']}: {run['status']}"
+    yield f"{run['model']}: {tr(run['status'])}"
     if run["message"]:
         yield run["message"]
     if run["integrator"] is None:
-        yield "static equilibrium, exact geometry"
+        yield tr("static equilibrium with large displacements")
     else:
-        step = f" of {as_written(run['time_step'])} s" if run["time_step"] else ""
-        taken = f"time {as_written(run['time'])} s, {run['steps']} steps{step}"
-        yield f"{taken}, integrator {run['integrator']}"
+        how = {name: as_written(run[name]) for name in ("time", "steps", "time_step", "integrator")}
+        if run["time_step"]:
+            yield tr("time {time} s, {steps} steps of {time_step} s, integrator {integrator}", **how)
+        else:
+            yield tr("time {time} s, {steps} steps, integrator {integrator}", **how)
     if error := run.get("error_estimate"):
-        known = {title: as_written(error[key]) for key, title in _ERRORS.items() if key in error}
-        yield f"error of {', '.join(known)}, measured by finer steps:"
-        yield f"{', '.join(known.values())} of the largest"
-    yield f"computed in {as_written(run['wall_seconds'])} s, compiled in {as_written(run['compile_seconds'])} s"
+        known = {tr(title): as_written(error[key]) for key, title in _ERRORS.items() if key in error}
+        yield tr("errors as shares of the largest value, measured by a run with finer steps:")
+        yield ", ".join(f"{title} {value}" for title, value in known.items())
+    yield tr(
+        "computed in {computing} s, compiled in {compiling} s",
+        computing=as_written(run["wall_seconds"]),
+        compiling=as_written(run["compile_seconds"]),
+    )
     for made in run["states"]:
         yield ""
         yield from _state_lines(made)
@@ -155,17 +185,23 @@ def run_lines(run: Run) -> Iterator[str]:
 
 def _state_lines(made: State) -> Iterator[str]:
     factor = made["load_factor"]
-    yield f"At time {as_written(made['time'])} s" if factor is None else f"At load factor {as_written(factor)}"
+    if factor is None:
+        yield tr("At time {time} s", time=as_written(made["time"]))
+    else:
+        yield tr("At load factor {factor}", factor=as_written(factor))
     for group in _KINDS:
         if made[group]:
             yield ""
             yield from aligned(_element_rows(group, made[group]))
     yield ""
-    energies = [[name.replace("_", " "), as_written(value)] for name, value in made["energy"].items()]
-    yield from aligned([["energy", "J"], *energies])
+    energies = [[tr(_ENERGIES[name]), as_written(value)] for name, value in made["energy"].items()]
+    yield from aligned([[tr("energy"), "J"], *energies])
     yield ""
-    residual = [] if made["residual"] is None else [f"residual {as_written(made['residual'])}"]
-    yield ", ".join([*residual, f"collisions {made['collisions']}"])
+    counts = {"residual": as_written(made["residual"]), "collisions": made["collisions"]}
+    if made["residual"] is None:
+        yield tr("impacts: {collisions}", **counts)
+    else:
+        yield tr("unbalanced forces: {residual} of the largest force; impacts: {collisions}", **counts)
 
 
 def _element_rows(group: str, elements: Mapping[str, Mapping[str, Any]]) -> list[list[str]]:
@@ -180,8 +216,10 @@ def _element_rows(group: str, elements: Mapping[str, Mapping[str, Any]]) -> list
         for field in map(fields.__getitem__, next(iter(elements.values())))
         for axis in (range(2) if field.shape else (None,))
     ]
-    titles = [field.title + ("" if axis is None else " " + field.axes[axis]) for field, axis, _, _ in columns]
-    rows = [[_KINDS[group].noun, *titles], ["", *(unit for _, _, unit, _ in columns)]]
+    titles = [
+        tr(field.title) + ("" if axis is None else f" {tr(field.axes[axis])}") for field, axis, _, _ in columns
+    ]
+    rows = [[tr(_KINDS[group].noun), *titles], ["", *(unit for _, _, unit, _ in columns)]]
     for name, values in elements.items():
         cells = [name]
         for field, axis, _, factor in columns:

@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 
 from components.field import ENDS
+from components.language import decimals, joined, marked, plural, tr
 from components.model import Model
 from components.rod import Rod
 from game.commands import output
@@ -43,12 +44,26 @@ from systems.statics.verify import (
 )
 from systems.statics.vibration import vibrations
 
-VERIFIED, DIFFERS = "verified", "differs from static theory"
-THEORY_ONLY, NOT_VERIFIED = "theory only", "not verified"
+VERIFIED, DIFFERS = marked("verified"), marked("differs from static theory")
+THEORY_ONLY, NOT_VERIFIED = marked("theory only"), marked("not verified")
 DEGREES = ("static", "internal", "external", "mechanisms")
 SHOWN = 6  # mechanisms and frequencies in a table
 NOTHING = 1e-12  # of the largest value beside it: round-off
 _IN_TABLES = {"m": ("mm", 1000.0)}  # else units as in files
+_TITLES = {
+    "axial_force": marked("axial force"),
+    "displacement": marked("displacement"),
+    "reaction": marked("reaction"),
+    "rotation": marked("rotation"),
+    "reaction_moment": marked("reaction moment"),
+    "shear": marked("shear force"),
+    "bending_moment": marked("bending moment"),
+    "simulation": marked("simulation"),
+    "linear": marked("linear theory"),
+    "exact": marked("exact theory"),
+    "simulation_error": marked("error of simulation"),
+    "linear_error": marked("error of linear theory"),
+}
 
 _AXES = ("x", "y", "rotation")
 _VALUES = ("simulation", "linear", "exact", "simulation_error", "linear_error")
@@ -93,7 +108,7 @@ def verify(session: Session, name: str, limit: float, *, simulate: bool = True) 
 def _left_out(session: Session) -> Iterator[str]:
     """A sentence about the laws of mods that act in the simulation and not in theory, if there are some."""
     if laws := session.schedule.left_out_of_statics(session.model):
-        yield f"Theory leaves out the laws of mods: {', '.join(laws)}."
+        yield tr("Theory leaves out the laws of mods: {laws}.", laws=", ".join(laws))
 
 
 def _by_element(comparison: Comparison | None) -> dict[str, dict[str, Any]]:
@@ -161,21 +176,29 @@ def _self_stress(model: Model) -> Found:
 def _messages(found: Found) -> Iterator[str]:
     """Sentences about the answers: departures from statics, missing answers, remarks."""
     if not found["rods"]:
-        yield "There are no rods, so statics has nothing to compare. Use: pinjoint run MODEL"
+        yield tr("The model has no rods, so there is nothing to compare. Use: pinjoint run MODEL")
         return
     departures = [remark["message"] for remark in found["remarks"] if remark["kind"] in DEPARTURES]
     yield from departures
     worst = found["worst"]["simulation"]
     if found["status"] == NOT_VERIFIED and worst is not None:
-        yield (
-            f"At rest elsewhere than in the exact equilibrium, by {worst['simulation_error']:.1e} in the"
-            f" {Row(**worst).title}. Statics lets lack of fit and moved supports grow slowly, and then all loads"
-            " together; what yields or snaps where they act at once, under loads that come one after another, or in"
-            " a model that starts in motion, may differ."
+        yield tr(
+            "The simulation came to rest in another state than the exact equilibrium: the {quantity} differs by"
+            " {error:.1e}. Statics applies lack of fit and moved supports first, and then all loads together, slowly."
+            " Where rods yield or the structure snaps through, the end may differ if loads act suddenly or one after"
+            " another, or if the model starts in motion.",
+            quantity=Row(**worst).title,
+            error=worst["simulation_error"],
         )
     for way in ("simulation", "linear", "exact"):
         if found[way] is not None and found[way]["message"] and found[way]["status"] != "at rest":
-            yield f"{way.capitalize()}: {found[way]['message']}"
+            message = found[way]["message"]
+            if way == "simulation":
+                yield tr("Simulation: {message}", message=message)
+            elif way == "linear":
+                yield tr("Linear theory: {message}", message=message)
+            else:
+                yield tr("Exact theory: {message}", message=message)
     for remark in found["remarks"]:
         if remark["kind"] not in DEPARTURES and remark["message"] not in found["exact"]["message"]:
             yield remark["message"]
@@ -193,8 +216,13 @@ def influence(model: Model, names: Sequence[str]) -> Found:
     """
     if indeterminacy(model).mechanisms:
         moving = describe_motion(model, mechanisms(model))
-        message = f"A mechanism has no influence lines: {moving} can move. Add rods or supports there."
-        raise NoEquilibrium("mechanism", message)
+        raise NoEquilibrium(
+            "mechanism",
+            tr(
+                "A mechanism has no influence lines: {moving} can move. Add rods or supports there.",
+                moving=moving,
+            ),
+        )
     return {"influence": {name: _influence(model, name) for name in names}}
 
 
@@ -206,7 +234,12 @@ def _influence(model: Model, name: str) -> Found:
         row, axis = model.particles[place].row, _AXES.index(what)
         turns = axis == 2
         if turns and model.particles.inertia[row] == 0.0:
-            raise ForceMethodError(f"{place} has no rotation: no rod that bends is joined rigidly there.")
+            raise ForceMethodError(
+                tr(
+                    "{particle} has no rotation, because no rod that bends is rigidly joined to it; choose another one.",
+                    particle=place,
+                )
+            )
         if not (model.particles.fixed_rotation[row] if turns else model.particles.fixed[row, axis]):
             line, unit = influence_on_displacement(model, row, axis), "rad/kN" if turns else "m/kN"
             return {"quantity": "rotation" if turns else "displacement", "unit": unit, "of": _line(model, line)}
@@ -219,11 +252,12 @@ def _influence(model: Model, name: str) -> Found:
 def _influence_on_end(model: Model, rod: Rod, what: str) -> Found:
     """The influence line of the bending moment at an end of a rod, or of its shear."""
     rigid = (model.rods.turning_shares[rod.row] > 0.0).tolist()
-    if not any(rigid) or (what in ENDS and not rigid[ENDS.index(what)]):
-        where = "does not bend" if not any(rigid) else f"is hinged at its {what}"
+    if not any(rigid):
         raise ForceMethodError(
-            f"{rod.name} {where}, so there is no {'shear' if what == 'shear' else 'moment'}."
+            tr("{rod} does not bend, so it has no bending moments and no shear force.", rod=rod.name)
         )
+    if what in ENDS and not rigid[ENDS.index(what)]:
+        raise ForceMethodError(tr("{end} is hinged, so there is no bending moment.", end=f"{rod.name}.{what}"))
     if what == "shear":
         line = influence_on_ends(model, rod.row, (1.0 / rod.original_length,) * 2)
         return {"quantity": "shear", "unit": "kN/kN", "of": _line(model, line)}
@@ -267,8 +301,14 @@ def _values(found: Found, quantity: str) -> Iterator[tuple[str, str, Found]]:
 
 def _influence_lines(found: Found) -> Iterator[str]:
     for name, line in found.items():
-        yield f"{line['quantity'].replace('_', ' ')} of {name}, {line['unit']}, for 1 kN at"
-        rows = [["particle", "along x", "along y"]]
+        quantity = tr(_TITLES[line["quantity"]])
+        yield tr(
+            "{quantity} of {name} in {unit}, for a force of 1 kN at",
+            quantity=quantity,
+            name=name,
+            unit=line["unit"],
+        )
+        rows = [[tr("particle"), tr("along x"), tr("along y")]]
         rows += [[particle, *map(as_written, pair)] for particle, pair in line["of"].items()]
         yield from aligned(rows)
         yield ""
@@ -277,17 +317,22 @@ def _influence_lines(found: Found) -> Iterator[str]:
 def _degrees(found: Found) -> str:
     """The degrees of static and kinematic indeterminacy in words."""
     degrees = found["indeterminacy"]
-    each = f"internal {degrees['internal']}, external {degrees['external']}"
     static, moving = degrees["static"], degrees["mechanisms"]
-    cables = ", all cables counted as taut" if found["cables"] else ""
-    if not moving:
-        determinacy = f"indeterminate to degree {static} ({each})" if static else "determinate"
-        return f"statically {determinacy}, no mechanisms{cables}"
-    stressed = (
-        f"{static} state{'s' if static != 1 else ''} of self-stress ({each})" if static else "no self-stress"
-    )
-    mechanisms = f"{moving} mechanism{'s' if moving != 1 else ''}"
-    return f"kinematically indeterminate to degree {moving} ({mechanisms}), {stressed}{cables}"
+    kinematic = tr("no mechanisms")
+    if moving:
+        kinematic = plural(
+            "kinematically indeterminate: one mechanism",
+            "kinematically indeterminate: {count} mechanisms",
+            moving,
+        )
+    if static:
+        statical = tr(
+            "statically indeterminate to degree {static} (internal {internal}, external {external})", **degrees
+        )
+    else:
+        statical = tr("no self-stress") if moving else tr("statically determinate")
+    cables = tr("all cables are counted as taut") if found["cables"] else ""
+    return joined([statical, kinematic, cables], "; ")
 
 
 def _count(model: Model) -> Found:
@@ -303,7 +348,8 @@ def _formula(found: Found) -> str:
     del numbers["degree"]
     count = Count(**numbers)
     said = count.by_rank(degrees["static"], degrees["mechanisms"])
-    return f"{count.formula} = {count.numbers}{f'; by rank: {said}' if said else ''}"
+    rule = f"{count.formula} = {count.numbers}"
+    return tr("{rule}; by rank: {said}", rule=rule, said=said) if said else rule
 
 
 def _verify_lines(found: Found) -> Iterator[str]:
@@ -313,42 +359,51 @@ def _verify_lines(found: Found) -> Iterator[str]:
         yield _formula(found)
         yield _degrees(found)
     for mechanism in found["mechanisms"][:SHOWN]:
-        yield f"mechanism: {mechanism['description']}"
+        yield tr("mechanism: {description}", description=mechanism["description"])
     for when, frequencies in found["frequencies"].items():
         if frequencies:
             values = [*map(as_written, frequencies[:SHOWN]), *(["…"] if len(frequencies) > SHOWN else [])]
-            yield f"natural frequencies {when}, Hz: {'  '.join(values)}"
+            if when == "unloaded":
+                yield tr("natural frequencies without load, Hz: {values}", values="  ".join(values))
+            else:
+                yield tr("natural frequencies under load, Hz: {values}", values="  ".join(values))
     for quantity, (_, unit) in QUANTITIES.items():
         shown, factor = _IN_TABLES.get(unit, (unit, 1.0))
         rows = {f"{name} {axis}".rstrip(): values for name, axis, values in _values(found, quantity)}
         if rows:
             yield ""
-            yield from aligned(_cells(f"{quantity.replace('_', ' ')}, {shown}", factor, rows))
+            yield from aligned(_cells(f"{tr(_TITLES[quantity])}, {shown}", factor, rows))
     for way, row in found["worst"].items():
         if row is not None:
-            whose = "the simulation" if way == "simulation" else "linear theory"
             yield ""
-            yield f"largest error of {whose}: {row[f'{way}_error']:.1e}, {Row(**row).title}"
+            told = {"error": row[f"{way}_error"], "quantity": Row(**row).title}
+            if way == "simulation":
+                yield tr("largest error of the simulation: {error:.1e}, in the {quantity}", **told)
+            else:
+                yield tr("largest error of linear theory: {error:.1e}, in the {quantity}", **told)
 
 
 def _verdict(found: Found) -> str:
     """The status in words: how well the answers agree."""
     worst = {way: row and row[f"{way}_error"] for way, row in found["worst"].items()}
     if found["status"] != VERIFIED:
-        return str(found["status"])
-    agree = f"verified, simulation and exact theory agree to {worst['simulation']:.1e}"
-    linear = worst["linear"]
-    return f"{agree}; linear theory is off by {linear:.1e}" if linear and linear > ELSEWHERE else agree
+        return tr(found["status"])
+    if (linear := worst["linear"]) and linear > ELSEWHERE:
+        return tr(
+            "verified, simulation and exact theory agree to {simulation:.1e}; linear theory is off by {linear:.1e}",
+            **worst,
+        )
+    return tr("verified, simulation and exact theory agree to {simulation:.1e}", **worst)
 
 
 def _cells(title: str, factor: float, rows: dict[str, Found]) -> list[list[str]]:
     largest = max(abs(values[way] or 0.0) for values in rows.values() for way in _VALUES[:3])
-    cells = [[title, *(way.replace("_", " ") for way in _VALUES)]]
+    cells = [[title, *(tr(_TITLES[way]) for way in _VALUES)]]
     for name, values in rows.items():
         numbers = [
             "—" if values[w] is None else _number(factor * values[w], factor * largest) for w in _VALUES[:3]
         ]
-        errors = ["—" if values[w] is None else f"{values[w]:.1e}" for w in _VALUES[3:]]
+        errors = ["—" if values[w] is None else decimals(f"{values[w]:.1e}") for w in _VALUES[3:]]
         cells.append([name, *numbers, *errors])
     return cells
 

@@ -83,7 +83,9 @@ def _pick_axis(context: Context, axis: int) -> None:
 @action("toggle diagrams of sets")
 def _toggle_diagrams(context: Context, pixel: Vector) -> None:
     guide = _guide(context)
-    if guide is not None:
+    if guide is not None and guide.is_frame:
+        guide.next_quantity()
+    elif guide is not None:
         context.view.all_diagrams = not context.view.all_diagrams
         for one in guide.shown:
             one.view.all_diagrams = context.view.all_diagrams
@@ -106,3 +108,18 @@ def _report(context: Context, pixel: Vector) -> None:
     guide = _guide(context)
     if guide is None or guide.part < PARTS or guide.solution is None:
         raise Refusal(tr("Go through all parts first, with K; then P writes the report."))
+    if context.window is None:
+        return
+    from game.force_method.report import report  # it imports reportlab
+
+    try:
+        path = context.window.save("pinjoint-force-method.pdf", report(guide.tables, context.view.convention))
+    except OSError as error:
+        reason = {"file": error.filename, "reason": error.strerror}
+        raise Refusal(
+            tr(
+                "No report was saved: {file}: {reason}. Start Pinjoint in a folder where you may write.",
+                **reason,
+            )
+        ) from None
+    context.notice = tr("Report saved: {file}", file=path)

@@ -35,7 +35,7 @@ LEAST_WIDTH, LEAST_HEIGHT, LEAST_LOW = 140.0, 160.0, 90.0  # points of a set; be
 HIGH = 340.0  # points of a set in which a slider has room below supports and reactions
 MOVED = 0.08  # of the size of a structure: about what drawn displacements add to it
 LEAST_EXPLAINED = 300.0  # points of a window; lower ones have no legend
-_NOTHING = (-1, False)  # no part is shown yet
+_NOTHING = (-1, False, "")  # no part is shown yet
 CAPTION, SCALE, MARGIN = 66.0, 48.0, 40.0  # points above, below (its slider), at most about a structure
 
 
@@ -190,9 +190,10 @@ class ForceMethod(Scene):
         guide = self.shown_guide
         if guide is None:
             return Page()
-        if (guide.part, guide.in_thesis) != self._page_of:
+        shown = (guide.part, guide.in_thesis, guide.quantity)
+        if shown != self._page_of:
             self._page = Page(words.working(guide), words.table(guide))
-            self._page_of, self._first = (guide.part, guide.in_thesis), 0
+            self._page_of, self._first = shown, 0
         return replace(self._page, first=self._first)
 
     def _sets(self, context: Context, middle: Viewport, ratio: float) -> list[tuple[Model, View]]:
@@ -215,7 +216,7 @@ class ForceMethod(Scene):
                 _fit(model, view)
             view.caption = captions[index]
             shown.append((model, view))
-        if self.shown_guide is not None:
+        if self.shown_guide is not None and not self.shown_guide.is_frame:
             control = scale_control(self.shown_guide.sets[0].model.settings)
             high = shown[0][1].camera.viewport.height >= HIGH * ratio
             for number, (_, view) in enumerate(shown):

@@ -75,7 +75,7 @@ MODEL = {
         ("shake isostatic missing.csv --output x.json", "missing.csv cannot be read: No such file"),
         ("play missing.jsonl", "There is no file and no lesson 'missing.jsonl'; choose one of 1_draw"),
         ("play 1_draw_truss", "did you mean '1_draw_a_truss'?"),
-        ("render isostatic --output x.tiff", "write a file that ends with .png or .svg"),
+        ("render isostatic --output x.tiff", "choose a file that ends with one of .png, .svg"),
         (
             "plot isostatic --of time --until 1e-4 --samples 2 --output /proc/x.csv",
             "/proc/x.csv cannot be written",
@@ -276,7 +276,7 @@ def test_a_curve_that_ends_early_says_why(capsys: pytest.CaptureFixture[str]) ->
     assert main(["curve", "von_mises", "--points", "3", "--format", "json"]) == 1
     said = capsys.readouterr()
     message = json.loads(said.out)["message"]
-    assert message.endswith(", after 3 points; give it more: --points 30.")
+    assert message.endswith(", after 3 points; allow more: --points 30.")
     assert message in said.err
 
 

@@ -84,7 +84,7 @@ def test_a_table_of_theory_names_both_ends(portal: Path, capsys: Out) -> None:
     assert main(["verify", str(portal)]) == 0
     text = capsys.readouterr().out
     assert "g = 3m + r − 3n − h = 3·3 + 5 − 3·4 − 0 = 2" in text
-    for heading in ("rotation, rad", "reaction moment, kN·m", "shear, kN", "bending moment, kN·m"):
+    for heading in ("rotation, rad", "reaction moment, kN·m", "shear force, kN", "bending moment, kN·m"):
         assert f"{heading}  " in text
     assert "AB start" in text
 

@@ -77,10 +77,10 @@ def test_loads_have_groups_of_their_own(diagrams: bool, tmp_path: Path) -> None:
 @pytest.mark.parametrize(
     ("words", "told"),
     [
-        (["a.jpg", "--background", "transparent"], "a .jpg has none"),
-        (["a.gif", "--background", "white"], "has that of its theme"),
-        (["a.png", "--background", "white", "--theme", "dark"], "choose a theme for light paper"),
-        (["a.tiff"], "ends with .png or .svg or .pdf"),
+        (["a.jpg", "--background", "transparent"], "a .jpg cannot be transparent"),
+        (["a.gif", "--background", "white"], "always has the background of its theme"),
+        (["a.png", "--background", "white", "--theme", "dark"], "choose a light theme"),
+        (["a.tiff"], "ends with one of .png, .svg, .pdf"),
     ],
 )
 def test_what_does_not_go_together_is_refused(

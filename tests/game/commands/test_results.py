@@ -102,12 +102,12 @@ def test_numbers_of_numpy_become_plain() -> None:
 def test_what_is_not_finite_is_refused_by_name(solved: Model) -> None:
     solved.writable("rods.axial_force")[1] = math.nan
     with pytest.raises(
-        ResultError, match=r"rod BC: axial force is nan, not finite; report a state before it\."
+        ResultError, match=r"rod BC: axial force is nan, not a finite number; report an earlier state\."
     ):
         state(solved, ENERGY)
     solved.writable("rods.axial_force")[1] = 0.0
     solved.writable("particles.velocity")[2, 1] = -math.inf
-    with pytest.raises(ResultError, match=r"particle C: velocity is \(0\.0, -inf\), not finite"):
+    with pytest.raises(ResultError, match=r"particle C: velocity is \(0\.0, -inf\), not a finite"):
         state(solved, ENERGY)
 
 
@@ -147,8 +147,8 @@ def test_the_table_shows_every_element_with_units(solved: Model) -> None:
     assert lines[rods + 1].split() == ["kN", "m"]
     assert lines[rods + 3].split() == ["BC", "-198.0275", "1.42", "0", "0", "yes"]
     assert len({len(line) for line in lines[rods + 2 : rods + 5]}) == 1  # aligned
-    assert "dissipated damping  2" in lines
-    assert lines[-1] == "residual 1e-09, collisions 2"
+    assert "dissipated by damping   2" in lines
+    assert lines[-1] == "unbalanced forces: 1e-09 of the largest force; impacts: 2"
 
 
 def test_the_table_of_a_run_without_states() -> None:

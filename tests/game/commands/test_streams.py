@@ -86,12 +86,12 @@ def test_names_cannot_write_to_the_terminal(tmp_path: Path, capsys: pytest.Captu
 @pytest.mark.parametrize(
     ("words", "sentence"),
     [
-        (["render", "isostatic", "--size", "²²x²²", "--output", "x.png"], "write it like 1280x800"),
+        (["render", "isostatic", "--size", "²²x²²", "--output", "x.png"], "pixels, such as 1280x800"),
         (["run", "isostatic", "--set", "loads.*.force=1,1"], "the model has no loads"),
         (["run", "FILE", "--set", "loads.*.history=" + "[" * 5000], "history is '[[["),
         (["run", "isostatic", "--set", "rods.*.name=" + "x" * 5000], "There is a rod 'xxxx"),
         (["run", "isostatic", "--static", "--load-factors", "1e308,-1e308,0"], "1e+308 is too large"),
-        (["sweep", "isostatic", "--vary", "rods.AB.density=1:2:²"], "'²' is no count"),
+        (["sweep", "isostatic", "--vary", "rods.AB.density=1:2:²"], "'²' is not a count"),
     ],
     ids=lambda given: str(given)[:40],
 )

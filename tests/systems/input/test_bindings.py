@@ -60,6 +60,10 @@ class FakeWindow:
         self.asked += 1
         return "picture.png"
 
+    def save(self, name: str, contents: bytes) -> str:
+        self.asked += 1
+        return name
+
     def copied(self) -> str:
         return ""
 
