@@ -56,7 +56,13 @@ def language() -> str:
 def speak(code: str) -> None:
     """Say everything in a language from now on. Raises ValueError if there is no such language."""
     if code not in LANGUAGES:
-        raise ValueError(f"There is no language '{code}'; use one of {', '.join(LANGUAGES)}.")
+        raise ValueError(
+            tr(
+                "There is no language '{code}'; use one of {languages}.",
+                code=code,
+                languages=", ".join(LANGUAGES),
+            )
+        )
     catalogue = gettext.NullTranslations()
     if code != ENGLISH:
         catalogue = gettext.translation(DOMAIN, LOCALE, languages=[code])

@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 
 from components.bent import AXIAL, middles
 from components.camera import LEAST_MARGIN, Camera, Viewport
+from components.card import Card
 from components.field import Vector
 from components.kind import all_points
 from components.menu import Menu
@@ -169,6 +170,7 @@ class View:
     shares: the model is fitted beside the panels; else panels may cover it. since: by title, the rank in which each
     panel appeared.
     aside: the part of the window, at its left or right, that boxes to type into take; None: none.
+    card: a task of a lesson, in place of a model.
     """
 
     camera: Camera = field(default_factory=Camera)
@@ -211,6 +213,7 @@ class View:
     fitted: bool = False
     shares: bool = False
     aside: Viewport | None = None
+    card: Card | None = None
 
     def fit(self, model: Model) -> None:
         """Let the camera show the whole model, clear of the sliders, and with room for diagrams below the legend."""

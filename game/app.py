@@ -36,8 +36,9 @@ from game.editor.scenes.load import Load
 from game.interrupts import closed_by_signals
 from game.pictures import on_paper, write
 from game.preparation import Preparation
+from game.scripts.lines import Failure
 from game.scripts.performance import FOOTER, LARGER, Performance
-from game.scripts.playing import Failure, Recorder
+from game.scripts.playing import Recorder
 from game.scripts.script import Script
 from game.session import Session
 from systems.base import System
@@ -206,6 +207,7 @@ class App:
             with closed_by_signals(self.input.close):
                 while not self.closed:
                     self.next_frame()
+                    self.session.take_up_lesson()
                     if self.session.lesson is not None:
                         lesson, self.session.lesson = self.session.lesson, None
                         failures += Performance(self, lesson).play()
@@ -288,7 +290,7 @@ class App:
             low = min(round(FOOTER * ratio), height - 1)
             height -= low
             footer.camera.viewport, footer.pixel_ratio = Viewport(0, height, width, low), LARGER * ratio
-        if (Viewport(0, 0, width, height), ratio) != (view.camera.viewport, view.pixel_ratio):
+        if ((width, height), ratio) != (self.session.extent, view.pixel_ratio):
             self.session.resize(width, height, ratio)
 
     def _follow_title(self) -> None:
@@ -360,7 +362,11 @@ class App:
 
         Where the window shows no model, all that it shows is saved, as a PNG. Raises OSError.
         """
-        drawn = [(model, on_paper(view)) for model, view in self.session.stages if isinstance(model, Model)]
+        drawn = [
+            (model, on_paper(view))
+            for model, view in self.session.stages
+            if isinstance(model, Model) and view.card is None
+        ]
         if not drawn:
             path = _unused(Path.cwd() / "pinjoint.png")
             models.replace(path, encoded(self.render.surface, ".png"))

@@ -126,7 +126,7 @@ def _class_of(name: str) -> Callable[[], System]:
     """The class of a registered system; what it does is then not guarded."""
     known: dict[str, System] = {made.name: made for made in (*all_systems(), *INTEGRATORS.values())}
     if name not in known:
-        raise SystemCheckError(missing("systems", name, known))
+        raise SystemCheckError(missing(marked("systems"), name, known))
     return type(known[name])
 
 

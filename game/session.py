@@ -11,9 +11,10 @@ from typing import TYPE_CHECKING, Any, NoReturn
 import numpy as np
 
 from components.camera import Viewport
+from components.card import share_of
 from components.environment import Environment
 from components.field import FieldError, Vector
-from components.language import begun, joined, listed, tr
+from components.language import begun, joined, listed, marked, tr
 from components.load import Load
 from components.model import Model
 from components.particle import Particle
@@ -36,16 +37,19 @@ from game.editor.scenes.files import FileScene
 from game.editor.sliders import slider_stack, sliders_of
 from game.editor.toolbar import toolbar_of
 from game.editor.view_model import follows, show
+from game.lessons import actions  # noqa: F401 (it registers them)
+from game.lessons.course import Course
+from game.lessons.tasks import Lesson
 from game.mods import load_all
 from game.mods.heeding import blamed_on_mod, heeding_mods
 from game.scripts.expectation import expect
-from game.scripts.script import ScriptError
+from game.scripts.script import Script, ScriptError
 from systems.base import EVENT_INTERVAL, Phase, StopReason, System
 from systems.catalogue import SYSTEMS, step_systems
 from systems.edit import Refusal
 from systems.edit.dividing import divide
 from systems.edit.pull import Pull
-from systems.input.bindings import FILES, FORMS, TEXT, key_named, only_in_pause
+from systems.input.bindings import FILES, FORMS, LIVE, TEXT, key_named, only_in_pause
 from systems.render.picture import Stage
 from systems.run.simulation import Simulation
 from systems.run.system import Time
@@ -89,8 +93,13 @@ class Session(Context):
         # Called with every press and after every change of size; set by a recorder.
         self.on_press: Callable[[str, Vector | None], None] | None = None
         self.on_resize: Callable[[], None] | None = None
+        self.course: Course | None = None
         self._clicked: Layer | None = None  # what took the last press, if that was a click
-        self._blank = Model()  # what the footer is drawn over
+        self._blank = Model()  # what the footer and the card of a lesson are drawn over
+        self.extent = (
+            self.view.camera.viewport.width,
+            self.view.camera.viewport.height,
+        )  # of the window (pixels)
         self.offer_tools()
         self.begin_document()
 
@@ -135,7 +144,7 @@ class Session(Context):
     def table(self, name: str) -> Table[Any]:
         """The elements of any kind by name, those that mods add included: session.table("walls")["floor"]."""
         if name not in self.model.tables:
-            raise KeyError(missing("tables", name, self.model.tables))
+            raise KeyError(missing(marked("tables"), name, self.model.tables))
         return self.model.tables[name]
 
     @property
@@ -286,6 +295,52 @@ class Session(Context):
         self.select(*made)
         return made
 
+    # --- lessons -------------------------------------------------------------------------------------
+
+    def begin_lesson(self, script: Script) -> None:
+        """Begin a lesson with tasks, where the person left it. Raises ScriptError."""
+        course = Course(self, Lesson(script))
+        self.course, self.beside = course, self.beside or View()
+        self.resize(*self.extent, self.view.pixel_ratio)
+        course.begin()
+        self._show_card()
+
+    def leave_lesson(self) -> None:
+        """Leave the lesson for the document that was open before it."""
+        self.course = self.beside = None
+        self.resize(*self.extent, self.view.pixel_ratio)
+        if self.scene != "pause":
+            self.scenes.request("pause")
+            self.scenes.apply(self)
+        self.leave_gesture()
+        while self.document.practice and self.documents.can_move(-1):
+            self.documents.move(-1)
+        self.begin_document()
+
+    def answer(self, value: Any) -> None:
+        """Answer the task of a lesson: names of elements to select, a number, or the text of a choice."""
+        if self.course is None:
+            raise ValueError("There is no lesson to answer; begin one from the start page.")
+        self.course.answer(value)
+
+    def take_up_lesson(self) -> None:
+        """Begin the lesson with tasks that a person chose."""
+        script = self.lesson
+        if script is None or not script.has_tasks:
+            return
+        self.lesson = None
+        try:
+            self.begin_lesson(script)
+        except ScriptError as error:
+            self.leave_lesson()
+            self.notice = str(error)
+
+    def _show_card(self) -> None:
+        """Bring the card of the lesson up to date."""
+        if self.course is not None and self.beside is not None:
+            self.course.look()
+            self.beside.card, self.beside.pointer = self.course.card(), self.view.pointer
+
     # --- scenes and actions --------------------------------------------------------------------------
 
     def plan(self, scene: str | None = None) -> Plan:
@@ -299,7 +354,7 @@ class Session(Context):
     def act(self, name: str, pixel: Vector | None = None) -> None:
         """Perform a named action with the pointer at a pixel; what it refuses is said in `notice`."""
         if name not in ACTIONS:
-            raise ValueError(missing("actions", name, ACTIONS))
+            raise ValueError(missing(marked("actions"), name, ACTIONS))
         if name not in WHILE_DRAWING:
             self.leave_gesture()
         if name not in IN_MENU:
@@ -310,6 +365,7 @@ class Session(Context):
         except (Refusal, FieldError) as error:
             self.notice = str(error)
         self.scenes.apply(self)
+        self.take_up_lesson()
         self.offer_tools()
         self.make_room()
 
@@ -392,6 +448,7 @@ class Session(Context):
                 problems.append(str(error))
             else:
                 opened.append(path.stem)
+        self.take_up_lesson()
         if opened and self.scene != "pause":  # not even one that its keys would lead back to
             self.scenes.request("pause")
             self.scenes.apply(self)
@@ -418,7 +475,13 @@ class Session(Context):
                     largest=LARGEST_RATIO,
                 )
             )
-        self.view.camera.viewport, self.view.pixel_ratio = Viewport(0, 0, width, height), pixel_ratio
+        self.extent = width, height
+        taken_right, taken_below = share_of(width, height, pixel_ratio) if self.beside is not None else (0, 0)
+        left, top = width - taken_right, height - taken_below
+        self.view.camera.viewport, self.view.pixel_ratio = Viewport(0, 0, left, top), pixel_ratio
+        if self.beside is not None:
+            place = (left, 0, taken_right, height) if taken_right else (0, top, width, taken_below)
+            self.beside.camera.viewport, self.beside.pixel_ratio = Viewport(*place), pixel_ratio
         if self.view.fitted:
             self.view.fit(self.model)
         if self.on_resize is not None:
@@ -429,7 +492,10 @@ class Session(Context):
         """Type text into the selected box of properties, save and load."""
         if self.on_press is not None:
             self.on_press(TEXT + text, None)
-        self.scenes.active.type(self, text)
+        if self.course is not None and self.course.awaits_number and self.scene in LIVE:
+            self.course.type(text)
+        else:
+            self.scenes.active.type(self, text)
         self.scenes.apply(self)
 
     def expect(self, text: str) -> None:
@@ -499,14 +565,14 @@ class Session(Context):
         stages = list(self.scenes.active.stages(self))
         if not self.scenes.active.covers(self):
             stages.append((self.view.toolbar, self.view))
-        if self.footer is not None:
-            stages.append((self._blank, self.footer))
+        stages += [(self._blank, view) for view in (self.footer, self.beside) if view is not None]
         return stages
 
     def update_view(self, elapsed: float = 0.0) -> None:
         """Bring what the view says about the run up to date, so many seconds after the last time."""
         show(self, elapsed)
         self.offer_tools()
+        self._show_card()
 
 
 def _near(pixel: Sequence[float]) -> Vector:

@@ -67,7 +67,7 @@ COMMANDS |= {
     "curve": Command(_of("curve"), marked("compute a load–displacement curve, through limit points")),
     "buckling": Command(_of("buckling"), marked("find buckling loads, modes and effective lengths")),
     "force-method": Command(
-        _of("force_method"), marked("solve a statically indeterminate truss by the force method")
+        _of("force_method"), marked("solve a statically indeterminate structure by the force method")
     ),
     "sweep": Command(_of("sweep"), marked("compute many variants of a model")),
     "plan": Command(_of("plan"), marked("list the systems that run in a scene, and why others do not")),

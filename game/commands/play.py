@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import Any
 
 from components.language import ENGLISH, plural, spoken, tr
+from components.model import Model
 from game.commands.arguments import Parser
 from game.commands.language import asked_language
 from game.commands.options import ANSWERED, NOT_ANSWERED
@@ -16,7 +17,11 @@ from game.commands.progress import follow
 from game.commands.window import in_window
 from game.documents import library, models
 from game.documents.open_documents import file_of
+from game.lessons import progress
+from game.lessons.checking import check_lesson
 from game.scripts import playing, script
+from game.scripts.script import EMPTY
+from game.session import Session
 from game.streams import tell
 
 
@@ -24,8 +29,11 @@ def command(words: Sequence[str]) -> int:
     """Do what the words after the command ask for; returns the exit status."""
     parser = Parser(
         prog="pinjoint play",
-        description=tr("Play a lesson, or a session that was recorded or written, in the real program."),
-        epilog=tr("Lessons: {names}", names=", ".join(script.lessons())),
+        description=tr(
+            "Play a recorded or written session, or a lesson, in the real program. Of a lesson with tasks, all"
+            " solutions and wrong answers are checked."
+        ),
+        epilog=tr("Lessons: {names}", names=", ".join([*script.lessons_with_tasks(), *script.lessons()])),
     )
     parser.add_argument("script", metavar="SCRIPT", help=tr("a file of JSON lines, or the name of a lesson"))
     parser.add_argument(
@@ -48,13 +56,18 @@ def command(words: Sequence[str]) -> int:
             loaded.has_data = True
         if options.window:
             tell(playing.check_mods(loaded))
-            failures = in_window(models.load(loaded.source), file_of(loaded.source), lesson=loaded)
+            source = EMPTY if loaded.has_tasks else loaded.source  # tasks open their models themselves
+            failures = in_window(models.load(source), file_of(source), lesson=loaded)
+        elif loaded.has_tasks:
+            playing.check_mods(loaded)
+            kept.enter_context(library.data_apart())
+            failures = check_lesson(loaded, lambda: Session(Model()))
         else:
             session = follow(playing.session_of(loaded))
             tell(session.notice)
             if not loaded.has_data:  # so that it ends alike however often it is played
                 kept.enter_context(library.data_apart())
-            with spoken(loaded.language or asked_language() or ENGLISH):
+            with progress.not_kept(), spoken(loaded.language or asked_language() or ENGLISH):
                 failures = playing.play(loaded, session)
     found = {
         "script": options.script,

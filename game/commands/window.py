@@ -19,7 +19,7 @@ from game.commands.with_mods import in_use
 from game.documents import models
 from game.documents.open_documents import ModelFile, file_of
 from game.scripts import script
-from game.scripts.playing import Failure
+from game.scripts.lines import Failure
 from game.version import __version__
 from systems.render.theme import theme_names
 

@@ -113,6 +113,18 @@ class Assessment:
             self._balanced = model.revision, bool(model.particles.velocity.any()) or _balanced(model)
         return self._balanced[1]
 
+    @property
+    def in_equilibrium(self) -> bool:
+        """True if it came to rest or was settled, and is in equilibrium under the present load."""
+        if self._model.particles.velocity.any() and not self._rests:
+            return False
+        return self.balanced and (self._rests or _balanced(self._model))
+
+    @property
+    def _rests(self) -> bool:
+        """True if a run came to rest."""
+        return self._simulation.halted and self._simulation.reason is StopReason.REST
+
     def comparison(self) -> Comparison:
         """The run as it is now beside theory."""
         from systems.statics.verify import compare, observed
@@ -122,8 +134,7 @@ class Assessment:
     @property
     def remarks(self) -> tuple[Event, ...]:
         """How a run at rest differs from what a slowly growing load would have done; empty if unsure."""
-        at_rest = self._simulation.halted and self._simulation.reason is StopReason.REST
-        if not at_rest or not self._is_comparable():
+        if not self._rests or not self._is_comparable():
             return ()
         key = self._moment
         if self._remarks is None or self._remarks[0] != key:

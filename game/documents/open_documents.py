@@ -77,7 +77,7 @@ class OpenDocument:
 
     beginning: the state from which time began to pass. undeformed: that in which it was neither run nor settled yet;
     None until then, or if its file does not say. saved: the revision of what its file holds.
-    recovery: the file that keeps unsaved work against a crash.
+    recovery: the file that keeps unsaved work against a crash. practice: it belongs to a lesson, and asks for no saving.
     """
 
     def __init__(self, model: Model, schedule: Schedule, pull: Pull, file: ModelFile) -> None:
@@ -95,6 +95,7 @@ class OpenDocument:
         self.chronicle = Chronicle(model, self.simulation)
         self.file = file
         self.recovery: Path | None = None
+        self.practice = False
         self.saved = self._last_edit = model.revision
 
     def _changed(self, entry: Entry) -> None:
@@ -228,8 +229,8 @@ class OpenDocument:
 
     @property
     def edited(self) -> bool:
-        """True if a person changed the model since it was opened or saved."""
-        return self._last_edit > self.saved
+        """True if a person changed the model since it was opened or saved; never of one that belongs to a lesson."""
+        return self._last_edit > self.saved and not self.practice
 
 
 class OpenDocuments:

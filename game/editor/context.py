@@ -20,6 +20,7 @@ from components.view import Preview, Readout, View
 from game.documents import models
 from game.documents.format import missing_mods
 from game.documents.open_documents import ModelFile, Source, file_of
+from game.editor.host import Course
 from game.editor.workspace import Workspace
 from game.scripts.script import Script
 from systems.base import Mod
@@ -256,7 +257,8 @@ class Context(Workspace):
 
     scenes: the mode, and its transitions. gesture: what is being drawn or dragged. performing: a script is shown in the
     window, so input is not for the scenes and no time passes by itself. footer: the strip below the picture meanwhile.
-    lesson: the script that a person asked for. faults_seen: how many faults of mods were shown and taken away.
+    lesson: the script that a person asked for. course: the lesson with tasks that a person is in; beside: its card, in the
+    part of the window that it takes. faults_seen: how many faults of mods were shown and taken away.
     """
 
     def __init__(
@@ -269,6 +271,8 @@ class Context(Workspace):
         self.performing = False
         self.footer: View | None = None
         self.lesson: Script | None = None
+        self.course: Course | None = None
+        self.beside: View | None = None
         self.faults_seen = len(FAULTS)
 
     # --- documents ---------------------------------------------------------------------------------
@@ -390,6 +394,8 @@ class Context(Workspace):
 
     def _to_document(self, by: int) -> str:
         self.leave_gesture()
+        if self.course is not None and by < 0:  # a lesson is left by its button
+            return ""
         opening = self.documents.move(by)
         if opening:
             self.begin_document()

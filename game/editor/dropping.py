@@ -31,6 +31,9 @@ def open_dropped(context: Context, path: Path) -> None:
             )
         )
     script = Script(path) if path.suffix.lower() == SCRIPT else None
+    if script is not None and script.has_tasks:
+        context.lesson = script
+        return
     model = models.load(path if script is None else script.source)
     keep = context.model.particles.count > 0
     context.adopt(model, file_of(path if script is None else script.source), keep=keep)

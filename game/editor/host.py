@@ -48,3 +48,19 @@ class ProgramPreparation(Protocol):
 
     def waits_for(self, simulation: Simulation) -> Waiting | None:
         """What a simulation waits for; None if it can go on, interpreted or compiled."""
+
+
+class Course(Protocol):
+    """A lesson that a person is in, and its present task; see game/lessons/course.py."""
+
+    accepted: bool
+    typed: str
+    first: int
+
+    @property
+    def awaits_number(self) -> bool:
+        """True while digits that are typed belong to the answer."""
+
+    @property
+    def awaits_choice(self) -> bool:
+        """True while a digit that is pressed is an answer."""

@@ -8,6 +8,7 @@ from game.editor.view_model import pages_of_help
 from systems.input.bindings import FORMS, LIVE, MENU, action_for
 from systems.render.empty_card import card_button_at
 from systems.render.help import help_closed_by
+from systems.render.lesson_card import lesson_button_at
 from systems.render.menu import menu_of
 from systems.render.picture import on_status_bar, panel_at
 from systems.render.theme import load_theme
@@ -24,6 +25,8 @@ ON_SLIDER = {
     "wheel down": "slider down",
 }
 
+ANSWERING = {"return": "check answer", "backspace": "erase answer"}  # while a number is typed
+
 # The scene, whether a menu, the help, or the toolbar takes clicks, and the title of the slider that does.
 Layer = tuple[str, bool, bool, bool, str]
 Meaning = tuple[str | None, Vector]  # the name of an action, if any, and the pixel where it acts
@@ -32,6 +35,8 @@ Meaning = tuple[str | None, Vector]  # the name of an action, if any, and the pi
 def meaning(context: Context, key: str, pixel: Vector) -> Meaning:
     """What a key or button means at a pixel: to an open menu, the help, the toolbar, a slider, or the scene."""
     view = context.view
+    if (answer := _to_lesson(context, key, pixel)) is not None:
+        return answer or None, pixel
     if view.menu is not None and (found := _in_menu(context, key, pixel)) is not None:
         return found
     if view.help and (key == "escape" or key in AT_POINTER):
@@ -51,6 +56,27 @@ def meaning(context: Context, key: str, pixel: Vector) -> Meaning:
         if (panel := panel_at(model, shown, load_theme(view.theme), pixel)) is not None:
             return (panel.action_at(pixel) if key in ONCE else None), pixel
     return scene_meaning(context.scene, key), pixel
+
+
+DIGITS = frozenset("0123456789.,-+")
+
+
+def _to_lesson(context: Context, key: str, pixel: Vector) -> str | None:
+    """The action of a key or button for the lesson that a person is in; "": it means nothing; None: it is not for it."""
+    course, beside = context.course, context.beside
+    if course is None or beside is None or context.performing:
+        return None
+    if key in AT_POINTER and beside.camera.viewport.contains(pixel):
+        if key.startswith("wheel"):
+            return "lesson up" if key == "wheel up" else "lesson down"
+        return lesson_button_at(beside, pixel) if key in ONCE else ""
+    if context.scene not in LIVE:
+        return None
+    if course.awaits_choice and key in "123456789" and len(key) == 1:
+        return f"answer {key}"
+    if course.awaits_number and (key in DIGITS or (course.typed and key in ANSWERING)):
+        return ANSWERING.get(key, "")
+    return None
 
 
 def for_tools(context: Context, key: str, pixel: Vector) -> bool:

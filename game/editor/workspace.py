@@ -72,7 +72,7 @@ class Workspace:
         """Write the model to a file that is its own from now on. Raises ModelError."""
         path = Path(path)
         self.save(path)
-        self.document.file = ModelFile.at(path)
+        self.document.file, self.document.practice = ModelFile.at(path), False
         self.document.saved = self.model.revision
         self.notice = tr("Saved as '{name}'.", name=path.stem)
 

@@ -59,10 +59,18 @@ def write_report(solved: Tables, path: str | Path, convention: str) -> None:
 
 def report(solved: Tables, convention: str) -> bytes:
     """The report of a solution as the contents of a PDF file."""
-    model = solved.model
-    title = model.title or tr("Statically indeterminate structure")
-    parts = [
-        text(title, "title"),
+    title = _title(solved.model)
+    return as_paper(title, contents(solved, convention), f"Pinjoint · {title}")
+
+
+def _title(model: Model) -> str:
+    return tr(model.title) if model.title else tr("Statically indeterminate structure")
+
+
+def contents(solved: Tables, convention: str) -> list[Flowable]:
+    """What the report of a solution consists of, from the top to the bottom."""
+    return [
+        text(_title(solved.model), "title"),
         text(
             tr("Force method, by first-order theory: linear elastic, equilibrium about the original shape."),
             "subtitle",
@@ -73,7 +81,6 @@ def report(solved: Tables, convention: str) -> bytes:
         *_forces(solved),
         *_checks(solved),
     ]
-    return as_paper(title, parts, f"Pinjoint · {title}")
 
 
 # --- figures -----------------------------------------------------------------------------------------
@@ -221,6 +228,8 @@ def _virtual_work(solved: Tables) -> list[Flowable]:
     settlements = solved.settlements()
     if settlements is not None:
         found += _printed(settlements, [text(tr("Supports that have moved by c"), "text")])
+    if solved.bends:
+        found += [text(line, "equation") for i in every for line in solved.sums(i)]
     return found
 
 
@@ -322,10 +331,13 @@ def _checks(solved: Tables) -> list[Flowable]:
             text(tr("6  Checks"), "heading"),
             text(tr("Loads and reactions of the whole structure are in equilibrium (kN, kN·m):"), "text"),
             *(text(line, "equation") for line in lines),
-            text(tr("The gaps are closed to {share} of their parts.", share=_tiny(share)), "text"),
+            text(
+                tr("The compatibility equations hold to {share} of their largest terms.", share=_tiny(share)),
+                "text",
+            ),
             text(
                 tr(
-                    "The displacement method, which needs no unknowns of this kind, gives the same axial forces to {share}.",
+                    "The displacement method gives the same axial forces, to {share} of the largest.",
                     share=_tiny(relative),
                 ),
                 "text",

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from typing import overload
 
@@ -13,7 +13,7 @@ from components import written
 from components.field import CM
 from components.language import decimals, tr
 from components.model import Model
-from systems.statics.equations import Array, Rows
+from systems.statics.equations import Array, Rows, largest
 from systems.statics.force_method import Solution
 from systems.statics.unknowns import AXES, Unknown
 from systems.statics.virtual_work import Work, virtual_work
@@ -34,7 +34,7 @@ class Column:
     """Numbers of one kind below each other: with equal decimals, and a power of ten in the head if all are small.
 
     summed: there is a sum at the foot; decimals are then such that what is written adds up, if two more are enough.
-    size: of the largest number of its kind; None: that in the column.
+    size: of the largest number of its kind; None: that in the column. least: of what is no rounding.
     """
 
     def __init__(
@@ -46,16 +46,18 @@ class Column:
         summed: bool = False,
         digits: int = written.DIGITS,
         size: float | None = None,
+        least: float = 0.0,
     ) -> None:
         self.summed = summed
+        values = np.where(np.abs(values) <= written.ROUNDING * least, 0.0, values)
         total = float(values.sum())
-        largest = max(float(np.abs(values).max(initial=0.0)), abs(total) if summed else 0.0)
-        largest = largest if size is None else size
-        power = math.floor(math.log10(largest)) if largest > 0.0 else 0
-        self.power = 0 if largest >= _SMALL or not largest else 3 * math.floor(power / 3)
+        greatest = max(float(np.abs(values).max(initial=0.0)), abs(total) if summed else 0.0)
+        greatest = greatest if size is None else size
+        power = math.floor(math.log10(greatest)) if greatest > 0.0 else 0
+        self.power = 0 if greatest >= _SMALL or not greatest else 3 * math.floor(power / 3)
         self._scaled, self._total = values / 10.0**self.power, total / 10.0**self.power
         self._decimals = max(digits - 1 - (power - self.power), 0)
-        self._nothing = written.ROUNDING * largest / 10.0**self.power
+        self._nothing = written.ROUNDING * greatest / 10.0**self.power
         if summed:
             self._decimals = self._adding_up()
         ten = f"10{str(self.power).translate(_ABOVE)} " if self.power else ""
@@ -177,7 +179,12 @@ class Tables:
     def _carrying(self) -> Rows:
         """Rods with an axial force that counts: all of a truss, those with one in a frame."""
         work = self.work
-        pulled = (work.unit_axial != 0.0).any(axis=0) if self.bends else np.ones(len(work.length), dtype=bool)
+        least = written.ROUNDING * np.abs(work.unit_axial).max(axis=1, initial=0.0, keepdims=True)
+        pulled = (
+            (np.abs(work.unit_axial) > least).any(axis=0)
+            if self.bends
+            else np.ones(len(work.length), dtype=bool)
+        )
         return np.flatnonzero(pulled)
 
     @property
@@ -190,10 +197,16 @@ class Tables:
         columns = [
             Column("L", self.units.length, self.units.factor * work.length[rows]),
             Column("EA", "kN", work.stiffness[rows]),
-            Column("N₀", "kN", work.base_axial[rows]),
-            *(Column(f"n{index(i + 1)}", self._per(i), work.unit_axial[i, rows], digits=_FINER) for i in which),
+            Column("N₀", "kN", work.base_axial[rows], least=largest(self.solution.real.axial_force)),
+            *(self._unit_forces(i) for i in which),
         ]
         return Table(tr("rod"), self._names(rows), columns)
+
+    def _unit_forces(self, i: int) -> Column:
+        force = self.work.unit_axial[i]
+        return Column(
+            f"n{index(i + 1)}", self._per(i), force[self._carrying], digits=_FINER, least=largest(force)
+        )
 
     def _per(self, unknown: int) -> str:
         return "1/m" if self.solution.unknowns[unknown].is_moment else ""
@@ -208,16 +221,24 @@ class Tables:
         found = []
         for i in which if base else ():
             title = f"N₀n{index(i + 1)}L/EA"
-            found.append(Column(title, units.gap(i), units.factor * work.of_base[i, rows], summed=True))
+            found.append(self._terms(title, units.gap(i), work.of_base[i], rows, work.of_bending[i]))
         if base and work.free.any():
             for i in which:
                 values = units.factor * (work.unit_axial[i] * work.free)[rows]
                 found.append(Column(f"n{index(i + 1)}ΔL", units.gap(i), values, summed=True))
         for i, j in _pairs(which):
             title = f"n{index(i + 1)}²L/EA" if i == j else f"n{index(i + 1)}n{index(j + 1)}L/EA"
-            values = units.factor * work.of_units[i, j, rows]
-            found.append(Column(title, units.flexibility(i, j), values, summed=True))
+            least = work.of_units[[i, j], [i, j]].sum(axis=1)
+            found.append(
+                self._terms(title, units.flexibility(i, j), work.of_units[i, j], rows, np.sqrt(least.prod()))
+            )
         return found
+
+    def _terms(self, title: str, unit: str, terms: Array, rows: Rows, beside: Array) -> Column:
+        """Terms of a sum of some rods; beside: others of the same sum, next to which they may be rounding."""
+        factor = self.units.factor
+        least = factor * max(largest(terms), largest(np.asarray(beside)))
+        return Column(title, unit, factor * terms[rows], summed=True, least=least)
 
     def virtual_work(self, which: Sequence[int]) -> Table:
         """The sums over axial forces, with everything that is multiplied, for some unknowns."""
@@ -227,23 +248,31 @@ class Tables:
     def bending(self, which: Sequence[int]) -> Table:
         """The same over bending moments, at the starts and ends of the rods; q L²/8 by which M₀ bulges between."""
         work, rows, units = self.work, self._bending, self.units
+        moment = largest(self.solution.real.end_moment)
         columns = [
             Column("L", "m", work.length[rows]),
             Column("EI", "kN·m²", work.bending_stiffness[rows]),
-            Column("M₀", "kN·m", work.base_moment[rows, 0]),
-            Column("M₀′", "kN·m", work.base_moment[rows, 1]),
+            *(
+                Column(f"M₀{end}", "kN·m", work.base_moment[rows, side], least=moment)
+                for side, end in enumerate(("", "′"))
+            ),
         ]
         if work.load[rows].any():
             columns.append(Column("qL²/8", "kN·m", -work.load[rows] / 8.0))
         for i in which:
             unit = "" if self.solution.unknowns[i].is_moment else "m"
             columns += [
-                Column(f"m{index(i + 1)}{end}", unit, work.unit_moment[i, rows, side])
+                Column(
+                    f"m{index(i + 1)}{end}",
+                    unit,
+                    work.unit_moment[i, rows, side],
+                    least=largest(work.unit_moment[i]),
+                )
                 for side, end in enumerate(("", "′"))
             ]
         for i in which:
-            values = units.factor * work.of_bending[i, rows]
-            columns.append(Column(f"∫M₀m{index(i + 1)}/EI", units.gap(i), values, summed=True))
+            title = f"∫M₀m{index(i + 1)}/EI"
+            columns.append(self._terms(title, units.gap(i), work.of_bending[i], rows, work.of_base[i]))
         if work.curvature.any():
             for i in which:
                 warm = work.length * work.curvature * work.unit_moment[i].mean(axis=1)
@@ -252,8 +281,8 @@ class Tables:
                 )
         for i, j in _pairs(which):
             title = f"∫m{index(i + 1)}²/EI" if i == j else f"∫m{index(i + 1)}m{index(j + 1)}/EI"
-            values = units.factor * work.of_unit_bending[i, j, rows]
-            columns.append(Column(title, units.flexibility(i, j), values, summed=True))
+            least = np.sqrt(work.of_unit_bending[[i, j], [i, j]].sum(axis=1).prod())
+            columns.append(self._terms(title, units.flexibility(i, j), work.of_unit_bending[i, j], rows, least))
         return Table(tr("rod"), self._names(rows), columns)
 
     def settlements(self) -> Table | None:
@@ -279,9 +308,9 @@ class Tables:
             return ()
         work, units = self.work, self.units
         ways = (work.of_bending, work.of_base, work.of_free, work.of_supports)
-        gap = written.total(units.factor * float(way[i].sum()) for way in ways)
+        gap = _sum(units.factor * float(way[i].sum()) for way in ways)
         flexibility = [work.of_unit_bending[i, i], work.of_units[i, i]]
-        own = written.total(units.factor * float(part.sum()) for part in flexibility)
+        own = _sum(units.factor * float(part.sum()) for part in flexibility)
         return (
             f"δ{index(i + 1, 0)} = {gap} {units.gap(i)},"
             f"  δ{index(i + 1, i + 1)} = {own} {units.flexibility(i, i)}",
@@ -351,18 +380,24 @@ class Tables:
             terms = [(f"+ X{index(i + 1)}{small[i]}{index(i + 1)}", part) for i, part in enumerate(parts)]
         else:
             terms = [(f"+ ΣX{small[0]}", sum(parts, np.zeros_like(base)))]
-        largest = max((float(np.abs(part).max(initial=0.0)) for part in (real, base, *parts)), default=0.0)
-        off = np.where(np.abs(whole - real) <= written.ROUNDING * largest, 0.0, whole - real)
+        size = max((largest(part) for part in (real, base, *parts)), default=0.0)
+        off = np.where(np.abs(whole - real) <= written.ROUNDING * size, 0.0, whole - real)
         shown = [
             (symbol, unit, whole),
             (f"= {symbol}₀", "", base),
             *((title, "", part) for title, part in terms),
         ]
         columns = [
-            *(Column(*of, digits=_FINER, size=largest) for of in shown),
+            *(Column(*of, digits=_FINER, size=size) for of in shown),
             Column(tr("difference"), "", off, digits=1),
         ]
         return Table(tr("rod") if symbol != "R" else tr("support"), names, columns)
+
+
+def _sum(terms: Iterable[float]) -> str:
+    """A sum with its numbers, or the only one of them."""
+    text = written.total(terms)
+    return text.rpartition(" ")[2] if text.count(" ") == 2 else text
 
 
 def _pairs(which: Sequence[int]) -> list[tuple[int, int]]:

@@ -57,8 +57,8 @@ def hint(guide: Guide) -> str:
     """The next possible step."""
     steps = [
         tr("I next of M, V, N") if guide.is_frame else tr("I forces"),
-        tr("C convention"),
         tr("Esc back to pause"),
+        tr("C convention"),
     ]
     if guide.part == 2 and guide.axis_wanted is not None:
         steps = [tr("X horizontal"), tr("Y vertical")]

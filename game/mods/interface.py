@@ -118,7 +118,12 @@ def _checked_plot(plot: Plot) -> Plot:
     for name, x, y in plot.curves:
         if x.ndim != 1 or x.shape != y.shape:
             raise ValueError(
-                f"the curve '{name}' has x of shape {x.shape} and y of {y.shape}; give (n,) and (n,)"
+                tr(
+                    "the curve '{name}' has x of shape {x} and y of shape {y}; both must be (n,)",
+                    name=name,
+                    x=str(x.shape),
+                    y=str(y.shape),
+                )
             )
     curves = tuple((readable(tr(name)), x, y) for name, x, y in plot.curves)
     return replace(plot, x_title=readable(tr(plot.x_title)), y_title=readable(tr(plot.y_title)), curves=curves)

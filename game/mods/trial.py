@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import Any
 
 from components.field import MADE, Field, FieldError
-from components.language import joined, tr
+from components.language import joined, marked, tr
 from components.load import HISTORIES
 from components.model import ADDED, Model
 from components.suggestions import missing
@@ -116,7 +116,7 @@ class _Trial:
             table, _, column = name.partition(".")
             if column and (table not in model.tables or column not in model.tables[table].fields):
                 known = [f"{t.name}.{f}" for t in model.tables.values() for f in t.fields]
-                self._note(joined([f"{system.name}:", missing("columns", name, known)]))
+                self._note(joined([f"{system.name}:", missing(marked("columns"), name, known)]))
         if isinstance(system, StepSystem):
             system.leaves_flight_exact(model)
         if isinstance(system, Integrator):
@@ -131,14 +131,14 @@ class _Trial:
         for binding in BINDINGS:
             if binding.action.startswith(f"{self.mod.name}."):
                 for scene in sorted(set(binding.scenes) - scenes):
-                    self._note(
-                        tr(
-                            "The key '{key}' for {action}: {problem}",
-                            key=binding.key,
-                            action=binding.action,
-                            problem=missing("scenes", scene, scenes),
-                        )
+                    problem = missing(marked("scenes"), scene, scenes)
+                    sentence = tr(
+                        "The key '{key}' for {action}: {problem}",
+                        key=binding.key,
+                        action=binding.action,
+                        problem=problem,
                     )
+                    self._note(sentence)
 
     # --- what must be tried ----------------------------------------------------------------------------
 

@@ -5,16 +5,18 @@ from __future__ import annotations
 import math
 import operator
 import re
-from collections.abc import Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from typing import Any, Protocol
 
-from components.language import english, tr
+from components.handle import Handle
+from components.language import english, marked, tr
 from components.suggestions import missing
-from components.wording import quoted
-from game.paths import Readable, locate_one
+from components.view import View
+from components.wording import cut, quoted
+from game.paths import PathError, Readable, locate, locate_one, readable
 
 _OF_SESSION = ("scene", "time", "message")
-_SECTIONS = ("energy", "force_method", "count")
+_SECTIONS = ("energy", "force_method", "count", "statics", "view")
 _NUMBERS = ("force", "delta_real", "delta_base", "delta_unit")  # of the force method
 _SETS = ("real", "base", "superposed")
 
@@ -39,6 +41,8 @@ class Shown(Readable, Protocol):
     def message(self) -> str: ...
     @property
     def scenes(self) -> Any: ...
+    @property
+    def view(self) -> View: ...
 
 
 def expect(session: Shown, text: str) -> None:
@@ -49,17 +53,24 @@ def expect(session: Shown, text: str) -> None:
 
 def check(session: Shown, text: str) -> Iterator[tuple[str, Any]]:
     """(expected, got) if a text does not hold. Raises ValueError, LookupError."""
+    path, relation, value, slack = parts_of(text)
+    got = english(read(session, path))  # a script is the same in every language
+    if not compared(got, relation, value, slack):
+        yield text, got
+
+
+def parts_of(text: str) -> tuple[str, str, str, str | None]:
+    """Path, relation, value and slack of an expectation. Raises ValueError."""
     match = _EXPECTATION.match(text)
     if match is None:
         raise ValueError(
             tr("'{text}' is not an expectation; write it like rods.AB.axial_force ≈ -28.34 ± 0.01.", text=text)
         )
-    got = english(read(session, match["path"]))  # a script is the same in every language
-    if not _holds(got, match["relation"], match["value"], match["slack"]):
-        yield text, got
+    return match["path"], match["relation"], match["value"], match["slack"]
 
 
-def _holds(got: Any, relation: str, value: str, slack: str | None) -> bool:
+def compared(got: Any, relation: str, value: str, slack: str | None) -> bool:
+    """True if a value is so related to what an expectation says. Raises ValueError."""
     if relation not in (*_SAMENESS, *_ORDERS):
         raise ValueError(
             tr(
@@ -109,7 +120,11 @@ def _typed(text: str) -> str:
 
 
 def read(session: Shown, path: str) -> Any:
-    """A quantity by its path: rods.AB.axial_force, particles.B.displacement.y, energy.imbalance, scene."""
+    """A quantity by its path: rods.AB.axial_force, max rods.*.axial_force, statics.degree, energy.imbalance, scene."""
+    word, _, of_all = path.strip().partition(" ")
+    if word in OVER_ALL and of_all:
+        values = [value for _, value in each(session, of_all)]
+        return float(OVER_ALL[word](values)) if values else math.nan
     head, _, rest = path.strip().partition(".")
     if head in _OF_SESSION:
         return getattr(session, head)
@@ -117,12 +132,73 @@ def read(session: Shown, path: str) -> Any:
         return _one_of(session.energy.as_dict(), rest, "energies")
     if head == "force_method":
         return _of_force_method(session, rest)
+    if head == "statics":
+        return _one_of(_STATICS, rest, "quantities of statics")(session)
+    if head == "view":
+        return _one_of(_seen(session.view), rest, "parts of the view")
     if head == "count":
         return len(_one_of(session.model.tables, rest, "tables"))
     if head not in session.model.tables:
-        raise LookupError(missing("quantities", head, [*_OF_SESSION, *_SECTIONS, *session.model.tables]))
+        raise LookupError(
+            missing(marked("quantities"), head, [*_OF_SESSION, *_SECTIONS, *session.model.tables])
+        )
     target = locate_one(session.model, path.strip())
     return target.part(getattr(target.handles[0], target.field.name))
+
+
+def each(session: Shown, path: str) -> list[tuple[Handle, float]]:
+    """The elements that a path such as rods.*.axial_force names, with their numbers; without those that have none."""
+    target, rest = locate(session.model, path.strip(), readable)
+    if rest:
+        raise PathError(f"{cut(path)}: '{cut(rest)}' follows the path; leave it out.")
+    values = [(handle, target.part(getattr(handle, target.field.name))) for handle in target.handles]
+    wrong = next((value for _, value in values if not isinstance(value, int | float | None)), None)
+    if wrong is not None:
+        parts = " or ".join(f"{target.key}.{axis}" for axis in target.field.axes if target.field.shape)
+        raise PathError(f"{cut(path)}: it is {wrong}, not one number{f'; write {parts}' if parts else ''}.")
+    return [(handle, float(value)) for handle, value in values if value is not None]
+
+
+def _largest(values: Sequence[float]) -> float:
+    return max(map(abs, values))
+
+
+OVER_ALL: dict[str, Callable[[Sequence[float]], float]] = {  # of what a path with * names
+    "max": max,
+    "min": min,
+    "sum": math.fsum,
+    "largest": _largest,
+}
+
+
+def _frequency(session: Any) -> float:
+    """The lowest natural frequency (Hz); NaN if nothing can vibrate."""
+    from systems.statics.vibration import vibrations  # scipy
+
+    hertz = vibrations(session.model).hertz
+    return float(hertz[0]) if len(hertz) else math.nan
+
+
+def _buckling(session: Any) -> float:
+    """The lowest load factor of linear buckling; NaN if there is none."""
+    factors = session.buckling(1).factors
+    return float(factors[0]) if len(factors) else math.nan
+
+
+_STATICS: dict[str, Callable[[Any], Any]] = {
+    "degree": lambda session: session.document.assessment.indeterminacy.static,
+    "mechanisms": lambda session: session.document.assessment.indeterminacy.mechanisms,
+    "equilibrium": lambda session: session.document.assessment.in_equilibrium,
+    "frequency": _frequency,
+    "buckling": _buckling,
+}
+
+
+def _seen(view: View) -> dict[str, Any]:
+    """What a person can turn on and off."""
+    return {name: value for name, value in vars(view).items() if isinstance(value, bool | str)} | {
+        "shape": view.shape.title if view.shape is not None else ""
+    }
 
 
 def _one_of(found: Mapping[str, Any], name: str, what: str) -> Any:

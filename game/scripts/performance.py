@@ -13,7 +13,7 @@ from components.view import Page, Status, View
 from game.documents import library
 from game.documents.open_documents import ModelFile
 from game.editor.frame import Frame
-from game.scripts.playing import Failure, play_line
+from game.scripts.lines import Failure, play_line
 from game.scripts.script import Script
 from game.session import Session
 from systems.base import REVIEW_INTERVAL

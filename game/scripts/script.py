@@ -20,6 +20,8 @@ a "description", the "mods" that it was recorded with, {"wind": "1.0"}, without 
     {"input": "click", "pixel": [512, 300]}     what a window recorded
     {"resize": [1280, 800, 2]}                  the window's pixels, and pixels per point
     {"say": "Press Space."}                     shown below the picture in a window; else nothing
+    {"task": "…", …}                            a task of a lesson, see game/lessons/tasks.py
+    {"answer": ["AB", "CD"]}                    what a student answers to it; also a text or a number
 
 "clipboard" gives the text on the clipboard at that moment.
 
@@ -30,7 +32,7 @@ within the next one; "window": [width, height] sets the size of the view in pixe
 from __future__ import annotations
 
 import json
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator, Mapping
 from importlib.resources import files
 from importlib.resources.abc import Traversable
 from pathlib import Path
@@ -51,8 +53,17 @@ class ScriptError(Mistake, ValueError):
 
 
 def lessons() -> list[str]:
-    """Names of the bundled scripts, in order."""
-    names = sorted(entry.name for entry in files("assets").joinpath("lessons").iterdir())
+    """Names of the bundled lessons to watch, in order."""
+    return _names_in("lessons")
+
+
+def lessons_with_tasks() -> list[str]:
+    """Names of the bundled lessons that ask a student to do something, in order."""
+    return _names_in("lessons/tasks")
+
+
+def _names_in(folder: str) -> list[str]:
+    names = sorted(entry.name for entry in files("assets").joinpath(folder).iterdir())
     return [name.removesuffix(".jsonl") for name in names if name.endswith(".jsonl")]
 
 
@@ -62,8 +73,9 @@ def _are_mods(value: object) -> bool:
 
 def _found(source: str | Path) -> Path | Traversable:
     """The lesson of that name, or else a file."""
-    if isinstance(source, str) and source in lessons():
-        return files("assets").joinpath("lessons", f"{source}.jsonl")
+    for folder, names in (("lessons", lessons), ("lessons/tasks", lessons_with_tasks)):
+        if isinstance(source, str) and source in names():
+            return files("assets").joinpath(folder, f"{source}.jsonl")
     return Path(source)
 
 
@@ -135,11 +147,19 @@ class Script:
             )
         self.title, self.description = (str(header.get(key, "")) for key in ("title", "description"))
 
+    @classmethod
+    def of_lines(cls, title: str, lines: Iterable[tuple[int, Mapping[str, Any]]]) -> Script:
+        """A script of some lines of another one, which is not in a file of its own."""
+        made = cls.__new__(cls)
+        made.path, made.title, made.description, made.mods, made.has_data = Path(), title, "", None, True
+        made.lines = [(0, dict(HEADER)), *((number, dict(entry)) for number, entry in lines)]
+        return made
+
     def _read(self) -> Iterator[tuple[int, dict[str, Any]]]:
         try:
             text = self.path.read_text(encoding="utf-8-sig")
         except FileNotFoundError:
-            near = remedy(str(self.path), lessons())
+            near = remedy(str(self.path), [*lessons_with_tasks(), *lessons()])
             raise ScriptError(
                 tr("There is no file and no lesson '{file}'; {remedy}", file=self.path, remedy=near)
             ) from None
@@ -190,5 +210,19 @@ class Script:
     def source(self) -> Any:
         """The model in the header: a document, a path, or the name of a bundled model."""
         source = self.lines[0][1].get("model", EMPTY)
-        beside = self.path.parent / source if isinstance(self.path, Path) and isinstance(source, str) else None
-        return beside if beside is not None and beside.is_file() else source
+        return self.beside(source) if isinstance(source, str) else source
+
+    def beside(self, name: str) -> str | Path:
+        """The file of that name beside the script, if there is one, else the name, which is that of a bundled model."""
+        path = self.path.parent / name if isinstance(self.path, Path) else None
+        return path if path is not None and path.is_file() else name
+
+    @property
+    def name(self) -> str:
+        """The name of its file."""
+        return self.path.name.removesuffix(".jsonl")
+
+    @property
+    def has_tasks(self) -> bool:
+        """True if it is a lesson that asks a student to do something."""
+        return any("task" in entry for _, entry in self.lines)

@@ -10,7 +10,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from components.field import Column, FieldError
-from components.language import english
 from components.rod import bends
 from components.settings import AUTOMATIC
 from game.commands.reports.results import reported
@@ -174,7 +173,7 @@ class Batches:
         found: dict[int, list[Record]] = {}
         for variant in np.flatnonzero(~batch.alone).tolist():
             status = "at rest" if analysis.times is None else "time reached"
-            message = english(at_rest_since(batch.rested[variant])) if batch.resting[variant] else ""
+            message = at_rest_since(batch.rested[variant]) if batch.resting[variant] else ""
             found[numbers[variant]] = [(status, message, *state[variant]) for state in states]
         return found
 

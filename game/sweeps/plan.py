@@ -12,7 +12,7 @@ from typing import Any
 import msgspec
 import numpy as np
 
-from components.language import english, tr
+from components.language import tr
 from game import __version__
 from game.commands.reports.report import Analysis
 from game.documents import models
@@ -145,7 +145,7 @@ class Plan:
 
     def failure(self, number: int, reason: str) -> Outcome:
         """The record of a variant that could not be computed."""
-        return number, [(FAILED, english(reason), *[None] * (len(RECORDED) - 2 + len(self.measures)))]
+        return number, [(FAILED, reason, *[None] * (len(RECORDED) - 2 + len(self.measures)))]
 
     def fingerprint(self) -> str:
         """Tells plans apart: model, variations, seed, what is asked and measured, versions."""

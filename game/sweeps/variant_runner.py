@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator
 from contextlib import contextmanager
 
-from components.language import english
 from components.snapshot import Snapshot
 from game.documents import models
 from game.paths import apply_override
@@ -36,7 +35,7 @@ class VariantRunner:
         with self.taken_back():
             self.override(self._plan.overrides_of(number))
             run = self._plan.analysis.run(self.simulation, self._plan.name)
-        about = run["status"], english(run["message"])
+        about = run["status"], run["message"]
         return [
             (
                 *about,

@@ -13,6 +13,7 @@ PROPERTIES, SAVE, LOAD, FORCE_METHOD = "properties", "save", "load", "force meth
 LIVE = (SIMULATION, PAUSE)
 FORMS = (PROPERTIES, SAVE, LOAD)
 EVERY = (*LIVE, *FORMS, FORCE_METHOD)
+IN_LESSONS = (*LIVE, PROPERTIES, FORCE_METHOD)
 MENU = "menu"  # no scene: the keys while a menu is open
 
 TEXT = "text "  # prefix of the "key" of typed text, such as "text a"
@@ -184,6 +185,13 @@ _BY_PURPOSE: dict[str, tuple[Binding, ...]] = {
         Binding("shift+f12", "picture as svg", EVERY, marked("save a picture as SVG")),
         Binding("ctrl+f12", "picture as pdf", EVERY, marked("save a picture as PDF")),
     ),
+    marked("Lessons"): (
+        Binding("f5", "check answer", IN_LESSONS, marked("check the task of the lesson, or go on")),
+        Binding("f6", "hint", IN_LESSONS, marked("show a hint for the task")),
+        Binding("f7", "show solution", IN_LESSONS, marked("show how the task is done")),
+        Binding("f8", "task again", IN_LESSONS, marked("begin the task again")),
+        Binding("f9", "leave lesson", IN_LESSONS, marked("leave the lesson")),
+    ),
     marked("Files"): (
         Binding("s", "save", (PAUSE,), marked("save as")),
         Binding("ctrl+shift+s", "save", LIVE, marked("save as")),
@@ -347,7 +355,7 @@ def key_named(text: str) -> str:
     name = ALSO_CALLED.get(name, name)
     known = {binding.key.removeprefix("ctrl+").removeprefix("shift+") for binding in BINDINGS} | {*UNBOUND}
     if len(name) != 1 and name not in known:
-        raise ValueError(missing("keys", text, sorted(key for key in known if len(key) > 1)))
+        raise ValueError(missing(marked("keys"), text, sorted(key for key in known if len(key) > 1)))
     if len(name) == 1 and "ctrl+" not in held:
         held.clear()
     return "".join(sorted(held)) + name  # ctrl comes before shift

@@ -2,14 +2,23 @@
 
 from __future__ import annotations
 
+import math
+
 from components.view import Page
 from systems.render.marks import Mark, Text, boxes
 from systems.render.overlays import BAR, draw_notice, draw_overlays
 from systems.render.sheet import Sheet
 from systems.render.typography import font_size, line_height, text_width, wrapped
 
-_EDGE, _GAP, _BLOCKS = 14.0, 16.0, 34.0  # points: to the edges, between columns, between blocks of a table
+_EDGE, _BLOCKS = 14.0, 34.0  # points: to the edges, between blocks of a table
 _SIZE = 12.0  # points
+_FITTING = (
+    (_SIZE, 16.0),
+    (_SIZE, 9.0),
+    (11.0, 9.0),
+    (10.0, 8.0),
+    (9.0, 7.0),
+)  # points of type, and between columns
 _ABOVE, _BELOW = 6.0, 6.0  # points
 
 
@@ -37,11 +46,14 @@ def page_height(page: Page, width: float, unit: float) -> int:
         return round(BAR * unit)
     layout = _Layout(page, width, unit)
     rows = len(layout.lines) + (layout.rows + 1 if page.table else 0)
-    return round(rows * layout.step + (_ABOVE + _BELOW + BAR) * unit)
+    return math.ceil(rows * layout.step + (_ABOVE + _BELOW + BAR) * unit)
 
 
 class _Layout:
-    """A page in lines of a width; its table in blocks side by side, each under the head."""
+    """A page in lines of a width; its table in blocks side by side, each under the head.
+
+    A table that is too wide is set closer and smaller, then without the columns that follow the names.
+    """
 
     def __init__(self, page: Page, width: float, unit: float) -> None:
         self.page = page
@@ -49,12 +61,19 @@ class _Layout:
         self.step = line_height(self.size)
         room = width - 2 * _EDGE * unit
         self.lines = [line for text in page.lines for line in wrapped(text, room, self.size, "semibold")]
-        self.gap = _GAP * unit
         sample = page.table[:200]  # enough to know how wide columns are
-        self.widths = [
-            max(text_width(cell, self.size, "semibold") for cell in column)
-            for column in zip(*sample, strict=True)
-        ]
+        for size, gap in _FITTING:
+            self.type, self.gap = font_size(size, unit), gap * unit
+            widths = [
+                max(text_width(cell, self.type, "semibold") for cell in column)
+                for column in zip(*sample, strict=True)
+            ]
+            if sum(widths) + self.gap * (len(widths) - 1) <= room:
+                break
+        kept = list(range(len(widths)))
+        while len(kept) > 2 and sum(widths[at] + self.gap for at in kept) - self.gap > room:
+            kept.pop(1)  # the last columns are the results
+        self.columns, self.widths = kept, [widths[at] for at in kept]
         self.block = sum(self.widths) + self.gap * (len(self.widths) - 1) + _BLOCKS * unit
         self.blocks = max(int((room + _BLOCKS * unit) / self.block), 1) if self.widths else 1
         self.rows = -(-max(len(page.table) - 1, 0) // self.blocks)
@@ -81,8 +100,9 @@ def _table(sheet: Sheet, layout: _Layout, y: float, bottom: float) -> list[Mark]
 
 def _row(layout: _Layout, row: tuple[str, ...], left: float, y: float, colour: tuple[int, ...]) -> list[Mark]:
     marks: list[Mark] = []
-    for index, (cell, width) in enumerate(zip(row, layout.widths, strict=True)):
+    shown = [row[at] for at in layout.columns]
+    for index, (cell, width) in enumerate(zip(shown, layout.widths, strict=True)):
         at, anchor = (left, "left") if index == 0 else (left + width, "right")
-        marks.append(Text(cell, at, y, layout.size, colour, anchor=anchor))  # type: ignore[arg-type]
+        marks.append(Text(cell, at, y, layout.type, colour, anchor=anchor))  # type: ignore[arg-type]
         left += width + layout.gap
     return marks

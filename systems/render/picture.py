@@ -15,6 +15,7 @@ from systems.render.diagrams import draw_particle_diagrams
 from systems.render.empty_card import draw_card, shows_card
 from systems.render.free_bodies import draw_free_bodies
 from systems.render.labels import Placed, place_labels
+from systems.render.lesson_card import draw_lesson
 from systems.render.marks import Picture
 from systems.render.members import draw_distributed_forces, draw_hinges, draw_moments
 from systems.render.overlays import BAR, draw_notice, draw_overlays, draw_scale, place_scale
@@ -77,6 +78,8 @@ def compose(
         return compose_form(model, view, theme)
     if isinstance(model, Toolbar):
         return compose_toolbar(model, view, theme, others)
+    if view.card is not None:
+        return Picture(view.camera.viewport, theme.panel, draw_lesson(view, theme))
     sheet = measure(model, view, theme, placed)
     if view.page is None:
         return _composed(sheet)[0]

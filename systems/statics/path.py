@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from components.language import joined, tr
+from components.language import joined, marked, tr
 from components.model import Model
 from components.suggestions import missing
 from components.wording import cut
@@ -82,7 +82,7 @@ def goal_of(model: Model, factor: float = 1.0, until: str | None = None) -> Goal
             )
         )
     if name not in model.particles:
-        raise ValueError(missing("particles", name, model.particles.names))
+        raise ValueError(missing(marked("particles"), name, model.particles.names))
     particle, direction = model.particles[name], AXES.index(axis)
     if axis == "rotation":
         if model.particles.turning[particle.row] == 0.0:

@@ -9,7 +9,7 @@ import numpy as np
 from scipy.linalg import qr
 
 from components.field import ENDS
-from components.language import tr
+from components.language import marked, tr
 from components.model import Model
 from components.particle import Particle
 from components.rod import Rod, bends
@@ -93,7 +93,7 @@ def find_unknown(model: Model, name: str) -> Unknown:
             tr("'{name}' is a particle; say which of its supports, such as {name}.x or {name}.y.", name=name)
         )
     choices = [*model.rods.names, *(unknown.name for unknown in _of_supports(model) + _of_ends(model))]
-    raise ForceMethodError(missing("rods and supports", name, choices))
+    raise ForceMethodError(missing(marked("rods and supports"), name, choices))
 
 
 def _found(model: Model, unknown: Unknown) -> Unknown:

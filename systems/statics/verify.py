@@ -178,7 +178,7 @@ class Comparison:
         """
         for given, known in ((way, ("simulation", "linear")), *((name, QUANTITIES) for name in quantities)):
             if given not in known:
-                raise ValueError(missing("comparisons", given, known))
+                raise ValueError(missing(marked("comparisons"), given, known))
         greatest, row = -1.0, None
         for quantity in quantities or QUANTITIES:
             errors, concerned = self._errors[quantity].get(way), self._concerned(quantity)

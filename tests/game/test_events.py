@@ -10,7 +10,8 @@ import pytest
 
 from components.view import drawn_positions
 from game.documents.chronicle import TOLD
-from game.scripts.playing import Recorder, perform
+from game.scripts.lines import perform
+from game.scripts.playing import Recorder
 from game.session import Session
 from systems.statics.stability import is_held
 

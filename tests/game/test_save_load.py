@@ -22,7 +22,7 @@ from game.documents import library, models
 from game.editor.scenes import files
 from game.editor.scenes.files import FileScene
 from game.editor.scenes.load import NEW, Load
-from game.scripts.script import Script, lessons
+from game.scripts.script import Script, lessons, lessons_with_tasks
 from systems.render.marks import Text
 from systems.render.picture import compose
 from systems.render.theme import load_theme
@@ -326,7 +326,9 @@ def test_typing_filters_by_title_and_name(session: Session) -> None:
     # Tiles that stand for those for which one row has no room.
     folded = [tile.title for tile in scene_of(session).form.tiles if tile.rest]
     assert {"All 1", "All lessons"} < {*folded}
-    assert len(everything) == len(models.bundled()) + len(lessons()) + 2 + len(folded)
+    assert len(everything) == len(models.bundled()) + len(lessons()) + len(lessons_with_tasks()) + 2 + len(
+        folded
+    )
     assert {*folded} <= {*everything}
     session.type("TOWER")
     assert shown_tiles(session) == ["my tower", "Lattice tower in the wind"]

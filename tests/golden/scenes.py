@@ -140,6 +140,15 @@ def _drawing_a_wall(window: Window) -> Session:
     return session
 
 
+def _force_method_of_a_frame(window: Window) -> Session:
+    """The virtual work of a portal whose right foot lets go sideways."""
+    session = pressed(window, "k", "k", source="portal")
+    session.click(*session.model.particles["D"].position)
+    for key in ("x", "k", "k", "k"):
+        session.press(key)
+    return session
+
+
 def _force_method(*keys: str) -> Scene:
     """The guide with this pressed; a click picks BD, away from where AC crosses it."""
 
@@ -272,6 +281,7 @@ SCENES: dict[str, Scene] = {
     "force-method-4": _force_method(*PICKED, "k", "i"),
     "force-method-5": _force_method(*PICKED, "k", "k"),
     "force-method-6": _force_method(*PICKED, "k", "k", "k"),
+    "force-method-of-a-frame": _force_method_of_a_frame,
     "force-method": _force_method(*PICKED, "k", "k", "k", "k"),
     "help": lambda window: pressed(window, "f1"),
     "menu": _menu,
@@ -282,7 +292,7 @@ ALONE_IN_LAYOUT = {
     "notice",
     "properties-of-all",
     "menu-of-canvas",
-    *(f"force-method-{part}" for part in ("1", "2", "3", "5", "6")),
+    *(f"force-method-{part}" for part in ("1", "2", "3", "5")),
 }
 IN_OTHER_SIZES = (
     ("usual", "force-method-4"),

@@ -9,7 +9,7 @@ import pytest
 
 from game import Session, check_system, mods
 from game.commands.reports.report import Analysis
-from game.scripts.playing import perform
+from game.scripts.lines import perform
 from game.sweeps import sweep
 from systems.render.picture import compose
 from systems.render.theme import load_theme

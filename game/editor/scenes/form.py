@@ -10,7 +10,7 @@ from components.box import NAME, NUMBER, WORD, Box
 from components.camera import Camera, Viewport
 from components.field import Vector
 from components.form import Form, Tile
-from components.language import decimals, english, joined, tr
+from components.language import decimals, english, joined, marked, tr
 from components.suggestions import missing
 from game.editor.context import Context, Scene
 from systems.forms import typing
@@ -195,7 +195,7 @@ class FormScene(Scene):
                 typing.select(self.form, box)
                 return
         titles = [english(box.title) for box in self.form.boxes]
-        raise LookupError(missing("boxes", title, titles))
+        raise LookupError(missing(marked("boxes"), title, titles))
 
     def scroll(self, context: Context, rows: int) -> None:
         """Scroll by a number of rows."""

@@ -12,6 +12,8 @@ from game.documents.autosave import recovered_name
 from game.documents.open_documents import ModelFile
 from game.editor.context import Context
 from game.editor.scenes.files import FileScene, Offer, saved_models
+from game.lessons import progress
+from game.lessons.shelf import count_of, is_done, shelf
 from game.scripts.script import Script, lessons
 
 WELCOME = marked("Welcome to Pinjoint. What would you like to begin with?")
@@ -46,8 +48,10 @@ class Load(FileScene):
     def make_form(self, context: Context) -> Form:
         self._asked = False
         new = Offer(tr(LESSONS), tr(NEW), tr("draw your own"), "", None, tr("An empty plane to draw on."), "+")
-        rest = Offer(tr(LESSONS), tr("All lessons"), tr("to watch"), "", ALL, symbol="»", rest=True)
-        offers = [*_yours(context), new, *_lessons(), rest, *_examples()]
+        learn = _tasks()
+        held = tr("{tasks} to do, {films} to watch", tasks=len(learn), films=len(lessons()))
+        rest = Offer(tr(LESSONS), tr("All lessons"), held, "", ALL, symbol="»", rest=True)
+        offers = [*_yours(context), *learn[:1], new, *learn[1:], *_lessons(), rest, *_examples()]
         form = self.new_form(tr(WELCOME) if self.welcome else tr("Open a model"), "", offers, tr("Open"))
         form.boxes[0].note = tr("type to search, or click a picture")
         return form
@@ -94,7 +98,9 @@ class Load(FileScene):
 
     def _open(self, context: Context, source: Any) -> None:
         try:
-            if isinstance(source, Script):
+            if isinstance(source, Script) and source.has_tasks:
+                context.lesson = source  # it opens its models itself
+            elif isinstance(source, Script):
                 context.open_here(source.source)
                 context.lesson = source
             elif context.autosave is not None and source in context.autosave.left():
@@ -151,6 +157,25 @@ def _yours(context: Context) -> list[Offer]:
         tr(YOURS), tr("All {count}", count=count), tr("your models"), "", ALL, symbol="»", rest=True
     )
     return [*offers, everything] if offers else []
+
+
+def _tasks() -> list[Offer]:
+    """The lessons with tasks, from the first that is not done on; then those that are done."""
+    offers = []
+    for script in sorted(shelf(), key=is_done):
+        count, done = count_of(script), len(progress.done(script.name).tasks)
+        caption = tr("a lesson of {count} tasks", count=count)
+        if is_done(script):
+            caption = tr("done: all {count} tasks", count=count)
+        elif done:
+            caption = tr("continue: {done} of {count} tasks done", done=done, count=count)
+        title, about = tr(script.title), tr(script.description)
+        offers.append(
+            Offer(tr(LESSONS), title, caption, script.name, script, about, "✓" if is_done(script) else "▶")
+        )
+    if offers and not is_done(offers[0].source):
+        offers[0] = offers[0]._replace(title=tr("Learn: {lesson}", lesson=offers[0].title))
+    return offers
 
 
 def _lessons() -> list[Offer]:

@@ -8,7 +8,7 @@ import pytest
 from components.slider import Aim, SetSliders, Slider
 from game import Session
 from game.documents.document import document
-from game.scripts.playing import perform
+from game.scripts.lines import perform
 from systems.edit import Refusal
 from tests.reference.frames import energy, forces
 from tests.reference.models import model, particle, rod

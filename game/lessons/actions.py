@@ -1,0 +1,109 @@
+"""Actions on the card of a lesson: check, hint, show me, again, next, leave, and answers."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from components.field import Vector
+from components.language import tr
+from game.editor.context import action
+from game.lessons.course import Course
+from game.lessons.shelf import after
+from game.scripts.script import Script, ScriptError
+from systems.edit import Refusal
+
+MOST_ANSWERS = 9  # choices, so that each has a key
+
+Session = Any  # game.session.Session, which holds the lesson
+
+
+def _course(session: Session) -> Course:
+    """The lesson that a person is in. Raises Refusal."""
+    if session.course is None:
+        raise Refusal(tr("There is no lesson now: D opens the start page, where lessons stand at the top."))
+    course: Course = session.course
+    return course
+
+
+@action("check answer", while_drawing=True)
+def _check(session: Session, pixel: Vector) -> None:
+    course = _course(session)
+    if course.accepted:
+        session.act("next task", pixel)
+    else:
+        course.check()
+
+
+@action("next task")
+def _next(session: Session, pixel: Vector) -> None:
+    """Go on: to the next task, the next lesson, or, after the last, to the start page."""
+    course = _course(session)
+    try:
+        if course.next():
+            return
+        following = after(course.lesson.script)
+        if following is not None:
+            session.begin_lesson(following)
+            return
+    except ScriptError as error:
+        session.notice = str(error)
+        return
+    _leave(session, pixel)
+
+
+@action("hint", while_drawing=True)
+def _hint(session: Session, pixel: Vector) -> None:
+    _course(session).hint()
+
+
+@action("task again")
+def _again(session: Session, pixel: Vector) -> None:
+    _course(session).again()
+
+
+@action("show solution")
+def _show(session: Session, pixel: Vector) -> None:
+    """Do the task: before the person's eyes in a window, else at once."""
+    course = _course(session)
+    if course.accepted:
+        return
+    if session.window is None:
+        course.solve()
+        return
+    course.show()
+    session.lesson = Script.of_lines(course.lesson.title, course.task.solution)
+
+
+@action("leave lesson")
+def _leave(session: Session, pixel: Vector) -> None:
+    """Back to the document that was open before; where there was none, to the start page."""
+    _course(session)
+    session.leave_lesson()
+    if session.document.practice:
+        session.scenes.request("load")
+
+
+@action("erase answer", while_drawing=True)
+def _erase(session: Session, pixel: Vector) -> None:
+    _course(session).erase()
+
+
+def _add_answer(number: int) -> None:
+    @action(f"answer {number}", while_drawing=True)
+    def _answer(session: Session, pixel: Vector) -> None:
+        _course(session).choose(number - 1)
+
+
+for _number in range(1, MOST_ANSWERS + 1):
+    _add_answer(_number)
+
+
+@action("lesson up", while_drawing=True)
+def _up(session: Session, pixel: Vector) -> None:
+    course = _course(session)
+    course.first = max(course.first - 2, 0)
+
+
+@action("lesson down", while_drawing=True)
+def _down(session: Session, pixel: Vector) -> None:
+    _course(session).first += 2

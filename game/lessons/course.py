@@ -1,0 +1,322 @@
+"""Course: a lesson in a session, its tasks one after the other."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from typing import Any
+
+from components.card import Card, CardButton
+from components.language import decimals, marked, tr
+from components.view import Shape
+from game.documents.document import document
+from game.documents.models import ModelError, load
+from game.documents.open_documents import ModelFile
+from game.lessons import progress
+from game.lessons.judging import Answer, Document, Verdict, filled, judge, unit_of
+from game.lessons.tasks import CHOICES, NUMBER, SELECT, UNTIL, Lesson, Line, Task
+from game.scripts.lines import perform
+from game.scripts.script import ScriptError
+
+RIGHT, WRONG, HINT = "right", "wrong", "hint"  # moods of what is said
+IN_NUMBERS = frozenset("0123456789.,-−+")  # not e, which is a key
+LONGEST = 16  # characters of a number that is typed
+SOLVED = marked("That was one way to do it. Now try it: Again starts the task once more; Next goes on.")
+FINISHED = marked("This lesson is done.")
+
+
+class Course:
+    """A lesson that a person is in.
+
+    at: the number of the task, from 0. accepted: it is done. answer: the choice that was made, or what was typed.
+    """
+
+    def __init__(self, session: Any, lesson: Lesson) -> None:
+        self._session, self.lesson = session, lesson
+        self.at = 0
+        self.accepted = False
+        self.choice: str | None = None
+        self.typed = ""
+        self.said = ""
+        self.mood = ""
+        self.first = 0
+        self._hints = 0  # that were shown
+        self._begun: Document = {}
+        self._unit = ""
+        self._seen: object = None
+        self._scored = ""
+        self._shown = False  # the solution was
+        self._done = progress.done(lesson.name)
+
+    # --- tasks -------------------------------------------------------------------------------------
+
+    @property
+    def task(self) -> Task:
+        """The present task."""
+        return self.lesson.tasks[self.at]
+
+    @property
+    def awaits_number(self) -> bool:
+        """True while digits that are typed belong to the answer."""
+        return self.task.kind == NUMBER and not self.accepted
+
+    @property
+    def awaits_choice(self) -> bool:
+        """True while a digit that is pressed is an answer."""
+        return self.task.kind == CHOICES and not self.accepted
+
+    def begin(self, at: int | None = None) -> None:
+        """Begin a task; None: the first that was not done. One that goes on from those before has them solved first.
+
+        Raises ScriptError if its model or its lines cannot be used.
+        """
+        if at is None:
+            done = progress.done(self.lesson.name).tasks
+            at = next((n for n in range(len(self.lesson.tasks)) if n + 1 not in done), 0)
+        first = at
+        while first > 0 and self.lesson.tasks[first].model is None:
+            first -= 1
+        for number in range(first, at):
+            self._enter(number)
+            self.perform(self.task.solution)
+        self._enter(at)
+
+    def _enter(self, at: int) -> None:
+        """Show a task and what it begins with; the model of the one before stays if it has none."""
+        self.at = at
+        task, session = self.task, self._session
+        if task.model is not None:
+            try:
+                self._open(load(task.model), task.model if isinstance(task.model, str) else "")
+            except ModelError as error:
+                raise ScriptError(f"{self.lesson.script.path} line {task.line}: {error}") from None
+        self.perform(task.setup)
+        self._forget()
+        session.select()
+        self._begun = document(session.model)
+        self._unit = unit_of(session, task.asked[0]) if task.kind == NUMBER else ""
+        session.offer_tools()
+
+    def _forget(self) -> None:
+        """Begin to answer anew."""
+        self.accepted, self.choice, self.typed = False, None, ""
+        self.said = self.mood = self._scored = ""
+        self._hints = self.first = 0
+        self._shown = False
+        self._seen = self._looks()
+
+    def _open(self, model: Any, name: str) -> None:
+        """Open a model of the lesson, which is nobody's work; the person's own stays open below it."""
+        session = self._session
+        if session.scene != "pause":
+            session.scenes.request("pause")
+            session.scenes.apply(session)
+        own = not session.document.practice and session.model.particles.count > 0
+        session.adopt(model, ModelFile(None, name), keep=own)
+        session.document.practice = True
+        session.notice = ""
+
+    def perform(self, lines: Sequence[Line]) -> None:
+        """Perform lines of the lesson. Raises ScriptError."""
+        for number, entry in lines:
+            try:
+                for expected, got in perform(self._session, entry):
+                    raise ValueError(tr("expected {expected}, got {got}.", expected=expected, got=got))
+            except (ValueError, LookupError, TypeError) as error:
+                reason = error.args[0] if error.args else error
+                raise ScriptError(f"{self.lesson.script.path} line {number}: {reason}") from error
+
+    def again(self) -> None:
+        """Begin the task anew, from the model with which it began."""
+        self._open(load(self._begun), self._session.file.name)
+        self._forget()
+
+    def next(self) -> bool:
+        """Go on to the next task; False if this was the last one."""
+        if self.at + 1 == len(self.lesson.tasks):
+            return False
+        if self.accepted or self.lesson.tasks[self.at + 1].model is not None:
+            self._enter(self.at + 1)
+        else:
+            self.begin(self.at + 1)
+        return True
+
+    # --- answers -----------------------------------------------------------------------------------
+
+    def answer(self, value: Any) -> None:
+        """Give an answer as a script does: names of elements, a number, or the text of a choice. Raises ValueError."""
+        task, session = self.task, self._session
+        if task.kind == SELECT and isinstance(value, list):
+            table = session.model.tables[task.table]
+            session.select(*(table[name] for name in value))
+        elif task.kind == NUMBER and isinstance(value, int | float):
+            self.typed = str(value)
+        elif task.kind == CHOICES and isinstance(value, str):
+            self.choice = value
+        else:
+            raise ValueError(tr("the task asks for {kind}, not for {value}.", kind=task.kind, value=value))
+        self.check()
+
+    def choose(self, number: int) -> None:
+        """Choose an answer by its number, from 0, and have it checked."""
+        if self.task.kind == CHOICES and not self.accepted and number < len(self.task.choices):
+            self.choice = self.task.choices[number].text
+            self.check()
+
+    def type(self, text: str) -> None:
+        """Type a part of a number."""
+        kept = "".join(character for character in text if character in IN_NUMBERS)
+        before = "" if self.mood == WRONG else self.typed  # after a wrong answer, another one begins
+        self.typed = (before + kept)[:LONGEST]
+        self.said = self.mood = ""
+
+    def erase(self) -> None:
+        """Take back the last character that was typed."""
+        self.typed = self.typed[:-1]
+
+    def _given(self) -> Answer:
+        """The answer that stands there now. Raises ValueError if it is no number."""
+        task = self.task
+        if task.kind == CHOICES:
+            return self.choice
+        if task.kind == SELECT:
+            return self._selected()
+        if not self.typed:
+            return None
+        number = float(self.typed.replace(",", ".").replace("−", "-"))
+        if not math.isfinite(number):
+            raise ValueError
+        return number
+
+    def _selected(self) -> tuple[str, ...]:
+        """The names of the selected elements."""
+        return tuple(str(getattr(handle, "name", "")) for handle in self._session.selected)
+
+    def check(self) -> None:
+        """Judge the task, and say why it is right or wrong."""
+        if self.accepted:
+            return
+        try:
+            answer = self._given() if self.task.kind != UNTIL else None
+        except ValueError:
+            self.mood, self.said = WRONG, tr("'{text}' is not a number; type one such as 2.5.", text=self.typed)
+            return
+        self._judge(answer)
+
+    def _judge(self, answer: Answer, *, aloud: bool = True) -> None:
+        """Judge the task; aloud: say also why it is wrong."""
+        try:
+            found = judge(self._session, self.task, self._begun, answer)
+        except (ValueError, LookupError) as error:  # such as of a rod that was removed
+            found = Verdict(False, str(error.args[0]) if error.args else str(error))
+        if found.right:
+            self._accept(found)
+        elif aloud or self.accepted:
+            self.mood, self.said, self._scored, self.first = WRONG, found.said, "", 0
+
+    def _accept(self, found: Verdict) -> None:
+        self.accepted, self.mood, self.said, self.first = True, RIGHT, found.said, 0
+        if self._shown:
+            return
+        number, name = self.at + 1, self.lesson.name
+        progress.keep(name, number, found.score[0] if found.score is not None else None)
+        self._done = progress.done(name)
+        if found.score is not None:
+            self._scored = (
+                tr(
+                    "Your score: {score}, your best so far. Less is better: try again, or go on.",
+                    score=found.score[1],
+                )
+                if found.score[0] <= self._done.best.get(number, math.inf)
+                else tr("Your score: {score}. Your best score is better: less is better.", score=found.score[1])
+            )
+
+    def hint(self) -> None:
+        """Show the next hint; after the last one, the first again."""
+        hints = self.task.hints
+        if hints and not self.accepted:
+            self.mood, self.said, self.first = HINT, filled(hints[self._hints % len(hints)], self._session), 0
+            self._hints += 1
+
+    def solve(self) -> None:
+        """Do the task as its author does. Raises ScriptError."""
+        self.show()
+        self.perform(self.task.solution)
+        self.look()
+
+    def show(self) -> None:
+        """Begin the task anew, for its solution to be shown; it is not counted as done then."""
+        self.again()
+        self._shown = True
+
+    def look(self) -> None:
+        """Accept a state as soon as it is reached and nobody is in the middle of something, or say anew what is wrong."""
+        session, task = self._session, self.task
+        if session.gesture is not None or session.performing or (session.busy and task.after):
+            return
+        seen = self._looks()
+        if seen == self._seen or (self.accepted and not task.score):
+            return
+        self._seen = seen
+        if task.kind == UNTIL:
+            self._judge(None, aloud=self.mood == WRONG)
+        elif task.kind == SELECT and self.mood == WRONG:
+            self.mood = self.said = ""
+
+    def _looks(self) -> object:
+        """What changes whenever the task may have been done."""
+        session = self._session
+        seen = [value for value in vars(session.view).values() if isinstance(value, bool | str | Shape | None)]
+        chosen = self._selected() if self.task.kind == SELECT else ()
+        return id(session.document), session.model.revision, session.simulation.halted, seen, chosen
+
+    # --- the card ----------------------------------------------------------------------------------
+
+    def card(self) -> Card:
+        """The task as it stands."""
+        task, count = self.task, len(self.lesson.tasks)
+        said = tuple(text for text in (self.said, self._scored) if text)
+        last = self.at + 1 == count
+        if self.accepted and self._shown:
+            said += (tr(SOLVED),)
+        elif self.accepted and last:
+            said += (tr(FINISHED),)
+        return Card(
+            title=tr(self.lesson.title),
+            progress=tr("Task {number} of {count}", number=self.at + 1, count=count),
+            count=count,
+            at=self.at,
+            done=frozenset(number - 1 for number in self._done.tasks),
+            paragraphs=(*(tr(str(entry["say"])) for _, entry in task.setup if "say" in entry), tr(task.text)),
+            choices=tuple((tr(choice.text), choice.text == self.choice) for choice in task.choices),
+            entry=self._entry(),
+            said=said,
+            mood=self.mood,
+            buttons=self._buttons(last=last),
+            first=self.first,
+        )
+
+    def _entry(self) -> str | None:
+        """What was typed or selected so far."""
+        if self.task.kind == SELECT:
+            return tr("Selected: {names}", names=", ".join(self._selected()) or "–")
+        if self.task.kind != NUMBER:
+            return None
+        return f"{decimals(self.typed)}{'' if self.accepted else '|'} {self._unit}".rstrip()
+
+    def _buttons(self, *, last: bool) -> tuple[CardButton, ...]:
+        onward = tr("Next lesson") if last else tr("Next")
+        main = (
+            CardButton("next task", onward, "F5", main=True)
+            if self.accepted
+            else CardButton("check answer", tr("Check"), "F5", main=True)
+        )
+        hint = CardButton("hint", tr("Hint"), "F6", bool(self.task.hints) and not self.accepted)
+        show = CardButton("show solution", tr("Show me"), "F7", not self.accepted)
+        return (
+            main,
+            hint,
+            show,
+            CardButton("task again", tr("Again"), "F8"),
+            CardButton("leave lesson", tr("Leave"), "F9"),
+        )

@@ -1,0 +1,325 @@
+"""Judging: whether a task is done, found with the engine, and what to say to that."""
+
+from __future__ import annotations
+
+import math
+import re
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from components import written
+from components.handle import Handle
+from components.language import decimals, joined, listed, marked, tr
+from game.documents.document import document
+from game.lessons.tasks import CHOICES, NUMBER, SELECT, UNTIL, Choice, Line, Task
+from game.paths import PathError, locate, quantity, readable
+from game.scripts.expectation import OVER_ALL, check, compared, each, parts_of, read
+from game.scripts.lines import perform
+
+Session = Any  # game.session.Session, which holds the lesson
+Document = Mapping[str, Any]
+Answer = (
+    str | float | tuple[str, ...] | None
+)  # the text of a choice; a number; names of elements; None: not given yet
+
+NEARLY = 1e-6  # as a share: what differs by less from the largest is as large
+LEAST = 1e-9  # by which an answer may differ from 0
+_PLACE = re.compile(r"\{([^{}:]+)(?::([^{}]*))?\}")  # in a text: a path, and perhaps a format
+_RELATIONS = {
+    "<": marked("wanted: less than {value}"),
+    "<=": marked("wanted: {value} at most"),
+    ">": marked("wanted: more than {value}"),
+    ">=": marked("wanted: {value} at least"),
+    "=": marked("wanted: {value}"),
+    "≈": marked("wanted: {value}"),
+    "~": marked("wanted: {value}"),
+}
+_SAID: dict[tuple[str, str], str] = {  # what a state lacks, by the path and the kind of relation
+    ("statics.equilibrium", ""): marked(
+        "It is not in equilibrium yet: press E to find equilibrium, or Space to let it run until it rests."
+    ),
+    ("statics.mechanisms", ""): marked(
+        "It is a mechanism: parts can move without any rod getting longer. B shows how."
+    ),
+}
+_NAMES = {
+    "statics.degree": marked("The degree of static indeterminacy"),
+    "statics.frequency": marked("The lowest natural frequency (Hz)"),
+    "statics.buckling": marked("The lowest buckling load factor"),
+    "count.particles": marked("The number of particles"),
+    "count.rods": marked("The number of rods"),
+    "count.loads": marked("The number of loads"),
+    "time": marked("The time (s)"),
+    "clock.collisions": marked("The number of collisions"),
+}
+_OVER_ALL = {
+    "max": marked("The greatest {what}"),
+    "min": marked("The least {what}"),
+    "sum": marked("The sum of {what}"),
+    "largest": marked("The largest {what}, whatever its sign,"),
+}
+
+
+class Verdict(NamedTuple):
+    """Whether a task is done, and what is said of it. score: of one that has one, and as it is written."""
+
+    right: bool
+    said: str
+    score: tuple[float, str] | None = None
+
+
+def judge(session: Session, task: Task, begun: Document, answer: Answer = None) -> Verdict:
+    """Whether a task is done in a session, in which it began with a model. Raises ValueError, LookupError."""
+    if task.kind == UNTIL:
+        return _judge_state(session, task)
+    if answer is None or answer == ():
+        return Verdict(False, _NOTHING[task.kind]())
+    truth = copy_of(session, begun, task.after)
+    return _JUDGES[task.kind](truth, task, answer)
+
+
+_NOTHING: dict[str, Callable[[], str]] = {
+    SELECT: lambda: tr("Nothing is selected: click an element; Ctrl+click adds another. Then check."),
+    NUMBER: lambda: tr("Type a number first. Then check."),
+    CHOICES: lambda: tr("Choose an answer first. Then check."),
+}
+
+
+def copy_of(session: Session, model: Document, lines: Iterable[Line]) -> Session:
+    """A session of its own in which lines were performed, from the same model."""
+    copy = type(session).open(model)
+    for _, entry in lines:
+        for expected, got in perform(copy, entry):
+            raise ValueError(tr("expected {expected}, got {got}.", expected=expected, got=got))
+    return copy
+
+
+def holds(session: Session, conditions: Iterable[str]) -> bool:
+    """True if all conditions hold. Raises ValueError, LookupError."""
+    return all(not list(check(session, condition)) for condition in conditions)
+
+
+# --- the four kinds --------------------------------------------------------------------------------------
+
+
+def _judge_state(session: Session, task: Task) -> Verdict:
+    state = copy_of(session, document(session.model), task.after) if task.after else session
+    failed = next((text for text in task.asked if not holds(state, (text,))), None)
+    if failed is None:
+        score = (float(read(state, task.score)), shown(state, task.score)) if task.score else None
+        return Verdict(True, filled(task.right, state), score)
+    return Verdict(False, _explained(task, state) or _lacking(state, failed))
+
+
+def _judge_selection(truth: Session, task: Task, answer: tuple[str, ...]) -> Verdict:
+    right, values = _asked_for(truth, task.asked[0])
+    chosen = [handle for handle in values if _named(handle) in answer]
+    wrong = next((handle for handle in chosen if handle not in right), None)
+    others = set(answer) - {_named(handle) for handle in values}
+    if wrong is not None:
+        said = tr("{what} does not belong: {value}.", what=_name(truth, wrong), value=values[wrong])
+        return Verdict(False, joined([_explained(task, truth), said]))
+    if others or not chosen:
+        kind = next(iter(values)).world.tables[next(iter(values)).table].name if values else ""
+        said = tr("Select only {kind}: {names} is something else.", kind=kind, names=listed(sorted(others)))
+        return Verdict(False, said)
+    if missing := len(right) - len(chosen):
+        said = tr("Right so far, but not all: {count} more to find.", count=missing)
+        return Verdict(False, said)
+    return Verdict(True, filled(task.right, truth))
+
+
+def _judge_number(truth: Session, task: Task, answer: float) -> Verdict:
+    wanted = _shown_number(truth, task.asked[0])
+    apart = abs(answer - wanted)
+    if apart <= max(task.within * abs(wanted), LEAST):
+        return Verdict(True, filled(task.right, truth))
+    if said := _explained(task, truth, answer):
+        return Verdict(False, said)
+    if wanted and abs(answer + wanted) <= task.within * abs(wanted):
+        return Verdict(False, tr("The size is right. Think about the sign."))
+    if abs(answer) > abs(wanted):
+        return Verdict(False, tr("{answer} is too large.", answer=written.given(answer)))
+    return Verdict(False, tr("{answer} is too small.", answer=written.given(answer)))
+
+
+def _judge_choice(truth: Session, task: Task, answer: str) -> Verdict:
+    choice = next((choice for choice in task.choices if choice.text == answer), None)
+    if choice is None:
+        texts = ", ".join(choice.text for choice in task.choices)
+        raise LookupError(tr("there is no choice '{text}'; use one of {texts}.", text=answer, texts=texts))
+    if is_right(truth, choice):
+        return Verdict(True, filled(task.right, truth))
+    said = filled(choice.say, truth) or tr("No: “{text}” is not what the engine finds.", text=tr(choice.text))
+    return Verdict(False, said)
+
+
+_JUDGES: dict[str, Callable[[Session, Task, Any], Verdict]] = {
+    SELECT: _judge_selection,
+    NUMBER: _judge_number,
+    CHOICES: _judge_choice,
+}
+
+
+def is_right(truth: Session, choice: Choice) -> bool:
+    """Whether a choice is right in the session in which its conditions are tested."""
+    return choice.right if isinstance(choice.right, bool) else holds(truth, choice.right)
+
+
+def right_elements(truth: Session, asked: str) -> list[str]:
+    """The names of the elements to be selected."""
+    return [_named(handle) for handle in _asked_for(truth, asked)[0]]
+
+
+def _asked_for(truth: Session, asked: str) -> tuple[list[Handle], dict[Handle, str]]:
+    """The elements to be selected, and of all of that kind what is said of them, such as "axial force N is 70.7 kN"."""
+    word, _, path = asked.partition(" ")
+    if word in OVER_ALL and word != "sum":
+        values = each(truth, path)
+        sizes = [abs(value) if word == "largest" else value for _, value in values]
+        best = OVER_ALL[word](sizes) if sizes else math.nan
+        right = [
+            handle
+            for (handle, _), size in zip(values, sizes, strict=True)
+            if abs(size - best) <= NEARLY * abs(best)
+        ]
+    else:
+        path, relation = parts_of(asked)[0], asked[len(parts_of(asked)[0]) :]
+        values = each(truth, path)
+        right = [
+            handle for handle, _ in values if holds(truth, (path.replace("*", _named(handle), 1) + relation,))
+        ]
+    target, _ = locate(truth.model, path.strip(), readable)
+    unit, factor = target.field.shown
+    title = target.field.title
+    written_values = {
+        handle: tr(
+            "its {title} is {value} {unit}", title=title, value=_number(factor * value), unit=unit
+        ).rstrip()
+        for handle, value in values
+    }
+    return right, written_values
+
+
+# --- words -----------------------------------------------------------------------------------------------
+
+
+def filled(text: str, session: Session, answer: float | None = None) -> str:
+    """A text of a lesson in the present language, its paths in braces replaced by their values with units."""
+
+    def value(match: re.Match[str]) -> str:
+        path, form = match[1], match[2]
+        if path == "answer" and answer is not None:
+            return _number(answer)
+        if form is None:
+            return shown(session, path)
+        return decimals(format(_shown_number(session, path), form)).replace("-", "−")
+
+    return _PLACE.sub(value, tr(text)) if text else ""
+
+
+def is_filled(said: str, text: str) -> bool:
+    """True if what was said is a text with any values in its places."""
+    pattern = ".*".join(re.escape(part) for part in re.split(r"\{[^{}]*\}", tr(text)))
+    return re.fullmatch(pattern, said) is not None
+
+
+def shown(session: Session, path: str) -> str:
+    """The present value at a path as a person reads it, with its unit."""
+    value = read(session, path)
+    if isinstance(value, int | str | np.integer) or value is None:
+        return str(value)
+    unit, _, _ = _said_of(session, path)
+    return f"{_number(_shown_number(session, path))} {unit}".rstrip()
+
+
+def unit_of(session: Session, path: str) -> str:
+    """The unit in which a person reads and types the quantity at a path; "" if it has none."""
+    return _said_of(session, path)[0]
+
+
+def _said_of(session: Session, path: str) -> tuple[str, float, str]:
+    """The unit on screen, the factor to it, and the name of the quantity at a path."""
+    word, _, of_all = path.partition(" ")
+    try:
+        if word in OVER_ALL and of_all:
+            target, _ = locate(session.model, of_all.strip(), readable)
+            unit, factor = target.field.shown
+            axis = f" {target.axis}" if target.axis else ""
+            return unit, factor, tr(_OVER_ALL[word], what=f"{tr(target.field.title)}{axis}")
+        found = quantity(session.model, path)
+    except PathError:
+        return "", 1.0, tr(_NAMES[path]) if path in _NAMES else path
+    value = read(session, path)
+    factor = found.read(session) / value if isinstance(value, int | float) and value else 1.0
+    return found.unit, factor, tr(_NAMES[path]) if path in _NAMES else found.name[:1].upper() + found.name[1:]
+
+
+def _shown_number(session: Session, path: str) -> float:
+    """The number at a path in the unit in which it is shown."""
+    value = read(session, path)
+    if not isinstance(value, int | float):
+        raise ValueError(tr("{path} is {value}, not one number.", path=path, value=value))
+    return float(value) * _said_of(session, path)[1]
+
+
+def _number(value: float) -> str:
+    return decimals(written.number(value, nothing=LEAST))
+
+
+def _explained(task: Task, session: Session, answer: float | None = None) -> str:
+    """What the lesson says of a wrong state or answer; "" if nothing."""
+    for wrong in task.wrong:
+        if _all_hold(session, wrong.conditions, answer):
+            return filled(wrong.say, session, answer)
+    return ""
+
+
+def _all_hold(session: Session, conditions: Sequence[str], answer: float | None) -> bool:
+    """As `holds`, also for conditions on the number that was typed; False if one cannot be tested here."""
+    for condition in conditions:
+        path, relation, value, slack = parts_of(condition)
+        try:
+            if path == "answer":
+                held = answer is not None and compared(answer, relation, value, slack)
+            else:
+                held = holds(session, (condition,))
+        except (ValueError, LookupError):
+            return False  # such as of a rod that was removed
+        if not held:
+            return False
+    return True
+
+
+def _lacking(session: Session, condition: str) -> str:
+    """What is the case instead of a condition."""
+    path, relation, value, _ = parts_of(condition)
+    if (path, "") in _SAID:
+        return tr(_SAID[path, ""])
+    try:
+        present = shown(session, path)
+    except (ValueError, LookupError) as error:
+        return tr("Not yet: {reason}", reason=str(error.args[0]) if error.args else str(error))
+    unit, factor, name = _said_of(session, path)
+    with_unit = f"{_written(value, factor)} {unit}".rstrip()
+    wanted = tr(_RELATIONS[relation], value=with_unit)
+    return tr("{name} is {present} now; {wanted}.", name=name, present=present, wanted=wanted)
+
+
+def _written(value: str, factor: float) -> str:
+    """A number of a condition in the unit on screen; other values as they are."""
+    try:
+        return decimals(written.given(factor * float(value)))
+    except ValueError:
+        return value
+
+
+def _name(session: Session, handle: Handle) -> str:
+    described = session.model.describe(handle)
+    return str(described[:1].upper() + described[1:])
+
+
+def _named(handle: Handle) -> str:
+    return str(getattr(handle, "name", ""))

@@ -1,0 +1,160 @@
+"""Lines of a script, performed in a session one at a time."""
+
+from __future__ import annotations
+
+import json
+import math
+from collections.abc import Callable, Iterator, Mapping
+from dataclasses import dataclass
+from typing import Any
+
+from components.language import tr
+from components.wording import as_json, cut
+from game.editor.context import FAULTS
+from game.mods.mod import ModError
+from game.paths import apply_override
+from game.scripts.expectation import check
+from game.scripts.script import Script, ScriptError
+
+Session = Any  # game.session.Session, which plays lessons by these lines
+
+
+@dataclass(frozen=True)
+class Failure:
+    """An expectation that did not hold."""
+
+    line: int
+    expected: str
+    got: Any
+
+    def __str__(self) -> str:
+        return tr(
+            "line {line}: expected {expected}, got {got}",
+            line=self.line,
+            expected=self.expected,
+            got=str(self.got),
+        )
+
+
+def play_line(script: Script, number: int, entry: Mapping[str, Any], session: Session) -> list[Failure]:
+    """Do what one line of a script says; returns the expectations that did not hold. Raises ScriptError.
+
+    One of every line is that no mod fails.
+    """
+    known, failures = len(FAULTS), list[Failure]()
+    try:
+        failures += [Failure(number, *wrong) for wrong in perform(session, entry)]
+    except ModError:
+        pass  # it is among FAULTS
+    except (ValueError, LookupError, TypeError) as error:
+        reason = error.args[0] if error.args else error
+        raise ScriptError(
+            tr("{file} line {line}: {error}", file=script.path, line=number, error=reason)
+        ) from error
+    return failures + [Failure(number, tr("mods that work"), fault) for fault in FAULTS[known:]]
+
+
+_EXAMPLES: dict[str, Any] = {  # by key of a line: a value of the required shape
+    "press": "space",
+    "over": [1.0, 1.0],
+    "click": [1.0, 1.0],
+    "drag": [[0.0, 0.0], [1.0, 1.0]],
+    "button": "ctrl+click",
+    "type": "200000",
+    "box": "stiffness",
+    "set": "particles.B.force=120,-160",
+    "action": "undo",
+    "divide": ["AB", 4],
+    "run": 0.5,
+    "steps": 128,
+    "expect": "scene = pause",
+    "input": "click",
+    "pixel": [512.0, 300.0],
+    "resize": [1280.0, 800.0, 1.0],
+    "window": [1280.0, 800.0],
+    "say": "Press Space.",
+    "answer": "Tension",
+    "clipboard": "",
+    "at": 128,
+    "within": 0.5,
+}
+_SIZES = ("resize", "window")
+
+
+def _check_line(entry: Mapping[str, Any]) -> None:
+    """Raise ValueError unless every key is known and every value has the shape of its example."""
+    for key, value in entry.items():
+        if key not in _EXAMPLES:
+            raise ValueError(
+                tr("there is no '{key}'; use one of {keys}.", key=cut(key), keys=", ".join(_EXAMPLES))
+            )
+        example = _EXAMPLES[key]
+        fits = (_is_like(value, example) or key == "answer") and not (key in _SIZES and min(value) <= 0)
+        if not fits and (key, value) != ("run", "rest"):
+            raise ValueError(
+                tr(
+                    "{key} is {value}; write it like {form}.",
+                    key=key,
+                    value=as_json(value),
+                    form=json.dumps({key: example}),
+                )
+            )
+
+
+def _is_like(value: Any, example: Any) -> bool:
+    if isinstance(example, list):
+        alike = isinstance(value, list) and len(value) == len(example)
+        return alike and all(map(_is_like, value, example))
+    if isinstance(example, float):
+        return isinstance(value, int | float) and not isinstance(value, bool) and math.isfinite(value)
+    return isinstance(value, type(example)) and not isinstance(value, bool)
+
+
+def perform(session: Session, entry: Mapping[str, Any]) -> Iterator[tuple[str, Any]]:
+    """Do what one line says; yields (expected, got) of a failed expectation. Raises ValueError."""
+    _check_line(entry)
+    rest = dict(entry)
+    if "window" in rest:
+        width, height = rest.pop("window")
+        session.resize(int(width), int(height))
+        session.view.fit(session.model)
+    if "at" in rest or "within" in rest:
+        session.go_to(rest.pop("at", session.simulation.moment[0]), rest.pop("within", None))
+    if "over" in rest:
+        session.point(*rest.pop("over"))
+    if "clipboard" in rest:
+        session.clipboard = rest.pop("clipboard")
+    button, pixel = rest.pop("button", "click"), rest.pop("pixel", None)
+    if len(rest) > 1:
+        raise ValueError(
+            tr(
+                "a line can do one thing only, but this one has {keys}; write several lines.",
+                keys=", ".join(map(cut, rest)),
+            )
+        )
+    for verb, value in rest.items():
+        if verb == "expect":
+            yield from check(session, value)
+        elif verb == "input":
+            session.press(value, tuple(pixel) if pixel else None)
+        elif verb in ("click", "drag"):
+            _VERBS[verb](session, (*value, button))
+        else:
+            _VERBS[verb](session, value)
+
+
+_VERBS: dict[str, Callable[[Session, Any], Any]] = {
+    "press": lambda session, key: session.press(key),
+    "click": lambda session, value: session.click(*value),
+    "drag": lambda session, value: session.drag(tuple(value[0]), tuple(value[1]), value[2]),
+    "type": lambda session, text: session.type(text),
+    "box": lambda session, title: session.click_box(title),
+    "set": lambda session, text: apply_override(session.model, text),
+    "action": lambda session, name: session.act(name),
+    "divide": lambda session, value: session.divide(*value),
+    "run": lambda session, time: session.run(until="rest") if time == "rest" else session.run(time=time),
+    "steps": lambda session, count: session.run(steps=count),
+    "say": lambda session, text: None,
+    "answer": lambda session, value: session.answer(value),
+    "resize": lambda session, size: session.resize(int(size[0]), int(size[1]), float(size[2])),
+}

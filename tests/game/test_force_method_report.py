@@ -1,0 +1,145 @@
+"""The report of the force method: what it says is what theory says, to the digits shown."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator, Sequence
+from typing import Any
+
+import pytest
+
+from components.view import TEXTBOOK, THESIS
+from game.commands.command_line import main
+from game.documents import models
+from game.force_method.report import contents, report
+from game.force_method.tables import Column, Tables
+from systems.statics.force_method import solve
+from systems.statics.theory import linear
+from systems.statics.unknowns import find_unknown, redundants
+from tests.benchmarks.models import lattice
+
+
+def solved(name: str, *released: str) -> Tables:
+    model = models.load(name)
+    unknowns = [find_unknown(model, one) for one in released] or redundants(model)
+    return Tables.of(model, solve(model, unknowns))
+
+
+def written_in(parts: Sequence[Any]) -> Iterator[Any]:
+    """The paragraphs (texts) and tables (lists of rows) of a report, in order."""
+    for part in parts:
+        if hasattr(part, "_content"):
+            yield from written_in(part._content)
+        elif hasattr(part, "getPlainText"):
+            yield part.getPlainText()
+        elif hasattr(part, "_cellvalues"):
+            rows = part._cellvalues
+            if isinstance(rows[0][0], str):
+                yield [list(row) for row in rows]
+            else:
+                yield from written_in([inner for row in rows for cell in row for inner in cell])
+
+
+def number(text: str) -> tuple[float, float]:
+    """A written number, and half of its last digit."""
+    plain = text.replace("−", "-")
+    decimals = len(plain.partition(".")[2])
+    return float(plain), 0.5 * 10.0**-decimals if plain != "0" else 1e-9
+
+
+def tables_of(found: Tables, head: str) -> list[list[str]]:
+    """The rows below the head of all tables whose second column has this head."""
+    rows = [part for part in written_in(contents(found, TEXTBOOK)) if isinstance(part, list)]
+    return [row for table in rows if table[0][1].split("\n")[0] == head for row in table[1:]]
+
+
+@pytest.mark.parametrize(
+    ("name", "released"),
+    [
+        ("hyperstatic", ["BD"]),
+        ("tower", ["R0-R1", "R1-L2"]),
+        ("portal", []),
+        ("two_storey_frame", ["AC.start", "B.x"]),
+    ],
+)
+def test_its_forces_are_those_of_linear_theory_to_the_digits_shown(name: str, released: list[str]) -> None:
+    found = solved(name, *released)
+    theory = linear(found.model)
+    rods = found.model.rods
+    rows = tables_of(found, "N")
+    assert [row[0] for row in rows] == rods.names
+    for row, force in zip(rows, theory.axial_force.tolist(), strict=True):
+        value, half = number(row[1])
+        assert abs(value - force) <= half * 1.000001
+    for row in tables_of(found, "M"):
+        rod, _, end = row[0].rpartition(".")
+        moment = theory.diagrams["bending_moment"][rods[rod].row, ("start", "end").index(end)]
+        value, half = number(row[1])
+        assert abs(value - moment) <= half * 1.000001
+    for row in tables_of(found, "R"):
+        particle, _, axis = row[0].rpartition(".")
+        at = found.model.particles[particle].row
+        reaction = theory.reaction_moment[at] if axis == "rotation" else theory.reaction[at, "xy".index(axis)]
+        value, half = number(row[1])
+        assert abs(value - reaction) <= max(half * 1.000001, 1e-9)
+
+
+def test_its_table_of_virtual_work_adds_up_as_written() -> None:
+    [rows] = [
+        part
+        for part in written_in(contents(solved("hyperstatic", "BD"), TEXTBOOK))
+        if isinstance(part, list) and part[0][1].startswith("L\n")
+    ]
+    head, *body, total = rows
+    assert head[-1] == "n₁²L/EA\n10⁻³ cm/kN"
+    for column in (5, 6):
+        parts = [number(row[column]) for row in body]
+        assert sum(value for value, _ in parts) == pytest.approx(number(total[column])[0], abs=1e-12)
+
+
+def test_the_equation_gives_the_unknown_as_written() -> None:
+    said = [
+        part for part in written_in(contents(solved("hyperstatic", "BD"), TEXTBOOK)) if isinstance(part, str)
+    ]
+    [equation] = [line for line in said if line.endswith("X₁ = 0") and "δ" not in line]
+    gap, flexibility = (float(part) for part in re.findall(r"[0-9.]+", equation)[:2])
+    assert "X₁ = −14.64 kN" in said
+    assert f"{-gap / flexibility:.2f}" == "-14.64"
+    assert "δ₁₀ + δ₁₁ X₁ = 0" in said
+
+
+def test_the_report_in_the_convention_of_the_thesis() -> None:
+    said = [part for part in written_in(contents(solved("hyperstatic", "BD"), THESIS)) if isinstance(part, str)]
+    assert any(line.startswith("p = (Δ − Δ₀) / Δ₁ = ") and "= −14.64 kN" in line for line in said)
+
+
+def test_the_same_solution_gives_the_same_file() -> None:
+    first, again = (report(solved("portal"), TEXTBOOK) for _ in range(2))
+    assert first == again
+    assert first.startswith(b"%PDF")
+
+
+def test_large_structures_take_several_pages_and_say_what_is_left_out() -> None:
+    model = lattice(300)
+    found = Tables.of(model, solve(model, redundants(model)[:1]))
+    said = [part for part in written_in(contents(found, TEXTBOOK)) if isinstance(part, str)]
+    left_out = model.rods.count - 120
+    assert f"{left_out} more rows are not printed; sums are of all." in said
+    assert len(report(found, TEXTBOOK)) > 10_000
+
+
+def test_the_command_line_writes_it(tmp_path: Any, capsys: pytest.CaptureFixture[str]) -> None:
+    path = tmp_path / "solution.pdf"
+    assert main(["force-method", "hyperstatic", "--release", "BD", "--report", str(path)]) == 0
+    assert path.read_bytes().startswith(b"%PDF")
+    assert main(["force-method", "hyperstatic", "--release", "BD", "--report", "solution.txt"]) == 2
+    assert "write a file that ends with .pdf" in capsys.readouterr().err
+
+
+def test_columns_have_decimals_with_which_they_add_up() -> None:
+    import numpy as np
+
+    column = Column("x", "cm", np.array([0.33333, 0.33333, 0.33334]), summed=True)
+    parts = [float(column.text(row)) for row in range(3)]
+    assert sum(parts) == pytest.approx(float(column.text(3)), abs=1e-12)
+    assert Column("x", "cm", np.array([1.5e-7])).head == "x (10⁻⁹ cm)"

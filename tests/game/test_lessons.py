@@ -1,0 +1,372 @@
+"""Lessons with tasks: every bundled one as its author meant it, other right answers, and wrong ones."""
+
+from __future__ import annotations
+
+import re
+from pathlib import Path
+from typing import Any
+
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from components.model import Model
+from game import Session
+from game.documents import preferences
+from game.documents.library import DATA_VARIABLE
+from game.lessons import progress
+from game.lessons.checking import check_lesson
+from game.lessons.course import Course
+from game.scripts.lines import perform
+from game.scripts.script import Script, ScriptError, lessons_with_tasks
+from systems.render.lesson_card import CardLayout
+from systems.render.typography import text_width
+
+
+@pytest.fixture(autouse=True)
+def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+    """An empty folder for what is kept."""
+    monkeypatch.setenv(preferences.CONFIG_VARIABLE, str(tmp_path / "config"))
+    return tmp_path / "config"
+
+
+@pytest.fixture
+def session() -> Session:
+    return Session(Model())
+
+
+def begun(session: Session, name: str, task: int = 1) -> Course:
+    """A lesson, at one of its tasks."""
+    session.begin_lesson(Script(name))
+    assert session.course is not None
+    session.course.begin(task - 1)
+    return session.course
+
+
+@pytest.mark.parametrize("name", lessons_with_tasks())
+def test_a_lesson_is_as_its_author_means(name: str) -> None:
+    script = Script(name)
+    assert [str(failure) for failure in check_lesson(script, lambda: Session(Model()))] == []
+    assert script.description
+
+
+def test_any_triangle_is_a_first_structure(session: Session) -> None:
+    course = begun(session, "01_first_structure")
+    for x, y in ((5, 5), (-3, 2), (1, -4), (0, 0)):
+        session.press("p", session.point(x, y))
+    session.update_view()
+    assert course.accepted
+    session.press("f5")
+    assert course.at == 1
+
+
+def test_predictions_do_not_depend_on_what_was_tried(session: Session) -> None:
+    course = begun(session, "02_tension_or_compression", 2)
+    session.press("e")
+    session.select(session.rods["AB"])
+    session.press("f5")
+    assert not course.accepted
+    assert "Rod AB does not belong" in course.said
+
+
+def test_the_example_for_teachers_is_a_lesson(tmp_path: Path) -> None:
+    page = (Path(__file__).parents[2] / "assets" / "lessons" / "README.md").read_text(encoding="utf-8")
+    example = page.partition("```jsonl\n")[2].partition("```")[0]
+    path = tmp_path / "example.jsonl"
+    path.write_text(example, encoding="utf-8")
+    assert [str(failure) for failure in check_lesson(Script(path), lambda: Session(Model()))] == []
+
+
+# --- other right answers, and wrong ones -----------------------------------------------------------------
+
+
+@pytest.mark.parametrize("rod", ["AB", "BC", "CD", "DA", "AC", "BD"])
+def test_any_rod_of_the_square_may_be_released(session: Session, rod: str) -> None:
+    course = begun(session, "06_statically_indeterminate", 3)
+    session.select(session.rods[rod])
+    session.press("delete")
+    session.update_view()
+    assert course.accepted
+
+
+def test_what_leaves_a_mechanism_is_explained(session: Session) -> None:
+    course = begun(session, "06_statically_indeterminate", 3)
+    session.select(session.rods["AB"], session.rods["CD"])
+    session.press("delete")
+    session.press("f5")
+    assert not course.accepted
+    assert "mechanism" in course.said
+    session.press("ctrl+z")
+    session.select(session.rods["CD"])
+    session.press("delete")
+    session.update_view()
+    assert course.accepted
+
+
+@pytest.mark.parametrize(
+    "lines",
+    [
+        [{"press": "l", "over": [2, 0]}, {"click": [0, 2]}],  # the other diagonal
+        [{"set": "particles.C.fixed=true,false"}],
+        [{"set": "particles.D.fixed=true,false"}],
+        [  # by a joint in the middle
+            {"press": "p", "over": [1, 1]},
+            {"press": "l", "over": [1, 1]},
+            {"click": [0, 0]},
+            {"press": "l", "over": [1, 1]},
+            {"click": [2, 2]},
+            {"press": "l", "over": [1, 1]},
+            {"click": [0, 2]},
+        ],
+    ],
+)
+def test_a_square_is_braced_in_any_way(session: Session, lines: list[dict[str, Any]]) -> None:
+    course = begun(session, "03_stable_or_mechanism", 2)
+    for line in lines:
+        assert list(perform(session, line)) == []
+    session.update_view()
+    assert course.accepted, course.said
+
+
+@given(
+    place=st.tuples(st.integers(-9, 9), st.integers(-9, 9)),
+    mirrored=st.booleans(),
+    order=st.permutations(range(3)),
+)
+@settings(max_examples=12)
+def test_a_first_structure_may_be_drawn_anywhere_in_any_order(
+    place: tuple[int, int], mirrored: bool, order: list[int]
+) -> None:
+    session = Session(Model())
+    with progress.not_kept():
+        course = begun(session, "01_first_structure")
+        x, y = place
+        way = -1 if mirrored else 1
+        corners = [(x, y), (x + 2 * way, y), (x + way, y + 2)]
+        left, right, top = corners
+        for number in order:
+            session.press("p", session.point(*corners[number]))
+        session.update_view()
+        assert course.accepted
+        session.press("f5")
+        session.press("home")
+        for number in order:
+            session.press("l", session.point(*corners[number]))
+            session.click(*corners[(number + 1) % 3])
+        session.update_view()
+        assert course.accepted
+        session.press("f5")
+        session.press("c", session.point(*right))
+        session.press("c", session.point(*left))
+        session.press("c", session.point(*left))
+        session.update_view()
+        assert course.accepted, course.said
+        session.press("f5")
+        session.press("f", session.point(*top))
+        session.click(top[0], top[1] - 1.0)
+        session.update_view()
+        assert course.accepted, course.said
+        session.press("f5")
+        session.press("i")
+        session.act("settle")
+        session.update_view()
+        assert course.accepted, course.said
+
+
+def test_choices_are_made_by_key_mouse_and_script(session: Session) -> None:
+    course = begun(session, "02_tension_or_compression", 1)
+    session.press("2")
+    assert (course.accepted, course.mood) == (False, "wrong")
+    session.update_view()
+    assert session.beside is not None
+    layout = CardLayout(session.beside)
+    top, line = next((top, line) for top, line in layout.shown if line.answer == 0)
+    session.press("click", (layout.left + 20.0, top + line.height / 2))
+    assert course.accepted
+
+
+@pytest.mark.parametrize("typed", ["30", "30.2", "29,9", "+30"])
+def test_numbers_are_typed_beside_the_model(session: Session, typed: str) -> None:
+    course = begun(session, "04_supports_and_reactions", 1)
+    session.type(typed)
+    session.press("return")
+    assert course.accepted
+
+
+def test_a_wrong_number_is_explained_and_typed_anew(session: Session) -> None:
+    course = begun(session, "04_supports_and_reactions", 1)
+    for typed, said in (
+        ("90", "reaction at A"),
+        ("-30", "sign"),
+        ("1000", "too large"),
+        ("--", "not a number"),
+    ):
+        session.type(typed)
+        session.press("return")
+        assert not course.accepted
+        assert said in course.said
+    session.type("3e0")
+    session.press("return")
+    assert course.accepted
+
+
+def test_the_lightest_bridge_keeps_its_best_score(session: Session) -> None:
+    course = begun(session, "15_lightest_bridge", 2)
+    for line in course.task.solution:
+        assert list(perform(session, line[1])) == []
+    session.update_view()
+    assert course.accepted
+    first = progress.done("15_lightest_bridge").best[2]
+    session.particles["particle 1"].position = (3.0, 1.5)
+    session.update_view()
+    assert progress.done("15_lightest_bridge").best[2] < first
+    session.particles["particle 1"].position = (3.0, 0.5)
+    session.update_view()
+    assert course.mood == "wrong"
+    assert "100 kN at most" in course.said
+
+
+# --- progress, and the person's own work -----------------------------------------------------------------
+
+
+def test_progress_survives_a_restart_and_a_damaged_file(session: Session) -> None:
+    course = begun(session, "06_statically_indeterminate", 1)
+    session.answer(1)
+    again = Session(Model())
+    again.begin_lesson(Script("06_statically_indeterminate"))
+    assert again.course is not None
+    assert again.course.at == 1
+    progress.path().write_text('{"06_statically_indeterminate": {"tasks": "all"', encoding="utf-8")
+    third = Session(Model())
+    third.begin_lesson(Script("06_statically_indeterminate"))
+    assert third.course is not None
+    assert third.course.at == 0
+    third.answer(1)
+    assert progress.done("06_statically_indeterminate").tasks == {1}
+    assert progress.path().with_name(progress.PUT_ASIDE).is_file()
+    assert course.accepted
+
+
+def test_own_work_is_kept_and_that_of_a_lesson_asks_for_nothing() -> None:
+    session = Session.open("isostatic")
+    session.particles["B"].force = (1.0, 2.0)
+    mine = session.model
+    session.begin_lesson(Script("03_stable_or_mechanism"))
+    session.press("f7")
+    session.press("f5")
+    session.press("l", session.point(0, 0))
+    session.click(2, 2)
+    assert not session.document.unsaved
+    for _ in range(9):
+        session.press("ctrl+z")
+    assert session.model is not mine, "a lesson is left by its button"
+    session.press("f9")
+    assert session.model is mine
+    assert session.course is None
+    assert session.view.camera.viewport.width == session.extent[0]
+    assert tuple(session.particles["B"].force) == (1.0, 2.0)
+
+
+def test_the_last_task_leads_to_the_next_lesson(session: Session) -> None:
+    course = begun(session, "08_first_yield", 3)
+    course.solve()
+    assert course.accepted
+    assert progress.done("08_first_yield").tasks == frozenset(), "to be shown is not to have done it"
+    session.press("f5")
+    assert session.course is not None
+    assert session.course.lesson.name == "09_collapse_and_unloading"
+
+
+# --- lessons of teachers ---------------------------------------------------------------------------------
+
+HEADER = '{"format": "pinjoint session", "version": 1, "title": "Mine"}'
+
+
+@pytest.mark.parametrize(
+    ("line", "said"),
+    [
+        ('{"task": "x", "untill": "time > 1"}', "line 2: there is no key 'untill' here; did you mean 'until'?"),
+        ('{"task": 1}', "line 2: task is 1; write it like"),
+        ('{"task": "x", "right": "y", "solution": []}', "asks for one of until, select, number, choices"),
+        ('{"task": "x", "until": "time > 1", "solution": []}', "'right' is missing"),
+        ('{"task": "x", "choices": [{"text": "a"}], "right": "y", "solution": []}', 'either "if" or "right"'),
+        ('{"press": "e"}', "no task follows this line"),
+        ('{"task": "x", "model": "nothing", "until": "time > 1", "right": "", "solution": []}', "line 2: "),
+        (
+            '{"task": "x", "until": "time > 1", "right": "", "solution": [{"pres": "e"}]}',
+            "line 2: there is no 'pres'",
+        ),
+    ],
+)
+def test_what_is_wrong_with_a_file_is_said(tmp_path: Path, line: str, said: str) -> None:
+    path = tmp_path / "mine.jsonl"
+    extra = "" if "task" in line else '\n{"say": "x"}'
+    path.write_text(f"{HEADER}\n{line}{extra}\n", encoding="utf-8")
+    with pytest.raises(ScriptError, match=re.escape(said)):
+        check_lesson(Script(path), lambda: Session(Model()))
+
+
+@pytest.mark.parametrize(
+    ("line", "said"),
+    [
+        ('{"task": "x", "until": "time >= 0", "right": "", "solution": []}', "not done at its beginning"),
+        ('{"task": "x", "until": "time > 1", "right": "", "solution": []}', "a solution that is accepted"),
+        (
+            '{"task": "x", "until": "time > 1", "right": "", "solution": [{"run": 2}], "wrong": [{"if": "time < 1",'
+            ' "say": "no", "lines": [{"run": 2}]}]}',
+            "a wrong answer that is refused",
+        ),
+    ],
+)
+def test_what_is_wrong_with_a_lesson_is_found(tmp_path: Path, line: str, said: str) -> None:
+    path = tmp_path / "mine.jsonl"
+    header = HEADER.replace("}", ', "model": "isostatic"}')
+    path.write_text(f"{header}\n{line}\n", encoding="utf-8")
+    failures = [str(failure) for failure in check_lesson(Script(path), lambda: Session(Model()))]
+    assert len(failures) == 1
+    assert said in failures[0]
+
+
+def test_own_lessons_stand_on_the_start_page(
+    session: Session, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setenv(DATA_VARIABLE, str(tmp_path))
+    (tmp_path / "lessons").mkdir()
+    task = '{"task": "x", "until": "time > 1", "right": "", "solution": [{"run": 2}], "model": "isostatic"}'
+    (tmp_path / "lessons" / "mine.jsonl").write_text(f"{HEADER}\n{task}\n", encoding="utf-8")
+    (tmp_path / "lessons" / "broken.jsonl").write_text("{", encoding="utf-8")
+    session.press("d")
+    assert "Mine" in [tile.title for tile in session.scenes.active.form.tiles]  # type: ignore[attr-defined]
+    session.type("mine")
+    session.press("return")
+    assert session.course is not None
+    assert session.course.lesson.title == "Mine"
+
+
+# --- the card --------------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("size", [(640, 480), (1024, 640), (1280, 800), (1920, 1080)])
+@pytest.mark.parametrize("name", lessons_with_tasks())
+def test_every_task_is_legible_in_windows_of_all_sizes(
+    session: Session, size: tuple[int, int], name: str
+) -> None:
+    session.resize(*size)
+    course = begun(session, name)
+    for task in range(len(course.lesson.tasks)):
+        course.begin(task)
+        session.press("f6")
+        session.update_view()
+        assert session.beside is not None
+        main, card = session.view.camera.viewport, session.beside.camera.viewport
+        assert main.width * main.height + card.width * card.height == size[0] * size[1]
+        layout = CardLayout(session.beside)
+        assert not layout.hidden or layout.first == 0
+        for place, button in layout.buttons:
+            assert card.left <= place.left < place.right <= card.right, button
+            assert layout.bottom <= place.top or layout.right <= place.left
+            assert place.bottom <= card.bottom
+        for top, line in layout.shown:
+            assert card.top <= top < top + line.height <= layout.bottom + 1.0
+            for part in line.text.split("\n"):
+                assert layout.left + text_width(part, line.size) <= layout.right, part
