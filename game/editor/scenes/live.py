@@ -16,17 +16,17 @@ class Pause(Scene):
 
     def hint(self, context: Context) -> str:
         if context.model.particles.count == 0:
-            return tr("click a tool, then the canvas     right click menu     F1 all keys")
+            return tr("click a tool, then the canvas     right click menu     F1 help")
         selected = context.model.rows_tagged(Selected)
         kinds = [context.model.tables[name].kind for name, rows in selected.items() if len(rows)]
         if kinds and all(kind.points for kind in kinds):
-            return tr("drag it or its ends     Return properties     Esc deselect     F1 all keys")
+            return tr("drag it or its ends     Return properties     Esc deselect     F1 help")
         if kinds:
             return tr(
-                "right click menu     Return properties     I force diagram     Esc deselect     F1 all keys"
+                "right click menu     Return properties     I force diagram     Esc deselect     F1 help"
             )
         return tr(
-            "Space run     click select     right click menu     I force diagrams     wheel zoom     F1 all keys"
+            "Space run     click select     right click menu     I force diagrams     wheel zoom     F1 help"
         )
 
 
@@ -37,4 +37,4 @@ class Simulation(Scene):
     targets = ("pause",)
 
     def hint(self, context: Context) -> str:
-        return tr("Space pause     + faster     − slower     I force diagrams     R restart     F1 all keys")
+        return tr("Space pause     + faster     − slower     I force diagrams     R restart     F1 help")
