@@ -6,6 +6,8 @@ from collections.abc import Iterator, Mapping, Sequence
 from functools import partial
 from typing import TYPE_CHECKING, Any
 
+import numpy as np
+
 from components.language import tr
 from components.model import Model
 from components.view import CONVENTIONS, THESIS
@@ -113,7 +115,9 @@ def _data(tables: Tables, *, single: bool) -> dict[str, Any]:
 
 def _work(tables: Tables) -> dict[str, Any]:
     """By rod: what the sums of virtual work are made of; n, m and terms of each unknown in the order of `released`."""
-    work, found = tables.work, {}
+    from game.force_method.tables import PRODUCTS
+
+    work, found, count = tables.work, dict[str, Any](), len(tables.solution.unknowns)
     for row, name in enumerate(tables.model.rods.names):
         found[name] = {
             "length": work.length[row],
@@ -121,7 +125,6 @@ def _work(tables: Tables) -> dict[str, Any]:
             "N0": work.base_axial[row],
             "n": work.unit_axial[:, row],
             "N0 n L/EA": work.of_base[:, row],
-            "n n L/EA": work.of_units[:, :, row],
             "without force": work.of_free[:, row],
         }
         if tables.bends:
@@ -130,8 +133,13 @@ def _work(tables: Tables) -> dict[str, Any]:
                 "M0": work.base_moment[row],
                 "m": work.unit_moment[:, row],
                 "M0 m/EI": work.of_bending[:, row],
-                "m m/EI": work.of_unit_bending[:, :, row],
             }
+    if 0 < count <= PRODUCTS:
+        for title, product in (("n n L/EA", work.of_units), ("m m/EI", work.of_unit_bending)):
+            if title[0] == "n" or tables.bends:
+                terms = np.array([[product(i, j) for j in range(count)] for i in range(count)])
+                for row, of_rod in enumerate(found.values()):
+                    of_rod[title] = terms[:, :, row]
     return found
 
 
@@ -166,6 +174,7 @@ def _rows(found: Mapping[str, Any]) -> Iterator[Row]:
 def _lines(tables: Tables, convention: str, found: Mapping[str, Any]) -> Iterator[str]:
     """The solution to read: in the textbook's convention with its tables, in the thesis' with its displacements."""
     from game.force_method import words
+    from game.force_method.tables import PRODUCTS
 
     solution, units = tables.solution, tables.units
     yield from aligned([[as_written(value) for value in row] for row in _rows(found)])
@@ -177,8 +186,9 @@ def _lines(tables: Tables, convention: str, found: Mapping[str, Any]) -> Iterato
     for i, unknown in enumerate(solution.unknowns):
         yield f"X{words.index(i + 1)}: {words.meaning(unknown)}"
     every = range(len(solution.unknowns))
-    works = [table for table in (tables.bends and tables.bending(every), tables.virtual_work(every)) if table]
-    parts = [*works, tables.settlements()]
+    works = [tables.bending(every)] if tables.bends else []
+    works.append(tables.virtual_work(every))
+    parts = [*(works if len(every) <= PRODUCTS else [tables.forces(every)]), tables.settlements()]
     yield ""
     yield from words.formulas(tables.bends, "₁" if len(every) == 1 else "ᵢ")
     for table in parts:

@@ -20,7 +20,7 @@ from components.view import THESIS, View
 from game.documents import models
 from game.force_method import thesis, words
 from game.force_method.copies import base_structure, loaded, still
-from game.force_method.tables import Table, Tables
+from game.force_method.tables import PRODUCTS, Table, Tables
 from game.force_method.words import EXACT, index
 from systems.render.paper import (
     HALF,
@@ -49,7 +49,6 @@ _DIAGRAM = 34.0  # pixels of the largest axial force
 _ROWS = 120  # of a table that are printed
 _TERMS = 6  # of a sum that are written one by one
 _BESIDE = 14  # rows of a table that stands beside a figure
-_PRODUCTS = 4  # unknowns up to which all products are printed
 
 
 def write_report(solved: Tables, path: str | Path, convention: str) -> None:
@@ -212,10 +211,10 @@ def _virtual_work(solved: Tables) -> list[Flowable]:
     every = range(len(solved.solution.unknowns))
     formulas = [text(tr("3  Displacements by virtual work"), "heading")]
     formulas += [text(line, "equation") for line in _formulas(solved)]
-    if len(every) > _PRODUCTS:
+    if len(every) > PRODUCTS:
         note = tr(
             "The products of more than {count} unknowns are not printed; their sums stand below.",
-            count=_PRODUCTS,
+            count=PRODUCTS,
         )
         return [*_printed(solved.forces(every), formulas), text(note, "caption")]
     found: list[Flowable] = []
@@ -274,7 +273,7 @@ def _compatibility(solved: Tables) -> list[Flowable]:
     zeros = [[f"δ{index(i + 1, 0)}"] for i in range(count)]
     right = [[f"c{index(i + 1)}" if c else "0"] for i, c in enumerate(solution.prescribed.tolist())]
     lines: list[Flowable] = [Matrices([number, unknowns, "+", gaps, "=", held])]
-    if count <= _PRODUCTS:
+    if count <= PRODUCTS:
         lines.insert(0, Matrices([symbols_of, unknowns, "+", zeros, "=", right]))
     symmetric = text(tr("The matrix is symmetric: δ₁₂ = δ₂₁ (Maxwell)."), "text")
     return [together(heading, said, *lines, symmetric, *results)]
@@ -307,7 +306,7 @@ def _forces(solved: Tables) -> list[Flowable]:
     heading = text(tr("5  Forces in the structure"), "heading")
     first, second = (solved.moments(), [solved.axial_forces()]) if solved.bends else (solved.axial_forces(), [])
     others = [*second, solved.reactions()]
-    if len(first.names) > _BESIDE or len(solution.unknowns) > _PRODUCTS:
+    if len(first.names) > _BESIDE or len(solution.unknowns) > PRODUCTS:
         whole = [part for table in (first, *others) for part in _printed(table)]
         return [heading, *whole, *_rows_of(figures)]
     half = [part for table in others for part in _printed(table, width=HALF)]

@@ -20,6 +20,7 @@ from systems.statics.virtual_work import Work, virtual_work
 
 _SMALL = 1e-2  # smaller numbers are written as multiples of a power of 1000
 _FINER = 5  # significant digits of forces that are added
+PRODUCTS = 4  # unknowns up to which all products of virtual work are listed
 _SHOWN = 3  # unknowns up to which each has a column of superposition
 _ABOVE = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
 _BELOW = str.maketrans("0123456789", "₀₁₂₃₄₅₆₇₈₉")
@@ -228,13 +229,11 @@ class Tables:
                 found.append(Column(f"n{index(i + 1)}ΔL", units.gap(i), values, summed=True))
         for i, j in _pairs(which):
             title = f"n{index(i + 1)}²L/EA" if i == j else f"n{index(i + 1)}n{index(j + 1)}L/EA"
-            least = work.of_units[[i, j], [i, j]].sum(axis=1)
-            found.append(
-                self._terms(title, units.flexibility(i, j), work.of_units[i, j], rows, np.sqrt(least.prod()))
-            )
+            least = math.sqrt(work.of_units(i, i).sum() * work.of_units(j, j).sum())
+            found.append(self._terms(title, units.flexibility(i, j), work.of_units(i, j), rows, least))
         return found
 
-    def _terms(self, title: str, unit: str, terms: Array, rows: Rows, beside: Array) -> Column:
+    def _terms(self, title: str, unit: str, terms: Array, rows: Rows, beside: Array | float) -> Column:
         """Terms of a sum of some rods; beside: others of the same sum, next to which they may be rounding."""
         factor = self.units.factor
         least = factor * max(largest(terms), largest(np.asarray(beside)))
@@ -281,8 +280,9 @@ class Tables:
                 )
         for i, j in _pairs(which):
             title = f"∫m{index(i + 1)}²/EI" if i == j else f"∫m{index(i + 1)}m{index(j + 1)}/EI"
-            least = np.sqrt(work.of_unit_bending[[i, j], [i, j]].sum(axis=1).prod())
-            columns.append(self._terms(title, units.flexibility(i, j), work.of_unit_bending[i, j], rows, least))
+            least = math.sqrt(work.of_unit_bending(i, i).sum() * work.of_unit_bending(j, j).sum())
+            terms = work.of_unit_bending(i, j)
+            columns.append(self._terms(title, units.flexibility(i, j), terms, rows, least))
         return Table(tr("rod"), self._names(rows), columns)
 
     def settlements(self) -> Table | None:
@@ -309,7 +309,7 @@ class Tables:
         work, units = self.work, self.units
         ways = (work.of_bending, work.of_base, work.of_free, work.of_supports)
         gap = _sum(units.factor * float(way[i].sum()) for way in ways)
-        flexibility = [work.of_unit_bending[i, i], work.of_units[i, i]]
+        flexibility = [work.of_unit_bending(i, i), work.of_units(i, i)]
         own = _sum(units.factor * float(part.sum()) for part in flexibility)
         return (
             f"δ{index(i + 1, 0)} = {gap} {units.gap(i)},"

@@ -18,17 +18,19 @@ from systems.statics.equations import Array, Rows
 from systems.statics.force_method import Solution
 from systems.statics.released import SetState
 
+_NOTHING = 0.0  # kN·m: a unit force does not act between the ends of rods
+
 
 @dataclass(frozen=True)
 class Work:
     """The table of virtual work for m unknowns; its terms are in m or rad.
 
     length, stiffness, bending_stiffness: L₀, EA, EI (rods,). base_axial: N₀ (rods,); unit_axial: n (m, rods).
-    base_moment: M₀ (rods, 2), at the ends; unit_moment: m (m, rods, 2). load: q₀L₀² by which M₀ bulges, −¼·½ of it at the
-    middle (rods,). free: ΔL (rods,). curvature: κ (rods,).
+    base_moment: M₀ (rods, 2), at the ends; unit_moment: m (m, rods, 2). load: q L₀², of which M₀ bulges by −1/8 at
+    the middle (rods,). free: ΔL (rods,). curvature: κ (rods,). turned: L₀/EI, 0 of bars (rods,).
 
-    of_base, of_bending: n N₀ L/EA and ∫ m M₀ dx/EI (m, rods). of_units, of_unit_bending: the same of n and n', (m, m, rods).
-    of_free: n ΔL and ∫ m κ dx (m, rods). settled: rows and axes of moved supports (k, 2); of_supports: −r c (m, k).
+    of_base, of_bending, of_free: n N₀ L/EA, ∫ m M₀ dx/EI, and n ΔL with ∫ m κ dx (m, rods). settled: rows and axes of
+    moved supports (k, 2); of_supports: −r c (m, k).
     """
 
     length: Array
@@ -41,10 +43,9 @@ class Work:
     load: Array
     free: Array
     curvature: Array
+    turned: Array
     of_base: Array
-    of_units: Array
     of_bending: Array
-    of_unit_bending: Array
     of_free: Array
     settled: Rows
     of_supports: Array
@@ -59,8 +60,22 @@ class Work:
     @property
     def flexibility(self) -> Array:
         """δ (m, m)."""
-        total: Array = self.of_units.sum(axis=2) + self.of_unit_bending.sum(axis=2)
+        count = len(self.unit_axial)
+        found = (self.unit_axial * self.length / self.stiffness) @ self.unit_axial.T
+        for i in range(count):
+            found[i] += (self.turned * products(self.unit_moment[i], self.unit_moment, _NOTHING)).sum(axis=1)
+        total: Array = found
         return total
+
+    def of_units(self, i: int, j: int) -> Array:
+        """n n' L/EA of two unknowns (rods,)."""
+        terms: Array = self.unit_axial[i] * self.unit_axial[j] * self.length / self.stiffness
+        return terms
+
+    def of_unit_bending(self, i: int, j: int) -> Array:
+        """∫ m m' dx/EI of two unknowns (rods,)."""
+        terms: Array = self.turned * products(self.unit_moment[i], self.unit_moment[j], _NOTHING)
+        return terms
 
 
 def virtual_work(model: Model, solution: Solution) -> Work:
@@ -77,7 +92,7 @@ def virtual_work(model: Model, solution: Solution) -> Work:
     load = (rods.distributed_force[:, 1] * x - rods.distributed_force[:, 0] * y) * length**2
     softness = length / stiffness
     bends = rods.bending_stiffness > 0.0
-    rotated = np.divide(length, rods.bending_stiffness, out=np.zeros(rods.count), where=bends)
+    turned = np.divide(length, rods.bending_stiffness, out=np.zeros(rods.count), where=bends)
     free = length * rods.plastic_strain - rods.misfit
     curvature = -rods.thermal_expansion * rods.temperature_gradient * bends
     settled = _settled(model, solution)
@@ -96,17 +111,16 @@ def virtual_work(model: Model, solution: Solution) -> Work:
         load,
         free,
         curvature,
+        turned,
         of_base=unit_axial * solution.base.axial_force * softness,
-        of_units=unit_axial[:, None] * unit_axial * softness,
-        of_bending=rotated * products(unit_moment, base_moment, load),
-        of_unit_bending=rotated * products(unit_moment[:, None], unit_moment, np.zeros(rods.count)),
+        of_bending=turned * products(unit_moment, base_moment, load),
         of_free=unit_axial * free + length * curvature * unit_moment.mean(axis=2),
         settled=settled,
         of_supports=-reactions * place,
     )
 
 
-def products(m: Array, moments: Array, load: Array) -> Array:
+def products(m: Array, moments: Array, load: Array | float) -> Array:
     """∫ m M dξ from 0 to 1 of rods: m linear, M as well less the parabola ½ q L² ξ (1 − ξ); (…, rods, 2) and (rods,)."""
     straight = (
         m[..., 0] * (2.0 * moments[..., 0] + moments[..., 1])

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 import pytest
 
@@ -19,7 +21,9 @@ from systems.render.page import draw_page
 from systems.render.picture import compose_all
 from systems.render.sheet import measure
 from systems.render.theme import load_theme
+from systems.statics.theory import linear
 from tests.benchmarks.models import lattice
+from tests.reference.models import model
 
 
 def guide_of(session: Session) -> Guide:
@@ -493,3 +497,147 @@ def test_it_is_said_while_forces_and_displacements_are_not_final() -> None:
     while guide_of(session).moving:
         session.frame(1 / 60)
     assert not any("still moving" in view.status.hint for _, view in session.stages)
+
+
+# --- frames, conventions, report -------------------------------------------------------------------
+
+
+def test_both_conventions_have_the_same_parts_and_unknowns() -> None:
+    session = Session.open("hyperstatic")
+    guide = released(session, "BD")
+    textbook = words.working(guide), words.table(guide)[0], words.message(guide)
+    assert textbook[0][0] == "δ₁₀ + δ₁₁ X₁ = 0:  0.064423 + 0.0043991 X₁ = 0  (cm, kN),  X₁ = −14.64 kN"
+    session.press("c")
+    assert guide.part == PARTS
+    assert "p = (Δ − Δ₀) / Δ₁" in session.notice
+    assert words.working(guide)[0].startswith(
+        "p = (Δ − Δ₀) / Δ₁ = (−0.01887 − (−0.06442)) cm / (−0.003111 cm/kN)"
+    )
+    assert words.message(guide) == "Set 2 + set 3 = set 1"
+    assert words.table(guide)[0] == ("kN", "set 1", "= set 2", "+ set 3", "residual")
+    session.press("c")
+    assert (words.working(guide), words.table(guide)[0], words.message(guide)) == textbook
+
+
+def test_part_6_shows_the_virtual_work_of_every_rod() -> None:
+    session = Session.open("hyperstatic")
+    guide = guide_of_part(session, 6, "BD")
+    assert words.working(guide) == ("δ₁₀ = Σ N₀ n₁ L/EA,  δ₁₁ = Σ n₁² L/EA > 0",)
+    rows = {row[0]: row[1:] for row in words.table(guide)}
+    assert rows["CD"] == ("150.0", "164640", "−100.0", "−0.7071", "0.06442", "0.45554")
+    assert rows["Σ"][-2:] == ("0.06442", "4.39908")
+
+
+def guide_of_part(session: Session, part: int, name: str) -> Guide:
+    session.press("k")
+    session.press("k")
+    guide = guide_of(session)
+    guide.pick(guide.sets[0].model.rods[name])
+    while guide.part < part:
+        session.press("k")
+    return guide
+
+
+@pytest.mark.parametrize(("key", "name"), [("x", "D.x"), ("y", "D.y"), ("m", "D.rotation")])
+def test_a_clamp_asks_which_of_its_reactions(key: str, name: str) -> None:
+    session = Session.open("portal")
+    session.press("k")
+    session.press("k")
+    guide = guide_of(session)
+    session.click(*session.model.particles["D"].position)
+    assert "M moment" in words.hint(guide)
+    session.press(key)
+    assert [unknown.name for unknown in guide.released] == [name]
+    assert not session.busy  # frames stay still
+    session.press("m")
+    assert session.notice == "Click a clamped support first; then M releases its moment."
+
+
+@pytest.mark.parametrize(("share", "name"), [(0.2, "BC.start"), (0.7, "BC.end")])
+def test_a_click_near_an_end_of_a_rod_that_bends_releases_the_moment_there(share: float, name: str) -> None:
+    session = Session.open("portal")
+    session.press("k")
+    session.press("k")
+    guide = guide_of(session)
+    start, end = (np.array(particle.position) for particle in session.model.rods["BC"].ends)
+    session.click(*((1.0 - share) * start + share * end).tolist())
+    assert guide.unknown is not None
+    assert guide.unknown.name == name
+    assert guide.sets[1].model.rods["BC"].hinged == (name == "BC.start", name == "BC.end")
+
+
+def test_sets_of_a_frame_show_the_forces_of_first_order_theory_and_add_up() -> None:
+    session = Session.open("portal")
+    session.press("k")
+    session.press("k")
+    guide = guide_of(session)
+    session.click(*session.model.particles["D"].position)
+    session.press("x")
+    for _ in range(4):
+        session.press("k")
+    moments = [one.model.rods.bending_moment for one in guide.sets]
+    theory = linear(session.model).diagrams["bending_moment"]
+    assert moments[0] == pytest.approx(theory, rel=1e-9, abs=1e-9)
+    assert moments[1] + moments[2] == pytest.approx(theory, rel=1e-9, abs=1e-9)
+    reactions = [one.model.particles.reaction for one in guide.sets]
+    assert reactions[0][0] == pytest.approx(reactions[1][0] + reactions[2][0], rel=1e-9)
+    quantities = []
+    for _ in range(3):
+        session.press("i")
+        quantities.append({one.view.quantity for one in guide.sets})
+    assert quantities == [{"V"}, {"N"}, {"M"}]
+    assert words.table(guide)[0][:2] == ("rod", "M (kN·m)")
+    session.press("k")
+    assert session.scene == "pause"
+
+
+def test_a_mechanism_of_a_frame_swings() -> None:
+    session = Session.open(three_hinged())
+    session.press("k")
+    session.press("k")
+    guide = guide_of(session)
+    session.click(0.4, 0.4)
+    assert "the structure is a mechanism" in words.message(guide)
+    session.frame(0.1)
+    assert guide.mechanism is not None
+    assert guide.mechanism.model.particles.displacement.any()
+
+
+def three_hinged() -> dict[str, Any]:
+    """An arch of two rods, rigid at the kink, hinged at both feet and at the top."""
+    rod = {"bending_stiffness": 5000.0}
+    particles = [
+        {"name": "A", "position": [0, 0], "fixed": [True, True]},
+        {"name": "B", "position": [1, 1]},
+        {"name": "C", "position": [2, 1], "force": [0, -10]},
+        {"name": "D", "position": [3, 0], "fixed": [True, True]},
+    ]
+    rods = [
+        {"name": "AB", "between": ["A", "B"], **rod, "hinged": [True, False]},
+        {"name": "BC", "between": ["B", "C"], **rod, "hinged": [False, True]},
+        {"name": "CD", "between": ["C", "D"], **rod},
+    ]
+    return model(particles, rods)
+
+
+def test_the_report_is_saved_in_the_last_part() -> None:
+    saved: dict[str, bytes] = {}
+
+    class Host:
+        def save(self, name: str, contents: bytes) -> str:
+            saved[name] = contents
+            return f"/somewhere/{name}"
+
+    session = Session.open("hyperstatic")
+    session.window = Host()
+    session.press("k")
+    session.press("p")
+    assert session.notice == "Go through all parts first, with K; then P writes the report."
+    session.press("k")
+    guide = guide_of(session)
+    guide.pick(guide.sets[0].model.rods["BD"])
+    for _ in range(4):
+        session.press("k")
+    session.press("p")
+    assert session.notice == "Report saved: /somewhere/pinjoint-force-method.pdf"
+    assert saved["pinjoint-force-method.pdf"].startswith(b"%PDF")

@@ -43,6 +43,14 @@ def test_a_theme_is_remembered_and_other_entries_stay(folder: Path) -> None:
     assert [entry.name for entry in folder.iterdir()] == ["settings.json"]
 
 
+def test_the_convention_of_the_force_method_is_remembered(folder: Path) -> None:
+    assert preferences.preferred_convention() == "textbook"
+    preferences.remember("convention", "thesis")
+    assert preferences.preferred_convention() == "thesis"
+    preferences.remember("convention", "another")
+    assert preferences.preferred_convention() == "textbook"
+
+
 @pytest.mark.parametrize(
     "text", ["", "{", "[]", '{"theme": 3}', '{"theme": "gone"}', "\x00\xff", "[" * 100_000]
 )

@@ -161,7 +161,7 @@ def test_random_trusses_with_warm_and_misfitting_rods(seed: int) -> None:
     ("name", "words"),
     [
         ("AB", r"AB bends\. Release the moment at one of its ends instead: AB\.start or AB\.end"),
-        ("AB.end", r"Without AB\.end the structure is a mechanism: B round itself can move"),
+        ("AB.end", r"Without AB\.end the structure is a mechanism: B about itself can move"),
         ("B.rotation", "B is not clamped"),
         ("A.turn", "rods and supports"),
     ],
