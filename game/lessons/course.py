@@ -80,6 +80,7 @@ class Course:
             first -= 1
         for number in range(first, at):
             self._enter(number)
+            self._shown = True
             self.perform(self.task.solution)
         self._enter(at)
 

@@ -36,6 +36,11 @@ CLOSE, ACCEPT = (
 NARROW, NARROWEST = 140.0, 120.0  # points, a box less wide does not share its row; one of a vector
 TILE, TILE_GAP, CAPTION, PROPORTION = 172.0, 16.0, 38.0, 0.6
 PILL, PILL_WIDTH, PILL_GAP = 40.0, 184.0, 10.0  # points: tiles of a section without pictures
+PILL_TITLE, PILL_TEXT, PILL_EDGE = (
+    12.5,
+    40.0,
+    6.0,
+)  # points: size of its title, where it begins, and room behind it
 BESIDE, SEARCH = 985.0, 340.0  # points of width from which the name stands beside the heading; that it takes
 LOWEST = 0.65  # share of a picture's height that it keeps where one more row fits then
 LEAST_PICTURE = 24.0  # points
@@ -112,14 +117,14 @@ def lay_out(form: Form, viewport: Viewport, unit: float) -> FormLayout:
     if _has_files(form):
         fixed, accept, heading_width = _name_place(form, left, width, v, u)
         top = accept.bottom + 22.0 * u
-        rows = list(_tile_rows(form, width / u))
+        rows = list(_tile_rows(form, width / u, u))
     else:
         rows = list(_box_rows(form, width / u, u))
     readings = list(_reading_rows(form))
     if len(readings) * READING * u > MOST_READINGS * (bottom - top):
         rows, readings = readings + rows, []
     for row in readings:  # they stay while boxes are scrolled
-        height = _height(row, 0.0, u)
+        height = _height(row, 0.0, width, u)
         fixed += _placed(row, left, top, width, height, u)
         top += height
     lines = len(message_lines(form, width, u))
@@ -138,10 +143,11 @@ def explanation_type(v: Viewport, u: float) -> tuple[float, float]:
 
 
 def _lines_of_explanations(form: Form, width: float, v: Viewport, u: float) -> int:
-    """How many lines the longest explanation of a tile takes, so that none is cut that is not very long."""
+    """How many lines the longest explanation takes, so that none is cut that is not very long."""
     size = font_size(explanation_type(v, u)[0], u)
-    lines = (_line_count(tr(tile.explanation), width, size) for tile in form.tiles)
-    return min(max(lines, default=EXPLAINED), MOST_EXPLAINED) if len(form.tiles) else EXPLAINED
+    least = () if len(form.tiles) else (EXPLAINED,)
+    lines = (_line_count(tr(item.explanation), width, size) for item in (*form.tiles, *form.boxes))
+    return min(max((*least, *lines), default=EXPLAINED), MOST_EXPLAINED)
 
 
 @lru_cache(maxsize=1000)
@@ -187,7 +193,7 @@ def _has_files(form: Form) -> bool:
 def _with_rows(layout: FormLayout, fixed: list[Place], rows: list[Row]) -> FormLayout:
     u, room, width = layout.unit, layout.bottom - layout.top, layout.right - layout.left
     picture = _picture_height(rows, width, room, u)
-    heights = [_height(row, picture, u) for row in rows]
+    heights = [_height(row, picture, width, u) for row in rows]
     first = min(layout.first, _last_first(heights, room))
     places, top, shown = list(fixed), layout.top, 0
     for row, height in zip(rows[first:], heights[first:], strict=True):
@@ -246,8 +252,10 @@ def _box_rows(form: Form, width: float, u: float) -> Iterator[Row]:
 
 def _is_short(box: Box, width: float, u: float) -> bool:
     """True if the title of a box stands whole above it in so many points, with what is noted of its value."""
-    said = f"{box.said_title} {short_note(box.note)}".rstrip()
-    return text_width(said, font_size(BOX_TITLE, u)) + 8.0 * u * bool(box.note) <= width * u
+    unit = "" if box.text and box.text not in (box.words or ()) else box.unit
+    beside = max(short_note(box.note), unit, key=len)
+    said = f"{box.said_title} {beside}".rstrip()
+    return text_width(said, font_size(BOX_TITLE, u)) + 8.0 * u * bool(beside) <= width * u
 
 
 def short_note(note: str) -> str:
@@ -261,12 +269,12 @@ def _partner(box: Box) -> str:
     return f"{table}.{name}" if axis else ""
 
 
-def _tile_rows(form: Form, width: float) -> Iterator[Row]:
+def _tile_rows(form: Form, width: float, u: float) -> Iterator[Row]:
     """Sections and tiles; of a section with a tile that stands for the rest one row."""
     shown = (tile for tile in form.tiles if not tile.hidden)
     for section, group in groupby(shown, lambda tile: tile.section):
         tiles = list(group)
-        columns = pill_columns(width) if _are_pills(tiles) else tile_columns(width)
+        columns = pill_columns(tiles, width, u) if _are_pills(tiles) else tile_columns(width)
         those, rest = [t for t in tiles if not t.rest], [t for t in tiles if t.rest]
         if rest and len(those) > columns:
             those = [*those[: max(columns - 1, 1)], *rest[: columns - 1]]  # of one column the first tile only
@@ -287,19 +295,40 @@ def tile_columns(width: float) -> int:
     return max(int((width + TILE_GAP) / (min(TILE, 0.45 * width) + TILE_GAP)), 1)
 
 
-def pill_columns(width: float) -> int:
-    """How many tiles without pictures stand side by side in a width in points."""
-    return max(int((width + PILL_GAP) / (PILL_WIDTH + PILL_GAP)), 1)
+def pill_columns(tiles: Sequence[Tile], width: float, u: float) -> int:
+    """How many tiles without pictures stand side by side in a width in points, with their titles in one line."""
+    size, columns = font_size(PILL_TITLE, u), max(int((width + PILL_GAP) / (PILL_WIDTH + PILL_GAP)), 1)
+    begins = any(tile.rest for tile in tiles)  # only the first row is seen
+    while columns > 1:
+        room = (width + PILL_GAP) / columns - PILL_GAP - PILL_TEXT - PILL_EDGE
+        titles = [tile.title for tile in (tiles[:columns] if begins else tiles)]
+        if max(text_width(title, size, "semibold") for title in titles) <= room * u:
+            break
+        columns -= 1
+    return columns
 
 
-def _height(row: Row, picture: float, u: float) -> float:
+def _height(row: Row, picture: float, width: float, u: float) -> float:
     if isinstance(row, str):
         return SECTION * u
     if isinstance(row[0], Reading):
         return READING * u
     if isinstance(row[0], Box):
-        return (TITLE + BOX + BELOW + PROBLEM * any(box.problem for box in row)) * u
+        each = _box_width(row, width, u)
+        return (TITLE + BOX + BELOW + PROBLEM * max(len(problem_lines(box, each, u)) for box in row)) * u
     return (PILL + PILL_GAP) * u if _are_pills(row) else picture + (CAPTION + TILE_GAP) * u
+
+
+def _box_width(row: Sequence[Box], width: float, u: float) -> float:
+    """Pixels that each box of a row is wide: half of the row unless a single one needs it all."""
+    half = (width - COLUMN_GAP * u) / 2
+    alone = half < NARROW * u or not _is_short(row[0], half / u, u)
+    return width if alone and len(row) == 1 else half
+
+
+def problem_lines(box: Box, width: float, u: float) -> list[str]:
+    """Why a box is refused, in the lines below it."""
+    return wrapped(box.problem, width, font_size(BOX_TITLE, u)) if box.problem else []
 
 
 def _picture_height(rows: Sequence[Row], width: float, room: float, u: float) -> float:
@@ -310,7 +339,7 @@ def _picture_height(rows: Sequence[Row], width: float, room: float, u: float) ->
     begun = [end for end in ends if end < 2 or not pictured[end - 2]]  # ends of the first rows of sections
     needed = max(begun[:SECTIONS_SEEN], default=0)
     for end in reversed(ends):
-        fixed = sum(_height(row, 0.0, u) for row in rows[:end])
+        fixed = sum(_height(row, 0.0, width, u) for row in rows[:end])
         each = (room - fixed) / sum(pictured[:end])
         if each >= (least if end <= needed else LOWEST * high):
             return min(each, high)
@@ -331,12 +360,9 @@ def _placed(
     elif isinstance(row[0], Reading):
         yield Place(left, top, width, height, row[0])
     elif isinstance(row[0], Box):
-        gap = COLUMN_GAP * u
-        half = (width - gap) / 2
-        alone = half < NARROW * u or not _is_short(row[0], half / u, u)
-        each = width if alone and len(row) == 1 else half
+        each = _box_width(row, width, u)
         for column, box in enumerate(row):
-            yield Place(left + column * (each + gap), top + TITLE * u, each, BOX * u, box)
+            yield Place(left + column * (each + COLUMN_GAP * u), top + TITLE * u, each, BOX * u, box)
     elif _are_pills(row):
         gap = PILL_GAP * u
         each = min((width - (columns - 1) * gap) / columns, 2.0 * PILL_WIDTH * u)

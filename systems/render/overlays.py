@@ -426,6 +426,8 @@ def draw_scale(sheet: Sheet, scale: Scale | None) -> list[Mark]:
         return []
     u, size = sheet.unit, sheet.font(11.0)
     ruler = scale.ruler + 8.0 * u if scale.ruler else 0.0
+    while len(said) > 1 and text_width("   ".join(said), size) > scale.room:
+        said.pop()
     text = shortened("   ".join(said), scale.room, size)
     x, y = round(scale.left + 6.0 * u), round(scale.top + 6.0 * u)
     width = ruler + text_width(text, size) + 12.0 * u

@@ -16,11 +16,16 @@ from systems.render.form_layout import (
     MESSAGE,
     MESSAGE_LINE,
     PILL,
+    PILL_EDGE,
+    PILL_TEXT,
+    PILL_TITLE,
+    PROBLEM,
     FormLayout,
     Place,
     explanation_type,
     lay_out,
     message_lines,
+    problem_lines,
     short_note,
 )
 from systems.render.help import draw_help
@@ -179,9 +184,8 @@ class _Writer:
             marks.append(Text(title, place.left, above, size, theme.muted))
             if unit:
                 marks.append(Text(unit, place.right, above, size, theme.muted, anchor="right"))
-        if box.problem:
-            problem = shortened(box.problem, place.width, size)
-            marks.append(Text(problem, place.left, below, size, theme.problem))
+        for number, line in enumerate(problem_lines(box, place.width, u)):
+            marks.append(Text(line, place.left, below + number * PROBLEM * u, size, theme.problem))
         return marks
 
     def _frame(self, place: Place, selected: bool, hovered: bool) -> list[Mark]:
@@ -240,9 +244,9 @@ class _Writer:
 
     def _pill(self, place: Place, tile: Tile) -> list[Mark]:
         """A tile without a picture: its symbol, and beside it its title and its caption."""
-        u, theme, size, small = self.unit, self.theme, self.font(12.5), self.font(11.0)
-        middle, left = place.middle[1], place.left + 40.0 * u
-        room = place.right - left - 6.0 * u
+        u, theme, size, small = self.unit, self.theme, self.font(PILL_TITLE), self.font(11.0)
+        middle, left = place.middle[1], place.left + PILL_TEXT * u
+        room = place.right - left - PILL_EDGE * u
         x, title = place.left + 21.0 * u, shortened(tile.title, room, size, "semibold")
         at = np.array([[x, middle]])
         return [
