@@ -280,8 +280,10 @@ def _tile_rows(form: Form, width: float, u: float) -> Iterator[Row]:
             those = [*those[: max(columns - 1, 1)], *rest[: columns - 1]]  # of one column the first tile only
         if section:
             yield section
-        if _are_pills(tiles):  # rows about equally long
-            columns = math.ceil(len(those) / math.ceil(len(those) / columns))
+        if _are_pills(tiles):  # rows about equally long, the longer ones first
+            least, longer = divmod(len(those), math.ceil(len(those) / columns))
+            yield from in_rows(those[: longer * (least + 1)], least + 1)
+            those, columns = those[longer * (least + 1) :], least
         yield from in_rows(those, columns)
 
 

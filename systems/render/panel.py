@@ -243,18 +243,24 @@ class _Writer:
         return text_width(written(box), self.font(_TEXT)) + small
 
     def _pill(self, place: Place, tile: Tile) -> list[Mark]:
-        """A tile without a picture: its symbol, and beside it its title and its caption."""
+        """A tile without a picture: its symbol, and beside it its title and, if a line is enough for that, its caption."""
         u, theme, size, small = self.unit, self.theme, self.font(PILL_TITLE), self.font(11.0)
         middle, left = place.middle[1], place.left + PILL_TEXT * u
         room = place.right - left - PILL_EDGE * u
-        x, title = place.left + 21.0 * u, shortened(tile.title, room, size, "semibold")
-        at = np.array([[x, middle]])
+        x, lines = (
+            place.left + 21.0 * u,
+            at_most(wrapped(tile.title, room, size, "semibold"), 2, room, size, "semibold"),
+        )
+        at, caption = np.array([[x, middle]]), shortened(tile.caption, room, small) if len(lines) == 1 else ""
         return [
             *self._card(place, tile, 8.0 * u),
             Stamps("disc", at, 12.0 * u, u, faded(theme.focus, 0.14), theme.background),
             Text(tile.symbol, x, middle, self.font(15.0), theme.focus, anchor="centre"),
-            Text(title, left, middle - 7.5 * u, size, theme.text, "semibold"),
-            Text(shortened(tile.caption, room, small), left, middle + 8.5 * u, small, theme.muted),
+            *(
+                Text(line, left, middle + (16.0 * number - 7.5) * u, size, theme.text, "semibold")
+                for number, line in enumerate(lines)
+            ),
+            Text(caption, left, middle + 8.5 * u, small, theme.muted),
         ]
 
     def _card(self, place: Rectangle, tile: Tile, radius: float) -> list[Mark]:
