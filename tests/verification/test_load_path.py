@@ -113,8 +113,9 @@ def test_a_curve_of_a_mechanism_says_what_moves(capsys: pytest.CaptureFixture[st
     }
     (tmp_path / "square.json").write_text(json.dumps(square))
     assert main(["curve", str(tmp_path / "square.json")]) == 1
-    assert "ends where it begins, at the load factor 0. The structure is a mechanism: C and D along x can move." in (
-        capsys.readouterr().err
+    assert (
+        "ends where it begins, at the load factor 0. The structure is a mechanism: C and D along x can move."
+        in (capsys.readouterr().err)
     )
 
 

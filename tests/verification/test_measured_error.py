@@ -214,7 +214,7 @@ def test_the_error_is_in_the_energy_panel_while_nothing_moves() -> None:
     (readout,) = own_readouts(session)
     assert readout.rows[-3] == (
         "error of displacements",
-        "0.0011 of the largest",
+        "0.11 % of the largest",
     )  # e^−ζωt (ωh)²/24 ωt
     assert [title for title, _ in readout.rows[-2:]] == ["error of velocities", "error of axial forces"]
     session.press("space")

@@ -326,7 +326,9 @@ def test_verify_says_where_an_unexplained_difference_is(
     (tmp_path / "model.json").write_text(json.dumps(model))
     status, found = verify(capsys, str(tmp_path / "model.json"))
     assert (status, found["status"]) == (1, "not verified")
-    assert found["message"].startswith("The simulation came to rest in another state than the exact equilibrium: the ")
+    assert found["message"].startswith(
+        "The simulation came to rest in another state than the exact equilibrium: the "
+    )
 
 
 @pytest.mark.parametrize(
@@ -415,7 +417,9 @@ def test_verify_tells_the_degree_where_there_are_rods(
 ) -> None:
     main(["verify", name, "--theory-only"])
     lines = capsys.readouterr().out.splitlines()
-    assert [line for line in lines if line.startswith(("statically", "kinematically", "no self-stress"))] == said
+    assert [
+        line for line in lines if line.startswith(("statically", "kinematically", "no self-stress"))
+    ] == said
 
 
 def test_verifying_leaves_no_trace_in_theory(capsys: pytest.CaptureFixture[str]) -> None:
