@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from components.bent import is_frame
-from components.box import NAME, NUMBER, TEXT, WORD, Box, said_title
+from components.box import NAME, NUMBER, TEXT, WORD, Box
 from components.field import SAVED, Field
 from components.form import Form
 from components.handle import Handle
@@ -181,7 +181,7 @@ def refresh(form: Form, model: Model, selected: Sequence[Handle]) -> None:
 def _sections(model: Model, selected: Sequence[Handle]) -> Iterator[list[dict[str, Any]]]:
     for subject in subjects(model, selected):
         boxes = [box for field in subject.fields for box in _boxes(model, subject, field)]
-        yield sorted(boxes, key=lambda box: said_title(box["title"], box["target"]).casefold())
+        yield sorted(boxes, key=lambda box: box["title"].casefold())  # in English, so that Tab goes on alike
 
 
 def _boxes(model: Model, subject: Subject, field: Field[Any]) -> Iterator[dict[str, Any]]:

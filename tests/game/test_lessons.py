@@ -247,6 +247,12 @@ def test_progress_survives_a_restart_and_a_damaged_file(session: Session) -> Non
     assert course.accepted
 
 
+def test_what_comes_before_a_task_is_not_counted_as_done(session: Session) -> None:
+    begun(session, "07_force_method", 2)
+    assert session.rods["AB"].exists
+    assert progress.done("07_force_method").tasks == frozenset()
+
+
 def test_own_work_is_kept_and_that_of_a_lesson_asks_for_nothing() -> None:
     session = Session.open("isostatic")
     session.particles["B"].force = (1.0, 2.0)

@@ -22,9 +22,7 @@ class Pause(Scene):
         if kinds and all(kind.points for kind in kinds):
             return tr("drag it or its ends     Return properties     Esc deselect     F1 help")
         if kinds:
-            return tr(
-                "right click menu     Return properties     I force diagram     Esc deselect     F1 help"
-            )
+            return tr("right click menu     Return properties     I force diagram     Esc deselect     F1 help")
         return tr(
             "Space run     click select     right click menu     I force diagrams     wheel zoom     F1 help"
         )
