@@ -117,7 +117,7 @@ def lay_out(form: Form, viewport: Viewport, unit: float) -> FormLayout:
     if _has_files(form):
         fixed, accept, heading_width = _name_place(form, left, width, v, u)
         top = accept.bottom + 22.0 * u
-        rows = list(_tile_rows(form, width / u, u))
+        rows = list(_tile_rows(form, width / u))
     else:
         rows = list(_box_rows(form, width / u, u))
     readings = list(_reading_rows(form))
@@ -269,12 +269,12 @@ def _partner(box: Box) -> str:
     return f"{table}.{name}" if axis else ""
 
 
-def _tile_rows(form: Form, width: float, u: float) -> Iterator[Row]:
+def _tile_rows(form: Form, width: float) -> Iterator[Row]:
     """Sections and tiles; of a section with a tile that stands for the rest one row."""
     shown = (tile for tile in form.tiles if not tile.hidden)
     for section, group in groupby(shown, lambda tile: tile.section):
         tiles = list(group)
-        columns = pill_columns(tiles, width, u) if _are_pills(tiles) else tile_columns(width)
+        columns = pill_columns(width) if _are_pills(tiles) else tile_columns(width)
         those, rest = [t for t in tiles if not t.rest], [t for t in tiles if t.rest]
         if rest and len(those) > columns:
             those = [*those[: max(columns - 1, 1)], *rest[: columns - 1]]  # of one column the first tile only
@@ -297,17 +297,9 @@ def tile_columns(width: float) -> int:
     return max(int((width + TILE_GAP) / (min(TILE, 0.45 * width) + TILE_GAP)), 1)
 
 
-def pill_columns(tiles: Sequence[Tile], width: float, u: float) -> int:
-    """How many tiles without pictures stand side by side in a width in points, with their titles in one line."""
-    size, columns = font_size(PILL_TITLE, u), max(int((width + PILL_GAP) / (PILL_WIDTH + PILL_GAP)), 1)
-    begins = any(tile.rest for tile in tiles)  # only the first row is seen
-    while columns > 1:
-        room = (width + PILL_GAP) / columns - PILL_GAP - PILL_TEXT - PILL_EDGE
-        titles = [tile.title for tile in (tiles[:columns] if begins else tiles)]
-        if max(text_width(title, size, "semibold") for title in titles) <= room * u:
-            break
-        columns -= 1
-    return columns
+def pill_columns(width: float) -> int:
+    """How many tiles without pictures stand side by side in a width in points."""
+    return max(int((width + PILL_GAP) / (PILL_WIDTH + PILL_GAP)), 1)
 
 
 def _height(row: Row, picture: float, width: float, u: float) -> float:
