@@ -220,7 +220,7 @@ def test_the_error_is_in_the_energy_panel_while_nothing_moves() -> None:
     session.press("space")
     assert session.busy
     (readout,) = own_readouts(session)
-    assert readout.rows[-1][0] == "imbalance"
+    assert readout.rows[-1][0] == "numerical imbalance"
 
 
 def test_at_rest_time_that_passes_without_steps_is_not_run_again(capsys: pytest.CaptureFixture[str]) -> None:
