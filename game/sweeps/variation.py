@@ -146,9 +146,12 @@ def _read(model: Model, text: str) -> Variation:
 
 
 def _label(target: Target, element: str) -> str:
-    of = {"": "", EVERY: f" of all {target.table.name}"}.get(element, f" of {element}")
-    axis = f" {target.axis}" if target.axis else ""
-    return f"{target.field.title}{axis}{of}" + (f", {target.field.unit}" if target.field.unit else "")
+    title = joined([tr(target.field.title), target.axis])
+    if element == EVERY:
+        title = tr("{quantity} of all {elements}", quantity=title, elements=tr(target.table.name))
+    elif element:
+        title = tr("{quantity} of {element}", quantity=title, element=element)
+    return joined([title, target.field.unit], ", ")
 
 
 def _values(target: Target, text: str) -> tuple[Value, ...]:
