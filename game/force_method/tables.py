@@ -303,18 +303,25 @@ class Tables:
         )
 
     def sums(self, i: int) -> tuple[str, ...]:
-        """What δᵢ₀ and δᵢᵢ of a frame are sums of: bending, axial forces, and what acts without force."""
-        if not self.bends:
-            return ()
+        """What δᵢ₀ and δᵢᵢ of a frame are sums of."""
+        return (f"{self._sum_of_gap(i)},  {self._sum_of_units(i, i)}",) if self.bends else ()
+
+    def all_sums(self) -> list[str]:
+        """What every δ of a frame is a sum of: bending, axial forces, and what acts without force."""
+        every = range(len(self.solution.unknowns))
+        return [*map(self._sum_of_gap, every), *(self._sum_of_units(i, j) for i, j in _pairs(every))]
+
+    def _sum_of_gap(self, i: int) -> str:
         work, units = self.work, self.units
         ways = (work.of_bending, work.of_base, work.of_free, work.of_supports)
-        gap = _sum(units.factor * float(way[i].sum()) for way in ways)
-        flexibility = [work.of_unit_bending(i, i), work.of_units(i, i)]
-        own = _sum(units.factor * float(part.sum()) for part in flexibility)
-        return (
-            f"δ{index(i + 1, 0)} = {gap} {units.gap(i)},"
-            f"  δ{index(i + 1, i + 1)} = {own} {units.flexibility(i, i)}",
-        )
+        found = _sum(units.factor * float(way[i].sum()) for way in ways)
+        return f"δ{index(i + 1, 0)} = {found} {units.gap(i)}"
+
+    def _sum_of_units(self, i: int, j: int) -> str:
+        parts = (self.work.of_unit_bending(i, j), self.work.of_units(i, j))
+        found = _sum(self.units.factor * float(part.sum()) for part in parts)
+        same = "" if i == j else f" = δ{index(j + 1, i + 1)}"
+        return f"δ{index(i + 1, j + 1)}{same} = {found} {self.units.flexibility(i, j)}"
 
     # --- superposition -----------------------------------------------------------------------------
 
