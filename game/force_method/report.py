@@ -37,20 +37,22 @@ from systems.render.paper import (
     in_rows,
     together,
 )
+from systems.render.diagrams import largest_force
 from systems.render.picture import compose
 from systems.render.theme import load_theme
 from systems.statics.counting import counted
 from systems.statics.equations import largest
 from systems.statics.external import external_forces
-from systems.statics.force_method import Solution
 from systems.statics.released import SetState
 from systems.statics.unknowns import Unknown
 
-_AROUND = 62.0  # pixels around a structure, for supports, loads and diagrams
+_BESIDE_IT, _ABOVE, _BELOW = 68.0, 46.0, 62.0  # pixels around a structure, for supports, loads and diagrams
+_SHORTER = 1.3  # times the largest force: that of the longest arrow
 _DIAGRAM = 30.0  # pixels of the largest axial force
-_FLAT = 2.6  # width by height, from which on two figures stand in a row, not three
+_NOTHING = 1e-9  # kN: of axial forces, which beams have none of
 _ROWS = 120  # of a table that are printed
 _TERMS = 6  # of a sum that are written one by one
+_SHOWN = 2  # unknowns of a frame up to which each has a column of superposition
 _BESIDE = 26  # rows of a table that stands beside others
 _APART = ",\u2003"  # between formulas in a line
 
@@ -118,14 +120,16 @@ def _figure(
     """A picture of a model, with the diagrams of a quantity."""
     model.delete(list(model.grids))
     wide, high = _shape(model)
-    row = 2 if wide > _FLAT * high else 3
+    row = 2 if wide > layout.flat * high else 3
     width = int((WIDTH - (row - 1) * GUTTER) / row / PIXEL)
-    fitting = (width - 2.0 * _AROUND) * high / wide + 2.0 * _AROUND
-    height = int(min(fitting, layout.figure / PIXEL))
+    room = width - 2.0 * _BESIDE_IT
+    height = int(min(room * high / wide + _ABOVE + _BELOW, layout.figure / PIXEL))
     view = View(legend=False, has_scale=False, all_diagrams=diagrams is not None, quantity=diagrams or AXIAL)
     view.cuts, view.has_units = tuple(cuts), has_units
     view.camera = Camera(viewport=Viewport(0, 0, width, height))
-    view.camera.fit(model.particles.position, _AROUND, view.camera.viewport, 1.0)
+    inner = Viewport(int(_BESIDE_IT), int(_ABOVE), int(room), int(height - _ABOVE - _BELOW))
+    view.camera.fit(model.particles.position, 0.0, inner, 1.0)
+    view.largest_force = _SHORTER * largest_force(model, view)
     pulled = 0.0 if is_frame(model) else largest(model.rods.axial_force)
     model.settings.diagram_scale = round_down(_DIAGRAM / pulled) if pulled > 0.0 else 1.0
     loaded_ones = [p for p in model.particles if any(p.force) or p.moment] + [
@@ -137,9 +141,11 @@ def _figure(
     return made.width, [made]
 
 
-def _cuts(model: Model, unknowns: Sequence[Unknown], acting: int | None = None) -> Iterator[Cut]:
+def _cuts(
+    model: Model, released: Model, unknowns: Sequence[Unknown], acting: int | None = None
+) -> Iterator[Cut]:
     """The released rods, with the pair of unit forces or moments of one of the unknowns."""
-    rigid = rigid_joints(model)
+    rigid = rigid_joints(released)
     for i, unknown in enumerate(unknowns):
         label = f"X{index(i + 1)} = 1" if i == acting else ""
         if unknown.of_support:
@@ -186,6 +192,8 @@ class _Page:
         self.model, self.solution = solved.model, solved.solution
         self._every = range(len(solved.solution.unknowns))
         self._rows = solved.model.rods.count
+        states = (solved.solution.real, solved.solution.base, *solved.solution.units)
+        self._pulls = any(largest(state.axial_force) > _NOTHING for state in states)  # not so in beams
 
     def _text(self, words: str, style: str = "text") -> Flowable:
         return self.layout.text(words, style)
@@ -200,7 +208,7 @@ class _Page:
         released = base_structure(model, unknowns)
         blocks = [_figure(layout, real, tr("The structure, its supports and its loads"))]
         caption = tr("Released structure under the load: {force} ({unit})", force=f"{symbol}₀", unit=unit)
-        hinged = list(_cuts(model, unknowns))
+        hinged = list(_cuts(model, released, unknowns))
         under_load = still(released, model, solution.base)
         blocks.append(_figure(layout, under_load, caption, diagrams=quantity, cuts=hinged))
         for i in self._every:
@@ -214,7 +222,9 @@ class _Page:
         alone = [float(i == j) for j in self._every]
         unknown = unknowns[i]
         copy = loaded(model, unknowns, alone) if unknown.of_support else unloaded(model, unknowns)
-        cuts = list(_cuts(model, unknowns, i))
+        cuts = list(_cuts(model, copy, unknowns, i))
+        if unknown.of_end and any(cut.label and cut.held for cut in cuts):  # the support bears no moment
+            state = replace(state, reaction=state.reaction * [1.0, 1.0, 0.0])
         return _figure(
             self.layout,
             still(copy, model, state),
@@ -250,7 +260,7 @@ class _Page:
         solved, every = self.solved, self._every
         heading = [
             self._text(tr("2  Displacements by virtual work"), "heading"),
-            self._text(_APART.join(_formulas(solved)), "equation"),
+            self._text(_APART.join(_formulas(solved, pulls=self._pulls)), "equation"),
         ]
         blocks: list[Block] = []
         if len(every) > PRODUCTS:
@@ -266,22 +276,20 @@ class _Page:
             blocks += _printed(self.layout, solved.bending(every))
             warm = solved.work.free.any()
             axial = solved.virtual_work(every) if warm else solved.forces(every)
-            blocks += _printed(self.layout, axial) if axial.names else []
+            blocks += _printed(self.layout, axial) if self._pulls else []
         else:
             blocks += _printed(self.layout, solved.virtual_work(every))
         settlements = solved.settlements()
         if settlements is not None:
             blocks += _printed(self.layout, settlements)
-        if solved.bends and len(every) <= PRODUCTS:
-            lines = solved.all_sums()
-            half = (len(lines) + 1) // 2 if len(lines) > 4 else len(lines)
-            for some in (lines[:half], lines[half:]):
-                if some:
-                    blocks.append((0.0, [self._text(line, "equation") for line in some]))
+        if solved.bends and len(every) <= PRODUCTS and (self._pulls or settlements is not None):
+            sums = _APART.join(line.replace(" ", "\u00a0") for line in solved.all_sums())
+            sums = tr("Bending and axial forces ({units}):  {sums}", units=solved.units.all, sums=sums)
+            blocks.append((WIDTH if len(every) > 1 else 0.0, [self._text(sums)]))
         compatibility = self._compatibility()
         if self._rows > _BESIDE:
             return [*_flowing(heading, blocks, self._rows), together(*compatibility)]
-        if len(every) == 1 and not solved.bends:
+        if len(every) == 1:
             return _flowing(heading, [*blocks, (0.0, compatibility)], self._rows)
         return [*_flowing(heading, blocks, self._rows), together(*compatibility)]
 
@@ -300,16 +308,16 @@ class _Page:
                 heading,
                 self._text(said),
                 self._text(symbols, "equation"),
-                self._text(equation.strip(), "equation"),
+                self._text(equation.strip().replace(" = ", "\u00a0=\u00a0"), "equation"),
                 self._text(found[0], "result"),
             ]
-        lines: list[Flowable] = [Matrices([*self._numbers()])]
+        lines: list[Flowable] = [Matrices([*self._numbers()], self.layout)]
         if count <= PRODUCTS:
-            lines.insert(0, Matrices([*self._symbols()]))
+            lines.insert(0, Matrices([*self._symbols()], self.layout))
         symmetric = tr("The matrix is symmetric: δ₁₂ = δ₂₁ (Maxwell).")
         rows = in_rows([(line.width, [line]) for line in lines]) if count <= PRODUCTS else lines
         result = self._text(_APART.join(found), "result")
-        return [heading, self._text(f"{said} {symmetric}"), *rows, result]
+        return [heading, self._text(f"{symmetric} {said}"), *rows, result]
 
     def _numbers(self) -> Iterator[str | list[list[str]]]:
         solution, factor = self.solution, self.solved.units.factor
@@ -355,11 +363,18 @@ class _Page:
                 diagrams=quantity,
             )
             for quantity, title in titles.items()
-            if solved.bends or quantity == AXIAL
+            if (self._pulls if quantity == AXIAL else solved.bends)
         ]
         heading = [self._text(tr("4  Forces in the structure"), "heading")]
-        kinds = [*([solved.moments()] if solved.bends else []), solved.axial_forces(), solved.reactions()]
+        most = _SHOWN if solved.bends else PRODUCTS
+        kinds = [solved.moments(most)] if solved.bends else []
+        kinds += [solved.axial_forces(most)] if self._pulls else []
+        kinds.append(solved.reactions(most))
         tables = [block for table in kinds for block in _printed(self.layout, table, without_last=True)]
+        beside = tables[1:] if solved.bends else [*tables[1:], *figures]
+        if self._rows <= _BESIDE and sum(width for width, _ in (tables[0], *beside)) > WIDTH - 2 * GUTTER:
+            below = (max(width for width, _ in beside), [part for _, parts in beside for part in parts])
+            tables, figures = [tables[0], below], figures if solved.bends else []
         return _flowing(heading, [*tables, *figures], max(len(table.names) for table in kinds))
 
     def checks(self) -> list[Flowable]:
@@ -367,21 +382,16 @@ class _Page:
         solution, units = self.solution, self.solved.units
         whole, real = solution.superposed, solution.real
         balance = [
-            self._text(tr("Loads and reactions of the whole structure are in equilibrium (kN, kN·m):")),
+            self._text(tr("Equilibrium of the whole structure (kN, kN·m):")),
             *(
                 self._text(f"{name} = {written.total(terms)}", "equation")
                 for name, terms in _balance(self.model, whole)
             ),
         ]
-        gaps = [self._text(tr("The gaps are closed ({units}):", units=units.all))]
+        gaps = [self._text(tr("The compatibility equations hold ({units}):", units=units.all))]
         for i in self._every[:PRODUCTS]:
             terms = [solution.gap[i], *(solution.flexibility[i] * solution.force), -solution.prescribed[i]]
-            gaps.append(
-                self._text(
-                    f"{_left_side(solution, i)} = {written.total(units.factor * float(t) for t in terms)}",
-                    "equation",
-                )
-            )
+            gaps.append(self._text(written.total(units.factor * float(term) for term in terms), "equation"))
         size = largest(real.axial_force)
         off = written.force(largest(whole.axial_force - real.axial_force), nothing=_same(size))
         said = tr("The displacement method gives the same axial forces: largest difference {force}.", force=off)
@@ -403,13 +413,6 @@ def _same(size: float) -> float:
     return written.ROUNDING * max(size, 1e-300)
 
 
-def _left_side(solution: Solution, i: int) -> str:
-    """The left side of a compatibility equation in symbols."""
-    terms = "".join(f" + δ{index(i + 1, j + 1)} X{index(j + 1)}" for j in range(len(solution.unknowns)))
-    held = f" − c{index(i + 1)}" if solution.prescribed[i] else ""
-    return f"δ{index(i + 1, 0)}{terms}{held}"
-
-
 def _counted(solved: Tables) -> str:
     """What the letters of the formula count."""
     count = counted(solved.model)
@@ -429,11 +432,14 @@ def _counted(solved: Tables) -> str:
     )
 
 
-def _formulas(solved: Tables) -> Iterator[str]:
-    """What the sums are, for every pair of unknowns alike."""
+def _formulas(solved: Tables, *, pulls: bool) -> Iterator[str]:
+    """What the sums are, for every pair of unknowns alike; pulls: there are axial forces."""
     work, several = solved.work, len(solved.solution.unknowns) > 1
-    n, m = "N₀ n₁ L/EA", "∫ M₀ m₁ dx/EI"
-    gap = [m] * solved.bends + [f"Σ {n}"]
+
+    def pair(bending: str, axial: str) -> list[str]:
+        return [f"∫ {bending} dx/EI"] * solved.bends + [f"Σ {axial} L/EA"] * pulls
+
+    gap = pair("M₀ m₁", "N₀ n₁")
     if work.free.any():
         gap.append("Σ n₁ ΔL")
     if work.curvature.any():
@@ -441,9 +447,9 @@ def _formulas(solved: Tables) -> Iterator[str]:
     if len(work.settled):
         gap.append("(− Σ r₁ c)")
     yield f"δ₁₀ = {' + '.join(gap)}"
-    yield f"δ₁₁ = {'∫ m₁² dx/EI + ' if solved.bends else ''}Σ n₁² L/EA > 0"
+    yield f"δ₁₁ = {' + '.join(pair('m₁²', 'n₁²'))} > 0"
     if several:
-        yield f"δ₁₂ = δ₂₁ = {'∫ m₁ m₂ dx/EI + ' if solved.bends else ''}Σ n₁ n₂ L/EA"
+        yield f"δ₁₂ = δ₂₁ = {' + '.join(pair('m₁ m₂', 'n₁ n₂'))}"
 
 
 def _balance(model: Model, state: SetState) -> Iterator[tuple[str, list[float]]]:

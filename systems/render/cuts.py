@@ -10,7 +10,7 @@ from systems.render.labels import Label, half_size
 from systems.render.marks import Points, Strokes
 from systems.render.members import arc_marks
 from systems.render.occupancy import STRONG
-from systems.render.sheet import Sheet
+from systems.render.sheet import Rows, Sheet
 from systems.render.theme import faded
 
 _DASH, _BETWEEN = 5.0, 3.5  # points, of the lines that are left of a rod
@@ -29,15 +29,13 @@ def draw_cuts(sheet: Sheet) -> None:
         joints = np.array([particles[name].row for name in cut.between])
         ends = sheet.centres[joints]
         length = float(np.hypot(*(ends[1] - ends[0])))
-        if length < 4.0 * _PAIR * sheet.unit:
-            continue
-        if cut.end is None:
+        if cut.end is None and length > 4.0 * _PAIR * sheet.unit:
             _cut_through(sheet, number, cut, joints, (ends[1] - ends[0]) / length)
-        elif cut.label:
-            _pair_of_moments(sheet, number, cut, joints)
+        elif cut.end is not None and cut.label:
+            _pair_of_moments(sheet, number, cut, cut.end, joints)
 
 
-def _cut_through(sheet: Sheet, number: int, cut: Cut, joints: Points, along: Points) -> None:
+def _cut_through(sheet: Sheet, number: int, cut: Cut, joints: Rows, along: Points) -> None:
     u, ink, of = sheet.unit, faded(sheet.theme.ink, 0.6), np.array([number])
     first, last = sheet.centres[joints]
     shares = np.array(_SHARES)[:, None]
@@ -72,14 +70,13 @@ def _clearance(sheet: Sheet, points: Points) -> Points:
     return found
 
 
-def _pair_of_moments(sheet: Sheet, number: int, cut: Cut, joints: Points) -> None:
+def _pair_of_moments(sheet: Sheet, number: int, cut: Cut, end: int, joints: Rows) -> None:
     """Around a hinge: one moment on the rod, the other on the joint, if that is not held by a support."""
-    assert cut.end is not None
     colour, radius = sheet.theme.load, np.array([_RADIUS * sheet.unit])
-    joint = joints[cut.end]
+    joint = int(joints[end])
     at, of = sheet.centres[[joint]], ("particles", np.array([joint]))
-    way = sheet.centres[joints[1 - cut.end]] - at[0]
-    on_rod = np.array([-1.0, 1.0])[[cut.end]]  # counter-clockwise
+    way = sheet.centres[joints[1 - end]] - at[0]
+    on_rod = np.array([-1.0, 1.0])[[end]]  # counter-clockwise
     angle = float(np.arctan2(-way[1], way[0]))
     if cut.held:
         sheet.marks += arc_marks(sheet, of, at, radius, on_rod, colour, _KEY)

@@ -3,8 +3,10 @@
 from __future__ import annotations
 
 import io
+from bisect import bisect_left
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
+from functools import cache
 from typing import Any
 from xml.sax.saxutils import escape
 
@@ -25,20 +27,19 @@ REGULAR, BOLD = "Inter regular", "Inter semibold"
 MARGIN = 16 * mm
 WIDTH = A4[0] - 2 * MARGIN  # points of a column of text
 PIXEL = 0.64  # points of a pixel of a picture
-MANY = 4  # pages from which on none is saved by smaller type
 GUTTER = 4 * mm  # between what stands side by side
-REST = 62 * mm  # the least width of a text that takes what is left of a row
+REST = 54 * mm  # the least width of a text that takes what is left of a row
 _FRAME = 6.0  # points that frames of reportlab leave inside margins
 _GREY = Color(0.35, 0.38, 0.45)
 _LEAST = 7.5  # points of type; wider tables are divided
 _PADDING = 2.6  # points to either side of what is in a table
 
 _STYLES = {  # font, size and leading relative to text, grey, space before and after in lines, indented
-    "title": (BOLD, 1.7, 2.1, False, 0.0, 0.0, 0.0),
+    "title": (BOLD, 1.6, 1.9, False, 0.0, 0.0, 0.0),
     "subtitle": (REGULAR, 0.95, 1.25, True, 0.0, 0.0, 0.0),
-    "heading": (BOLD, 1.18, 1.5, False, 0.75, 0.25, 0.0),
-    "text": (REGULAR, 1.0, 1.35, False, 0.0, 0.15, 0.0),
-    "equation": (REGULAR, 1.0, 1.4, False, 0.0, 0.1, 1.0),
+    "heading": (BOLD, 1.15, 1.4, False, 0.6, 0.15, 0.0),
+    "text": (REGULAR, 1.0, 1.3, False, 0.0, 0.1, 0.0),
+    "equation": (REGULAR, 1.0, 1.35, False, 0.0, 0.05, 1.0),
     "result": (BOLD, 1.05, 1.5, False, 0.0, 0.1, 1.0),
     "caption": (REGULAR, 0.9, 1.2, True, 0.0, 0.2, 0.0),
 }
@@ -50,10 +51,12 @@ Block = tuple[
 
 @dataclass(frozen=True)
 class Layout:
-    """How large things are: type (points), and the greatest height of a figure (points)."""
+    """How large things are: type (points), the greatest height of a figure (points), and how many times as wide as high is
+    a structure of which two figures stand in a row, not three."""
 
     size: float
     figure: float
+    flat: float
 
     def text(self, words: str, style: str = "text") -> Paragraph:
         """A paragraph: "title", "subtitle", "heading", "text", "equation", "result" or "caption"."""
@@ -90,9 +93,20 @@ class Layout:
         return found
 
 
-LAYOUTS = tuple(
-    Layout(size, figure * mm)
-    for size, figure in ((9.0, 62), (8.8, 56), (8.5, 50), (8.2, 46), (8.0, 42), (7.8, 39), (7.5, 36), (7.5, 33))
+LAYOUTS = tuple(  # from the largest to the smallest
+    Layout(size, figure * mm, flat)
+    for size, figure, flat in (
+        (9.5, 80, 0.0),
+        (9.2, 68, 0.0),
+        (9.0, 62, 1.6),
+        (8.6, 54, 1.6),
+        (8.2, 46, 1.6),
+        (8.6, 50, 2.6),
+        (8.2, 44, 2.6),
+        (7.8, 40, 2.6),
+        (7.5, 38, 2.6),
+        (7.5, 38, 9.0),
+    )
 )
 
 
@@ -154,7 +168,7 @@ def _beside(row: Sequence[Block]) -> Flowable:
             ("RIGHTPADDING", (0, 0), (-2, -1), gutter),
             ("RIGHTPADDING", (-1, 0), (-1, -1), 0),
             ("TOPPADDING", (0, 0), (-1, -1), 0),
-            ("BOTTOMPADDING", (0, 0), (-1, -1), 3),
+            ("BOTTOMPADDING", (0, 0), (-1, -1), 2),
             ("VALIGN", (0, 0), (-1, -1), "TOP"),
         ]
     )
@@ -170,8 +184,8 @@ def _ruled(size: float, *, summed: bool) -> list[tuple[Any, ...]]:
         ("VALIGN", (0, 0), (-1, 0), "BOTTOM"),
         ("LEFTPADDING", (0, 0), (-1, -1), _PADDING),
         ("RIGHTPADDING", (0, 0), (-1, -1), _PADDING),
-        ("TOPPADDING", (0, 0), (-1, -1), 0.08 * size),
-        ("BOTTOMPADDING", (0, 0), (-1, -1), 0.16 * size),
+        ("TOPPADDING", (0, 0), (-1, -1), 0.03 * size),
+        ("BOTTOMPADDING", (0, 0), (-1, -1), 0.14 * size),
         ("LINEABOVE", (0, 0), (-1, 0), 0.8, black),
         ("LINEBELOW", (0, 0), (-1, 0), 0.4, black),
         ("LINEBELOW", (0, -1), (-1, -1), 0.8, black),
@@ -213,23 +227,24 @@ def _fitting(cells: Sequence[Sequence[str]], whole: float) -> list[list[int]]:
 class Matrices(Flowable):  # type: ignore[misc]
     """Matrices and signs in one line, such as [δ]{X} + {δ₀} = {0}: a list of rows for each matrix, a text for each sign."""
 
-    _FONT, _STEP, _GAP, _REACH, _INDENT = 8.2, 11.5, 6.0, 2.5, 8.0
+    _STEP, _GAP, _REACH, _INDENT = 11.0, 5.0, 2.0, 8.0
 
-    def __init__(self, parts: Sequence[str | Sequence[Sequence[str]]]) -> None:
+    def __init__(self, parts: Sequence[str | Sequence[Sequence[str]]], layout: Layout) -> None:
         super().__init__()
         self._parts = parts
+        self._font = max(0.92 * layout.size, _LEAST)
         self.widest = sum(self._wide(part) + self._GAP for part in parts) + self._INDENT
-        self._font = self._FONT * min(1.0, WIDTH / self.widest)
+        self._font *= min(1.0, WIDTH / self.widest)
         rows = max(len(part) for part in parts if not isinstance(part, str))
         self.width, self.height = min(self.widest, WIDTH), rows * self._STEP + 5.0
 
     def _columns(self, part: Sequence[Sequence[str]], font: float) -> list[float]:
         return [max(stringWidth(cell, REGULAR, font) for cell in column) for column in zip(*part, strict=True)]
 
-    def _wide(self, part: str | Sequence[Sequence[str]], font: float = _FONT) -> float:
+    def _wide(self, part: str | Sequence[Sequence[str]]) -> float:
         if isinstance(part, str):
-            return float(stringWidth(part, REGULAR, font))
-        return sum(self._columns(part, font)) + self._GAP * (len(part[0]) - 1) + 4 * self._REACH
+            return float(stringWidth(part, REGULAR, self._font))
+        return sum(self._columns(part, self._font)) + self._GAP * (len(part[0]) - 1) + 4 * self._REACH
 
     def wrap(self, width: float, height: float) -> tuple[float, float]:
         """Its size in points."""
@@ -244,7 +259,7 @@ class Matrices(Flowable):  # type: ignore[misc]
         page.setLineWidth(0.7)
         middle, x = self.height / 2, self._INDENT
         for part in self._parts:
-            wide = self._wide(part, font)
+            wide = self._wide(part)
             if isinstance(part, str):
                 page.drawString(x, middle - 0.35 * font, part)
             else:
@@ -269,15 +284,14 @@ class Matrices(Flowable):  # type: ignore[misc]
 def as_paper(title: str, made_of: Callable[[Layout], Sequence[Flowable]], foot: str) -> bytes:
     """What is made in a layout, on one page of A4 in the largest layout with which it fits, else on as few as it takes, as
     the contents of a PDF file; foot: below every page."""
-    best: tuple[int, bytes] | None = None
-    for layout in LAYOUTS:
-        pages, made = _built(title, made_of(layout), foot)
-        if best is None or pages < best[0]:
-            best = pages, made
-        if pages == 1 or pages > MANY:
-            break
-    assert best is not None
-    return best[1]
+
+    @cache
+    def built(layout: Layout) -> tuple[int, bytes]:
+        return _built(title, made_of(layout), foot)
+
+    fewest, _ = built(LAYOUTS[-1])
+    largest = bisect_left(LAYOUTS, True, key=lambda layout: built(layout)[0] <= fewest)
+    return built(LAYOUTS[largest])[1]
 
 
 def _built(title: str, parts: Sequence[Flowable], foot: str) -> tuple[int, bytes]:
@@ -287,17 +301,17 @@ def _built(title: str, parts: Sequence[Flowable], foot: str) -> tuple[int, bytes
     def number(page: Any, document: Any) -> None:
         page.setFont(REGULAR, _LEAST)
         page.setFillColor(_GREY)
-        page.drawString(MARGIN, 8 * mm, UNPRINTABLE.sub("�", foot))
+        page.drawString(MARGIN, 6 * mm, UNPRINTABLE.sub("�", foot))
         if document.page > 1:
-            page.drawRightString(A4[0] - MARGIN, 8 * mm, str(document.page))
+            page.drawRightString(A4[0] - MARGIN, 6 * mm, str(document.page))
 
     document = SimpleDocTemplate(
         made,
         pagesize=A4,
         leftMargin=MARGIN - _FRAME,
         rightMargin=MARGIN - _FRAME,
-        topMargin=12 * mm - _FRAME,
-        bottomMargin=13 * mm - _FRAME,
+        topMargin=10 * mm - _FRAME,
+        bottomMargin=11 * mm - _FRAME,
         title=UNPRINTABLE.sub("�", title),
         author="",
         creator="Pinjoint",

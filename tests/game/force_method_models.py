@@ -9,7 +9,9 @@ from tests.systems.render.frame_models import CLAMPED, PINNED, ROLLER, frame
 
 def panels() -> Model:
     """Two crossed panels on two supports: a truss with two redundants."""
-    particles = {name: (3.0 * at, 0.0, held) for at, (name, held) in enumerate(zip("ABC", (PINNED, {}, ROLLER)))}
+    particles = {
+        name: (3.0 * at, 0.0, held) for at, (name, held) in enumerate((("A", PINNED), ("B", {}), ("C", ROLLER)))
+    }
     particles |= {name: (3.0 * at, 3.0, {}) for at, name in enumerate("DEF")}
     rods = ("A B", "B C", "D E", "E F", "A D", "B E", "C F", "A E", "B D", "B F", "C E")
     loads = [
@@ -17,7 +19,7 @@ def panels() -> Model:
         {"name": "wind", "on": "F", "force": [30.0, 0.0]},
     ]
     source = frame(
-        particles, dict.fromkeys(rods, {"bending_stiffness": 0.0}), loads=loads, title="Two crossed panels"
+        particles, {ends: {"bending_stiffness": 0.0} for ends in rods}, loads=loads, title="Two crossed panels"
     )
     return models.load(source)
 
@@ -25,7 +27,9 @@ def panels() -> Model:
 def propped() -> Model:
     """A propped cantilever under a uniform load."""
     particles = {"A": (0.0, 0.0, CLAMPED), "B": (6.0, 0.0, ROLLER)}
-    return models.load(frame(particles, {"A B": {"distributed_force": [0.0, -10.0]}}, title="Propped cantilever"))
+    return models.load(
+        frame(particles, {"A B": {"distributed_force": [0.0, -10.0]}}, title="Propped cantilever")
+    )
 
 
 def two_span() -> Model:
