@@ -323,7 +323,7 @@ class Session(Context):
     def answer(self, value: Any) -> None:
         """Answer the task of a lesson: names of elements to select, a number, or the text of a choice."""
         if self.course is None:
-            raise ValueError("There is no lesson to answer; begin one from the start page.")
+            raise ValueError(tr("There is no lesson to answer; begin one from the start page."))
         self.course.answer(value)
 
     def take_up_lesson(self) -> None:

@@ -30,6 +30,7 @@ Rows = NDArray[np.int64]
 Kind = type[Handle]
 RowsByKind = Mapping[Kind, Rows]  # particles first, then rods and loads, then kinds of mods
 
+PASTE = marked("paste")  # the title of what is undone
 REFERENCES = {"between", "on"}  # Fields that refer to particles
 
 
@@ -97,14 +98,14 @@ def part_of(model: Model, rows: RowsByKind) -> Part:
     return Part({kind: _columns(model, kind, rows[kind], place) for kind in rows}, foreign)
 
 
-def paste(model: Model, part: Part, offset: Vector) -> list[Handle]:
-    """Create elements like those of a part, moved by an offset (m), as one edit; returns all but the loads.
+def paste(model: Model, part: Part, offset: Vector, title: str = PASTE) -> list[Handle]:
+    """Create elements like those of a part, moved by an offset (m), as one edit of a title; returns all but the loads.
 
     Names that are taken are replaced by free ones.
     """
     first = model.particles.count
     made: dict[Kind, list[Handle]] = {}
-    with model.transaction(marked("paste")):
+    with model.transaction(title):
         for kind, held in part.columns.items():
             columns = {**held, "name": _free_names(model.tables[kind.table], held["name"])}
             for point in _points(kind):

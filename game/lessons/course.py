@@ -283,6 +283,7 @@ class Course:
     def card(self) -> Card:
         """The task as it stands."""
         task, count = self.task, len(self.lesson.tasks)
+        shown = [str(entry["say"]) for _, entry in task.setup if "say" in entry]
         said = tuple(text for text in (self.said, self._scored) if text)
         last = self.at + 1 == count
         if self.accepted and self._shown:
@@ -295,7 +296,7 @@ class Course:
             count=count,
             at=self.at,
             done=frozenset(number - 1 for number in self._done.tasks),
-            paragraphs=(*(tr(str(entry["say"])) for _, entry in task.setup if "say" in entry), tr(task.text)),
+            paragraphs=(*map(tr, shown), tr(task.text)),
             choices=tuple((tr(choice.text), choice.text == self.choice) for choice in task.choices),
             entry=self._entry(),
             said=said,

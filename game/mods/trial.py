@@ -127,11 +127,11 @@ class _Trial:
                     self._note(problem)
 
     def _check_keys(self) -> None:
-        scenes = {scene.name for scene in all_scenes()}
+        group, scenes = marked("scenes"), {scene.name for scene in all_scenes()}
         for binding in BINDINGS:
             if binding.action.startswith(f"{self.mod.name}."):
                 for scene in sorted(set(binding.scenes) - scenes):
-                    problem = missing(marked("scenes"), scene, scenes)
+                    problem = missing(group, scene, scenes)
                     sentence = tr(
                         "The key '{key}' for {action}: {problem}",
                         key=binding.key,

@@ -9,7 +9,7 @@ from collections.abc import Callable, Iterator, Mapping, Sequence
 from typing import Any, Protocol
 
 from components.handle import Handle
-from components.language import english, marked, tr
+from components.language import english, listed, marked, tr
 from components.suggestions import missing
 from components.view import View
 from components.wording import cut, quoted
@@ -150,12 +150,18 @@ def each(session: Shown, path: str) -> list[tuple[Handle, float]]:
     """The elements that a path such as rods.*.axial_force names, with their numbers; without those that have none."""
     target, rest = locate(session.model, path.strip(), readable)
     if rest:
-        raise PathError(f"{cut(path)}: '{cut(rest)}' follows the path; leave it out.")
+        raise PathError(
+            tr("{path}: leave out '{rest}', which follows the path.", path=cut(path), rest=cut(rest))
+        )
     values = [(handle, target.part(getattr(handle, target.field.name))) for handle in target.handles]
     wrong = next((value for _, value in values if not isinstance(value, int | float | None)), None)
     if wrong is not None:
-        parts = " or ".join(f"{target.key}.{axis}" for axis in target.field.axes if target.field.shape)
-        raise PathError(f"{cut(path)}: it is {wrong}, not one number{f'; write {parts}' if parts else ''}.")
+        if not target.field.shape:
+            raise PathError(tr("{path} is {value}, not a number.", path=cut(path), value=wrong))
+        parts = [f"{target.key}.{axis}" for axis in target.field.axes]
+        raise PathError(
+            tr("{path} is {value}; name one number: {parts}.", path=cut(path), value=wrong, parts=listed(parts))
+        )
     return [(handle, float(value)) for handle, value in values if value is not None]
 
 

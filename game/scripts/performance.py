@@ -149,7 +149,8 @@ class Performance:
             width, height, ratio = (*entry["resize"], 1.0)[:3]
             self._screen.size = round(width / ratio), round(height / ratio + FOOTER)
         if "say" in entry:
-            self._say(tr(entry["say"]))
+            text = entry["say"]
+            self._say(tr(text))
         elif not _UNSEEN & set(entry):
             self._wait(BEAT if "input" not in entry else 0.1 * BEAT)
 

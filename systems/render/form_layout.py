@@ -28,7 +28,7 @@ HINT, EXPLAINED, MOST_EXPLAINED = 26.0, 2, 6  # points at the bottom; lines of e
 SMALL, LOW_TYPE = 560.0, (11.0, 14.0)  # points: a viewport less high explains in smaller type, and lines apart
 SECTION = 28.0
 COLUMN_GAP = 10.0
-HEADING = 104.0  # points, at least, where a low viewport has the box beside the heading
+HEADING = 104.0  # points, at least, where a low viewport has the box beside the heading, which is shortened
 CLOSE, ACCEPT = (
     24.0,
     64.0,
@@ -36,9 +36,14 @@ CLOSE, ACCEPT = (
 NARROW, NARROWEST = 140.0, 120.0  # points, a box less wide does not share its row; one of a vector
 TILE, TILE_GAP, CAPTION, PROPORTION = 172.0, 16.0, 38.0, 0.6
 PILL, PILL_WIDTH, PILL_GAP = 40.0, 184.0, 10.0  # points: tiles of a section without pictures
+PILL_TITLE, PILL_TEXT, PILL_EDGE = (
+    12.5,
+    40.0,
+    6.0,
+)  # points: size of its title, where it begins, and room behind it
 BESIDE, SEARCH = 985.0, 340.0  # points of width from which the name stands beside the heading; that it takes
 LOWEST = 0.65  # share of a picture's height that it keeps where one more row fits then
-LEAST_PICTURE = 30.0  # points
+LEAST_PICTURE = 24.0  # points
 SECTIONS_SEEN = 2  # with pictures, that begin in sight in any window
 
 PROPERTIES = marked("Properties")  # the heading of an element's own boxes, where its results stand above them
@@ -119,7 +124,7 @@ def lay_out(form: Form, viewport: Viewport, unit: float) -> FormLayout:
     if len(readings) * READING * u > MOST_READINGS * (bottom - top):
         rows, readings = readings + rows, []
     for row in readings:  # they stay while boxes are scrolled
-        height = _height(row, 0.0, u)
+        height = _height(row, 0.0, width, u)
         fixed += _placed(row, left, top, width, height, u)
         top += height
     lines = len(message_lines(form, width, u))
@@ -138,10 +143,11 @@ def explanation_type(v: Viewport, u: float) -> tuple[float, float]:
 
 
 def _lines_of_explanations(form: Form, width: float, v: Viewport, u: float) -> int:
-    """How many lines the longest explanation of a tile takes, so that none is cut that is not very long."""
+    """How many lines the longest explanation takes, so that none is cut that is not very long."""
     size = font_size(explanation_type(v, u)[0], u)
-    lines = (_line_count(tr(tile.explanation), width, size) for tile in form.tiles)
-    return min(max(lines, default=EXPLAINED), MOST_EXPLAINED) if len(form.tiles) else EXPLAINED
+    least = () if len(form.tiles) else (EXPLAINED,)
+    lines = (_line_count(tr(item.explanation), width, size) for item in (*form.tiles, *form.boxes))
+    return min(max((*least, *lines), default=EXPLAINED), MOST_EXPLAINED)
 
 
 @lru_cache(maxsize=1000)
@@ -161,7 +167,8 @@ def _name_place(
     button, closes, heading = pressed + 8.0 * u, (CLOSE + 8.0) * u, width - (CLOSE + 8.0) * u
     x, top, room = left, v.top + 46.0 * u, 420.0 * u
     if v.height < LOW * u:
-        taken = max(text_width(head, font_size(19.0, u), "semibold") + 9.0 * u, HEADING * u)
+        least, most = HEADING * u, width - closes - button - NARROWEST * u
+        taken = max(min(text_width(head, font_size(19.0, u), "semibold") + 9.0 * u, most), least)
         x, top, heading = left + taken, v.top + 6.0 * u, taken - 8.0 * u
         width -= taken + closes
     elif width >= BESIDE * u:
@@ -186,7 +193,7 @@ def _has_files(form: Form) -> bool:
 def _with_rows(layout: FormLayout, fixed: list[Place], rows: list[Row]) -> FormLayout:
     u, room, width = layout.unit, layout.bottom - layout.top, layout.right - layout.left
     picture = _picture_height(rows, width, room, u)
-    heights = [_height(row, picture, u) for row in rows]
+    heights = [_height(row, picture, width, u) for row in rows]
     first = min(layout.first, _last_first(heights, room))
     places, top, shown = list(fixed), layout.top, 0
     for row, height in zip(rows[first:], heights[first:], strict=True):
@@ -245,8 +252,10 @@ def _box_rows(form: Form, width: float, u: float) -> Iterator[Row]:
 
 def _is_short(box: Box, width: float, u: float) -> bool:
     """True if the title of a box stands whole above it in so many points, with what is noted of its value."""
-    said = f"{box.said_title} {short_note(box.note)}".rstrip()
-    return text_width(said, font_size(BOX_TITLE, u)) + 8.0 * u * bool(box.note) <= width * u
+    unit = "" if box.text and box.text not in (box.words or ()) else box.unit
+    beside = max(short_note(box.note), unit, key=len)
+    said = f"{box.said_title} {beside}".rstrip()
+    return text_width(said, font_size(BOX_TITLE, u)) + 8.0 * u * bool(beside) <= width * u
 
 
 def short_note(note: str) -> str:
@@ -271,8 +280,10 @@ def _tile_rows(form: Form, width: float) -> Iterator[Row]:
             those = [*those[: max(columns - 1, 1)], *rest[: columns - 1]]  # of one column the first tile only
         if section:
             yield section
-        if _are_pills(tiles):  # rows about equally long
-            columns = math.ceil(len(those) / math.ceil(len(those) / columns))
+        if _are_pills(tiles):  # rows about equally long, the longer ones first
+            least, longer = divmod(len(those), math.ceil(len(those) / columns))
+            yield from in_rows(those[: longer * (least + 1)], least + 1)
+            those, columns = those[longer * (least + 1) :], least
         yield from in_rows(those, columns)
 
 
@@ -291,14 +302,27 @@ def pill_columns(width: float) -> int:
     return max(int((width + PILL_GAP) / (PILL_WIDTH + PILL_GAP)), 1)
 
 
-def _height(row: Row, picture: float, u: float) -> float:
+def _height(row: Row, picture: float, width: float, u: float) -> float:
     if isinstance(row, str):
         return SECTION * u
     if isinstance(row[0], Reading):
         return READING * u
     if isinstance(row[0], Box):
-        return (TITLE + BOX + BELOW + PROBLEM * any(box.problem for box in row)) * u
+        each = _box_width(row, width, u)
+        return (TITLE + BOX + BELOW + PROBLEM * max(len(problem_lines(box, each, u)) for box in row)) * u
     return (PILL + PILL_GAP) * u if _are_pills(row) else picture + (CAPTION + TILE_GAP) * u
+
+
+def _box_width(row: Sequence[Box], width: float, u: float) -> float:
+    """Pixels that each box of a row is wide: half of the row unless a single one needs it all."""
+    half = (width - COLUMN_GAP * u) / 2
+    alone = half < NARROW * u or not _is_short(row[0], half / u, u)
+    return width if alone and len(row) == 1 else half
+
+
+def problem_lines(box: Box, width: float, u: float) -> list[str]:
+    """Why a box is refused, in the lines below it."""
+    return wrapped(box.problem, width, font_size(BOX_TITLE, u)) if box.problem else []
 
 
 def _picture_height(rows: Sequence[Row], width: float, room: float, u: float) -> float:
@@ -309,7 +333,7 @@ def _picture_height(rows: Sequence[Row], width: float, room: float, u: float) ->
     begun = [end for end in ends if end < 2 or not pictured[end - 2]]  # ends of the first rows of sections
     needed = max(begun[:SECTIONS_SEEN], default=0)
     for end in reversed(ends):
-        fixed = sum(_height(row, 0.0, u) for row in rows[:end])
+        fixed = sum(_height(row, 0.0, width, u) for row in rows[:end])
         each = (room - fixed) / sum(pictured[:end])
         if each >= (least if end <= needed else LOWEST * high):
             return min(each, high)
@@ -330,12 +354,9 @@ def _placed(
     elif isinstance(row[0], Reading):
         yield Place(left, top, width, height, row[0])
     elif isinstance(row[0], Box):
-        gap = COLUMN_GAP * u
-        half = (width - gap) / 2
-        alone = half < NARROW * u or not _is_short(row[0], half / u, u)
-        each = width if alone and len(row) == 1 else half
+        each = _box_width(row, width, u)
         for column, box in enumerate(row):
-            yield Place(left + column * (each + gap), top + TITLE * u, each, BOX * u, box)
+            yield Place(left + column * (each + COLUMN_GAP * u), top + TITLE * u, each, BOX * u, box)
     elif _are_pills(row):
         gap = PILL_GAP * u
         each = min((width - (columns - 1) * gap) / columns, 2.0 * PILL_WIDTH * u)

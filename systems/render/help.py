@@ -43,7 +43,7 @@ def _pages_of_glossary(viewport: Viewport, unit: float, _: str) -> list[Lines]:
     room = viewport.width - 2 * min(_PAD * unit, 0.03 * viewport.width) - 20.0 * unit
     wide, meant = min(_TERM * size, 0.35 * room), min(_MEANING * size, 0.65 * room)
     lines: Lines = [("", tr("Glossary"))]
-    for term, also, meaning in glossary():
+    for term, meaning, also in glossary():
         names = [f"{term} ({also})"] if also else [term]
         if also and text_width(names[0], size, "semibold") > wide:
             names = [term, f"({also})"]

@@ -16,11 +16,13 @@ from systems.render.form_layout import (
     MESSAGE,
     MESSAGE_LINE,
     PILL,
+    PROBLEM,
     FormLayout,
     Place,
     explanation_type,
     lay_out,
     message_lines,
+    problem_lines,
     short_note,
 )
 from systems.render.help import draw_help
@@ -179,9 +181,8 @@ class _Writer:
             marks.append(Text(title, place.left, above, size, theme.muted))
             if unit:
                 marks.append(Text(unit, place.right, above, size, theme.muted, anchor="right"))
-        if box.problem:
-            problem = shortened(box.problem, place.width, size)
-            marks.append(Text(problem, place.left, below, size, theme.problem))
+        for number, line in enumerate(problem_lines(box, place.width, u)):
+            marks.append(Text(line, place.left, below + number * PROBLEM * u, size, theme.problem))
         return marks
 
     def _frame(self, place: Place, selected: bool, hovered: bool) -> list[Mark]:
@@ -240,17 +241,14 @@ class _Writer:
 
     def _pill(self, place: Place, tile: Tile) -> list[Mark]:
         """A tile without a picture: its symbol, and beside it its title and its caption."""
-        u, theme, size, small = self.unit, self.theme, self.font(12.5), self.font(11.0)
+        u, theme = self.unit, self.theme
         middle, left = place.middle[1], place.left + 40.0 * u
-        room = place.right - left - 6.0 * u
-        x, title = place.left + 21.0 * u, shortened(tile.title, room, size, "semibold")
-        at = np.array([[x, middle]])
+        at = np.array([[place.left + 21.0 * u, middle]])
         return [
             *self._card(place, tile, 8.0 * u),
             Stamps("disc", at, 12.0 * u, u, faded(theme.focus, 0.14), theme.background),
-            Text(tile.symbol, x, middle, self.font(15.0), theme.focus, anchor="centre"),
-            Text(title, left, middle - 7.5 * u, size, theme.text, "semibold"),
-            Text(shortened(tile.caption, room, small), left, middle + 8.5 * u, small, theme.muted),
+            Text(tile.symbol, at[0, 0], middle, self.font(15.0), theme.focus, anchor="centre"),
+            *self._legend(tile, left, middle - 20.5 * u, place.right - left - 6.0 * u),
         ]
 
     def _card(self, place: Rectangle, tile: Tile, radius: float) -> list[Mark]:

@@ -118,20 +118,27 @@ def _line(sheet: Sheet) -> float:
 
 def _height(sheet: Sheet, readout: Readout, width: float, plot: float) -> float:
     """Height in pixels of a panel with all rows; plot: points of the plot, if the readout has one."""
-    height = (len(_lines(sheet, readout, width)) + 1) * _line(sheet) + 2 * _PAD * sheet.unit
+    lines = len(_heading(sheet, readout, width)) + len(_lines(sheet, readout, width))
+    height = lines * _line(sheet) + 2 * _PAD * sheet.unit
     return height + (plot * sheet.unit if readout.plot is not None else 0.0)
 
 
+def _heading(sheet: Sheet, readout: Readout, width: float) -> list[str]:
+    """The title of a panel that is so wide, in lines beside its button."""
+    room = width - (_PAD + (_CLOSE + 7.0 if readout.closes else _PAD)) * sheet.unit
+    return wrapped(tr(readout.title), room, sheet.font(12.0), "semibold")
+
+
 def _lines(sheet: Sheet, readout: Readout, width: float) -> list[tuple[str, str]]:
-    """The rows of a panel that is so wide; a sentence that is too long for one line goes on below its name."""
+    """The rows of a panel that is so wide; what is too long for one line goes on below."""
     size, room, lines = sheet.font(12.0), width - 2 * _PAD * sheet.unit, list[tuple[str, str]]()
     for name, value in readout.rows:
         taken = text_width(name, size) + _GAP * sheet.unit * bool(name and value)
-        if taken + text_width(value, size, "semibold") <= room or " " not in value:
+        if taken + text_width(value, size, "semibold") <= room:
             lines.append((name, value))
             continue
-        lines += [(name, "")] * bool(name)
-        lines += [("", part) for part in wrapped(value, room, size, "semibold")]
+        lines += [(part, "") for part in wrapped(name, room, size)] if name else []
+        lines += [("", part) for part in wrapped(value, room, size, "semibold")] if value else []
     return lines
 
 
@@ -168,13 +175,16 @@ def _panel(sheet: Sheet, readout: Readout, panel: ShownPanel) -> list[Mark]:
     sheet.occupancy.block(*box)
     inner, room = left + _PAD * u, width - 2 * _PAD * u
     y = top + _PAD * u + _line(sheet) / 2
-    beside = room if close is None else close.left - 4.0 * u - inner
-    heading = shortened(tr(readout.title), beside, size, "semibold")
+    heading = _heading(sheet, readout, width)
     marks: list[Mark] = [
         Panel(*box, 6.0 * u, faded(theme.panel, 0.94), theme.line),
-        Text(heading, inner, y, size, theme.text, "semibold"),
+        *(
+            Text(line, inner, y + n * _line(sheet), size, theme.text, "semibold")
+            for n, line in enumerate(heading)
+        ),
         *([] if close is None else _closing(sheet, close)),
     ]
+    y += (len(heading) - 1) * _line(sheet)
     for name, value in _lines(sheet, readout, width):
         y += _line(sheet)
         value = shortened(value, room, size, "semibold")

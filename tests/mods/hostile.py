@@ -153,12 +153,12 @@ HOSTILE: dict[str, Hostile] = {
         layer("[Strokes(np.zeros((3, 3)), np.zeros((3, 3)), 1.0, ink)]"), "has the shape (3, 3)"
     ),
     "places that are no numbers": Hostile(
-        layer("[Stamps('disc', np.array([[np.nan, 5.0]]), 5.0, 1.0, ink, ink)]"), "Stamps.at has nan in it"
+        layer("[Stamps('disc', np.array([[np.nan, 5.0]]), 5.0, 1.0, ink, ink)]"), "Stamps.at contains nan"
     ),
     "a symbol that does not exist": Hostile(
         layer("[Stamps('unicorn', np.zeros((1, 2)), 5.0, 1.0, ink, ink)]"), "there is no such symbol"
     ),
-    "a size below zero": Hostile(layer("[Panel(9, 9, -9, 9, 1, ink)]"), "Panel.width has -9.0 in it"),
+    "a size below zero": Hostile(layer("[Panel(9, 9, -9, 9, 1, ink)]"), "Panel.width contains -9.0"),
     "a type size with a fraction": Hostile(layer("[Text('hi', 9, 9, 12.5, ink)]"), "Text.size is 12.5"),
     "an anchor that does not exist": Hostile(
         layer("[Text('hi', 9, 9, 12, ink, anchor='top')]"), "choose one of left, centre, right"
@@ -348,7 +348,7 @@ HOSTILE: dict[str, Hostile] = {
         plugin("app.action('bad.a', key='j', title=['a'])(print)"), "title is ['a']", (LOAD,)
     ),
     "an icon of what no icon has": Hostile(
-        plugin("app.action('bad.a', icon=[('blob', (1, 2))])(print)"), "is no part of an icon", (LOAD,)
+        plugin("app.action('bad.a', icon=[('blob', (1, 2))])(print)"), "is not a part of an icon", (LOAD,)
     ),
     "a mod that ends the program": Hostile("raise SystemExit(7)", "SystemExit: 7", (LOAD,)),
     "a mod that interrupts": Hostile("raise KeyboardInterrupt", "KeyboardInterrupt", (LOAD,)),

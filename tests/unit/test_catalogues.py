@@ -167,3 +167,10 @@ def test_texts_of_data_are_extracted_by_their_keys(tmp_path):
     with (tmp_path / "data.json").open("rb") as file:
         options = {"keys": ["title"], "names_of": ["materials"]}
         assert [text for _, _, text, _ in texts(file, (), (), options)] == ["steel", "oak", "Oak"]
+
+
+@pytest.mark.parametrize(("domain", "language"), CATALOGUES)
+def test_every_sentence_is_translated_and_none_waits_to_be_read_again(domain, language):
+    messages = [message for message in translations(domain, language) if message.id]
+    left = [message.id for message in messages if message.fuzzy or not is_translated(message)]
+    assert not left, f"{len(left)} of {len(messages)}: {left[:20]}"

@@ -156,7 +156,7 @@ def _duplicate(context: Context, pixel: Vector) -> None:
     view = context.view
     beside = BESIDE * view.pixel_ratio / view.camera.scale
     source = part_of(context.model, selected_rows(context.model))
-    made = paste(context.model, source, snapped(context.model, view, (beside, -beside)))
+    made = paste(context.model, source, snapped(context.model, view, (beside, -beside)), marked("duplicate"))
     context.select(*made)
     context.notice = plural(
         "Duplicated {count} element; drag the copy where it belongs.",

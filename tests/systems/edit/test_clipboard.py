@@ -46,6 +46,8 @@ def test_duplicate_beside(triangle: Session) -> None:
     [copy] = triangle.selected
     assert copy.position == (1.3, 0.7)
     assert copy.force == triangle.particles["B"].force
+    triangle.press("ctrl+z")
+    assert triangle.notice == "Undone: duplicate"
 
 
 def test_rods_are_copied_with_their_ends_and_nothing_else(triangle: Session) -> None:

@@ -75,7 +75,7 @@ def test_dragging_one_of_the_selected_supports_all_of_them(two: Session) -> None
     x, y = next(iter(two.particles)).position
     two.drag((x, y), (x, y - 0.5))
     assert [particle.fixed for particle in two.particles] == [(False, True)] * 2
-    assert two.notice.endswith("and 1 more: on a roller: held in y")
+    assert two.notice.endswith("and 1 more: roller: held in y")
 
 
 def test_a_force_is_drawn_as_an_arrow_to_a_round_scale(triangle: Session) -> None:

@@ -10,7 +10,7 @@ from components import language
 from components.camera import Viewport
 from game.session import Session
 from systems.input.bindings import help_lines
-from systems.render.glossary import TERMS
+from systems.render.glossary import terms
 from systems.render.help import help_pages, written_key
 from systems.render.marks import Text
 from tests.golden.scenes import composed
@@ -76,10 +76,10 @@ def test_titles_words_and_headings_of_boxes_are_translated_and_scripts_keep_thei
 
 
 def test_every_term_is_explained_in_whole_sentences() -> None:
-    for term, _, meaning in TERMS:
+    for term, meaning, _ in terms():
         assert meaning.endswith("."), term
         assert meaning[0].isupper() or meaning[0] == "δ", term
-    assert len({term for term, _, _ in TERMS}) == len(TERMS)
+    assert len({entry.term for entry in terms()}) == len(terms())
 
 
 def test_the_glossary_comes_after_the_keys_and_tells_every_term() -> None:
@@ -89,4 +89,4 @@ def test_the_glossary_comes_after_the_keys_and_tells_every_term() -> None:
         assert first > 0
         assert all(page[0] == ("", "Glossary") for page in pages[first:])
         told = " ".join(key.strip() for page in pages[first:] for key, _ in page)
-        assert all(term in told for term, _, _ in TERMS), (width, height)
+        assert all(entry.term in told for entry in terms()), (width, height)
