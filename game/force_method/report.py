@@ -24,6 +24,7 @@ from game.force_method import thesis, words
 from game.force_method.copies import base_structure, loaded, still, unloaded
 from game.force_method.tables import PRODUCTS, Table, Tables
 from game.force_method.words import EXACT, index
+from systems.render.diagrams import largest_force
 from systems.render.paper import (
     GUTTER,
     LAYOUTS,
@@ -37,7 +38,6 @@ from systems.render.paper import (
     in_rows,
     together,
 )
-from systems.render.diagrams import largest_force
 from systems.render.picture import compose
 from systems.render.theme import load_theme
 from systems.statics.counting import counted
