@@ -109,6 +109,12 @@ def _shape(model: Model) -> tuple[float, float]:
     return max(width, 1e-9), max(height, 1e-9)
 
 
+def _in_a_row(layout: Layout, model: Model) -> int:
+    """How many figures stand in a row."""
+    wide, high = _shape(model)
+    return 2 if wide > layout.flat * high else 3
+
+
 def _figure(
     layout: Layout,
     model: Model,
@@ -121,7 +127,7 @@ def _figure(
     """A picture of a model, with the diagrams of a quantity."""
     model.delete(list(model.grids))
     wide, high = _shape(model)
-    row = 2 if wide > layout.flat * high else 3
+    row = _in_a_row(layout, model)
     width = int((WIDTH - (row - 1) * GUTTER) / row / PIXEL)
     beside = _BESIDE_IT + _MOMENTS * is_frame(model)
     room = width - 2.0 * beside
@@ -255,7 +261,8 @@ class _Page:
                 for i, unknown in enumerate(unknowns)
             ),
         ]
-        return [(0.0, [*degree, *found])] if len(unknowns) in (2, 3) else [(0.0, degree), (0.0, found)]
+        full = (2 + len(unknowns)) % _in_a_row(self.layout, self.model) == 0  # else beside the last figures
+        return [(0.0, degree), (0.0, found)] if full else [(0.0, [*degree, *found])]
 
     def working(self) -> list[Flowable]:
         """Gaps and flexibilities as sums, rod by rod, and the equations that follow."""
