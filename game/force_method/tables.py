@@ -10,8 +10,8 @@ from typing import overload
 import numpy as np
 
 from components import written
-from components.field import CM
-from components.language import decimals, tr
+from components.field import CM, ENDS
+from components.language import decimals, joined, tr
 from components.model import Model
 from systems.statics.equations import Array, Rows, largest
 from systems.statics.force_method import Solution
@@ -299,7 +299,9 @@ class Tables:
             values = units.factor * work.of_supports[i]
             columns.append(Column(f"−r{index(i + 1)}c", units.gap(i), values, summed=True))
         return Table(
-            tr("support"), [f"{names[row]}.{AXES[axis]}" for row, axis in work.settled.tolist()], columns
+            tr("support"),
+            [joined([names[row], tr(AXES[axis])], ".") for row, axis in work.settled.tolist()],
+            columns,
         )
 
     def sums(self, i: int) -> tuple[str, ...]:
@@ -349,7 +351,7 @@ class Tables:
         """Likewise M = M₀ + Σ X m at both ends of the rods that bend."""
         solution, rods = self.solution, self.model.rods
         rows = np.flatnonzero((rods.turning_shares > 0.0).any(axis=1))
-        names = [f"{rods.names[row]}.{end}" for row in rows.tolist() for end in ("start", "end")]
+        names = [joined([rods.names[row], tr(end)], ".") for row in rows.tolist() for end in ENDS]
         units = [unit.bending_moment[rows].ravel() for unit in solution.units]
         parts = [x * unit for x, unit in zip(solution.force.tolist(), units, strict=True)]
         base, real = solution.base.bending_moment[rows].ravel(), solution.real.bending_moment[rows].ravel()
@@ -371,7 +373,7 @@ class Tables:
             if unknown.of_support:
                 reaction[unknown.element.row, unknown.axis] = 1.0
             parts.append(x * reaction[rows])
-        names = [f"{particles.names[row]}.{AXES[axis]}" for row, axis in places]
+        names = [joined([particles.names[row], tr(AXES[axis])], ".") for row, axis in places]
         base, real = solution.base.reaction[rows], solution.real.reaction[rows]
         return self._superposed(
             "R", ["r"] * len(parts), names, base, parts, real, "kN, kN·m" if self.bends else "kN", most
