@@ -46,7 +46,8 @@ from systems.statics.external import external_forces
 from systems.statics.released import SetState
 from systems.statics.unknowns import Unknown
 
-_BESIDE_IT, _ABOVE, _BELOW = 68.0, 46.0, 62.0  # pixels around a structure, for supports, loads and diagrams
+_BESIDE_IT, _ABOVE, _BELOW = 56.0, 46.0, 62.0  # pixels around a structure, for supports, loads and diagrams
+_MOMENTS = 12.0  # pixels more beside it, for the values of moments
 _SHORTER = 1.3  # times the largest force: that of the longest arrow
 _DIAGRAM = 30.0  # pixels of the largest axial force
 _NOTHING = 1e-9  # kN: of axial forces, which beams have none of
@@ -108,6 +109,12 @@ def _shape(model: Model) -> tuple[float, float]:
     return max(width, 1e-9), max(height, 1e-9)
 
 
+def _in_a_row(layout: Layout, model: Model) -> int:
+    """How many figures stand in a row."""
+    wide, high = _shape(model)
+    return 2 if wide > layout.flat * high else 3
+
+
 def _figure(
     layout: Layout,
     model: Model,
@@ -120,14 +127,15 @@ def _figure(
     """A picture of a model, with the diagrams of a quantity."""
     model.delete(list(model.grids))
     wide, high = _shape(model)
-    row = 2 if wide > layout.flat * high else 3
+    row = _in_a_row(layout, model)
     width = int((WIDTH - (row - 1) * GUTTER) / row / PIXEL)
-    room = width - 2.0 * _BESIDE_IT
+    beside = _BESIDE_IT + _MOMENTS * is_frame(model)
+    room = width - 2.0 * beside
     height = int(min(room * high / wide + _ABOVE + _BELOW, layout.figure / PIXEL))
     view = View(legend=False, has_scale=False, all_diagrams=diagrams is not None, quantity=diagrams or AXIAL)
     view.cuts, view.has_units = tuple(cuts), has_units
     view.camera = Camera(viewport=Viewport(0, 0, width, height))
-    inner = Viewport(int(_BESIDE_IT), int(_ABOVE), int(room), int(height - _ABOVE - _BELOW))
+    inner = Viewport(int(beside), int(_ABOVE), int(room), int(height - _ABOVE - _BELOW))
     view.camera.fit(model.particles.position, 0.0, inner, 1.0)
     view.largest_force = _SHORTER * largest_force(model, view)
     pulled = 0.0 if is_frame(model) else largest(model.rods.axial_force)
@@ -253,7 +261,8 @@ class _Page:
                 for i, unknown in enumerate(unknowns)
             ),
         ]
-        return [(0.0, [*degree, *found])] if len(unknowns) in (2, 3) else [(0.0, degree), (0.0, found)]
+        full = (2 + len(unknowns)) % _in_a_row(self.layout, self.model) == 0  # else beside the last figures
+        return [(0.0, degree), (0.0, found)] if full else [(0.0, [*degree, *found])]
 
     def working(self) -> list[Flowable]:
         """Gaps and flexibilities as sums, rod by rod, and the equations that follow."""
@@ -283,7 +292,8 @@ class _Page:
         if settlements is not None:
             blocks += _printed(self.layout, settlements)
         if solved.bends and len(every) <= PRODUCTS and (self._pulls or settlements is not None):
-            sums = _APART.join(line.replace(" ", "\u00a0") for line in solved.all_sums())
+            space = " " if len(every) == 1 else "\u00a0"  # the lines of several are parted between sums
+            sums = _APART.join(line.replace(" ", space) for line in solved.all_sums())
             sums = tr("Bending and axial forces ({units}):  {sums}", units=solved.units.all, sums=sums)
             blocks.append((WIDTH if len(every) > 1 else 0.0, [self._text(sums)]))
         compatibility = self._compatibility()

@@ -27,6 +27,7 @@ REGULAR, BOLD = "Inter regular", "Inter semibold"
 MARGIN = 16 * mm
 WIDTH = A4[0] - 2 * MARGIN  # points of a column of text
 PIXEL = 0.64  # points of a pixel of a picture
+_MANY = 4  # pages, of which more would only be drawn again to see whether they may be larger
 GUTTER = 4 * mm  # between what stands side by side
 REST = 54 * mm  # the least width of a text that takes what is left of a row
 _FRAME = 6.0  # points that frames of reportlab leave inside margins
@@ -105,7 +106,7 @@ LAYOUTS = tuple(  # from the largest to the smallest
         (8.2, 44, 2.6),
         (7.8, 40, 2.6),
         (7.5, 38, 2.6),
-        (7.5, 38, 9.0),
+        (7.5, 36, 9.0),
     )
 )
 
@@ -289,7 +290,9 @@ def as_paper(title: str, made_of: Callable[[Layout], Sequence[Flowable]], foot: 
     def built(layout: Layout) -> tuple[int, bytes]:
         return _built(title, made_of(layout), foot)
 
-    fewest, _ = built(LAYOUTS[-1])
+    fewest, made = built(LAYOUTS[-1])
+    if fewest > _MANY:
+        return made
     largest = bisect_left(LAYOUTS, True, key=lambda layout: built(layout)[0] <= fewest)
     return built(LAYOUTS[largest])[1]
 
