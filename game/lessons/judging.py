@@ -16,7 +16,7 @@ from game.documents.document import document
 from game.lessons.tasks import CHOICES, NUMBER, SELECT, UNTIL, Choice, Line, Task
 from game.paths import PathError, locate, quantity, readable
 from game.scripts.expectation import OVER_ALL, check, compared, each, parts_of, read
-from game.scripts.lines import perform
+from game.scripts.lines import Failure, perform
 
 Session = Any  # game.session.Session, which holds the lesson
 Document = Mapping[str, Any]
@@ -90,9 +90,9 @@ _NOTHING: dict[str, Callable[[], str]] = {
 def copy_of(session: Session, model: Document, lines: Iterable[Line]) -> Session:
     """A session of its own in which lines were performed, from the same model."""
     copy = type(session).open(model)
-    for _, entry in lines:
+    for number, entry in lines:
         for expected, got in perform(copy, entry):
-            raise ValueError(tr("expected {expected}, got {got}.", expected=expected, got=got))
+            raise ValueError(str(Failure(number, expected, got)))
     return copy
 
 
