@@ -216,7 +216,9 @@ class Scenes:
         for name in names:
             if name not in self._by_name:
                 known = ", ".join(self._by_name)
-                raise SceneError(tr("There is no scene '{name}'; there are {scenes}.", name=name, scenes=known))
+                raise SceneError(
+                    tr("There is no scene '{scene}'; choose from {names}.", scene=name, names=known)
+                )
             if name not in here.targets and here.name not in self._by_name[name].sources:
                 targets = ", ".join(here.targets)
                 raise SceneError(

@@ -62,7 +62,7 @@ class ControlledWriter(Writer):
         return {
             "evaluate": fragment(driven.evaluate_controlled, **self.second_block),
             "take": fragment(driven.take_controlled),
-            "pushed": ["accelerate(force, resisting, work[0], particles_mobility)"],
+            "pushed": fragment(driven.pushed, **self.second_block),
         }
 
     @property

@@ -28,7 +28,7 @@ HINT, EXPLAINED, MOST_EXPLAINED = 26.0, 2, 6  # points at the bottom; lines of e
 SMALL, LOW_TYPE = 560.0, (11.0, 14.0)  # points: a viewport less high explains in smaller type, and lines apart
 SECTION = 28.0
 COLUMN_GAP = 10.0
-HEADING = 104.0  # points, at least, where a low viewport has the box beside the heading
+HEADING = 104.0  # points, at least, where a low viewport has the box beside the heading, which is shortened
 CLOSE, ACCEPT = (
     24.0,
     64.0,
@@ -43,7 +43,7 @@ PILL_TITLE, PILL_TEXT, PILL_EDGE = (
 )  # points: size of its title, where it begins, and room behind it
 BESIDE, SEARCH = 985.0, 340.0  # points of width from which the name stands beside the heading; that it takes
 LOWEST = 0.65  # share of a picture's height that it keeps where one more row fits then
-LEAST_PICTURE = 30.0  # points
+LEAST_PICTURE = 24.0  # points
 SECTIONS_SEEN = 2  # with pictures, that begin in sight in any window
 
 PROPERTIES = marked("Properties")  # the heading of an element's own boxes, where its results stand above them
@@ -117,7 +117,7 @@ def lay_out(form: Form, viewport: Viewport, unit: float) -> FormLayout:
     if _has_files(form):
         fixed, accept, heading_width = _name_place(form, left, width, v, u)
         top = accept.bottom + 22.0 * u
-        rows = list(_tile_rows(form, width / u, u))
+        rows = list(_tile_rows(form, width / u))
     else:
         rows = list(_box_rows(form, width / u, u))
     readings = list(_reading_rows(form))
@@ -167,7 +167,8 @@ def _name_place(
     button, closes, heading = pressed + 8.0 * u, (CLOSE + 8.0) * u, width - (CLOSE + 8.0) * u
     x, top, room = left, v.top + 46.0 * u, 420.0 * u
     if v.height < LOW * u:
-        taken = max(text_width(head, font_size(19.0, u), "semibold") + 9.0 * u, HEADING * u)
+        least, most = HEADING * u, width - closes - button - NARROWEST * u
+        taken = max(min(text_width(head, font_size(19.0, u), "semibold") + 9.0 * u, most), least)
         x, top, heading = left + taken, v.top + 6.0 * u, taken - 8.0 * u
         width -= taken + closes
     elif width >= BESIDE * u:
@@ -268,19 +269,21 @@ def _partner(box: Box) -> str:
     return f"{table}.{name}" if axis else ""
 
 
-def _tile_rows(form: Form, width: float, u: float) -> Iterator[Row]:
+def _tile_rows(form: Form, width: float) -> Iterator[Row]:
     """Sections and tiles; of a section with a tile that stands for the rest one row."""
     shown = (tile for tile in form.tiles if not tile.hidden)
     for section, group in groupby(shown, lambda tile: tile.section):
         tiles = list(group)
-        columns = pill_columns(tiles, width, u) if _are_pills(tiles) else tile_columns(width)
+        columns = pill_columns(width) if _are_pills(tiles) else tile_columns(width)
         those, rest = [t for t in tiles if not t.rest], [t for t in tiles if t.rest]
         if rest and len(those) > columns:
             those = [*those[: max(columns - 1, 1)], *rest[: columns - 1]]  # of one column the first tile only
         if section:
             yield section
-        if _are_pills(tiles):  # rows about equally long
-            columns = math.ceil(len(those) / math.ceil(len(those) / columns))
+        if _are_pills(tiles):  # rows about equally long, the longer ones first
+            least, longer = divmod(len(those), math.ceil(len(those) / columns))
+            yield from in_rows(those[: longer * (least + 1)], least + 1)
+            those, columns = those[longer * (least + 1) :], least
         yield from in_rows(those, columns)
 
 
@@ -294,17 +297,9 @@ def tile_columns(width: float) -> int:
     return max(int((width + TILE_GAP) / (min(TILE, 0.45 * width) + TILE_GAP)), 1)
 
 
-def pill_columns(tiles: Sequence[Tile], width: float, u: float) -> int:
-    """How many tiles without pictures stand side by side in a width in points, with their titles in one line."""
-    size, columns = font_size(PILL_TITLE, u), max(int((width + PILL_GAP) / (PILL_WIDTH + PILL_GAP)), 1)
-    begins = any(tile.rest for tile in tiles)  # only the first row is seen
-    while columns > 1:
-        room = (width + PILL_GAP) / columns - PILL_GAP - PILL_TEXT - PILL_EDGE
-        titles = [tile.title for tile in (tiles[:columns] if begins else tiles)]
-        if max(text_width(title, size, "semibold") for title in titles) <= room * u:
-            break
-        columns -= 1
-    return columns
+def pill_columns(width: float) -> int:
+    """How many tiles without pictures stand side by side in a width in points."""
+    return max(int((width + PILL_GAP) / (PILL_WIDTH + PILL_GAP)), 1)
 
 
 def _height(row: Row, picture: float, width: float, u: float) -> float:

@@ -63,19 +63,29 @@ def _status_bar(sheet: Sheet) -> tuple[list[Mark], float]:
         state = begun(tr(status.state))
         x = _append(sheet, marks, state, x, middle, theme.text, "semibold")
         time = "" if status.time is None else f"t = {written.time(status.time)}"
-        for text in (time, written.pace(status.speed)):
-            x = _append(sheet, marks, text, x, middle, theme.text)
+        step = text_width(status.hint.partition(BETWEEN)[0], sheet.font(12.0))
+        for text, behind in ((time, 0.0), (written.pace(status.speed), step)):
+            x = _append(sheet, marks, text, x, middle, theme.text, behind=behind)
     _append_hint(sheet, marks, x, middle)
     return marks, float(top)
 
 
 def _append(
-    sheet: Sheet, marks: list[Mark], text: str, x: float, y: float, colour: Colour, weight: str = "regular"
+    sheet: Sheet,
+    marks: list[Mark],
+    text: str,
+    x: float,
+    y: float,
+    colour: Colour,
+    weight: str = "regular",
+    *,
+    behind: float = 0.0,
 ) -> float:
-    """Write a part of the status bar if it fits; returns where the next one begins."""
+    """Write a part of the status bar if so many pixels are left behind it; returns where the next one begins."""
     size = sheet.font(12.0)
     width = text_width(text, size, weight)
-    if not text or x + width > sheet.viewport.right - _EDGE * sheet.unit:
+    apart = 24.0 * sheet.unit * bool(behind)
+    if not text or x + width + apart + behind > sheet.viewport.right - _EDGE * sheet.unit:
         return x
     marks.append(Text(text, x, y, size, colour, weight))
     return x + width + 18.0 * sheet.unit

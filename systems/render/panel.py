@@ -16,9 +16,6 @@ from systems.render.form_layout import (
     MESSAGE,
     MESSAGE_LINE,
     PILL,
-    PILL_EDGE,
-    PILL_TEXT,
-    PILL_TITLE,
     PROBLEM,
     FormLayout,
     Place,
@@ -244,17 +241,14 @@ class _Writer:
 
     def _pill(self, place: Place, tile: Tile) -> list[Mark]:
         """A tile without a picture: its symbol, and beside it its title and its caption."""
-        u, theme, size, small = self.unit, self.theme, self.font(PILL_TITLE), self.font(11.0)
-        middle, left = place.middle[1], place.left + PILL_TEXT * u
-        room = place.right - left - PILL_EDGE * u
-        x, title = place.left + 21.0 * u, shortened(tile.title, room, size, "semibold")
-        at = np.array([[x, middle]])
+        u, theme = self.unit, self.theme
+        middle, left = place.middle[1], place.left + 40.0 * u
+        at = np.array([[place.left + 21.0 * u, middle]])
         return [
             *self._card(place, tile, 8.0 * u),
             Stamps("disc", at, 12.0 * u, u, faded(theme.focus, 0.14), theme.background),
-            Text(tile.symbol, x, middle, self.font(15.0), theme.focus, anchor="centre"),
-            Text(title, left, middle - 7.5 * u, size, theme.text, "semibold"),
-            Text(shortened(tile.caption, room, small), left, middle + 8.5 * u, small, theme.muted),
+            Text(tile.symbol, at[0, 0], middle, self.font(15.0), theme.focus, anchor="centre"),
+            *self._legend(tile, left, middle - 20.5 * u, place.right - left - 6.0 * u),
         ]
 
     def _card(self, place: Rectangle, tile: Tile, radius: float) -> list[Mark]:

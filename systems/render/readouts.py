@@ -175,13 +175,15 @@ def _panel(sheet: Sheet, readout: Readout, panel: ShownPanel) -> list[Mark]:
     sheet.occupancy.block(*box)
     inner, room = left + _PAD * u, width - 2 * _PAD * u
     y = top + _PAD * u + _line(sheet) / 2
+    heading = _heading(sheet, readout, width)
     marks: list[Mark] = [
         Panel(*box, 6.0 * u, faded(theme.panel, 0.94), theme.line),
+        *(
+            Text(line, inner, y + n * _line(sheet), size, theme.text, "semibold")
+            for n, line in enumerate(heading)
+        ),
         *([] if close is None else _closing(sheet, close)),
     ]
-    heading = _heading(sheet, readout, width)
-    for number, line in enumerate(heading):
-        marks.append(Text(line, inner, y + number * _line(sheet), size, theme.text, "semibold"))
     y += (len(heading) - 1) * _line(sheet)
     for name, value in _lines(sheet, readout, width):
         y += _line(sheet)

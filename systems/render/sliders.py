@@ -11,6 +11,7 @@ from systems.render.sheet import Sheet
 from systems.render.theme import faded
 from systems.render.typography import shortened, text_width
 
+_SIZES = (11.0, 10.0, 9.0)  # points of its type, the largest in which the title stands whole beside the value
 _KNOB = 5.0  # points, its radius
 _GAP = 8.0  # points between title and value
 
@@ -27,14 +28,17 @@ def draw_sliders(sheet: Sheet) -> list[Mark]:
 
 
 def _slider(sheet: Sheet, place: Place, *, hovered: bool) -> list[Mark]:
-    u, theme, size, control = sheet.unit, sheet.theme, sheet.font(11.0), place.control
+    u, theme, control, title = sheet.unit, sheet.theme, place.control, tr(place.control.title)
     left, right, middle = place.track
     line = place.top + 0.31 * place.height
-    value = shortened(control.value, right - left, size, "semibold")
-    room = right - left - text_width(value, size, "semibold") - _GAP * u
+    for size in map(sheet.font, _SIZES):
+        value = shortened(control.value, right - left, size, "semibold")
+        room = right - left - text_width(value, size, "semibold") - _GAP * u
+        if text_width(title, size) <= room:
+            break
     marks: list[Mark] = [
         Panel(*place.box, 6.0 * u, faded(theme.panel, 0.94), theme.line),
-        Text(shortened(tr(control.title), room, size), left, line, size, theme.muted),
+        Text(shortened(title, room, size), left, line, size, theme.muted),
         Text(value, right, line, size, theme.text, "semibold", "right"),
         boxes(theme.muted, (round(left), round(middle - u), round(right - left), max(round(2 * u), 1))),
         *_button(sheet, place),

@@ -344,7 +344,7 @@ def test_what_was_left_behind_is_discarded_when_asked_twice(data: Path) -> None:
     assert left.exists()
     session.press("return")
     assert not left.exists()
-    assert scene.form.tiles[0].title == "New, empty model"
+    assert scene.form.tiles[0].title == "Learn: 1 Draw a structure"
     keeper.close(session.documents)
     assert Autosave().left() == []
 

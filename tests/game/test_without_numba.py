@@ -105,7 +105,7 @@ def test_a_mod_that_imports_it_is_named(tmp_path: Path) -> None:
         "The mod 'old' cannot be used: It imports numba, which is not installed (old/__init__.py, line 3)"
         in done.stderr
     )
-    assert "@compiled of game.api" in done.stderr
+    assert "@compiled from game.api" in done.stderr
 
 
 @pytest.mark.parametrize("words", ["run isostatic", "mods list"])

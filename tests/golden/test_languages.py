@@ -35,7 +35,12 @@ _KEYS = {part.capitalize() for binding in BINDINGS for part in re.split(r"[+ ]",
     "Ctrl",
     "Shift",
 }
-_GIVEN = {"isostatik", "bridge", *re.findall("[A-Za-z]+", LONG_NAME)}  # what a person typed in the scenes
+_TYPED = re.findall("[A-Za-z]+", 3 * LONG_NAME)
+_GIVEN = {
+    "isostatik",
+    "bridge",
+    *(word[n:] for word in _TYPED for n in range(len(word))),
+}  # a box shows the end
 _PATH = re.compile(r"\S*/\S*")
 IN_ENGLISH = {
     "notice-long",

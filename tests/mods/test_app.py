@@ -311,9 +311,7 @@ def test_an_action_with_an_icon_has_a_button_whatever_became_of_its_key(
 def test_an_icon_that_cannot_be_drawn_is_refused(write_mod: Write, icon: str) -> None:
     from game.mods import ModError
 
-    with pytest.raises(
-        ModError, match=r"The icon of 'apple\.toggle': .* is not a part of an icon; write"
-    ):
+    with pytest.raises(ModError, match=r"The icon of 'apple\.toggle': .* is not a part of an icon; write"):
         opened(write_mod, TOGGLED.format(key="y", icon=icon))
 
 

@@ -165,7 +165,7 @@ def test_the_plan_is_a_table_too(capsys: pytest.CaptureFixture[str]) -> None:
 
 def test_an_unknown_scene_is_named(capsys: pytest.CaptureFixture[str]) -> None:
     assert main(["plan", "isostatic", "--scene", "arcade"]) == 2
-    assert "There is no scene 'arcade'; there are pause, simulation" in capsys.readouterr().err
+    assert "There is no scene 'arcade'; choose from pause, simulation" in capsys.readouterr().err
 
 
 # --- scenes are honoured by every kind of system -----------------------------------------------------------

@@ -98,7 +98,9 @@ class FormScene(Scene):
         """Make the form again, with what was typed."""
         before, typed = self.form, False
         self.form = self.make_form(context)
-        for old, box in zip(before.boxes, self.form.boxes, strict=False):
+        olds = {old.target: old for old in before.boxes}  # their order may change with the language
+        for box in self.form.boxes:
+            old = olds.get(box.target, box)
             if old is before.selected:
                 typing.select(self.form, box)
             if old.text != box.text:

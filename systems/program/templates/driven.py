@@ -220,6 +220,12 @@ def evaluate_controlled():
     insert(begin_turns)
 
 
+def pushed():
+    """The accelerations by other contact forces, or in a state that was put back."""
+    accelerate(force, resisting, work[0], particles_mobility)
+    insert(begin_turns)
+
+
 def take_controlled():
     """Take whole steps, or one to Real.END: in parts, where the error asks for that, and counted once all the same."""
     end = real[Real.END]

@@ -73,7 +73,7 @@ MODEL = {
         ("plot isostatic --of rods.AX.strain --until 1 --output x.csv", "no 'AX' among the rods"),
         ("plot isostatic --of time --until 1 --output x.pdf", "ends with .csv or .png"),
         ("shake isostatic missing.csv --output x.json", "missing.csv cannot be read: No such file"),
-        ("play missing.jsonl", "There is no file and no lesson 'missing.jsonl'; choose one of 1_draw"),
+        ("play missing.jsonl", "There is no file and no lesson 'missing.jsonl'; choose one of 01_first"),
         ("play 1_draw_truss", "did you mean '1_draw_a_truss'?"),
         ("render isostatic --output x.tiff", "choose a file that ends with one of .png, .svg"),
         (

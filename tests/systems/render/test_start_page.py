@@ -10,10 +10,9 @@ from components.form import Tile
 from game.documents.library import data_apart
 from game.editor.scenes.load import Load
 from systems.render.marks import Text
-from systems.render.typography import text_width
 from tests.golden.scenes import Window, composed
 from tests.golden.states import STATES
-from tests.reference.boxes import text_box
+from tests.reference.boxes import overlapping, text_box, text_boxes
 
 WINDOWS = [Window(640, 480), Window(1024, 640), Window(1280, 800), Window(1920, 1080), Window(1600, 1200, 1.5)]
 
@@ -51,7 +50,10 @@ def test_rows_of_a_section_are_about_equally_long(window: Window) -> None:
             round(place.width) for place in layout.places if place.item in [p for row in pills for p in row]
         }
         assert len(widths) == 1
+        [picture] = composed(session)
+        said = " ".join(mark.text for mark in picture.marks if isinstance(mark, Text))
         for place in layout.places:
             if isinstance(place.item, Tile) and place.item.symbol:
-                size = round(12.0 * window.ratio)
-                assert text_width(place.item.title, size, "semibold") < place.width - 50.0 * window.ratio
+                assert place.item.title in said
+        texts = text_boxes(mark for mark in picture.marks if isinstance(mark, Text))
+        assert overlapping(texts) == []
