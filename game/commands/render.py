@@ -84,8 +84,8 @@ def command(words: Sequence[str]) -> int:
     if Path(options.output).suffix.lower() not in _PICTURES:
         raise UsageError(
             tr(
-                "--output {file}: choose a file that ends with one of {endings}.",
-                file=options.output,
+                "{file}: choose a file that ends with one of {endings}.",
+                file=f"--output {options.output}",
                 endings=", ".join(_PICTURES),
             )
         )
