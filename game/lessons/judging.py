@@ -20,9 +20,7 @@ from game.scripts.lines import Failure, perform
 
 Session = Any  # game.session.Session, which holds the lesson
 Document = Mapping[str, Any]
-Answer = (
-    str | float | tuple[str, ...] | None
-)  # a choice's text; a number; names of elements; None: not given yet
+Answer = str | float | tuple[str, ...] | None  # text of a choice; number; names of elements; not given yet
 
 NEARLY = 1e-6  # as a share: what differs by less from the largest is as large
 LEAST = 1e-9  # by which an answer may differ from 0
@@ -36,13 +34,17 @@ _RELATIONS = {
     "≈": marked("wanted: {value}"),
     "~": marked("wanted: {value}"),
 }
-_SAID = {  # what a state lacks, by the path
-    "statics.equilibrium": marked(
-        "It is not in equilibrium yet: press E to find equilibrium, or Space to let it run until it rests."
-    ),
-    "statics.mechanisms": marked(
-        "It is a mechanism: parts can move without any rod getting longer. B shows how."
-    ),
+_SAID: dict[str, Mapping[bool, str]] = {  # of a state, by a path and whether it is more than 0 there
+    "statics.equilibrium": {
+        False: marked(
+            "It is not in equilibrium yet: press E to find equilibrium, or Space to let it run until it rests."
+        ),
+        True: marked("It is in equilibrium."),
+    },
+    "statics.mechanisms": {
+        False: marked("It is stable: nothing can move without a rod getting longer or shorter."),
+        True: marked("It is a mechanism: parts can move without any rod getting longer. B shows how."),
+    },
 }
 _NAMES = {
     "statics.degree": marked("The degree of static indeterminacy"),
@@ -70,13 +72,13 @@ class Verdict(NamedTuple):
     score: tuple[float, str] | None = None
 
 
-def judge(session: Session, task: Task, begun: Document, answer: Answer = None) -> Verdict:
+def judge(session: Session, task: Task, beginning: Document, answer: Answer = None) -> Verdict:
     """Whether a task is done in a session, in which it began with a model. Raises ValueError, LookupError."""
     if task.kind == UNTIL:
         return _judge_state(session, task)
     if answer is None or answer == ():
         return Verdict(False, tr(_NOTHING[task.kind]))
-    truth = copy_of(session, begun, task.after)
+    truth = copy_of(session, beginning, task.after)
     return _JUDGES[task.kind](truth, task, answer)
 
 
@@ -142,6 +144,12 @@ def _judge_number(truth: Session, task: Task, answer: float) -> Verdict:
         return Verdict(False, said)
     if wanted and abs(answer + wanted) <= task.within * abs(wanted):
         return Verdict(False, tr("The size is right. Think about the sign."))
+    if answer * wanted < 0.0:
+        return Verdict(False, tr("Neither the sign nor the size is right yet."))
+    if wanted < 0.0 and answer < 0.0:
+        larger = tr("The sign is right, but the size of {answer} is too large.", answer=written.given(answer))
+        smaller = tr("The sign is right, but the size of {answer} is too small.", answer=written.given(answer))
+        return Verdict(False, larger if answer < wanted else smaller)
     if abs(answer) > abs(wanted):
         return Verdict(False, tr("{answer} is too large.", answer=written.given(answer)))
     return Verdict(False, tr("{answer} is too small.", answer=written.given(answer)))
@@ -185,7 +193,7 @@ def _asked_for(truth: Session, asked: str) -> tuple[list[Handle], dict[Handle, s
         ]
     target, _ = locate(truth.model, path.strip(), readable)
     unit, factor = target.field.shown
-    title = target.field.title
+    title = f"{tr(target.field.title)} {target.axis}" if target.axis else target.field.title
     written_values = {
         handle: tr(
             "its {title} is {value} {unit}", title=title, value=_number(factor * value), unit=unit
@@ -289,7 +297,7 @@ def _lacking(session: Session, condition: str) -> str:
     """What is the case instead of a condition."""
     path, relation, value, _ = parts_of(condition)
     if path in _SAID:
-        return tr(_SAID[path])
+        return tr(_SAID[path][bool(read(session, path))])
     try:
         present = shown(session, path)
     except (ValueError, LookupError) as error:
