@@ -213,7 +213,7 @@ def _virtual_work(solved: Tables) -> list[Flowable]:
     formulas += [text(line, "equation") for line in _formulas(solved)]
     if len(every) > PRODUCTS:
         note = tr(
-            "The products of more than {count} unknowns are not printed; their sums stand below.",
+            "With more than {count} unknowns the products are not printed; only their sums are given below.",
             count=PRODUCTS,
         )
         return [*_printed(solved.forces(every), formulas), text(note, "caption")]

@@ -123,7 +123,7 @@ def _judge_selection(truth: Session, task: Task, answer: tuple[str, ...]) -> Ver
         return Verdict(False, joined([_explained(task, truth), said]))
     if others or not chosen:
         kind = next(iter(values)).world.tables[next(iter(values)).table].name if values else ""
-        said = tr("Select only {kind}: {names} is something else.", kind=kind, names=listed(sorted(others)))
+        said = tr("Select only {kind}, not {names}.", kind=tr(kind), names=listed(sorted(others)))
         return Verdict(False, said)
     if missing := len(right) - len(chosen):
         said = tr("Right so far, but not all: {count} more to find.", count=missing)
@@ -139,7 +139,7 @@ def _judge_number(truth: Session, task: Task, answer: float) -> Verdict:
     if said := _explained(task, truth, answer):
         return Verdict(False, said)
     if wanted and abs(answer + wanted) <= task.within * abs(wanted):
-        return Verdict(False, tr("The size is right. Think about the sign."))
+        return Verdict(False, tr("The size is right, but not the sign."))
     if abs(answer) > abs(wanted):
         return Verdict(False, tr("{answer} is too large.", answer=written.given(answer)))
     return Verdict(False, tr("{answer} is too small.", answer=written.given(answer)))
@@ -152,7 +152,9 @@ def _judge_choice(truth: Session, task: Task, answer: str) -> Verdict:
         raise LookupError(tr("there is no choice '{text}'; use one of {texts}.", text=answer, texts=texts))
     if is_right(truth, choice):
         return Verdict(True, filled(task.right, truth))
-    said = filled(choice.say, truth) or tr("No: “{text}” is not what the engine finds.", text=tr(choice.text))
+    said = filled(choice.say, truth) or tr(
+        "No: “{text}” is not what the calculation gives.", text=tr(choice.text)
+    )
     return Verdict(False, said)
 
 
