@@ -63,6 +63,11 @@ class Course:
         return self.task.kind == NUMBER and not self.accepted
 
     @property
+    def takes_return(self) -> bool:
+        """True while Return checks a number that was typed, or goes on from one that was right."""
+        return bool(self.typed) and (not self.accepted or not self._session.selected)
+
+    @property
     def awaits_choice(self) -> bool:
         """True while a digit that is pressed is an answer."""
         return self.task.kind == CHOICES and not self.accepted
@@ -94,6 +99,8 @@ class Course:
             except ModelError as error:
                 raise ScriptError(f"{self.lesson.script.path} line {task.line}: {error}") from None
         self.perform(task.setup)
+        session.document.shapes.hide()
+        session.notice = ""
         self._forget()
         session.select()
         self._begun = document(session.model)

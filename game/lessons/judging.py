@@ -36,13 +36,17 @@ _RELATIONS = {
     "≈": marked("wanted: {value}"),
     "~": marked("wanted: {value}"),
 }
-_SAID: dict[tuple[str, str], str] = {  # what a state lacks, by the path and the kind of relation
-    ("statics.equilibrium", ""): marked(
-        "It is not in equilibrium yet: press E to find equilibrium, or Space to let it run until it rests."
-    ),
-    ("statics.mechanisms", ""): marked(
-        "It is a mechanism: parts can move without any rod getting longer. B shows how."
-    ),
+_SAID: dict[str, Mapping[bool, str]] = {  # of a state, by a path and whether it is more than 0 there
+    "statics.equilibrium": {
+        False: marked(
+            "It is not in equilibrium yet: press E to find equilibrium, or Space to let it run until it rests."
+        ),
+        True: marked("It is in equilibrium."),
+    },
+    "statics.mechanisms": {
+        False: marked("It is stable: nothing can move without a rod getting longer or shorter."),
+        True: marked("It is a mechanism: parts can move without any rod getting longer. B shows how."),
+    },
 }
 _NAMES = {
     "statics.degree": marked("The degree of static indeterminacy"),
@@ -140,6 +144,12 @@ def _judge_number(truth: Session, task: Task, answer: float) -> Verdict:
         return Verdict(False, said)
     if wanted and abs(answer + wanted) <= task.within * abs(wanted):
         return Verdict(False, tr("The size is right, but not the sign."))
+    if answer * wanted < 0.0:
+        return Verdict(False, tr("Neither the sign nor the size is right yet."))
+    if wanted < 0.0 and answer < 0.0:
+        larger = tr("The sign is right, but the size of {answer} is too large.", answer=written.given(answer))
+        smaller = tr("The sign is right, but the size of {answer} is too small.", answer=written.given(answer))
+        return Verdict(False, larger if answer < wanted else smaller)
     if abs(answer) > abs(wanted):
         return Verdict(False, tr("{answer} is too large.", answer=written.given(answer)))
     return Verdict(False, tr("{answer} is too small.", answer=written.given(answer)))
@@ -195,7 +205,7 @@ def _asked_for(truth: Session, asked: str) -> tuple[list[Handle], dict[Handle, s
         ]
     target, _ = locate(truth.model, path.strip(), readable)
     unit, factor = target.field.shown
-    title = target.field.title
+    title = f"{tr(target.field.title)} {target.axis}" if target.axis else target.field.title
     written_values = {
         handle: tr(
             "its {title} is {value} {unit}", title=title, value=_number(factor * value), unit=unit
@@ -298,8 +308,8 @@ def _all_hold(session: Session, conditions: Sequence[str], answer: float | None)
 def _lacking(session: Session, condition: str) -> str:
     """What is the case instead of a condition."""
     path, relation, value, _ = parts_of(condition)
-    if (path, "") in _SAID:
-        return tr(_SAID[path, ""])
+    if path in _SAID:
+        return tr(_SAID[path][bool(read(session, path))])
     try:
         present = shown(session, path)
     except (ValueError, LookupError) as error:

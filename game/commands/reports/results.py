@@ -9,7 +9,7 @@ import numpy as np
 
 from components.field import Column, Field
 from components.handle import Handle
-from components.language import marked, tr
+from components.language import marked, several, tr
 from components.model import Model
 from components.particle import Particle
 from components.rod import Rod, bends
@@ -172,7 +172,7 @@ def run_lines(run: Run) -> Iterator[str]:
     if error := run.get("error_estimate"):
         known = {tr(title): as_written(error[key]) for key, title in _ERRORS.items() if key in error}
         yield tr("errors as shares of the largest value, measured by a run with finer steps:")
-        yield ", ".join(f"{title} {value}" for title, value in known.items())
+        yield several(f"{title} {value}" for title, value in known.items())
     yield tr(
         "computed in {computing} s, compiled in {compiling} s",
         computing=as_written(run["wall_seconds"]),

@@ -369,7 +369,7 @@ def _verify_lines(found: Found) -> Iterator[str]:
                 yield tr("natural frequencies under load, Hz: {values}", values="  ".join(values))
     for quantity, (_, unit) in QUANTITIES.items():
         shown, factor = _IN_TABLES.get(unit, (unit, 1.0))
-        rows = {f"{name} {axis}".rstrip(): values for name, axis, values in _values(found, quantity)}
+        rows = {f"{name} {tr(axis)}".rstrip(): values for name, axis, values in _values(found, quantity)}
         if rows:
             yield ""
             yield from aligned(_cells(f"{tr(_TITLES[quantity])}, {shown}", factor, rows))
