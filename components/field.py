@@ -301,9 +301,7 @@ class Field(Generic[T]):
         if not isinstance(value, str):
             raise self._refusal(marked("{where}: {title} is {value}; it must be a text."), where, value)
         if is_broken(value):
-            message = marked(
-                "{where}: {title} is {value}; half of a character cannot be kept in a file. Type it again."
-            )
+            message = marked("{where}: {title} is {value}; one of its characters is damaged. Type it again.")
             raise self._refusal(message, where, value)
         return str(value)  # numpy's texts are of another type
 

@@ -195,7 +195,7 @@ def _text(document: Mapping[str, Any], key: str) -> str:
     if not isinstance(text, str):
         fail(f"$.{key}", tr("it is {value}; it must be a text.", value=quoted(text)))
     if is_broken(text):
-        fail(f"$.{key}", tr("it is {text!a}; a file cannot hold half of a character.", text=text))
+        fail(f"$.{key}", tr("it is {text!a}; one of its characters is damaged. Type it again.", text=text))
     return text
 
 

@@ -274,7 +274,7 @@ class _Page:
         blocks: list[Block] = []
         if len(every) > PRODUCTS:
             note = tr(
-                "The products of more than {count} unknowns are not printed; their sums stand below.",
+                "With more than {count} unknowns the products are not printed; only their sums are given below.",
                 count=PRODUCTS,
             )
             heading.append(self._text(note, "caption"))

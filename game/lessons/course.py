@@ -22,7 +22,7 @@ RIGHT, WRONG, HINT = "right", "wrong", "hint"  # moods of what is said
 IN_NUMBERS = frozenset("0123456789.,-−+")  # not e, which is a key
 MOST_LINES = 40  # by which a card is scrolled
 LONGEST = 16  # characters of a number that is typed
-SOLVED = marked("That was one way to do it. Now try it: Again starts the task once more; Next goes on.")
+SOLVED = marked("That was one way to do it. Now try it: “Again” starts the task once more; “Next” goes on.")
 FINISHED = marked("This lesson is done.")
 
 

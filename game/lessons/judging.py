@@ -127,7 +127,7 @@ def _judge_selection(truth: Session, task: Task, answer: tuple[str, ...]) -> Ver
         return Verdict(False, joined([_explained(task, truth), said]))
     if others or not chosen:
         kind = next(iter(values)).world.tables[next(iter(values)).table].name if values else ""
-        said = tr("Select only {kind}: {names} is something else.", kind=kind, names=listed(sorted(others)))
+        said = tr("Select only {kind}, not {names}.", kind=tr(kind), names=listed(sorted(others)))
         return Verdict(False, said)
     if missing := len(right) - len(chosen):
         said = tr("Right so far, but not all: {count} more to find.", count=missing)
@@ -143,7 +143,7 @@ def _judge_number(truth: Session, task: Task, answer: float) -> Verdict:
     if said := _explained(task, truth, answer):
         return Verdict(False, said)
     if wanted and abs(answer + wanted) <= task.within * abs(wanted):
-        return Verdict(False, tr("The size is right. Think about the sign."))
+        return Verdict(False, tr("The size is right, but not the sign."))
     if answer * wanted < 0.0:
         return Verdict(False, tr("Neither the sign nor the size is right yet."))
     if wanted < 0.0 and answer < 0.0:
@@ -162,7 +162,9 @@ def _judge_choice(truth: Session, task: Task, answer: str) -> Verdict:
         raise LookupError(tr("there is no choice '{text}'; use one of {texts}.", text=answer, texts=texts))
     if choice.right if isinstance(choice.right, bool) else holds(truth, choice.right):
         return Verdict(True, filled(task.right, truth))
-    said = filled(choice.say, truth) or tr("No: “{text}” is not what the engine finds.", text=tr(choice.text))
+    said = filled(choice.say, truth) or tr(
+        "No: “{text}” is not what the calculation gives.", text=tr(choice.text)
+    )
     return Verdict(False, said)
 
 

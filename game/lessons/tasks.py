@@ -157,10 +157,10 @@ class _Reader:
         self._check(line, entry, _KEYS)
         kinds = [kind for kind in KINDS if kind in entry]
         if len(kinds) != 1:
-            asked = ", ".join(kinds) or tr("none")
-            said = tr(
-                "a task asks for one of {kinds}; this one has {asked}.", kinds=", ".join(KINDS), asked=asked
-            )
+            known, asked = ", ".join(KINDS), ", ".join(kinds)
+            if not kinds:
+                self._fail(line, tr("a task asks for one of {kinds}; this one asks for nothing.", kinds=known))
+            said = tr("a task asks for one of {kinds}; this one has {asked}.", kinds=known, asked=asked)
             self._fail(line, said)
         for key in ("right", "solution"):
             if key not in entry:

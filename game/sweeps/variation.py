@@ -207,7 +207,9 @@ def _random(target: Target, text: str) -> Random:
         deviation = abs(first) * _finite(second[:-1]) / 100.0 if second.endswith("%") else _finite(second)
         parameters = (first, deviation)
         if not deviation >= 0.0 or (kind == "lognormal" and not first > 0.0):
-            raise PathError(tr("the deviation must be at least 0, and the mean of a lognormal above 0."))
+            raise PathError(
+                tr("the standard deviation must be at least 0, and the mean of a lognormal above 0.")
+            )
     # Strengths and stiffnesses of different rods are independent: each has its own draw.
     elements = target.table.names if target.element == EVERY else [target.element]
     return Random(tuple(map(target.path, elements)), kind, parameters, _label(target, elements[0]))

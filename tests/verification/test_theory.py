@@ -381,7 +381,10 @@ def test_verify_prints_tables(capsys: pytest.CaptureFixture[str], words: tuple[s
     [
         ("isostatic", "g = m + r − 2n = 3 + 3 − 2·3 = 0"),
         ("hyperstatic", "g = m + r − 2n = 6 + 3 − 2·4 = 1"),
-        ("pendulum", "g = m + r − 2n = 1 + 2 − 2·2 = −1; by rank: no state of self-stress, one mechanism"),
+        (
+            "pendulum",
+            "g = m + r − 2n = 1 + 2 − 2·2 = −1; by matrix rank: no state of self-stress, one mechanism",
+        ),
         ("snap_through", "g = m + r − 2n = 2 + 4 − 2·3 = 0"),
     ],
 )

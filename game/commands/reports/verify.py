@@ -349,7 +349,7 @@ def _formula(found: Found) -> str:
     count = Count(**numbers)
     said = count.by_rank(degrees["static"], degrees["mechanisms"])
     rule = f"{count.formula} = {count.numbers}"
-    return tr("{rule}; by rank: {said}", rule=rule, said=said) if said else rule
+    return tr("{rule}; by matrix rank: {said}", rule=rule, said=said) if said else rule
 
 
 def _verify_lines(found: Found) -> Iterator[str]:
