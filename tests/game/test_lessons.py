@@ -197,7 +197,7 @@ def test_a_wrong_number_is_explained_and_typed_anew(session: Session) -> None:
     course = begun(session, "04_supports_and_reactions", 1)
     for typed, said in (
         ("90", "reaction at A"),
-        ("-30", "Think about the sign"),
+        ("-30", "but not the sign"),
         ("-20", "Neither the sign nor the size"),
         ("1000", "too large"),
         ("--", "not a number"),

@@ -132,7 +132,7 @@ def test_in_simulation_what_the_model_needs_acts_and_the_rest_says_why_not(
         "physics.dop853",
     ]
     why = found["left_out"]
-    assert "no two particles" in why["collision.discs"]
+    assert "no particle can meet another" in why["collision.discs"]
     assert why["loads.ramp"] == "no load has a history of this kind"
     assert why["physics.slackness"] == "the model has no cables"
     assert why["physics.rk4"] == "physics.dop853 integrates"
