@@ -122,7 +122,7 @@ def _judge_selection(truth: Session, task: Task, answer: tuple[str, ...]) -> Ver
         said = tr("{what} does not belong: {value}.", what=_name(truth, wrong), value=values[wrong])
         return Verdict(False, joined([_explained(task, truth), said]))
     if others or not chosen:
-        kind = next(iter(values)).world.tables[next(iter(values)).table].name if values else ""
+        kind = tr(next(iter(values)).world.tables[next(iter(values)).table].name) if values else ""
         said = tr("Select only {kind}: {names} is something else.", kind=kind, names=listed(sorted(others)))
         return Verdict(False, said)
     if missing := len(right) - len(chosen):
@@ -193,7 +193,7 @@ def _asked_for(truth: Session, asked: str) -> tuple[list[Handle], dict[Handle, s
         ]
     target, _ = locate(truth.model, path.strip(), readable)
     unit, factor = target.field.shown
-    title = target.field.title
+    title = tr(target.field.title)
     written_values = {
         handle: tr(
             "its {title} is {value} {unit}", title=title, value=_number(factor * value), unit=unit
