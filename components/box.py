@@ -8,7 +8,7 @@ from typing import Any
 
 from components.field import Field
 from components.handle import Handle
-from components.language import decimals, tr
+from components.language import decimals, tr, tr_in
 
 NUMBER, WORD, TEXT, FILE_NAME = "number", "word", "text", "file name"
 NAME = "name"  # one of some words, or a text of a form that is known
@@ -71,8 +71,12 @@ class Box(Handle):
     def said_text(self) -> str:
         """What it contains in the present language: one of its words, or a number with the decimal sign of that."""
         if self.text in (self.words or ()):
-            return tr(self.text)
+            return self.said_word(self.text)
         return decimals(self.text) if self.accepts == NUMBER else self.text
+
+    def said_word(self, word: str) -> str:
+        """One of its words in the present language; "none" agrees with what there is none of."""
+        return tr_in("section", "none") if (self.target, word) == ("rods.section", "none") else tr(word)
 
     @property
     def changed(self) -> bool:

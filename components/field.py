@@ -12,7 +12,7 @@ from typing import Any, Generic, Protocol, TypeVar, overload
 import numpy as np
 from numpy.typing import NDArray
 
-from components.language import joined, marked, tr
+from components.language import decimals, joined, marked, tr
 from components.mistake import Mistake
 from components.wording import is_broken, quoted
 
@@ -266,7 +266,7 @@ class Field(Generic[T]):
             raise self._refusal(message, where, value, axis)
         limit = self.limit_broken_by(number)
         if limit:
-            amount = joined([tr("{number:.15g}", number=number), self.unit])
+            amount = joined([decimals(f"{number:.15g}"), self.unit])
             message = marked("{where}: {title} is {amount}; it must be {limit}.")
             raise self._refusal(message, where, number, axis, amount=amount, limit=limit)
         return number
@@ -276,7 +276,7 @@ class Field(Generic[T]):
         unit, factor = self.shown if shown else (self.unit, 1.0)
 
         def amount(limit: float) -> str:
-            return joined([tr("{number:g}", number=limit * factor), unit])
+            return joined([decimals(f"{limit * factor:g}"), unit])
 
         if self.above is not None and not number > self.above:
             return tr("greater than {limit}", limit=amount(self.above))
@@ -301,9 +301,7 @@ class Field(Generic[T]):
         if not isinstance(value, str):
             raise self._refusal(marked("{where}: {title} is {value}; it must be a text."), where, value)
         if is_broken(value):
-            message = marked(
-                "{where}: {title} is {value}; half of a character cannot be kept in a file. Type it again."
-            )
+            message = marked("{where}: {title} is {value}; one of its characters is damaged. Type it again.")
             raise self._refusal(message, where, value)
         return str(value)  # numpy's texts are of another type
 

@@ -173,7 +173,10 @@ class Load(Handle):
         doc="Moment on the particle while the factor is 1, counter-clockwise; only rods rigidly joined to it feel it.",
     )
     history: Field[History] = Field(
-        dtype=object, default=CONSTANT, doc="How its factor changes in time.", checker=check_history
+        dtype=object,
+        default=CONSTANT,
+        doc="How the load changes in time: its factor multiplies force and moment.",
+        checker=check_history,
     )
 
     @property

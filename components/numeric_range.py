@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 
 from components.field import LARGEST, SMALLEST, Column, Field, Role
-from components.language import begun, joined, marked, tr
+from components.language import begun, decimals, joined, marked, tr
 from components.model import Model
 from components.obstacles import obstacles
 from components.wording import cut
@@ -72,7 +72,7 @@ def is_computed_with(field: Field[Any]) -> bool:
 
 def _sentence(element: str, field: Field[float], value: float) -> str:
     def amount(number: float) -> str:
-        return joined([tr("{number:g}", number=number), field.unit])
+        return joined([decimals(f"{number:g}"), field.unit])
 
     values = {"element": begun(element), "title": field.named(), "amount": amount(value)}
     if abs(value) < SMALLEST:

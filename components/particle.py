@@ -100,6 +100,7 @@ class Particle(Handle):
     )
     turning: Field[float] = derived(
         "rad/s²/(kN·m)",
+        title="rotational mobility",
         doc="Angular acceleration per moment: 1000/inertia, 0 where it is clamped or has no rigid ends.",
     )
     constant_force: Field[Vector] = derived(

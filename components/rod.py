@@ -90,7 +90,7 @@ class Rod(Handle):
         absent="none",
         choices=SECTIONS,
         checker=check_section,
-        doc="IPE, HEA, HEB, CHS, SHS or rectangle 300×500: sets A and I and, by its material, weight and strength.",
+        doc="IPE, HEA, HEB, CHS, SHS or 'rectangle 300×500': sets A and I and, by its material, weight and strength.",
     )
     material: Field[str | None] = Field(
         dtype=str,
@@ -233,13 +233,13 @@ class Rod(Handle):
         doc="Twice the strain of the axis per slopes: its share of bending.",
     )
     turning_shares: Field[Vector] = derived(
-        shape=(2,), axes=ENDS, doc="Of the ends in its mean rotation, by which full turns are told."
+        shape=(2,), axes=ENDS, doc="Weight of each end in its mean rotation, from which full turns are counted."
     )
     initial_slopes: Field[Vector] = derived(
         "rad",
         shape=(2,),
         axes=ENDS,
-        doc="Of its ends, to its chord, without moments: by its temperature gradient.",
+        doc="Slopes of its ends to its chord while no moment acts, caused by the temperature gradient.",
     )
     load_shares: Field[Vector] = derived(
         "m²",
@@ -261,7 +261,10 @@ class Rod(Handle):
         doc="Moments on its ends, counter-clockwise; those of its dampers are not included.",
     )
     end_axial_force: Field[Vector] = derived(
-        "kN", shape=(2,), axes=ENDS, doc="Axial force at its ends; the axial force is their mean."
+        "kN",
+        shape=(2,),
+        axes=ENDS,
+        doc="Axial force at each end; the axial force of the rod is the mean of the two.",
     )
     shear: Field[Vector] = derived(
         "kN",

@@ -15,7 +15,7 @@ from importlib.resources import files
 from typing import Any
 
 from components.field import LARGEST, FieldError
-from components.language import marked, tr
+from components.language import joined, marked, tr
 from components.suggestions import missing
 from components.wording import cut, quoted
 
@@ -203,7 +203,7 @@ def check_material(value: Any, where: str) -> str:
     found = material_named(_text(value, where, "material"))
     if found is None:
         problem = missing(marked("materials"), value, MATERIALS)
-        raise FieldError(tr("{where}: {problem}", where=where, problem=problem))
+        raise FieldError(joined([f"{where}:", problem]))
     return found.name
 
 

@@ -70,7 +70,7 @@ class Settings(Handle):
     )
     original_diagrams: Field[bool] = look(
         dtype=bool,
-        title="undeformed diagrams",
+        title="diagrams on undeformed rods",
         doc="Force diagrams of rods that bend are drawn on the undeformed rods.",
     )
     diagrams: Field[str] = look(

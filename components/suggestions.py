@@ -24,7 +24,7 @@ def remedy(name: str, names: Collection[str]) -> str:
     if near := nearest(name, names, cutoff=0.6 if few else 0.4):
         return tr("did you mean '{name}'?", name=cut(near))
     if not few:
-        return tr("there are {count} others.", count=len(names))
+        return tr("there are {count} to choose from.", count=len(names))
     return tr("choose one of {names}.", names=", ".join(map(cut, names))) if names else tr("there are none.")
 
 

@@ -82,6 +82,20 @@ class Preview:
 
 
 @dataclass(frozen=True)
+class Cut:
+    """A static unknown that is released: between the ends of a rod, or the moment at one of them.
+
+    between: the particles that the rod joins. end: 0 or 1, of a moment; None: the rod is cut through. label: of the pair
+    of unit forces or moments that acts there; "": none acts. held: nothing but a support is left at the joint.
+    """
+
+    between: tuple[str, str]
+    end: int | None = None
+    label: str = ""
+    held: bool = False
+
+
+@dataclass(frozen=True)
 class Page:
     """Text in place of a model: lines, then a table whose columns are aligned; the first row is its head.
 
@@ -170,7 +184,7 @@ class View:
     shares: the model is fitted beside the panels; else panels may cover it. since: by title, the rank in which each
     panel appeared.
     aside: the part of the window, at its left or right, that boxes to type into take; None: none.
-    card: a task of a lesson, in place of a model.
+    card: a task of a lesson, in place of a model. cuts: rods that are drawn cut. has_units: values of forces tell theirs.
     """
 
     camera: Camera = field(default_factory=Camera)
@@ -214,6 +228,8 @@ class View:
     shares: bool = False
     aside: Viewport | None = None
     card: Card | None = None
+    cuts: tuple[Cut, ...] = ()
+    has_units: bool = True
 
     def fit(self, model: Model) -> None:
         """Let the camera show the whole model, clear of the sliders, and with room for diagrams below the legend."""

@@ -352,7 +352,7 @@ class Session(Context):
         """Which systems run in a scene (by default the active one) with the model, in order, and why others do not.
 
         >>> Session.open("isostatic").plan("pause").left_out["run.time"]
-        'not active in pause, only in simulation'
+        "not active in 'pause', only in simulation"
         """
         return self.simulation.planned(scene or self.scene)
 

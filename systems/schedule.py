@@ -6,7 +6,7 @@
 ...     scenes = ("pause",)
 >>> from components.model import Model
 >>> Schedule([Idle()]).plan("simulation", Model()).left_out
-{'example.idle': 'not active in simulation, only in pause'}
+{'example.idle': "not active in 'simulation', only in pause"}
 """
 
 from __future__ import annotations
@@ -229,8 +229,8 @@ class Schedule:
         wanted = [other for other in self._wanted if self.is_active(system, other)]
         named = dict.fromkeys((*(system.scenes or ()), *wanted))
         if not named:
-            return tr("not active in {scene}, nor in any other scene", scene=scene)
-        return tr("not active in {scene}, only in {scenes}", scene=scene, scenes=", ".join(named))
+            return tr("not active in '{scene}', nor in any other scene", scene=scene)
+        return tr("not active in '{scene}', only in {scenes}", scene=scene, scenes=", ".join(named))
 
     def plan(self, scene: str, model: Model) -> Plan:
         """Which systems run in a scene with a model, and why the others do not."""

@@ -98,7 +98,7 @@ def _lines(found: Mapping[str, Any]) -> Iterator[str]:
     if not found["factors"]:
         yield found["message"]
         return
-    titles = [tr("buckling mode"), tr("load factor"), tr("over the lowest"), tr("moves most")]
+    titles = [tr("buckling mode"), tr("load factor"), tr("divided by the lowest"), tr("moves most")]
     rows = [[*titles, tr("most compressed"), tr("effective length, m")]]
     for number, (factor, mode, by) in enumerate(
         zip(found["factors"], found["modes"], found["leading"], strict=True), start=1
@@ -117,7 +117,7 @@ def _lines(found: Mapping[str, Any]) -> Iterator[str]:
                 tr("at load factor 1"),
                 tr("at the lowest factor"),
                 tr("effective length, m"),
-                tr("over its own length"),
+                tr("divided by its own length"),
             ]
         ]
         for name, of in pressed.items():

@@ -44,7 +44,7 @@ def command(words: Sequence[str]) -> int:
         "--convention",
         choices=CONVENTIONS,
         default=CONVENTIONS[0],
-        help=tr("of the text: δ₁₀ + δ₁₁ X₁ = 0, or p = (Δ − Δ₀) / Δ₁"),
+        help=tr("sign convention of the text; textbook: δ₁₀ + δ₁₁ X₁ = 0; thesis: p = (Δ − Δ₀) / Δ₁"),
     )
     parser.add_argument(
         "--report", type=writable, metavar="FILE.pdf", help=tr("write the whole solution to a PDF as well")

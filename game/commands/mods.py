@@ -95,7 +95,8 @@ def _lines_of_list(found: Sequence[dict[str, Any]]) -> Iterator[str]:
             yield tr("{name} {version}: LEFT OUT, from {source}", **names)
         else:
             yield tr("{name} {version}: loaded, from {source}", **names)
-        yield from (f"    {line}" for line in (mod["description"], *mod["problems"], *mod["notes"]) if line)
+        told = (mod["description"], *mod["problems"], *mod["notes"])
+        yield from (f"    {tr(line)}" for line in told if line)
     yield tr("Put your mods into {folder}", folder=mods_folder())
 
 

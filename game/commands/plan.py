@@ -57,7 +57,7 @@ def plan(session: Session, scene: str) -> dict[str, Any]:
 
 def _lines(found: dict[str, Any], model: str) -> Iterator[str]:
     width = max(map(len, (*found["left_out"], *found["phases"])))
-    yield tr("Scene {scene}, model {model}", scene=found["scene"], model=model)
+    yield tr("Scene '{scene}', model '{model}'", scene=found["scene"], model=model)
     yield ""
     for phase, names in found["phases"].items():
         for index, name in enumerate(names or ["–"]):

@@ -25,6 +25,28 @@ _LIGHT = 128  # of 255: themes with a darker background are not made for white p
 
 def command(words: Sequence[str]) -> int:
     """Do what the words after the command ask for; returns the exit status."""
+    options = _parser().parse_args(words)
+    width, height = _size(options.size)
+    if Path(options.output).suffix.lower() not in _PICTURES:
+        raise UsageError(
+            tr(
+                "{file}: choose a file that ends with one of {endings}.",
+                file=f"--output {options.output}",
+                endings=", ".join(_PICTURES),
+            )
+        )
+    _check_background(options)
+    session = session_of(options)
+    session.view.all_diagrams = options.diagrams or options.diagrams_of is not None
+    session.view.quantity = options.diagrams_of or session.view.quantity
+    session.view.utilisation = options.utilisation
+    draw = _animate if options.output.lower().endswith(".gif") else _draw
+    with writing(options.output):
+        status = draw(session, options, (width, height))
+    return ANSWERED if status in FOUND else NOT_ANSWERED
+
+
+def _parser() -> Parser:
     parser = Parser(prog="pinjoint render", description=tr("Draw a model, or its run as a GIF, to a file."))
     add_model(parser)
     parser.add_argument(
@@ -79,25 +101,7 @@ def command(words: Sequence[str]) -> int:
         help=tr("the background, for pictures in reports; default theme"),
     )
     parser.add_argument("--limit", type=positive, default=DEFAULT_LIMIT, help=argparse.SUPPRESS)
-    options = parser.parse_args(words)
-    width, height = _size(options.size)
-    if Path(options.output).suffix.lower() not in _PICTURES:
-        raise UsageError(
-            tr(
-                "--output {file}: choose a file that ends with one of {endings}.",
-                file=options.output,
-                endings=", ".join(_PICTURES),
-            )
-        )
-    _check_background(options)
-    session = session_of(options)
-    session.view.all_diagrams = options.diagrams or options.diagrams_of is not None
-    session.view.quantity = options.diagrams_of or session.view.quantity
-    session.view.utilisation = options.utilisation
-    draw = _animate if options.output.lower().endswith(".gif") else _draw
-    with writing(options.output):
-        status = draw(session, options, (width, height))
-    return ANSWERED if status in FOUND else NOT_ANSWERED
+    return parser
 
 
 def _check_background(options: argparse.Namespace) -> None:

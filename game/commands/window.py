@@ -69,7 +69,12 @@ def command(words: Sequence[str]) -> int:
         help=tr("record the session to this file, for: pinjoint play FILE"),
     )
     parser.add_argument("--theme", choices=theme_names(), help=tr("the colours; default: those used last"))
-    parser.add_argument("--version", action="version", version=f"pinjoint {__version__}")
+    parser.add_argument(
+        "--version",
+        action="version",
+        version=f"pinjoint {__version__}",
+        help=tr("show program's version number and exit"),
+    )
     options = parser.parse_args(words)
     source = options.model or script.EMPTY
     model, file = models.load(source), file_of(source)

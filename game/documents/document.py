@@ -21,7 +21,6 @@ from components.model import ADDED, Model
 from components.particle import Particle, check_spin, check_velocities
 from components.rod import Rod
 from components.section import NAMES, given_by
-from components.slider import Slider
 from components.suggestions import missing, remedy
 from components.table import fields_of
 from components.wording import cut, is_broken, quoted
@@ -40,7 +39,7 @@ from game.documents.format import (
 from game.documents.mod_data import DATA as FOREIGN
 from game.documents.mod_data import MODS, upgraded
 from game.documents.sliders import KEY as SLIDERS
-from game.documents.sliders import SliderError, read_sliders
+from game.documents.sliders import read_sliders
 
 Migration = Callable[[dict[str, Any]], dict[str, Any]]
 MIGRATIONS: dict[int, Migration] = {}  # by version: the function that turns a document into the next version
@@ -104,16 +103,9 @@ def _parsed(document: Any) -> Model:
     if FOREIGN in document:
         _read_added(model, document[FOREIGN])
     if SLIDERS in document:
-        model.sliders = _sliders(model, document[SLIDERS])
+        model.sliders = read_sliders(model, document[SLIDERS])
     _read_departure(model)
     return model
-
-
-def _sliders(model: Model, entries: Any) -> tuple[Slider, ...]:
-    try:
-        return read_sliders(model, entries)
-    except SliderError as error:
-        raise ModelError(str(error)) from None
 
 
 def _read_departure(model: Model) -> None:
@@ -203,7 +195,7 @@ def _text(document: Mapping[str, Any], key: str) -> str:
     if not isinstance(text, str):
         fail(f"$.{key}", tr("it is {value}; it must be a text.", value=quoted(text)))
     if is_broken(text):
-        fail(f"$.{key}", tr("it is {text!a}; a file cannot hold half of a character.", text=text))
+        fail(f"$.{key}", tr("it is {text!a}; one of its characters is damaged. Type it again.", text=text))
     return text
 
 

@@ -67,7 +67,7 @@ def copied(value: Any, where: str) -> Any:
     if isinstance(value, list | tuple):
         return [copied(item, where) for item in value]
     if isinstance(value, str) and is_broken(value):
-        fail(where, tr("{value!a} contains half of a character, which a file cannot hold.", value=value))
+        fail(where, tr("{value!a} contains a damaged character, which a file cannot hold.", value=value))
     if value is None or isinstance(value, str | int) or (isinstance(value, float) and math.isfinite(value)):
         return value
     fail(where, tr("a model file cannot hold {value}.", value=quoted(value)))

@@ -198,9 +198,9 @@ def mode_shapes(model: Model, most: int | None = None) -> list[Shape]:
 def numbered(model: Model, kind: str, number: int) -> Shape:
     """A "mechanism", "buckling mode" or "mode" by its number, from 1. Raises NoShape."""
     find: dict[str, Callable[[Model], Sequence[Shape]]] = {
-        "mechanism": mechanism_shapes,
-        "buckling mode": buckling_shapes,
-        "mode": mode_shapes,
+        marked("mechanism"): mechanism_shapes,
+        marked("buckling mode"): buckling_shapes,
+        marked("mode"): mode_shapes,
     }
     found = find[kind](model)
     if not found:
@@ -210,7 +210,8 @@ def numbered(model: Model, kind: str, number: int) -> Shape:
     if not 1 <= number <= len(found):
         raise NoShape(
             tr(
-                "There is no number {number} to draw; choose a number from 1 to {count}.",
+                "There is no {kind} {number}; choose a number from 1 to {count}.",
+                kind=tr(kind),
                 number=number,
                 count=len(found),
             )

@@ -7,112 +7,67 @@ from collections.abc import Iterator, Mapping
 from typing import Any
 
 from components.field import Field, FieldError
-from components.language import joined, tr
-from components.mistake import Mistake
+from components.language import decimals, tr
 from components.model import Model
 from components.slider import Aim, Slider
 from components.suggestions import remedy
 from components.wording import cut, is_broken, quoted
+from game.documents.format import ModelError, fail
 from game.paths import EVERY, PathError, Target, locate, settable
 
 KEY = "sliders"
 KEYS = ("of", "from", "to", "logarithmic", "title")
 
 
-class SliderError(Mistake, ValueError):
-    """A slider in a file that cannot be; the message says where, what is wrong and the remedy."""
-
-
 def read_sliders(model: Model, entries: Any) -> tuple[Slider, ...]:
-    """The sliders that a document describes, of a model that has all elements. Raises SliderError."""
+    """The sliders that a document describes, of a model that has all elements. Raises ModelError."""
     if not isinstance(entries, list | tuple):
-        raise SliderError(
-            tr("{where}: it is {value}; it must be a list.", where=f"$.{KEY}", value=quoted(entries))
-        )
+        fail(f"$.{KEY}", tr("it is {value}; it must be a list.", value=quoted(entries)))
     return tuple(_read(model, entry, f"$.{KEY}[{place}]") for place, entry in enumerate(entries))
 
 
 def _read(model: Model, entry: Any, where: str) -> Slider:
     if not isinstance(entry, Mapping):
         form = '{"of": "PATH", "from": 0, "to": 1}'
-        raise SliderError(
-            tr("{where}: it is {value}; write it like {form}.", where=where, value=quoted(entry), form=form)
-        )
+        fail(where, tr("it is {value}; write it like {form}.", value=quoted(entry), form=form))
     for key in map(str, entry):
         if key not in KEYS:
-            raise SliderError(
-                tr(
-                    "{where}: there is no key '{key}' here; {remedy}",
-                    where=where,
-                    key=cut(key),
-                    remedy=remedy(key, KEYS),
-                )
-            )
+            fail(where, tr("there is no key '{key}' here; {remedy}", key=cut(key), remedy=remedy(key, KEYS)))
     for key in KEYS[:3]:
         if key not in entry:
-            raise SliderError(
-                tr("{where}: its '{key}' is missing; every slider needs one.", where=where, key=key)
-            )
+            fail(where, tr("its '{key}' is missing; every {kind} needs one.", key=key, kind=tr("slider")))
     paths = entry["of"] if isinstance(entry["of"], list | tuple) else [entry["of"]]
     if not paths or not all(isinstance(path, str) for path in paths):
-        raise SliderError(
-            tr(
-                "{where}: it is {value}; it must be a path or a list of paths.",
-                where=f"{where}.of",
-                value=quoted(entry["of"]),
-            )
-        )
+        said = tr("it is {value}; it must be a path or a list of paths.", value=quoted(entry["of"]))
+        fail(f"{where}.of", said)
     logarithmic, title = entry.get("logarithmic", False), entry.get("title", "")
     if not isinstance(logarithmic, bool):
-        raise SliderError(
-            tr(
-                "{where}: it is {value}; it must be true or false.",
-                where=f"{where}.logarithmic",
-                value=quoted(logarithmic),
-            )
-        )
+        said = tr("it is {value}; it must be true or false.", value=quoted(logarithmic))
+        fail(f"{where}.logarithmic", said)
     if not isinstance(title, str) or is_broken(title):
-        raise SliderError(
-            tr("{where}: it is {value}; it must be a text.", where=f"{where}.title", value=f"{title!a:.60}")
-        )
+        fail(f"{where}.title", tr("it is {value}; it must be a text.", value=f"{title!a:.60}"))
     fields, aims = zip(*(_aim(model, path, f"{where}.of") for path in paths), strict=True)
     ends = [_end(entry[key], fields, f"{where}.{key}") for key in ("from", "to")]
     if ends[0] == ends[1]:
-        raise SliderError(
-            tr(
-                "{where}: it goes from {start:g} to {end:g}; its ends must differ.",
-                where=where,
-                start=ends[0],
-                end=ends[1],
-            )
-        )
+        said = tr("it goes from {start:g} to {end:g}; its ends must differ.", start=ends[0], end=ends[1])
+        fail(where, said)
     if logarithmic and not min(ends) > 0.0:
-        raise SliderError(
-            tr(
-                "{where}: both ends of a logarithmic slider must be above 0, not {end:g}.",
-                where=where,
-                end=min(ends),
-            )
-        )
+        said = tr("both ends of a logarithmic slider must be above 0, not {end:g}.", end=min(ends))
+        fail(where, said)
     return Slider(aims, ends[0], ends[1], logarithmic, title)
 
 
 def _aim(model: Model, path: str, where: str) -> tuple[Field[Any], Aim]:
     """What a path names, if a slider can move it."""
+    where = f"{where}: {cut(path)}"
     try:
         target, rest = locate(model, path, settable)
     except (PathError, FieldError) as error:
-        raise SliderError(joined([f"{where}: {cut(path)}:", str(error)])) from None
+        fail(where, str(error))
     if rest:
-        raise SliderError(
-            tr(
-                "{where}: '{rest}' does not belong to the path; leave it out.",
-                where=f"{where}: {cut(path)}",
-                rest=cut(rest),
-            )
-        )
+        fail(where, tr("'{rest}' does not belong to the path; leave it out.", rest=cut(rest)))
     if problem := unmovable(target.field, target.axis):
-        raise SliderError(joined([f"{where}: {cut(path)}:", problem]))
+        fail(where, problem)
     every = target.element == EVERY
     return target.field, Aim(
         target.table.name, None if every else target.handles[0], target.field.name, target.axis
@@ -131,17 +86,16 @@ def unmovable(field: Field[Any], axis: str) -> str:
 def _end(value: Any, fields: tuple[Field[Any], ...], where: str) -> float:
     number = isinstance(value, int | float) and not isinstance(value, bool) and math.isfinite(value)
     if not number:
-        raise SliderError(
-            tr("{where}: it is {value}; it must be a finite number.", where=where, value=quoted(value))
-        )
+        fail(where, tr("it is {value}; it must be a finite number.", value=quoted(value)))
     for field in fields:
         if problem := field.limit_broken_by(float(value)):
-            raise SliderError(
+            amount = decimals(f"{float(value):g}")
+            raise ModelError(
                 tr(
-                    "{where}: {field} is {value:g}; it must be {limit}.",
+                    "{where}: {title} is {amount}; it must be {limit}.",
                     where=where,
-                    field=field.title,
-                    value=float(value),
+                    title=field.named(),
+                    amount=amount,
                     limit=problem,
                 )
             )

@@ -177,7 +177,10 @@ class Scene:
     def click_box(self, context: Context, title: str) -> None:
         """Select the box with that title. Raises LookupError."""
         raise LookupError(
-            tr("In {scene} there are no boxes; go to properties, save or load first.", scene=self.name)
+            tr(
+                "In the scene '{scene}' there are no boxes; go to 'properties', 'save' or 'load' first.",
+                scene=self.name,
+            )
         )
 
     @property
@@ -223,7 +226,7 @@ class Scenes:
                 targets = ", ".join(here.targets)
                 raise SceneError(
                     tr(
-                        "From {here} one cannot go to {scene}, only to {scenes}.",
+                        "From the scene '{here}' one cannot go to '{scene}', only to {scenes}.",
                         here=here.name,
                         scene=name,
                         scenes=targets,

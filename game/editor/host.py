@@ -60,5 +60,7 @@ class Course(Protocol):
         """True while digits that are typed belong to the answer."""
 
     @property
+    def takes_return(self) -> bool: ...
+    @property
     def awaits_choice(self) -> bool:
         """True while a digit that is pressed is an answer."""

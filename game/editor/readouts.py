@@ -199,7 +199,10 @@ def _overview(context: Context, theory: Theories, comparison: Comparison) -> Ite
     yield from _indeterminacy(context)
     if theory.refusal is not None:
         mechanism = theory.refusal.status == "mechanism"
-        yield tr("linear theory"), tr("none: this is a mechanism") if mechanism else tr("none: it has cables")
+        yield (
+            tr("linear theory"),
+            tr("no solution: this is a mechanism") if mechanism else tr("cannot be used: there are cables"),
+        )
     if theory.exact is None:
         share = written.share(settlement.final.load_factor)
         yield (
@@ -229,7 +232,7 @@ def _indeterminacy(context: Context) -> Iterator[tuple[str, str]]:
     count, degrees = counted(context.model), context.document.assessment.indeterminacy
     yield count.formula, count.numbers
     if said := count.by_rank(degrees.static, degrees.mechanisms):
-        yield tr("by rank"), said
+        yield tr("by matrix rank"), said
 
 
 def _verdict(context: Context, comparison: Comparison) -> Iterator[tuple[str, str]]:

@@ -25,7 +25,6 @@ ON_SLIDER = {
     "wheel down": "slider down",
 }
 
-ANSWERING = {"return": "check answer", "backspace": "erase answer"}  # while a number is typed
 
 # The scene, whether a menu, the help, or the toolbar takes clicks, and the title of the slider that does.
 Layer = tuple[str, bool, bool, bool, str]
@@ -74,9 +73,9 @@ def _to_lesson(context: Context, key: str, pixel: Vector) -> str | None:
         return None
     if course.awaits_choice and key in "123456789" and len(key) == 1:
         return f"answer {key}"
-    if course.awaits_number and (key in DIGITS or (course.typed and key in ANSWERING)):
-        return ANSWERING.get(key, "")
-    return None
+    if course.awaits_number and (key in DIGITS or (course.typed and key == "backspace")):
+        return "" if key in DIGITS else "erase answer"
+    return "check answer" if key == "return" and course.takes_return else None
 
 
 def for_tools(context: Context, key: str, pixel: Vector) -> bool:

@@ -58,7 +58,7 @@ def scale_control(settings: Settings) -> Control:
     """The control of the displacement scale."""
     scale, automatic = settings.displacement_scale, settings.prescribed_displacement_scale is None
     share = scales(settings).share_of(max(scale, 1.0))
-    value = tr("× {scale:.4g}", scale=scale)
+    value = decimals(f"× {scale:.4g}")
     return Control(SCALE, tr("displacements"), value, share, tr("auto"), pressed=automatic)
 
 

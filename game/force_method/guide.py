@@ -33,7 +33,7 @@ from systems.statics.equations import largest
 from systems.statics.force_method import Solution, solve
 from systems.statics.released import SetState
 from systems.statics.settle import settle
-from systems.statics.unknowns import ForceMethodError, Unknown
+from systems.statics.unknowns import ForceMethodError, Unknown, is_turned
 
 DIAGRAM_HEIGHT = 34.0  # px of the largest force diagram
 SWING = 3.0  # s in which a mechanism is shown to move there and back
@@ -132,10 +132,9 @@ class Mechanism:
 class Guide:
     """The present part of the force method, and the answers so far.
 
-    part: 1 to PARTS. released: the static unknowns, the newest last. solution: with all of them. sets: those
-    that exist so far. mechanism: that which a refused release would leave. quantity: of which frames show
-    diagrams. Raises ForceMethodError at the start
-    if the structure cannot carry its load.
+    part: 1 to PARTS. released: the static unknowns, the newest last. solution: with all of them. sets: those that exist so
+    far. mechanism: that which a refused release would leave. quantity: of which frames show diagrams. Raises
+    ForceMethodError at the start if the structure cannot carry its load.
     """
 
     def __init__(self, model: Model, schedule: Schedule, view: View) -> None:
@@ -193,7 +192,7 @@ class Guide:
     @property
     def clamp_wanted(self) -> bool:
         """True if the support of which a direction is to be chosen has a moment, too."""
-        return self.axis_wanted is not None and _clamps(self.model, self.axis_wanted)
+        return self.axis_wanted is not None and self._clamps(self.axis_wanted)
 
     # --- sets --------------------------------------------------------------------------------------
 
@@ -277,7 +276,7 @@ class Guide:
         if not isinstance(hit, Particle):
             return
         particle = self.model.particles[hit.name]
-        held = [axis for axis in (0, 1) if particle.fixed[axis]] + [2] * _clamps(self.model, particle)
+        held = [axis for axis in (0, 1) if particle.fixed[axis]] + [2] * self._clamps(particle)
         if not held:
             self.refusal = tr("{particle} has no support; click a rod or a support.", particle=particle.name)
         elif len(held) == 1:
@@ -292,6 +291,10 @@ class Guide:
             return None
         places = self.model.particles.position[list(rod.between)]
         return int(np.where(rigid, np.hypot(*(places - near).T), np.inf).argmin())
+
+    def _clamps(self, particle: Particle) -> bool:
+        """True if a support holds rods against turning."""
+        return particle.fixed_rotation and is_turned(self.model, particle.row)
 
     def pick_axis(self, axis: int) -> None:
         """Choose the direction of a support that holds several: 0: x, 1: y, 2: the moment of a clamp (part 2)."""
@@ -354,9 +357,3 @@ class Guide:
 def view_like(view: View) -> View:
     """The view of a set in a window with this view."""
     return View(all_diagrams=view.all_diagrams, legend=False, pixel_ratio=view.pixel_ratio, fitted=True)
-
-
-def _clamps(model: Model, particle: Particle) -> bool:
-    """True if a particle cannot turn, and rods feel it."""
-    joined = (model.rods.between == particle.row) & (model.rods.turning_shares > 0.0)
-    return particle.fixed_rotation and bool(joined.any())

@@ -1,9 +1,10 @@
-"""Report: the whole solution by the force method on paper, as a teacher hands it out."""
+"""Report: the whole solution by the force method on paper, as a teacher hands it out: on one page, if it fits."""
 
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from dataclasses import replace
+from functools import partial
 from pathlib import Path
 
 import numpy as np
@@ -12,27 +13,29 @@ from reportlab.platypus import Flowable
 from components import written
 from components.bent import AXIAL, MOMENT, SHEAR, is_frame
 from components.camera import Camera, Viewport
-from components.language import tr
+from components.language import listed, tr
 from components.model import Model
+from components.rod import rigid_joints
 from components.round_numbers import round_down
 from components.tags import DiagramShown
-from components.view import THESIS, View
+from components.view import THESIS, Cut, View
 from game.documents import models
 from game.force_method import thesis, words
-from game.force_method.copies import base_structure, loaded, still
+from game.force_method.copies import base_structure, loaded, still, unloaded
 from game.force_method.tables import PRODUCTS, Table, Tables
 from game.force_method.words import EXACT, index
+from systems.render.diagrams import largest_force
 from systems.render.paper import (
-    HALF,
+    GUTTER,
+    LAYOUTS,
     PIXEL,
     WIDTH,
+    Block,
     Figure,
+    Layout,
     Matrices,
     as_paper,
-    beside,
-    gap,
-    tables,
-    text,
+    in_rows,
     together,
 )
 from systems.render.picture import compose
@@ -41,14 +44,18 @@ from systems.statics.counting import counted
 from systems.statics.equations import largest
 from systems.statics.external import external_forces
 from systems.statics.released import SetState
+from systems.statics.unknowns import Unknown
 
-_FULL, _HALF = int(WIDTH / PIXEL), int(HALF / PIXEL)  # pixels of figures
-_LOW, _HIGH = 230, 400  # pixels, of their heights
-_AROUND = 78.0  # pixels around a structure, for supports, loads and diagrams
-_DIAGRAM = 34.0  # pixels of the largest axial force
+_BESIDE_IT, _ABOVE, _BELOW = 56.0, 46.0, 62.0  # pixels around a structure, for supports, loads and diagrams
+_MOMENTS = 12.0  # pixels more beside it, for the values of moments
+_SHORTER = 1.3  # times the largest force: that of the longest arrow
+_DIAGRAM = 30.0  # pixels of the largest axial force
+_NOTHING = 1e-9  # kN: of axial forces, which beams have none of
 _ROWS = 120  # of a table that are printed
 _TERMS = 6  # of a sum that are written one by one
-_BESIDE = 14  # rows of a table that stands beside a figure
+_SHOWN = 2  # unknowns of a frame up to which each has a column of superposition
+_BESIDE = 26  # rows of a table that stands beside others
+_APART = ",\u2003"  # between formulas in a line
 
 
 def write_report(solved: Tables, path: str | Path, convention: str) -> None:
@@ -59,41 +66,78 @@ def write_report(solved: Tables, path: str | Path, convention: str) -> None:
 def report(solved: Tables, convention: str) -> bytes:
     """The report of a solution as the contents of a PDF file."""
     title = _title(solved.model)
-    return as_paper(title, contents(solved, convention), f"Pinjoint · {title}")
+    return as_paper(title, partial(contents, solved, convention), f"Pinjoint · {title}")
 
 
 def _title(model: Model) -> str:
     return tr(model.title) if model.title else tr("Statically indeterminate structure")
 
 
-def contents(solved: Tables, convention: str) -> list[Flowable]:
+def contents(solved: Tables, convention: str, layout: Layout = LAYOUTS[0]) -> list[Flowable]:
     """What the report of a solution consists of, from the top to the bottom."""
+    page = _Page(solved, layout)
     return [
-        text(_title(solved.model), "title"),
-        text(
-            tr("Force method, by first-order theory: linear elastic, equilibrium about the original shape."),
-            "subtitle",
-        ),
-        *_structure(solved),
-        *_released(solved),
-        *(_of_thesis(solved) if convention == THESIS else [*_virtual_work(solved), *_compatibility(solved)]),
-        *_forces(solved),
-        *_checks(solved),
+        layout.text(_title(solved.model), "title"),
+        *(layout.text(line, "subtitle") for line in _conventions(solved)),
+        *page.structure(),
+        *(page.of_thesis() if convention == THESIS else page.working()),
+        *page.forces(),
+        *page.checks(),
     ]
+
+
+def _conventions(solved: Tables) -> Iterator[str]:
+    """The theory, and what is positive."""
+    yield tr("Force method, by first-order theory: linear elastic, equilibrium about the original shape.")
+    if solved.bends:
+        yield tr(
+            "Signs: axial forces are positive in tension, reactions to the right, upwards and counter-clockwise."
+            " Bending moments M are drawn on the side in tension, and are positive where that is the right side of a rod,"
+            " seen from its start to its end."
+        )
+    else:
+        yield tr("Signs: axial forces are positive in tension, reactions to the right and upwards.")
 
 
 # --- figures -----------------------------------------------------------------------------------------
 
 
-def _figure(model: Model, caption: str, width: int, *, diagrams: str | None = None) -> Figure:
+def _shape(model: Model) -> tuple[float, float]:
+    """Width and height of a structure (m)."""
+    position = model.particles.position
+    width, height = np.ptp(position, axis=0).tolist() if len(position) else (1.0, 1.0)
+    return max(width, 1e-9), max(height, 1e-9)
+
+
+def _in_a_row(layout: Layout, model: Model) -> int:
+    """How many figures stand in a row."""
+    wide, high = _shape(model)
+    return 2 if wide > layout.flat * high else 3
+
+
+def _figure(
+    layout: Layout,
+    model: Model,
+    caption: str,
+    *,
+    diagrams: str | None = None,
+    cuts: Sequence[Cut] = (),
+    has_units: bool = True,
+) -> Block:
     """A picture of a model, with the diagrams of a quantity."""
     model.delete(list(model.grids))
-    box = np.ptp(model.particles.position, axis=0) if model.particles.count else np.ones(2)
-    inner = width - 2 * _AROUND
-    high = int(np.clip(inner * box[1] / max(box[0], 1e-12) + 2 * _AROUND, _LOW, _HIGH))
+    wide, high = _shape(model)
+    row = _in_a_row(layout, model)
+    width = int((WIDTH - (row - 1) * GUTTER) / row / PIXEL)
+    beside = _BESIDE_IT + _MOMENTS * is_frame(model)
+    room = width - 2.0 * beside
+    height = int(min(room * high / wide + _ABOVE + _BELOW, layout.figure / PIXEL))
     view = View(legend=False, has_scale=False, all_diagrams=diagrams is not None, quantity=diagrams or AXIAL)
-    view.camera = Camera(viewport=Viewport(0, 0, width, high))
-    view.camera.fit(model.particles.position, _AROUND, view.camera.viewport, 1.0)
+    view.cuts, view.has_units = tuple(cuts), has_units
+    view.camera = Camera(viewport=Viewport(0, 0, width, height))
+    inner = Viewport(int(beside), int(_ABOVE), int(room), int(height - _ABOVE - _BELOW))
+    view.camera.fit(model.particles.position, 0.0, inner, 1.0)
+    view.largest_force = _SHORTER * largest_force(model, view)
     pulled = 0.0 if is_frame(model) else largest(model.rods.axial_force)
     model.settings.diagram_scale = round_down(_DIAGRAM / pulled) if pulled > 0.0 else 1.0
     loaded_ones = [p for p in model.particles if any(p.force) or p.moment] + [
@@ -101,38 +145,282 @@ def _figure(model: Model, caption: str, width: int, *, diagrams: str | None = No
     ]
     model.tag_only(loaded_ones, DiagramShown)
     theme = replace(load_theme("light"), background=(255, 255, 255, 255))
-    return Figure(compose(model, view, theme), caption)
+    made = Figure(compose(model, view, theme), layout.text(caption, "caption"))
+    return made.width, [made]
 
 
-def _rows_of(figures: Sequence[Figure]) -> Iterator[Flowable]:
-    """Two figures in a row."""
-    for at in range(0, len(figures), 2):
-        yield beside(figures[at : at + 1], figures[at + 1 : at + 2])
+def _cuts(
+    model: Model, released: Model, unknowns: Sequence[Unknown], acting: int | None = None
+) -> Iterator[Cut]:
+    """The released rods, with the pair of unit forces or moments of one of the unknowns."""
+    rigid = rigid_joints(released)
+    for i, unknown in enumerate(unknowns):
+        label = f"X{index(i + 1)} = 1" if i == acting else ""
+        if unknown.of_support:
+            continue
+        start, end = (model.particles.names[row] for row in model.rods.between[unknown.element.row].tolist())
+        held = False
+        if unknown.axis is not None:
+            joint = model.particles[(start, end)[unknown.axis]]
+            held = joint.fixed_rotation and not rigid[joint.row]
+        yield Cut((start, end), unknown.axis, label, held)
+
+
+def _printed(layout: Layout, table: Table, *, without_last: bool = False) -> list[Block]:
+    """A table on paper, with a note where it is longer than is printed; perhaps without its last column."""
+    columns = table.columns[:-1] if without_last else table.columns
+    head = [table.corner, *(f"{column.title}\n{column.unit}" for column in columns)]
+    rows = table[1 : 1 + min(len(table.names), _ROWS)]
+    if table.summed:
+        rows.append(table[len(table) - 1])
+    made = layout.tables(head, [row[: len(head)] for row in rows], summed=table.summed)
+    left_out = len(table.names) - _ROWS
+    if left_out > 0:
+        note = tr("{count} more rows are not printed; sums are of all.", count=left_out)
+        made[-1][1].append(layout.text(note, "caption"))
+    return made
+
+
+def _flowing(heading: Sequence[Flowable], blocks: Sequence[Block], rows: int) -> list[Flowable]:
+    """Blocks under a heading, side by side; below each other where tables have many rows, which pages may part."""
+    if rows > _BESIDE:
+        return [*heading, *(part for _, parts in blocks for part in parts)]
+    first, *others = in_rows(blocks)
+    return [together(*heading, first), *others]
 
 
 # --- sections ----------------------------------------------------------------------------------------
 
 
-def _structure(solved: Tables) -> list[Flowable]:
-    """The real structure and how often it is indeterminate."""
-    model, count = solved.model, counted(solved.model)
-    degree = f"{count.formula} = {count.numbers}"
-    copy = base_structure(model, [])
-    real = still(copy, model, _without_forces(solved.solution.real))
-    figure = _figure(real, tr("The structure, its supports and its loads"), _HALF)
-    said = [
-        text(tr("Degree of static indeterminacy"), "text"),
-        text(degree, "equation"),
-        text(_counted(solved), "text"),
-        text(words.degree_of(count.degree), "text"),
-        gap(2),
-        text(tr("Unknowns"), "text"),
-        *(
-            text(f"X{index(i + 1)}:  {words.meaning(unknown)}", "equation")
-            for i, unknown in enumerate(solved.solution.unknowns)
-        ),
-    ]
-    return [together(text(tr("1  Structure and unknowns"), "heading"), beside([figure], said))]
+class _Page:
+    """The sections of a report in a layout."""
+
+    def __init__(self, solved: Tables, layout: Layout) -> None:
+        self.solved, self.layout = solved, layout
+        self.model, self.solution = solved.model, solved.solution
+        self._every = range(len(solved.solution.unknowns))
+        self._rows = solved.model.rods.count
+        states = (solved.solution.real, solved.solution.base, *solved.solution.units)
+        self._pulls = any(largest(state.axial_force) > _NOTHING for state in states)  # not so in beams
+
+    def _text(self, words: str, style: str = "text") -> Flowable:
+        return self.layout.text(words, style)
+
+    def structure(self) -> list[Flowable]:
+        """The real structure, the released one under the load and each unknown, and how often it is indeterminate."""
+        model, solution, layout = self.model, self.solution, self.layout
+        quantity, unit = (MOMENT, "kN·m") if self.solved.bends else (AXIAL, "kN")
+        symbol, unknowns = "M" if self.solved.bends else "N", list(solution.unknowns)
+        nothing = replace(solution.real, **{name: 0.0 * part for name, part in vars(solution.real).items()})
+        real = still(base_structure(model, []), model, nothing)
+        released = base_structure(model, unknowns)
+        blocks = [_figure(layout, real, tr("The structure, its supports and its loads"))]
+        caption = tr("Released structure under the load: {force} ({unit})", force=f"{symbol}₀", unit=unit)
+        hinged = list(_cuts(model, released, unknowns))
+        under_load = still(released, model, solution.base)
+        blocks.append(_figure(layout, under_load, caption, diagrams=quantity, cuts=hinged))
+        for i in self._every:
+            blocks.append(self._under_unit(i, quantity, f"{symbol.lower()}{index(i + 1)}"))
+        return _flowing(
+            [self._text(tr("1  Structure and released structure"), "heading")], [*blocks, *self._said()], 0
+        )
+
+    def _under_unit(self, i: int, quantity: str, force: str) -> Block:
+        model, unknowns, state = self.model, list(self.solution.unknowns), self.solution.units[i]
+        alone = [float(i == j) for j in self._every]
+        unknown = unknowns[i]
+        copy = loaded(model, unknowns, alone) if unknown.of_support else unloaded(model, unknowns)
+        cuts = list(_cuts(model, copy, unknowns, i))
+        if unknown.of_end and any(cut.label and cut.held for cut in cuts):  # the support bears no moment
+            state = replace(state, reaction=state.reaction * [1.0, 1.0, 0.0])
+        return _figure(
+            self.layout,
+            still(copy, model, state),
+            tr("Released structure under {unknown} = 1: {force}", unknown=f"X{index(i + 1)}", force=force),
+            diagrams=quantity,
+            cuts=cuts,
+            has_units=False,
+        )
+
+    def _said(self) -> list[Block]:
+        """The degree of static indeterminacy, and the unknowns."""
+        count, unknowns = counted(self.model), self.solution.unknowns
+        degree = [
+            self._text(tr("Degree of static indeterminacy")),
+            self._text(f"{count.formula} = {count.numbers}", "equation"),
+            self._text(_counted(self.solved)),
+            self._text(words.degree_of(count.degree)),
+        ]
+        if 0 < len(unknowns) < count.degree:
+            names = listed([unknown.name for unknown in unknowns])
+            degree.append(self._text(tr("Released here: {names}; the others stay.", names=names)))
+        found = [
+            self._text(tr("Unknowns")),
+            *(
+                self._text(f"X{index(i + 1)}:  {words.meaning(unknown)}", "equation")
+                for i, unknown in enumerate(unknowns)
+            ),
+        ]
+        full = (2 + len(unknowns)) % _in_a_row(self.layout, self.model) == 0  # else beside the last figures
+        return [(0.0, degree), (0.0, found)] if full else [(0.0, [*degree, *found])]
+
+    def working(self) -> list[Flowable]:
+        """Gaps and flexibilities as sums, rod by rod, and the equations that follow."""
+        solved, every = self.solved, self._every
+        heading = [
+            self._text(tr("2  Displacements by virtual work"), "heading"),
+            self._text(_APART.join(_formulas(solved, pulls=self._pulls)), "equation"),
+        ]
+        blocks: list[Block] = []
+        if len(every) > PRODUCTS:
+            note = tr(
+                "With more than {count} unknowns the products are not printed; only their sums are given below.",
+                count=PRODUCTS,
+            )
+            heading.append(self._text(note, "caption"))
+            blocks += _printed(self.layout, solved.forces(every))
+        elif solved.bends:
+            ends = tr("M and M′ are the moments at both ends of a rod; qL²/8 is how far M bulges between them.")
+            heading.append(self._text(ends, "caption"))
+            blocks += _printed(self.layout, solved.bending(every))
+            warm = solved.work.free.any()
+            axial = solved.virtual_work(every) if warm else solved.forces(every)
+            blocks += _printed(self.layout, axial) if self._pulls else []
+        else:
+            blocks += _printed(self.layout, solved.virtual_work(every))
+        settlements = solved.settlements()
+        if settlements is not None:
+            blocks += _printed(self.layout, settlements)
+        if solved.bends and len(every) <= PRODUCTS and (self._pulls or settlements is not None):
+            space = " " if len(every) == 1 else "\u00a0"  # the lines of several are parted between sums
+            sums = _APART.join(line.replace(" ", space) for line in solved.all_sums())
+            sums = tr("Bending and axial forces ({units}):  {sums}", units=solved.units.all, sums=sums)
+            blocks.append((WIDTH if len(every) > 1 else 0.0, [self._text(sums)]))
+        compatibility = self._compatibility()
+        if self._rows > _BESIDE:
+            return [*_flowing(heading, blocks, self._rows), together(*compatibility)]
+        if len(every) == 1:
+            return _flowing(heading, [*blocks, (0.0, compatibility)], self._rows)
+        return [*_flowing(heading, blocks, self._rows), together(*compatibility)]
+
+    def _compatibility(self) -> list[Flowable]:
+        """The equations with their numbers, and the unknowns."""
+        solution, units = self.solution, self.solved.units
+        count = len(solution.unknowns)
+        heading = self._text(tr("3  Compatibility"), "heading")
+        said = tr("The unknowns close the gaps ({units}):", units=units.all)
+        found = [f"X{index(i + 1)} = {words.amount(solution, i)}" for i in range(count)]
+        if count == 1:
+            [line] = words.equations(solution, units.all, units.factor)
+            symbols, _, numbers = line.partition(":")
+            equation, _, _ = numbers.rpartition("  (")
+            return [
+                heading,
+                self._text(said),
+                self._text(symbols, "equation"),
+                self._text(equation.strip().replace(" = ", "\u00a0=\u00a0"), "equation"),
+                self._text(found[0], "result"),
+            ]
+        lines: list[Flowable] = [Matrices([*self._numbers()], self.layout)]
+        if count <= PRODUCTS:
+            lines.insert(0, Matrices([*self._symbols()], self.layout))
+        symmetric = tr("The matrix is symmetric: δ₁₂ = δ₂₁ (Maxwell).")
+        rows = in_rows([(line.width, [line]) for line in lines]) if count <= PRODUCTS else lines
+        result = self._text(_APART.join(found), "result")
+        return [heading, self._text(f"{symmetric} {said}"), *rows, result]
+
+    def _numbers(self) -> Iterator[str | list[list[str]]]:
+        solution, factor = self.solution, self.solved.units.factor
+
+        def rows(values: Sequence[Sequence[float]]) -> list[list[str]]:
+            return [[written.number(factor * value, EXACT) for value in row] for row in values]
+
+        yield rows(solution.flexibility.tolist())
+        yield [[f"X{index(i + 1)}"] for i in self._every]
+        yield "+"
+        yield rows(solution.gap[:, None].tolist())
+        yield "="
+        yield rows(solution.prescribed[:, None].tolist())
+
+    def _symbols(self) -> Iterator[str | list[list[str]]]:
+        every = self._every
+        yield [[f"δ{index(i + 1, j + 1)}" for j in every] for i in every]
+        yield [[f"X{index(i + 1)}"] for i in every]
+        yield "+"
+        yield [[f"δ{index(i + 1, 0)}"] for i in every]
+        yield "="
+        yield [[f"c{index(i + 1)}" if c else "0"] for i, c in enumerate(self.solution.prescribed.tolist())]
+
+    def of_thesis(self) -> list[Flowable]:
+        """The same in the thesis' convention."""
+        lines = thesis.solved_lines(self.solution)
+        heading = self._text(tr("2  Unknowns"), "heading")
+        return [together(heading, *(self._text(line, "equation") for line in lines))]
+
+    def forces(self) -> list[Flowable]:
+        """Superposition, and the forces in the real structure."""
+        model, solved = self.model, self.solved
+        titles = {
+            MOMENT: tr("Bending moments M (kN·m), on the side in tension"),
+            SHEAR: tr("Shear forces V (kN)"),
+            AXIAL: tr("Axial forces N (kN)"),
+        }
+        figures = [
+            _figure(
+                self.layout,
+                still(base_structure(model, []), model, self.solution.superposed),
+                title,
+                diagrams=quantity,
+            )
+            for quantity, title in titles.items()
+            if (self._pulls if quantity == AXIAL else solved.bends)
+        ]
+        heading = [self._text(tr("4  Forces in the structure"), "heading")]
+        most = _SHOWN if solved.bends else PRODUCTS
+        kinds = [solved.moments(most)] if solved.bends else []
+        kinds += [solved.axial_forces(most)] if self._pulls else []
+        kinds.append(solved.reactions(most))
+        tables = [block for table in kinds for block in _printed(self.layout, table, without_last=True)]
+        beside = tables[1:] if solved.bends else [*tables[1:], *figures]
+        if self._rows <= _BESIDE and sum(width for width, _ in (tables[0], *beside)) > WIDTH - 2 * GUTTER:
+            below = (max(width for width, _ in beside), [part for _, parts in beside for part in parts])
+            tables, figures = [tables[0], below], figures if solved.bends else []
+        return _flowing(heading, [*tables, *figures], max(len(table.names) for table in kinds))
+
+    def checks(self) -> list[Flowable]:
+        """Equilibrium of the whole, the gaps left, and the difference from linear theory."""
+        solution, units = self.solution, self.solved.units
+        whole, real = solution.superposed, solution.real
+        balance = [
+            self._text(tr("Equilibrium of the whole structure (kN, kN·m):")),
+            *(
+                self._text(f"{name} = {written.total(terms)}", "equation")
+                for name, terms in _balance(self.model, whole)
+            ),
+        ]
+        gaps = [self._text(tr("The compatibility equations hold ({units}):", units=units.all))]
+        for i in self._every[:PRODUCTS]:
+            terms = [solution.gap[i], *(solution.flexibility[i] * solution.force), -solution.prescribed[i]]
+            gaps.append(self._text(written.total(units.factor * float(term) for term in terms), "equation"))
+        size = largest(real.axial_force)
+        off = written.force(largest(whole.axial_force - real.axial_force), nothing=_same(size))
+        said = tr("The displacement method gives the same axial forces: largest difference {force}.", force=off)
+        if self.solved.bends:
+            moment = largest(real.end_moment)
+            turned = written.moment(largest(whole.end_moment - real.end_moment), nothing=_same(moment))
+            said = tr(
+                "The displacement method gives the same forces and moments: largest differences {force}, {moment}.",
+                force=off,
+                moment=turned,
+            )
+        gaps.append(self._text(said))
+        heading = self._text(tr("5  Checks"), "heading")
+        return [together(heading, *in_rows([(0.0, balance), (0.0, gaps)]))]
+
+
+def _same(size: float) -> float:
+    """Differences that are rounding, of numbers so large."""
+    return written.ROUNDING * max(size, 1e-300)
 
 
 def _counted(solved: Tables) -> str:
@@ -154,89 +442,14 @@ def _counted(solved: Tables) -> str:
     )
 
 
-def _without_forces(state: SetState) -> SetState:
-    return replace(state, **{name: 0.0 * part for name, part in vars(state).items()})
-
-
-def _released(solved: Tables) -> list[Flowable]:
-    """The unknowns, and the released structure under the load and under each unknown."""
-    solution, model = solved.solution, solved.model
-    quantity, unit = (MOMENT, "kN·m") if solved.bends else (AXIAL, "kN")
-    symbol = "M" if solved.bends else "N"
-    unknowns = list(solution.unknowns)
-    under_load = still(base_structure(model, unknowns), model, solution.base)
-    figures = [
-        _figure(
-            under_load,
-            tr("Released structure under the load: {force} ({unit})", force=f"{symbol}₀", unit=unit),
-            _HALF,
-            diagrams=quantity,
-        )
-    ]
-    for i, state in enumerate(solution.units):
-        alone = [float(i == j) for j in range(len(unknowns))]
-        small = f"{symbol.lower()}{index(i + 1)}"
-        figures.append(
-            _figure(
-                still(loaded(model, unknowns, alone), model, state),
-                tr("Released structure under {unknown} = 1: {force}", unknown=f"X{index(i + 1)}", force=small),
-                _HALF,
-                diagrams=quantity,
-            )
-        )
-    first, *others = _rows_of(figures)
-    return [together(text(tr("2  Released structure"), "heading"), first), *others]
-
-
-def _printed(table: Table, heading: Sequence[Flowable] = (), width: float = WIDTH) -> list[Flowable]:
-    """A table on paper, with a note where it is longer than is printed."""
-    head = [table.corner, *(f"{column.title}\n{column.unit}" for column in table.columns)]
-    rows = table[1 : 1 + min(len(table.names), _ROWS)]
-    if table.summed:
-        rows.append(table[len(table) - 1])
-    made = tables(head, rows, summed=table.summed, width=width)
-    left_out = len(table.names) - _ROWS
-    note = (
-        [text(tr("{count} more rows are not printed; sums are of all.", count=left_out), "caption")]
-        if left_out > 0
-        else []
-    )
-    if width == WIDTH and len(rows) < 30:
-        return [together(*heading, made[0]), *made[1:], *note]
-    return [*heading, *made, *note]
-
-
-def _virtual_work(solved: Tables) -> list[Flowable]:
-    """Gaps and flexibilities as sums, rod by rod."""
-    every = range(len(solved.solution.unknowns))
-    formulas = [text(tr("3  Displacements by virtual work"), "heading")]
-    formulas += [text(line, "equation") for line in _formulas(solved)]
-    if len(every) > PRODUCTS:
-        note = tr(
-            "The products of more than {count} unknowns are not printed; their sums stand below.",
-            count=PRODUCTS,
-        )
-        return [*_printed(solved.forces(every), formulas), text(note, "caption")]
-    found: list[Flowable] = []
-    if solved.bends:
-        found += _printed(solved.bending(every), [*formulas, text(tr("Bending moments"), "text")])
-        ends = tr("M and M′ are the moments at both ends of a rod; qL²/8 is how far M bulges between them.")
-        found.append(text(ends, "caption"))
-        formulas = [text(tr("Axial forces"), "text")]
-    found += _printed(solved.virtual_work(every), formulas)
-    settlements = solved.settlements()
-    if settlements is not None:
-        found += _printed(settlements, [text(tr("Supports that have moved by c"), "text")])
-    if solved.bends:
-        found += [text(line, "equation") for i in every for line in solved.sums(i)]
-    return found
-
-
-def _formulas(solved: Tables) -> Iterator[str]:
-    """What the sums are, for every pair of unknowns alike."""
+def _formulas(solved: Tables, *, pulls: bool) -> Iterator[str]:
+    """What the sums are, for every pair of unknowns alike; pulls: there are axial forces."""
     work, several = solved.work, len(solved.solution.unknowns) > 1
-    n, m = "N₀ n₁ L/EA", "∫ M₀ m₁ dx/EI"
-    gap = [m] * solved.bends + [f"Σ {n}"]
+
+    def pair(bending: str, axial: str) -> list[str]:
+        return [f"∫ {bending} dx/EI"] * solved.bends + [f"Σ {axial} L/EA"] * pulls
+
+    gap = pair("M₀ m₁", "N₀ n₁")
     if work.free.any():
         gap.append("Σ n₁ ΔL")
     if work.curvature.any():
@@ -244,109 +457,9 @@ def _formulas(solved: Tables) -> Iterator[str]:
     if len(work.settled):
         gap.append("(− Σ r₁ c)")
     yield f"δ₁₀ = {' + '.join(gap)}"
-    yield f"δ₁₁ = {'∫ m₁² dx/EI + ' if solved.bends else ''}Σ n₁² L/EA > 0"
+    yield f"δ₁₁ = {' + '.join(pair('m₁²', 'n₁²'))} > 0"
     if several:
-        yield f"δ₁₂ = δ₂₁ = {'∫ m₁ m₂ dx/EI + ' if solved.bends else ''}Σ n₁ n₂ L/EA"
-
-
-def _compatibility(solved: Tables) -> list[Flowable]:
-    """The equations with their numbers, and the unknowns."""
-    solution, units = solved.solution, solved.units
-    count = len(solution.unknowns)
-    heading = text(tr("4  Compatibility"), "heading")
-    said = text(tr("The unknowns close the gaps ({units}):", units=units.all), "text")
-    results = [text(f"X{index(i + 1)} = {words.amount(solution, i)}", "result") for i in range(count)]
-    if count == 1:
-        [line] = words.equations(solution, units.all, units.factor)
-        symbols, _, numbers = line.partition(":")
-        equation, _, _ = numbers.rpartition("  (")
-        return [
-            together(heading, said, text(symbols, "equation"), text(equation.strip(), "equation"), *results)
-        ]
-    number = [
-        [written.number(units.factor * value, EXACT) for value in row] for row in solution.flexibility.tolist()
-    ]
-    gaps = [[written.number(units.factor * value, EXACT)] for value in solution.gap.tolist()]
-    held = [[written.number(units.factor * value, EXACT)] for value in solution.prescribed.tolist()]
-    symbols_of = [[f"δ{index(i + 1, j + 1)}" for j in range(count)] for i in range(count)]
-    unknowns = [[f"X{index(i + 1)}"] for i in range(count)]
-    zeros = [[f"δ{index(i + 1, 0)}"] for i in range(count)]
-    right = [[f"c{index(i + 1)}" if c else "0"] for i, c in enumerate(solution.prescribed.tolist())]
-    lines: list[Flowable] = [Matrices([number, unknowns, "+", gaps, "=", held])]
-    if count <= PRODUCTS:
-        lines.insert(0, Matrices([symbols_of, unknowns, "+", zeros, "=", right]))
-    symmetric = text(tr("The matrix is symmetric: δ₁₂ = δ₂₁ (Maxwell)."), "text")
-    return [together(heading, said, *lines, symmetric, *results)]
-
-
-def _of_thesis(solved: Tables) -> list[Flowable]:
-    """The same in the thesis' convention."""
-    lines = thesis.solved_lines(solved.solution)
-    return [together(text(tr("3  Unknowns"), "heading"), *(text(line, "equation") for line in lines))]
-
-
-def _forces(solved: Tables) -> list[Flowable]:
-    """Superposition, and the forces in the real structure."""
-    model, solution = solved.model, solved.solution
-    quantities = (MOMENT, SHEAR, AXIAL) if solved.bends else (AXIAL,)
-    titles = {
-        AXIAL: tr("Axial forces N (kN)"),
-        MOMENT: tr("Bending moments M (kN·m), on the side in tension"),
-        SHEAR: tr("Shear forces V (kN)"),
-    }
-    figures = [
-        _figure(
-            still(base_structure(model, []), model, solution.superposed),
-            titles[quantity],
-            _HALF,
-            diagrams=quantity,
-        )
-        for quantity in quantities
-    ]
-    heading = text(tr("5  Forces in the structure"), "heading")
-    first, second = (solved.moments(), [solved.axial_forces()]) if solved.bends else (solved.axial_forces(), [])
-    others = [*second, solved.reactions()]
-    if len(first.names) > _BESIDE or len(solution.unknowns) > PRODUCTS:
-        whole = [part for table in (first, *others) for part in _printed(table)]
-        return [heading, *whole, *_rows_of(figures)]
-    half = [part for table in others for part in _printed(table, width=HALF)]
-    if solved.bends:
-        return [together(heading, beside(_printed(first, width=HALF), half)), *_rows_of(figures)]
-    return [together(heading, beside([*_printed(first, width=HALF), *half], figures))]
-
-
-def _checks(solved: Tables) -> list[Flowable]:
-    """Equilibrium of the whole, the gaps left, and the difference from linear theory."""
-    solution, model = solved.solution, solved.model
-    whole = solution.superposed
-    lines = [f"{name} = {written.total(terms)}" for name, terms in _balance(model, whole)]
-    left = solution.gap + solution.flexibility @ solution.force - solution.prescribed
-    size = np.abs(solution.gap) + np.abs(solution.flexibility) @ np.abs(solution.force)
-    share = float(np.divide(np.abs(left), size, out=np.zeros_like(left), where=size > 0.0).max(initial=0.0))
-    off = largest(whole.axial_force - solution.real.axial_force)
-    relative = off / max(largest(solution.real.axial_force), 1e-300)
-    return [
-        together(
-            text(tr("6  Checks"), "heading"),
-            text(tr("Loads and reactions of the whole structure are in equilibrium (kN, kN·m):"), "text"),
-            *(text(line, "equation") for line in lines),
-            text(
-                tr("The compatibility equations hold to {share} of their largest terms.", share=_tiny(share)),
-                "text",
-            ),
-            text(
-                tr(
-                    "The displacement method gives the same axial forces, to {share} of the largest.",
-                    share=_tiny(relative),
-                ),
-                "text",
-            ),
-        )
-    ]
-
-
-def _tiny(value: float) -> str:
-    return written.number(max(value, 1e-16), 1)
+        yield f"δ₁₂ = δ₂₁ = {' + '.join(pair('m₁ m₂', 'n₁ n₂'))}"
 
 
 def _balance(model: Model, state: SetState) -> Iterator[tuple[str, list[float]]]:

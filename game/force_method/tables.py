@@ -10,8 +10,8 @@ from typing import overload
 import numpy as np
 
 from components import written
-from components.field import CM
-from components.language import decimals, tr
+from components.field import CM, ENDS
+from components.language import decimals, joined, tr
 from components.model import Model
 from systems.statics.equations import Array, Rows, largest
 from systems.statics.force_method import Solution
@@ -299,27 +299,40 @@ class Tables:
             values = units.factor * work.of_supports[i]
             columns.append(Column(f"−r{index(i + 1)}c", units.gap(i), values, summed=True))
         return Table(
-            tr("support"), [f"{names[row]}.{AXES[axis]}" for row, axis in work.settled.tolist()], columns
+            tr("support"),
+            [joined([names[row], tr(AXES[axis])], ".") for row, axis in work.settled.tolist()],
+            columns,
         )
 
     def sums(self, i: int) -> tuple[str, ...]:
-        """What δᵢ₀ and δᵢᵢ of a frame are sums of: bending, axial forces, and what acts without force."""
-        if not self.bends:
-            return ()
+        """What δᵢ₀ and δᵢᵢ of a frame are sums of."""
+        return (f"{self._sum_of_gap(i)},  {self._sum_of_units(i, i)}",) if self.bends else ()
+
+    def all_sums(self) -> list[str]:
+        """What every δ of a frame is a sum of, without units: bending, axial forces, and what acts without force."""
+        every = range(len(self.solution.unknowns))
+        sums = [*map(self._sum_of_gap, every), *(self._sum_of_units(i, j) for i, j in _pairs(every))]
+        return [text.rpartition(" ")[0] for text in sums]
+
+    def _sum_of_gap(self, i: int) -> str:
         work, units = self.work, self.units
         ways = (work.of_bending, work.of_base, work.of_free, work.of_supports)
-        gap = _sum(units.factor * float(way[i].sum()) for way in ways)
-        flexibility = [work.of_unit_bending(i, i), work.of_units(i, i)]
-        own = _sum(units.factor * float(part.sum()) for part in flexibility)
-        return (
-            f"δ{index(i + 1, 0)} = {gap} {units.gap(i)},"
-            f"  δ{index(i + 1, i + 1)} = {own} {units.flexibility(i, i)}",
-        )
+        found = _sum(units.factor * float(way[i].sum()) for way in ways)
+        return f"δ{index(i + 1, 0)} = {found} {units.gap(i)}"
+
+    def _sum_of_units(self, i: int, j: int) -> str:
+        parts = (self.work.of_unit_bending(i, j), self.work.of_units(i, j))
+        found = _sum(self.units.factor * float(part.sum()) for part in parts)
+        same = "" if i == j else f" = δ{index(j + 1, i + 1)}"
+        return f"δ{index(i + 1, j + 1)}{same} = {found} {self.units.flexibility(i, j)}"
 
     # --- superposition -----------------------------------------------------------------------------
 
-    def axial_forces(self) -> Table:
-        """N = N₀ + Σ X n of all rods, and by how much linear theory of the real structure differs."""
+    def axial_forces(self, most: int = _SHOWN) -> Table:
+        """N = N₀ + Σ X n of all rods, and by how much linear theory of the real structure differs.
+
+        most: unknowns up to which each has a column.
+        """
         solution = self.solution
         units = self.work.unit_axial
         parts = [x * unit for x, unit in zip(solution.force.tolist(), units, strict=True)]
@@ -331,20 +344,21 @@ class Tables:
             parts,
             solution.real.axial_force,
             "kN",
+            most,
         )
 
-    def moments(self) -> Table:
-        """M = M₀ + Σ X m at both ends of the rods that bend."""
+    def moments(self, most: int = _SHOWN) -> Table:
+        """Likewise M = M₀ + Σ X m at both ends of the rods that bend."""
         solution, rods = self.solution, self.model.rods
         rows = np.flatnonzero((rods.turning_shares > 0.0).any(axis=1))
-        names = [f"{rods.names[row]}.{end}" for row in rows.tolist() for end in ("start", "end")]
+        names = [joined([rods.names[row], tr(end)], ".") for row in rows.tolist() for end in ENDS]
         units = [unit.bending_moment[rows].ravel() for unit in solution.units]
         parts = [x * unit for x, unit in zip(solution.force.tolist(), units, strict=True)]
         base, real = solution.base.bending_moment[rows].ravel(), solution.real.bending_moment[rows].ravel()
-        return self._superposed("M", ["m"] * len(parts), names, base, parts, real, "kN·m")
+        return self._superposed("M", ["m"] * len(parts), names, base, parts, real, "kN·m", most)
 
-    def reactions(self) -> Table:
-        """R = R₀ + Σ X r of all supports; those released have their unknown."""
+    def reactions(self, most: int = _SHOWN) -> Table:
+        """Likewise R = R₀ + Σ X r of all supports; those released have their unknown."""
         solution, particles = self.solution, self.model.particles
         fixed = np.column_stack([particles.fixed, particles.fixed_rotation & self.bends])
         whole = solution.superposed.reaction
@@ -359,10 +373,10 @@ class Tables:
             if unknown.of_support:
                 reaction[unknown.element.row, unknown.axis] = 1.0
             parts.append(x * reaction[rows])
-        names = [f"{particles.names[row]}.{AXES[axis]}" for row, axis in places]
+        names = [joined([particles.names[row], tr(AXES[axis])], ".") for row, axis in places]
         base, real = solution.base.reaction[rows], solution.real.reaction[rows]
         return self._superposed(
-            "R", ["r"] * len(parts), names, base, parts, real, "kN, kN·m" if self.bends else "kN"
+            "R", ["r"] * len(parts), names, base, parts, real, "kN, kN·m" if self.bends else "kN", most
         )
 
     def _superposed(
@@ -374,9 +388,10 @@ class Tables:
         parts: Sequence[Array],
         real: Array,
         unit: str,
+        most: int,
     ) -> Table:
         whole = base + sum(parts, np.zeros_like(base))
-        if len(parts) <= _SHOWN:
+        if len(parts) <= most:
             terms = [(f"+ X{index(i + 1)}{small[i]}{index(i + 1)}", part) for i, part in enumerate(parts)]
         else:
             terms = [(f"+ ΣX{small[0]}", sum(parts, np.zeros_like(base)))]

@@ -70,7 +70,7 @@ def toggle_speeds(session: Context, pixel: Vector) -> None:
     elif free_speeds(session.model).any():
         session.notice = tr("The speeds of particles are shown beside Rayleigh's curve.")
     else:
-        session.notice = tr("The speeds of particles are shown as soon as one that no rod holds is moving.")
+        session.notice = tr("The speeds of particles are shown as soon as a particle without rods moves.")
 
 
 def panels(session: Context) -> Sequence[Readout]:
@@ -100,7 +100,7 @@ def _speeds(speed: Array, mean_square: float, revision: int) -> Readout:
     return Readout(
         tr("Speeds"),
         rows,
-        Plot(tr("speed (m/s)"), tr("share (s/m)"), curves, hash((revision, speed.tobytes()))),
+        Plot(tr("speed (m/s)"), tr("probability density (s/m)"), curves, hash((revision, speed.tobytes()))),
         closes="collisions.speeds",
     )
 

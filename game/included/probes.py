@@ -282,7 +282,13 @@ def run(words: list[str]) -> int:
     probe = probes_of(session).add(session, options.of, options.against)
     output = Path(options.output)
     if output.suffix not in (".csv", ".png"):
-        raise UsageError(tr("--output {file}: write a file that ends with .csv or .png.", file=output))
+        raise UsageError(
+            tr(
+                "{file}: choose a file that ends with one of {endings}.",
+                file=f"--output {output}",
+                endings=".csv, .png",
+            )
+        )
     record(session, probe, options.until, options.samples)
     with writing(output):
         (write_png if output.suffix == ".png" else write_csv)(probe, output)

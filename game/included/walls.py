@@ -40,7 +40,7 @@ class Wall(Handle):
         nullable=True,
         minimum=0.0,
         maximum=1.0,
-        doc="Of impacts with it, whatever that of the particles is; automatic: that of the settings.",
+        doc="For impacts with this wall; automatic: the value in the settings.",
     )
 
     @classmethod

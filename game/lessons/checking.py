@@ -37,7 +37,7 @@ def _failures(lesson: Lesson, number: int, session: Any) -> Iterator[tuple[str, 
     task = course.task
     course.check()
     if course.accepted:
-        yield tr("a task that is not done at its beginning"), tr("it is")
+        yield tr("a task that is not done at its beginning"), tr("it is done already")
         return
     for text in task.hints:
         filled(text, session)

@@ -15,14 +15,14 @@ from game.documents.open_documents import ModelFile
 from game.lessons import progress
 from game.lessons.judging import Answer, Document, Verdict, filled, judge, unit_of
 from game.lessons.tasks import CHOICES, NUMBER, SELECT, UNTIL, Lesson, Line, Task
-from game.scripts.lines import perform
+from game.scripts.lines import play_line
 from game.scripts.script import ScriptError
 
 RIGHT, WRONG, HINT = "right", "wrong", "hint"  # moods of what is said
 IN_NUMBERS = frozenset("0123456789.,-−+")  # not e, which is a key
 MOST_LINES = 40  # by which a card is scrolled
 LONGEST = 16  # characters of a number that is typed
-SOLVED = marked("That was one way to do it. Now try it: Again starts the task once more; Next goes on.")
+SOLVED = marked("That was one way to do it. Now try it: “Again” starts the task once more; “Next” goes on.")
 FINISHED = marked("This lesson is done.")
 
 
@@ -63,6 +63,11 @@ class Course:
         return self.task.kind == NUMBER and not self.accepted
 
     @property
+    def takes_return(self) -> bool:
+        """True while Return checks a number that was typed, or goes on from one that was right."""
+        return bool(self.typed) and (not self.accepted or not self._session.selected)
+
+    @property
     def awaits_choice(self) -> bool:
         """True while a digit that is pressed is an answer."""
         return self.task.kind == CHOICES and not self.accepted
@@ -92,8 +97,10 @@ class Course:
             try:
                 self._open(load(task.model), task.model if isinstance(task.model, str) else "")
             except ModelError as error:
-                raise ScriptError(f"{self.lesson.script.path} line {task.line}: {error}") from None
+                raise self.lesson.script.error(task.line, error) from None
         self.perform(task.setup)
+        session.document.shapes.hide()
+        session.notice = ""
         self._forget()
         session.select()
         self._begun = document(session.model)
@@ -122,13 +129,10 @@ class Course:
 
     def perform(self, lines: Sequence[Line]) -> None:
         """Perform lines of the lesson. Raises ScriptError."""
+        script = self.lesson.script
         for number, entry in lines:
-            try:
-                for expected, got in perform(self._session, entry):
-                    raise ValueError(tr("expected {expected}, got {got}.", expected=expected, got=got))
-            except (ValueError, LookupError, TypeError) as error:
-                reason = error.args[0] if error.args else error
-                raise ScriptError(f"{self.lesson.script.path} line {number}: {reason}") from error
+            for failure in play_line(script, number, entry, self._session):
+                raise ScriptError(f"{script.path} {failure}")
 
     def again(self) -> None:
         """Begin the task anew, from the model with which it began."""

@@ -11,18 +11,16 @@ import numpy as np
 
 from components import written
 from components.handle import Handle
-from components.language import decimals, joined, listed, marked, tr
+from components.language import begun, decimals, joined, listed, marked, tr
 from game.documents.document import document
-from game.lessons.tasks import CHOICES, NUMBER, SELECT, UNTIL, Choice, Line, Task
+from game.lessons.tasks import CHOICES, NUMBER, SELECT, UNTIL, Line, Task
 from game.paths import PathError, locate, quantity, readable
 from game.scripts.expectation import OVER_ALL, check, compared, each, parts_of, read
-from game.scripts.lines import perform
+from game.scripts.lines import Failure, perform
 
 Session = Any  # game.session.Session, which holds the lesson
 Document = Mapping[str, Any]
-Answer = (
-    str | float | tuple[str, ...] | None
-)  # the text of a choice; a number; names of elements; None: not given yet
+Answer = str | float | tuple[str, ...] | None  # text of a choice; number; names of elements; not given yet
 
 NEARLY = 1e-6  # as a share: what differs by less from the largest is as large
 LEAST = 1e-9  # by which an answer may differ from 0
@@ -36,13 +34,17 @@ _RELATIONS = {
     "≈": marked("wanted: {value}"),
     "~": marked("wanted: {value}"),
 }
-_SAID: dict[tuple[str, str], str] = {  # what a state lacks, by the path and the kind of relation
-    ("statics.equilibrium", ""): marked(
-        "It is not in equilibrium yet: press E to find equilibrium, or Space to let it run until it rests."
-    ),
-    ("statics.mechanisms", ""): marked(
-        "It is a mechanism: parts can move without any rod getting longer. B shows how."
-    ),
+_SAID: dict[str, Mapping[bool, str]] = {  # of a state, by a path and whether it is more than 0 there
+    "statics.equilibrium": {
+        False: marked(
+            "It is not in equilibrium yet: press E to find equilibrium, or Space to let it run until it rests."
+        ),
+        True: marked("It is in equilibrium."),
+    },
+    "statics.mechanisms": {
+        False: marked("It is stable: nothing can move without a rod getting longer or shorter."),
+        True: marked("It is a mechanism: parts can move without any rod getting longer. B shows how."),
+    },
 }
 _NAMES = {
     "statics.degree": marked("The degree of static indeterminacy"),
@@ -70,29 +72,29 @@ class Verdict(NamedTuple):
     score: tuple[float, str] | None = None
 
 
-def judge(session: Session, task: Task, begun: Document, answer: Answer = None) -> Verdict:
+def judge(session: Session, task: Task, beginning: Document, answer: Answer = None) -> Verdict:
     """Whether a task is done in a session, in which it began with a model. Raises ValueError, LookupError."""
     if task.kind == UNTIL:
         return _judge_state(session, task)
     if answer is None or answer == ():
-        return Verdict(False, _NOTHING[task.kind]())
-    truth = copy_of(session, begun, task.after)
+        return Verdict(False, tr(_NOTHING[task.kind]))
+    truth = copy_of(session, beginning, task.after)
     return _JUDGES[task.kind](truth, task, answer)
 
 
-_NOTHING: dict[str, Callable[[], str]] = {
-    SELECT: lambda: tr("Nothing is selected: click an element; Ctrl+click adds another. Then check."),
-    NUMBER: lambda: tr("Type a number first. Then check."),
-    CHOICES: lambda: tr("Choose an answer first. Then check."),
+_NOTHING = {  # what is said while there is no answer
+    SELECT: marked("Nothing is selected: click an element; Ctrl+click adds another. Then check."),
+    NUMBER: marked("Type a number first. Then check."),
+    CHOICES: marked("Choose an answer first. Then check."),
 }
 
 
 def copy_of(session: Session, model: Document, lines: Iterable[Line]) -> Session:
     """A session of its own in which lines were performed, from the same model."""
     copy = type(session).open(model)
-    for _, entry in lines:
+    for number, entry in lines:
         for expected, got in perform(copy, entry):
-            raise ValueError(tr("expected {expected}, got {got}.", expected=expected, got=got))
+            raise ValueError(str(Failure(number, expected, got)))
     return copy
 
 
@@ -119,11 +121,13 @@ def _judge_selection(truth: Session, task: Task, answer: tuple[str, ...]) -> Ver
     wrong = next((handle for handle in chosen if handle not in right), None)
     others = set(answer) - {_named(handle) for handle in values}
     if wrong is not None:
-        said = tr("{what} does not belong: {value}.", what=_name(truth, wrong), value=values[wrong])
+        said = tr(
+            "{what} does not belong: {value}.", what=begun(truth.model.describe(wrong)), value=values[wrong]
+        )
         return Verdict(False, joined([_explained(task, truth), said]))
     if others or not chosen:
-        kind = tr(next(iter(values)).world.tables[next(iter(values)).table].name) if values else ""
-        said = tr("Select only {kind}: {names} is something else.", kind=kind, names=listed(sorted(others)))
+        kind = next(iter(values)).world.tables[next(iter(values)).table].name if values else ""
+        said = tr("Select only {kind}, not {names}.", kind=tr(kind), names=listed(sorted(others)))
         return Verdict(False, said)
     if missing := len(right) - len(chosen):
         said = tr("Right so far, but not all: {count} more to find.", count=missing)
@@ -139,7 +143,13 @@ def _judge_number(truth: Session, task: Task, answer: float) -> Verdict:
     if said := _explained(task, truth, answer):
         return Verdict(False, said)
     if wanted and abs(answer + wanted) <= task.within * abs(wanted):
-        return Verdict(False, tr("The size is right. Think about the sign."))
+        return Verdict(False, tr("The size is right, but not the sign."))
+    if answer * wanted < 0.0:
+        return Verdict(False, tr("Neither the sign nor the size is right yet."))
+    if wanted < 0.0 and answer < 0.0:
+        larger = tr("The sign is right, but the size of {answer} is too large.", answer=written.given(answer))
+        smaller = tr("The sign is right, but the size of {answer} is too small.", answer=written.given(answer))
+        return Verdict(False, larger if answer < wanted else smaller)
     if abs(answer) > abs(wanted):
         return Verdict(False, tr("{answer} is too large.", answer=written.given(answer)))
     return Verdict(False, tr("{answer} is too small.", answer=written.given(answer)))
@@ -150,9 +160,11 @@ def _judge_choice(truth: Session, task: Task, answer: str) -> Verdict:
     if choice is None:
         texts = ", ".join(choice.text for choice in task.choices)
         raise LookupError(tr("there is no choice '{text}'; use one of {texts}.", text=answer, texts=texts))
-    if is_right(truth, choice):
+    if choice.right if isinstance(choice.right, bool) else holds(truth, choice.right):
         return Verdict(True, filled(task.right, truth))
-    said = filled(choice.say, truth) or tr("No: “{text}” is not what the engine finds.", text=tr(choice.text))
+    said = filled(choice.say, truth) or tr(
+        "No: “{text}” is not what the calculation gives.", text=tr(choice.text)
+    )
     return Verdict(False, said)
 
 
@@ -161,16 +173,6 @@ _JUDGES: dict[str, Callable[[Session, Task, Any], Verdict]] = {
     NUMBER: _judge_number,
     CHOICES: _judge_choice,
 }
-
-
-def is_right(truth: Session, choice: Choice) -> bool:
-    """Whether a choice is right in the session in which its conditions are tested."""
-    return choice.right if isinstance(choice.right, bool) else holds(truth, choice.right)
-
-
-def right_elements(truth: Session, asked: str) -> list[str]:
-    """The names of the elements to be selected."""
-    return [_named(handle) for handle in _asked_for(truth, asked)[0]]
 
 
 def _asked_for(truth: Session, asked: str) -> tuple[list[Handle], dict[Handle, str]]:
@@ -194,6 +196,7 @@ def _asked_for(truth: Session, asked: str) -> tuple[list[Handle], dict[Handle, s
     target, _ = locate(truth.model, path.strip(), readable)
     unit, factor = target.field.shown
     title = tr(target.field.title)
+    title = f"{title} {target.axis}" if target.axis else title
     written_values = {
         handle: tr(
             "its {title} is {value} {unit}", title=title, value=_number(factor * value), unit=unit
@@ -254,7 +257,7 @@ def _said_of(session: Session, path: str) -> tuple[str, float, str]:
         return "", 1.0, tr(_NAMES[path]) if path in _NAMES else path
     value = read(session, path)
     factor = found.read(session) / value if isinstance(value, int | float) and value else 1.0
-    return found.unit, factor, tr(_NAMES[path]) if path in _NAMES else found.name[:1].upper() + found.name[1:]
+    return found.unit, factor, tr(_NAMES[path]) if path in _NAMES else begun(found.name)
 
 
 def _shown_number(session: Session, path: str) -> float:
@@ -266,7 +269,7 @@ def _shown_number(session: Session, path: str) -> float:
 
 
 def _number(value: float) -> str:
-    return decimals(written.number(value, nothing=LEAST))
+    return written.number(value, nothing=LEAST)
 
 
 def _explained(task: Task, session: Session, answer: float | None = None) -> str:
@@ -296,8 +299,8 @@ def _all_hold(session: Session, conditions: Sequence[str], answer: float | None)
 def _lacking(session: Session, condition: str) -> str:
     """What is the case instead of a condition."""
     path, relation, value, _ = parts_of(condition)
-    if (path, "") in _SAID:
-        return tr(_SAID[path, ""])
+    if path in _SAID:
+        return tr(_SAID[path][bool(read(session, path))])
     try:
         present = shown(session, path)
     except (ValueError, LookupError) as error:
@@ -311,14 +314,9 @@ def _lacking(session: Session, condition: str) -> str:
 def _written(value: str, factor: float) -> str:
     """A number of a condition in the unit on screen; other values as they are."""
     try:
-        return decimals(written.given(factor * float(value)))
+        return written.given(factor * float(value))
     except ValueError:
         return value
-
-
-def _name(session: Session, handle: Handle) -> str:
-    described = session.model.describe(handle)
-    return str(described[:1].upper() + described[1:])
 
 
 def _named(handle: Handle) -> str:

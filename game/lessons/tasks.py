@@ -126,7 +126,7 @@ class Lesson:
         self.title, self.description = script.title, script.description
         self.tasks = tuple(_Reader(script).tasks())
         if not self.tasks:
-            raise ScriptError(tr("{path}: a lesson needs a line with a task.", path=script.path))
+            raise ScriptError(tr("{file}: a lesson needs a line with a task.", file=script.path))
 
     @property
     def name(self) -> str:
@@ -157,10 +157,10 @@ class _Reader:
         self._check(line, entry, _KEYS)
         kinds = [kind for kind in KINDS if kind in entry]
         if len(kinds) != 1:
-            asked = ", ".join(kinds) or tr("none")
-            said = tr(
-                "a task asks for one of {kinds}; this one has {asked}.", kinds=", ".join(KINDS), asked=asked
-            )
+            known, asked = ", ".join(KINDS), ", ".join(kinds)
+            if not kinds:
+                self._fail(line, tr("a task asks for one of {kinds}; this one asks for nothing.", kinds=known))
+            said = tr("a task asks for one of {kinds}; this one has {asked}.", kinds=known, asked=asked)
             self._fail(line, said)
         for key in ("right", "solution"):
             if key not in entry:
@@ -210,15 +210,15 @@ class _Reader:
             fits, example = shapes[key]
             if not fits(value):
                 said = tr(
-                    "{key} is {value}; write it like {example}.",
+                    "{key} is {value}; write it like {form}.",
                     key=key,
                     value=as_json(value),
-                    example=json.dumps({key: example}),
+                    form=json.dumps({key: example}),
                 )
                 self._fail(line, said)
 
     def _fail(self, line: int, reason: str) -> NoReturn:
-        raise ScriptError(tr("{path} line {line}: {reason}", path=self._script.path, line=line, reason=reason))
+        raise self._script.error(line, reason)
 
 
 def _listed(value: str | list[str]) -> tuple[str, ...]:

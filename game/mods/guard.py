@@ -237,9 +237,9 @@ def guarded_shape(mod: Mod, kind: type[Handle], shape: Shape) -> Shape:
 
     def pieces(table: Table[Any]) -> Pieces:
         made = shape(table)
-        if not isinstance(made, Pieces):
-            raise TypeError(tr("{source} returned {value!r}; it must return Pieces", source=source, value=made))
-        return check_pieces(table, as_declared(made, Pieces, source), source)
+        return check_pieces(
+            table, as_declared(made, Pieces, source) if isinstance(made, Pieces) else made, source
+        )
 
     def called(table: Table[Any]) -> Pieces:
         found: Pieces = mod.call(tr("the shape of {table}", table=kind.table), pieces, table, otherwise=nothing)

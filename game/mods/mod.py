@@ -210,14 +210,7 @@ def _fill(made: Mod, entries: dict[str, Any], named: str | None) -> None:
         if value or key != "name":
             setattr(made, key, value)
     made.module = named or made.name
-    if not is_identifier(made.name) or "__" in made.name:
-        raise ModError(
-            tr(
-                "{file}: the name '{name}' must be a Python name without __, such as 'wind'.",
-                file=MANIFEST,
-                name=made.name,
-            )
-        )
+    check_name(made.name)
     if named is not None and made.name != named:
         raise ModError(
             tr(
@@ -239,6 +232,12 @@ def _fill(made: Mod, entries: dict[str, Any], named: str | None) -> None:
         )
     made.requires = tuple(requires)
     _check_versions(made)
+
+
+def check_name(name: str) -> None:
+    """Raise ModError unless a mod may have this name."""
+    if not is_identifier(name) or "__" in name:
+        raise ModError(tr("The name '{name}' must be a Python name without __, such as 'wind'.", name=name))
 
 
 def _check_versions(made: Mod) -> None:

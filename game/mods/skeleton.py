@@ -5,9 +5,8 @@ from __future__ import annotations
 from pathlib import Path
 
 from components.language import tr
-from components.wording import is_identifier
 from game.mods.finding import origin_of_module
-from game.mods.mod import MANIFEST, ModError
+from game.mods.mod import MANIFEST, ModError, check_name
 
 _MANIFEST = """\
 name = "{name}"
@@ -73,8 +72,7 @@ _FILES = {MANIFEST: _MANIFEST, "__init__.py": _CODE, "test_{name}.py": _TEST}
 
 def write_skeleton(name: str, parent: Path, version: str) -> list[Path]:
     """Write a new mod into a folder of its name; returns its files. Raises ModError."""
-    if not is_identifier(name) or "__" in name:
-        raise ModError(tr("The name '{name}' must be a Python name without __, such as 'wind'.", name=name))
+    check_name(name)
     folder = parent / name
     if not folder.exists() and origin_of_module(name) is not None:
         raise ModError(tr("There is a Python module '{name}' already; give the mod another name.", name=name))

@@ -14,7 +14,7 @@ from game.editor.context import FAULTS
 from game.mods.mod import ModError
 from game.paths import apply_override
 from game.scripts.expectation import check
-from game.scripts.script import Script, ScriptError
+from game.scripts.script import Script
 
 Session = Any  # game.session.Session, which plays lessons by these lines
 
@@ -48,9 +48,7 @@ def play_line(script: Script, number: int, entry: Mapping[str, Any], session: Se
         pass  # it is among FAULTS
     except (ValueError, LookupError, TypeError) as error:
         reason = error.args[0] if error.args else error
-        raise ScriptError(
-            tr("{file} line {line}: {error}", file=script.path, line=number, error=reason)
-        ) from error
+        raise script.error(number, reason) from error
     return failures + [Failure(number, tr("mods that work"), fault) for fault in FAULTS[known:]]
 
 

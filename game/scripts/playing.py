@@ -27,9 +27,7 @@ def session_of(script: Script) -> Session:
     try:
         session = Session.open(script.source)
     except ModelError as error:
-        raise ScriptError(
-            tr("{file} line {line}: {error}", file=script.path, line=script.lines[0][0], error=error)
-        ) from None
+        raise script.error(script.lines[0][0], error) from None
     session.notice = joined((session.notice, different))
     return session
 

@@ -105,47 +105,34 @@ class Script:
                     version=as_json(header.get("version")),
                 )
             )
-        for key in header:
-            if key not in _HEADER_KEYS:
-                raise ScriptError(
-                    tr(
-                        "{file} line 1: there is no '{key}'; use one of {keys}.",
-                        file=source,
-                        key=cut(key),
-                        keys=", ".join(_HEADER_KEYS),
-                    )
-                )
-        if not isinstance(model := header.get("model", EMPTY), str | dict):
-            raise ScriptError(
-                tr(
-                    "{file} line 1: model is {value}; write the name of a model, or a whole model.",
-                    file=source,
-                    value=as_json(model),
-                )
-            )
+        self._check_header(header)
         self.mods: dict[str, str] | None = header.get("mods")
-        if self.mods is not None and not _are_mods(self.mods):
-            value = as_json(self.mods)
-            raise ScriptError(
-                tr(
-                    "{file} line 1: mods is {value}; write names and versions, such as {form}.",
-                    file=source,
-                    value=value,
-                    form='{"wind": "1.0"}',
-                )
-            )
         recorded = any("pixel" in entry for _, entry in self.lines)
         self.language = header.get("language", ENGLISH if recorded else "")
-        if self.language not in ("", *LANGUAGES):
-            raise ScriptError(
-                tr(
-                    "{script} line 1: the language is {code}; write one of {languages}.",
-                    script=source,
-                    code=as_json(self.language),
-                    languages=", ".join(LANGUAGES),
-                )
-            )
         self.title, self.description = (str(header.get(key, "")) for key in ("title", "description"))
+
+    def _check_header(self, header: Mapping[str, Any]) -> None:
+        for key in header:
+            if key not in _HEADER_KEYS:
+                keys = ", ".join(_HEADER_KEYS)
+                raise self.error(1, tr("there is no '{key}'; use one of {keys}.", key=cut(key), keys=keys))
+        if not isinstance(model := header.get("model", EMPTY), str | dict):
+            value = as_json(model)
+            raise self.error(
+                1, tr("model is {value}; write the name of a model, or a whole model.", value=value)
+            )
+        if (mods := header.get("mods")) is not None and not _are_mods(mods):
+            form, value = '{"wind": "1.0"}', as_json(mods)
+            said = tr("mods is {value}; write names and versions, such as {form}.", value=value, form=form)
+            raise self.error(1, said)
+        if (code := header.get("language", "")) not in ("", *LANGUAGES):
+            known = ", ".join(LANGUAGES)
+            said = tr("the language is {code}; write one of {languages}.", code=as_json(code), languages=known)
+            raise self.error(1, said)
+
+    def error(self, line: int, reason: object) -> ScriptError:
+        """What is wrong with a line."""
+        return ScriptError(tr("{file} line {line}: {reason}", file=self.path, line=line, reason=reason))
 
     @classmethod
     def of_lines(cls, title: str, lines: Iterable[tuple[int, Mapping[str, Any]]]) -> Script:
@@ -177,33 +164,14 @@ class Script:
             try:
                 entry = json.loads(line)
             except RecursionError:
-                raise ScriptError(
-                    tr(
-                        "{file} line {line}: this is nested too deeply; write it simpler.",
-                        file=self.path,
-                        line=number,
-                    )
-                ) from None
+                raise self.error(number, tr("this is nested too deeply; write it simpler.")) from None
             except ValueError as error:  # also numbers of thousands of digits
                 reason = getattr(error, "msg", str(error))
-                raise ScriptError(
-                    tr(
-                        "{file} line {line}: this is not JSON ({reason}); correct it.",
-                        file=self.path,
-                        line=number,
-                        reason=reason,
-                    )
+                raise self.error(
+                    number, tr("this is not JSON ({reason}); correct it.", reason=reason)
                 ) from None
             if not isinstance(entry, dict):
-                form = '{"press": "space"}'
-                raise ScriptError(
-                    tr(
-                        "{file} line {line}: write an object, such as {form}.",
-                        file=self.path,
-                        line=number,
-                        form=form,
-                    )
-                )
+                raise self.error(number, tr("write an object, such as {form}.", form='{"press": "space"}'))
             yield number, entry
 
     @property

@@ -81,7 +81,9 @@ def _read(model: Model, path: str) -> list[Measure]:
         Measure(
             column=f"{section}.{element}.{target.key}" + (f".{axis}" if axis else ""),
             keys=(section, element, target.field.name, *([target.field.axes.index(axis)] if axis else [])),
-            title=" ".join([target.field.title, *([axis] if axis else []), "of", element]),
+            title=tr(
+                "{quantity} of {element}", quantity=joined([tr(target.field.title), axis]), element=element
+            ),
             unit=target.field.unit_of(axis),
         )
         for element in elements

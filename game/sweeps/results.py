@@ -169,7 +169,7 @@ def check_output(path: Path, suffixes: Sequence[str] = SUFFIXES) -> None:
     if path.suffix not in suffixes:
         endings = ", ".join(suffixes)
         raise SweepError(
-            tr("{path}: choose a file that ends with one of {endings}.", path=path, endings=endings)
+            tr("{file}: choose a file that ends with one of {endings}.", file=path, endings=endings)
         )
     module = _NEEDED.get(path.suffix)
     if module is not None and importlib.util.find_spec(module) is None:

@@ -146,9 +146,12 @@ def _read(model: Model, text: str) -> Variation:
 
 
 def _label(target: Target, element: str) -> str:
-    of = {"": "", EVERY: f" of all {target.table.name}"}.get(element, f" of {element}")
-    axis = f" {target.axis}" if target.axis else ""
-    return f"{target.field.title}{axis}{of}" + (f", {target.field.unit}" if target.field.unit else "")
+    title = joined([tr(target.field.title), target.axis])
+    if element == EVERY:
+        title = tr("{quantity} of all {elements}", quantity=title, elements=tr(target.table.name))
+    elif element:
+        title = tr("{quantity} of {element}", quantity=title, element=element)
+    return joined([title, target.field.unit], ", ")
 
 
 def _values(target: Target, text: str) -> tuple[Value, ...]:
@@ -204,7 +207,9 @@ def _random(target: Target, text: str) -> Random:
         deviation = abs(first) * _finite(second[:-1]) / 100.0 if second.endswith("%") else _finite(second)
         parameters = (first, deviation)
         if not deviation >= 0.0 or (kind == "lognormal" and not first > 0.0):
-            raise PathError(tr("the deviation must be at least 0, and the mean of a lognormal above 0."))
+            raise PathError(
+                tr("the standard deviation must be at least 0, and the mean of a lognormal above 0.")
+            )
     # Strengths and stiffnesses of different rods are independent: each has its own draw.
     elements = target.table.names if target.element == EVERY else [target.element]
     return Random(tuple(map(target.path, elements)), kind, parameters, _label(target, elements[0]))

@@ -93,7 +93,7 @@ def part_overlaps(model: Model) -> str:
     if (overlapping[:, 1] >= particles.count).any():
         note = plural(
             "1 particle overlapped an obstacle: it was moved away.",
-            "{count} overlaps of particles with others or with obstacles: they were moved apart.",
+            "{count} overlaps of particles with others or with obstacles: the particles were moved apart.",
             count,
         )
     else:

@@ -25,7 +25,7 @@ class Collision(StepSystem):
     """
 
     name = "collision.discs"
-    unneeded = marked("no two particles, and no particle and obstacle, can meet; or settings.collisions is off")
+    unneeded = marked("no particle can meet another or an obstacle; or settings.collisions is off")
     reads = ("particles.radius", "particles.mobility", "settings.restitution")
     writes = ("particles.velocity", "clock.collisions", "clock.dissipated_impact")
     impulsive = True

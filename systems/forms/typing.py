@@ -103,7 +103,9 @@ def write(form: Form, text: str) -> str:
         )
     else:
         told = tr("Type a number, such as 2.5 or 1e3, without “{refused}”.", refused=refused)
-    return joined([told, *(tr("“{word}” is possible, too.", word=tr(word)) for word in box.words or ())])
+    return joined(
+        [told, *(tr("“{word}” is possible, too.", word=box.said_word(word)) for word in box.words or ())]
+    )
 
 
 def erase(form: Form, *, after: bool = False) -> None:
@@ -201,6 +203,6 @@ def _completed(box: Box, words: Sequence[str], character: str) -> tuple[str, int
     for typed in (so_far + character, *alone):
         meant = _MEANS.get(typed, typed).lower() if words == YES_NO else typed.lower()
         for word in words:
-            if any(said.lower().startswith(meant) for said in (tr(word), word)):
+            if any(said.lower().startswith(meant) for said in (box.said_word(word), word)):
                 return word, len(meant)
     return None

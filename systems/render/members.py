@@ -206,19 +206,28 @@ def _draw_arcs(sheet: Sheet, name: str, moment: Values) -> None:
 
 
 def arc_marks(
-    sheet: Sheet, of: Owners, at: Points, radius: Values, moment: Values, colour: Colour, key: str
+    sheet: Sheet,
+    of: Owners,
+    at: Points,
+    radius: Values,
+    moment: Values,
+    colour: Colour,
+    key: str,
+    middle: float = np.pi / 2.0,
+    sweep: float = _SWEEP,
 ) -> list[Mark]:
     """Curved arrows about points (n, 2), of radii (n,), that turn as moments (n,) do, counter-clockwise if positive.
 
-    They are open below. key: of these parts of the picture, beside the rows of their elements.
+    They reach so far (sweep) around a middle, in radians: the usual ones are open below. key: of these parts of the
+    picture, beside the rows of their elements.
     """
     if not len(at):
         return []
     table, rows = of
     u, turn = sheet.unit, np.where(moment > 0.0, 1.0, -1.0)
     head = head_length(radius, u)
-    angle = np.linspace(-0.5, 0.5, _PIECES + 1) * _SWEEP
-    angle = np.pi / 2.0 + turn[:, None] * angle  # from the right, over the top
+    angle = np.linspace(-0.5, 0.5, _PIECES + 1) * sweep
+    angle = middle + turn[:, None] * angle  # from the right, over the top
     points = at[:, None] + radius[:, None, None] * np.stack([np.cos(angle), -np.sin(angle)], axis=2)
     first, last = points[:, :-1].reshape(-1, 2), points[:, 1:].reshape(-1, 2)
     every = np.repeat(rows, _PIECES)

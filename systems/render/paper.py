@@ -3,7 +3,10 @@
 from __future__ import annotations
 
 import io
-from collections.abc import Sequence
+from bisect import bisect_left
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from functools import cache
 from typing import Any
 from xml.sax.saxutils import escape
 
@@ -12,7 +15,7 @@ from reportlab.lib.pagesizes import A4
 from reportlab.lib.styles import ParagraphStyle
 from reportlab.lib.units import mm
 from reportlab.pdfbase.pdfmetrics import stringWidth
-from reportlab.platypus import Flowable, KeepTogether, Paragraph, SimpleDocTemplate, Spacer, Table
+from reportlab.platypus import Flowable, KeepTogether, Paragraph, SimpleDocTemplate, Table
 
 from components.wording import UNPRINTABLE
 from systems.render.marks import Picture
@@ -21,44 +24,91 @@ from systems.render.pdf import draw_picture, embed_fonts
 embed_fonts()  # widths of texts are wanted before there is a page
 
 REGULAR, BOLD = "Inter regular", "Inter semibold"
-MARGIN = 18 * mm
+MARGIN = 16 * mm
 WIDTH = A4[0] - 2 * MARGIN  # points of a column of text
-PIXEL = 0.6  # points of a pixel of a picture
+PIXEL = 0.64  # points of a pixel of a picture
+_MANY = 4  # pages, of which more would only be drawn again to see whether they may be larger
+GUTTER = 4 * mm  # between what stands side by side
+REST = 54 * mm  # the least width of a text that takes what is left of a row
 _FRAME = 6.0  # points that frames of reportlab leave inside margins
-_GUTTER = 5 * mm  # between what stands side by side
 _GREY = Color(0.35, 0.38, 0.45)
-_SIZE, _TABLE = 9.0, 7.6  # points of text, and of what tables contain
-_LEAST = 6.2  # points of a wide table; wider ones are divided
-_PADDING = 3.2  # points to either side of what is in a table
+_LEAST = 7.5  # points of type; wider tables are divided
+_PADDING = 2.6  # points to either side of what is in a table
 
-_STYLES = {
-    "title": ParagraphStyle("title", fontName=BOLD, fontSize=16, leading=20, spaceAfter=1 * mm),
-    "subtitle": ParagraphStyle("subtitle", fontName=REGULAR, fontSize=_SIZE, leading=12, textColor=_GREY),
-    "heading": ParagraphStyle(
-        "heading",
-        fontName=BOLD,
-        fontSize=11,
-        leading=14,
-        spaceBefore=5 * mm,
-        spaceAfter=1.5 * mm,
-        keepWithNext=1,
-    ),
-    "text": ParagraphStyle("text", fontName=REGULAR, fontSize=_SIZE, leading=13, spaceAfter=1 * mm),
-    "equation": ParagraphStyle(
-        "equation", fontName=REGULAR, fontSize=9.5, leading=15, leftIndent=6 * mm, spaceAfter=1 * mm
-    ),
-    "result": ParagraphStyle(
-        "result", fontName=BOLD, fontSize=10, leading=15, leftIndent=6 * mm, spaceAfter=1 * mm
-    ),
-    "caption": ParagraphStyle(
-        "caption", fontName=REGULAR, fontSize=8, leading=10, textColor=_GREY, spaceAfter=1 * mm
-    ),
+_STYLES = {  # font, size and leading relative to text, grey, space before and after in lines, indented
+    "title": (BOLD, 1.6, 1.9, False, 0.0, 0.0, 0.0),
+    "subtitle": (REGULAR, 0.95, 1.25, True, 0.0, 0.0, 0.0),
+    "heading": (BOLD, 1.15, 1.4, False, 0.6, 0.15, 0.0),
+    "text": (REGULAR, 1.0, 1.3, False, 0.0, 0.1, 0.0),
+    "equation": (REGULAR, 1.0, 1.35, False, 0.0, 0.05, 1.0),
+    "result": (BOLD, 1.05, 1.5, False, 0.0, 0.1, 1.0),
+    "caption": (REGULAR, 0.9, 1.2, True, 0.0, 0.2, 0.0),
 }
 
+Block = tuple[
+    float, list[Flowable]
+]  # parts below each other, and their width in points; 0: what is left of a row
 
-def text(words: str, style: str = "text") -> Paragraph:
-    """A paragraph: "title", "subtitle", "heading", "text", "equation", "result" or "caption"."""
-    return Paragraph(escape(UNPRINTABLE.sub("�", words)), _STYLES[style])
+
+@dataclass(frozen=True)
+class Layout:
+    """How large things are: type (points), the greatest height of a figure (points), and how many times as wide as high is
+    a structure of which two figures stand in a row, not three."""
+
+    size: float
+    figure: float
+    flat: float
+
+    def text(self, words: str, style: str = "text") -> Paragraph:
+        """A paragraph: "title", "subtitle", "heading", "text", "equation", "result" or "caption"."""
+        font, size, leading, grey, before, after, indent = _STYLES[style]
+        made = ParagraphStyle(
+            style,
+            fontName=font,
+            fontSize=max(size * self.size, _LEAST),
+            leading=max(size * self.size, _LEAST) * leading / size,
+            spaceBefore=before * self.size,
+            spaceAfter=after * self.size,
+            leftIndent=indent * self.size,
+            textColor=_GREY if grey else black,
+            keepWithNext=style == "heading",
+        )
+        return Paragraph(escape(UNPRINTABLE.sub("�", words)), made)
+
+    def tables(self, head: Sequence[str], rows: Sequence[Sequence[str]], *, summed: bool) -> list[Block]:
+        """A table under a head, of which lines are parted by "\\n"; in several what is wider than a page.
+
+        summed: the last row stands below a rule.
+        """
+        whole = [list(head), *map(list, rows)]
+        found: list[Block] = []
+        for columns in _fitting(whole, WIDTH):
+            cells = [[row[at] for at in columns] for row in whole]
+            size = max(0.9 * self.size, _LEAST)
+            size = size if sum(_widths(cells, size)) <= WIDTH else _LEAST
+            shown = [["\n".join(_printable(cell)) for cell in row] for row in cells]
+            widths = _widths(cells, size)
+            made = Table(shown, colWidths=widths, repeatRows=1, hAlign="LEFT", spaceAfter=0.5 * size)
+            made.setStyle(_ruled(size, summed=summed))
+            found.append((sum(widths), [made]))
+        return found
+
+
+LAYOUTS = tuple(  # from the largest to the smallest
+    Layout(size, figure * mm, flat)
+    for size, figure, flat in (
+        (9.5, 80, 0.0),
+        (9.2, 68, 0.0),
+        (9.0, 62, 1.6),
+        (8.6, 54, 1.6),
+        (8.2, 46, 1.6),
+        (8.6, 50, 2.6),
+        (8.2, 44, 2.6),
+        (7.8, 40, 2.6),
+        (7.5, 38, 2.6),
+        (7.5, 36, 9.0),
+    )
+)
 
 
 def together(*parts: Flowable) -> Flowable:
@@ -69,10 +119,9 @@ def together(*parts: Flowable) -> Flowable:
 class Figure(Flowable):  # type: ignore[misc]
     """A picture, with a caption below it."""
 
-    def __init__(self, picture: Picture, caption: str) -> None:
+    def __init__(self, picture: Picture, caption: Paragraph) -> None:
         super().__init__()
-        self._picture = picture
-        self._caption = text(caption, "caption")
+        self._picture, self._caption = picture, caption
         self.width, self.height = PIXEL * picture.viewport.width, PIXEL * picture.viewport.height
 
     def wrap(self, width: float, height: float) -> tuple[float, float]:
@@ -91,58 +140,63 @@ class Figure(Flowable):  # type: ignore[misc]
         page.restoreState()
 
 
-HALF = (WIDTH - _GUTTER) / 2  # points
+def in_rows(blocks: Sequence[Block]) -> list[Flowable]:
+    """Blocks side by side as they fit, row below row, which no page break separates."""
+    found: list[Flowable] = []
+    row: list[Block] = []
+    for block in blocks:
+        least = block[0] or REST
+        taken = sum((width or REST) + GUTTER for width, _ in row)
+        if row and taken + least > WIDTH + 0.5:
+            found.append(_beside(row))
+            row = []
+        row.append(block)
+    if row:
+        found.append(_beside(row))
+    return found
 
 
-def beside(left: Sequence[Flowable], right: Sequence[Flowable]) -> Flowable:
-    """Parts side by side, which no page break separates."""
-    row = Table([[list(left), list(right)]], colWidths=[HALF + _GUTTER, HALF], hAlign="LEFT")
-    row.setStyle(
+def _beside(row: Sequence[Block]) -> Flowable:
+    flexible = sum(not width for width, _ in row)
+    left = WIDTH - sum(width for width, _ in row) - GUTTER * (len(row) - 1)
+    widths = [width or left / flexible for width, _ in row]
+    gutter = GUTTER if flexible or len(row) < 2 else GUTTER + min(left / (len(row) - 1), 2 * GUTTER)
+    columns = [width + gutter for width in widths[:-1]] + [widths[-1]]
+    made = Table([[list(parts) for _, parts in row]], colWidths=columns, hAlign="LEFT")
+    made.setStyle(
         [
             ("LEFTPADDING", (0, 0), (-1, -1), 0),
-            ("RIGHTPADDING", (0, 0), (-1, -1), 0),
+            ("RIGHTPADDING", (0, 0), (-2, -1), gutter),
+            ("RIGHTPADDING", (-1, 0), (-1, -1), 0),
             ("TOPPADDING", (0, 0), (-1, -1), 0),
-            ("BOTTOMPADDING", (0, 0), (-1, -1), 0),
+            ("BOTTOMPADDING", (0, 0), (-1, -1), 2),
             ("VALIGN", (0, 0), (-1, -1), "TOP"),
         ]
     )
-    return row
+    return made
 
 
-def tables(
-    head: Sequence[str], rows: Sequence[Sequence[str]], *, summed: bool, width: float = WIDTH
-) -> list[Flowable]:
-    """A table under a head, of which lines are parted by "\\n"; side by side what is wider than a page, below each other.
-
-    summed: the last row stands below a rule.
-    """
-    whole = [list(head), *map(list, rows)]
-    found: list[Flowable] = []
-    for columns in _fitting(whole, width):
-        size = _size([[row[at] for at in columns] for row in whole], width)
-        shown = [["\n".join(_printable(row[at])) for at in columns] for row in whole]
-        made = Table(shown, repeatRows=1, hAlign="LEFT", spaceAfter=2 * mm, spaceBefore=1 * mm)
-        style: list[tuple[Any, ...]] = [
-            ("FONT", (0, 0), (-1, -1), REGULAR, size, 1.25 * size),
-            ("FONT", (0, 0), (-1, 0), BOLD, size, 1.25 * size),
-            ("ALIGN", (1, 0), (-1, -1), "RIGHT"),
-            ("VALIGN", (0, 0), (-1, 0), "BOTTOM"),
-            ("LEFTPADDING", (0, 0), (-1, -1), _PADDING),
-            ("RIGHTPADDING", (0, 0), (-1, -1), _PADDING),
-            ("TOPPADDING", (0, 0), (-1, -1), 1.2),
-            ("BOTTOMPADDING", (0, 0), (-1, -1), 1.8),
-            ("LINEABOVE", (0, 0), (-1, 0), 0.8, black),
-            ("LINEBELOW", (0, 0), (-1, 0), 0.4, black),
-            ("LINEBELOW", (0, -1), (-1, -1), 0.8, black),
+def _ruled(size: float, *, summed: bool) -> list[tuple[Any, ...]]:
+    """The style of a table with a head and, perhaps, a sum at the foot."""
+    style: list[tuple[Any, ...]] = [
+        ("FONT", (0, 0), (-1, -1), REGULAR, size, 1.2 * size),
+        ("FONT", (0, 0), (-1, 0), BOLD, size, 1.2 * size),
+        ("ALIGN", (1, 0), (-1, -1), "RIGHT"),
+        ("VALIGN", (0, 0), (-1, 0), "BOTTOM"),
+        ("LEFTPADDING", (0, 0), (-1, -1), _PADDING),
+        ("RIGHTPADDING", (0, 0), (-1, -1), _PADDING),
+        ("TOPPADDING", (0, 0), (-1, -1), 0.03 * size),
+        ("BOTTOMPADDING", (0, 0), (-1, -1), 0.14 * size),
+        ("LINEABOVE", (0, 0), (-1, 0), 0.8, black),
+        ("LINEBELOW", (0, 0), (-1, 0), 0.4, black),
+        ("LINEBELOW", (0, -1), (-1, -1), 0.8, black),
+    ]
+    if summed:
+        style += [
+            ("LINEABOVE", (0, -1), (-1, -1), 0.4, black),
+            ("FONT", (0, -1), (-1, -1), BOLD, size, 1.2 * size),
         ]
-        if summed:
-            style += [
-                ("LINEABOVE", (0, -1), (-1, -1), 0.4, black),
-                ("FONT", (0, -1), (-1, -1), BOLD, size, 1.25 * size),
-            ]
-        made.setStyle(style)
-        found.append(made)
-    return found
+    return style
 
 
 def _widths(cells: Sequence[Sequence[str]], size: float) -> list[float]:
@@ -156,14 +210,6 @@ def _widths(cells: Sequence[Sequence[str]], size: float) -> list[float]:
 def _printable(cell: str) -> list[str]:
     """The lines of a cell."""
     return [UNPRINTABLE.sub("�", line) for line in cell.split("\n")]
-
-
-def _size(cells: Sequence[Sequence[str]], room: float) -> float:
-    """The size of type with which cells fit beside each other, at most the usual one."""
-    size = _TABLE
-    while size > _LEAST and sum(_widths(cells, size)) > room:
-        size -= 0.2
-    return size
 
 
 def _fitting(cells: Sequence[Sequence[str]], whole: float) -> list[list[int]]:
@@ -182,23 +228,24 @@ def _fitting(cells: Sequence[Sequence[str]], whole: float) -> list[list[int]]:
 class Matrices(Flowable):  # type: ignore[misc]
     """Matrices and signs in one line, such as [δ]{X} + {δ₀} = {0}: a list of rows for each matrix, a text for each sign."""
 
-    _FONT, _STEP, _GAP, _REACH = 9.0, 14.0, 9.0, 3.0
+    _STEP, _GAP, _REACH, _INDENT = 11.0, 5.0, 2.0, 8.0
 
-    def __init__(self, parts: Sequence[str | Sequence[Sequence[str]]]) -> None:
+    def __init__(self, parts: Sequence[str | Sequence[Sequence[str]]], layout: Layout) -> None:
         super().__init__()
         self._parts = parts
-        widest = sum(self._wide(part) + self._GAP for part in parts) + 17.0
-        self._font = self._FONT * min(1.0, WIDTH / widest)
+        self._font = max(0.92 * layout.size, _LEAST)
+        self.widest = sum(self._wide(part) + self._GAP for part in parts) + self._INDENT
+        self._font *= min(1.0, WIDTH / self.widest)
         rows = max(len(part) for part in parts if not isinstance(part, str))
-        self.width, self.height = WIDTH, rows * self._STEP + 6.0
+        self.width, self.height = min(self.widest, WIDTH), rows * self._STEP + 5.0
 
     def _columns(self, part: Sequence[Sequence[str]], font: float) -> list[float]:
         return [max(stringWidth(cell, REGULAR, font) for cell in column) for column in zip(*part, strict=True)]
 
-    def _wide(self, part: str | Sequence[Sequence[str]], font: float = _FONT) -> float:
+    def _wide(self, part: str | Sequence[Sequence[str]]) -> float:
         if isinstance(part, str):
-            return float(stringWidth(part, REGULAR, font))
-        return sum(self._columns(part, font)) + self._GAP * (len(part[0]) - 1) + 4 * self._REACH
+            return float(stringWidth(part, REGULAR, self._font))
+        return sum(self._columns(part, self._font)) + self._GAP * (len(part[0]) - 1) + 4 * self._REACH
 
     def wrap(self, width: float, height: float) -> tuple[float, float]:
         """Its size in points."""
@@ -211,9 +258,9 @@ class Matrices(Flowable):  # type: ignore[misc]
         page.setFillColor(black)
         page.setStrokeColor(black)
         page.setLineWidth(0.7)
-        middle, x = self.height / 2, 17.0
+        middle, x = self.height / 2, self._INDENT
         for part in self._parts:
-            wide = self._wide(part, font)
+            wide = self._wide(part)
             if isinstance(part, str):
                 page.drawString(x, middle - 0.35 * font, part)
             else:
@@ -235,32 +282,43 @@ class Matrices(Flowable):  # type: ignore[misc]
             right += self._GAP
 
 
-def as_paper(title: str, parts: Sequence[Flowable], foot: str) -> bytes:
-    """Parts below each other on as many pages as it takes, as the contents of a PDF file; foot: below every page."""
+def as_paper(title: str, made_of: Callable[[Layout], Sequence[Flowable]], foot: str) -> bytes:
+    """What is made in a layout, on one page of A4 in the largest layout with which it fits, else on as few as it takes, as
+    the contents of a PDF file; foot: below every page."""
+
+    @cache
+    def built(layout: Layout) -> tuple[int, bytes]:
+        return _built(title, made_of(layout), foot)
+
+    fewest, made = built(LAYOUTS[-1])
+    if fewest > _MANY:
+        return made
+    largest = bisect_left(LAYOUTS, True, key=lambda layout: built(layout)[0] <= fewest)
+    return built(LAYOUTS[largest])[1]
+
+
+def _built(title: str, parts: Sequence[Flowable], foot: str) -> tuple[int, bytes]:
+    """Parts below each other: the number of pages, and the contents of the file."""
     made = io.BytesIO()
 
     def number(page: Any, document: Any) -> None:
-        page.setFont(REGULAR, 7.5)
+        page.setFont(REGULAR, _LEAST)
         page.setFillColor(_GREY)
-        page.drawString(MARGIN, 10 * mm, UNPRINTABLE.sub("�", foot))
-        page.drawRightString(A4[0] - MARGIN, 10 * mm, str(document.page))
+        page.drawString(MARGIN, 6 * mm, UNPRINTABLE.sub("�", foot))
+        if document.page > 1:
+            page.drawRightString(A4[0] - MARGIN, 6 * mm, str(document.page))
 
     document = SimpleDocTemplate(
         made,
         pagesize=A4,
         leftMargin=MARGIN - _FRAME,
         rightMargin=MARGIN - _FRAME,
-        topMargin=15 * mm,
-        bottomMargin=17 * mm,
+        topMargin=10 * mm - _FRAME,
+        bottomMargin=11 * mm - _FRAME,
         title=UNPRINTABLE.sub("�", title),
         author="",
         creator="Pinjoint",
         invariant=1,
     )
     document.build(list(parts), onFirstPage=number, onLaterPages=number)
-    return made.getvalue()
-
-
-def gap(millimetres: float) -> Flowable:
-    """Room."""
-    return Spacer(0, millimetres * mm)
+    return document.page, made.getvalue()

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Callable, Sequence
 
 from components.field import Vector
@@ -11,6 +12,7 @@ from components.toolbar import Toolbar
 from components.view import View
 from systems.render.arrows import draw_loads, draw_velocities
 from systems.render.bending_diagrams import draw_diagrams
+from systems.render.cuts import draw_cuts
 from systems.render.diagrams import draw_particle_diagrams
 from systems.render.empty_card import draw_card, shows_card
 from systems.render.free_bodies import draw_free_bodies
@@ -121,6 +123,7 @@ def _draw_structure(sheet: Sheet) -> None:
     draw_distributed_forces(sheet)
     sheet.marks += [*draw_loads(sheet), *draw_velocities(sheet)]
     draw_moments(sheet)
+    draw_cuts(sheet)
     draw_shape(sheet)
     draw_particle_diagrams(sheet, sides)
 
@@ -149,6 +152,8 @@ def _composed(sheet: Sheet) -> tuple[Picture, list[ShownPanel]]:
     scale = place_scale(sheet, room) if model.particles.count and sheet.view.has_scale else None
     if shows_card(model, sheet.view):
         overlays += draw_card(sheet.view, theme)
+    if not sheet.view.has_units:
+        sheet.labels = [label._replace(text=_bare(label.text)) for label in sheet.labels]
     labels = place_labels(sheet.labels, sheet.occupancy, sheet.unit, sheet.placed)
     over = [
         *draw_scale(sheet, scale),
@@ -160,3 +165,9 @@ def _composed(sheet: Sheet) -> tuple[Picture, list[ShownPanel]]:
     sheet.placed |= sheet.scales
     marks = [*sheet.marks, *labels, *over]
     return Picture(sheet.viewport, theme.background, marks, tuple(sheet.legend)), panels
+
+
+def _bare(text: str) -> str:
+    """A value without its unit, as textbooks write those of unit forces: "1", "0.7071"."""
+    number = text.removesuffix("·m").removesuffix(" kN")
+    return re.sub(r"^(−?1)[.,]0+$", r"\1", number)

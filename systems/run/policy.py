@@ -172,19 +172,23 @@ def energy_warning(imbalance: float, scale: float) -> str:
         times = written.number(share, 3)
         if imbalance > 0.0:
             return tr(
-                "The time steps lost {times} times the supplied energy: the results may be as wrong.",
+                "The time steps lost {times} times the supplied energy: the errors of the results may be as large.",
                 times=times,
             )
         return tr(
-            "The time steps created {times} times the supplied energy: the results may be as wrong.",
+            "The time steps created {times} times the supplied energy: the errors of the results may be as large.",
             times=times,
         )
     part = written.share(share)
     if imbalance > 0.0:
         return tr(
-            "The time steps lost {share} of the supplied energy: the results may be as wrong.", share=part
+            "The time steps lost {share} of the supplied energy: the errors of the results may be as large.",
+            share=part,
         )
-    return tr("The time steps created {share} of the supplied energy: the results may be as wrong.", share=part)
+    return tr(
+        "The time steps created {share} of the supplied energy: the errors of the results may be as large.",
+        share=part,
+    )
 
 
 def residual(measures: Column) -> Column:

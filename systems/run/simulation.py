@@ -47,8 +47,8 @@ SAME = marked(
     "The simulation diverged near t = {time}: after each {steps} steps the model is in the same state again."
 )
 STUCK = marked(
-    "After each {steps} steps the model is in the same state again, although forces are not balanced or the time steps took"
-    " the motion: it alternates, or is lost in rounding. Choose another time step."
+    "After each {steps} steps the model is in the same state again, although forces are not balanced or errors of the time"
+    " steps damped the motion: it jumps between the same states, or is lost in rounding. Choose another time step."
 )
 
 ENDS = (StopReason.REST, StopReason.DIVERGED)  # of a run
@@ -566,7 +566,7 @@ def _why_not_at_rest(program: Dynamics, energy: Energy, limit: float) -> str:
             "Nothing damps the motion, so the model never comes to rest; give the rods damping or set a drag."
         )
     elif program.changes_end > limit:
-        reason = tr("A load still changes then; raise the limit.")
+        reason = tr("A load is still changing at that time; raise the limit.")
     elif energy.imbalance > energy.dissipated_damping:
         reason = tr(
             "Errors of the time steps, not dampers or drag, took most of the motion; make the time step smaller."

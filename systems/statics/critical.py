@@ -51,7 +51,7 @@ class Critical:
                 )
         else:
             message = tr(
-                "Bifurcation at the load factor {factor:.6g}: another path of equilibria begins here, along which"
+                "Bifurcation at the load factor {factor:.6g}: another equilibrium path branches off here, along which"
                 " {motion} can move; to follow it to one side or the other, give --branch {number} or --branch -{number}.",
                 factor=factor,
                 motion=describe_motion(model, motion[None]),

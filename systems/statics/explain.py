@@ -63,9 +63,9 @@ def divide_named(model: Model, rows: Rows, parts: Rows) -> str:
         [tr("{rod} into {parts}", rod=cut(str(names[row])), parts=int(parts[row])) for row in rows.tolist()]
     )
     return plural(
-        "{rods} bends more between its ends than one rod can follow. Divide {parts}, with"
+        "{rods} bends more between its ends than a single rod can represent. Divide {parts}, with"
         " the menu of the rod or session.divide.",
-        "{rods} bend more between their ends than one rod can follow. Divide {parts},"
+        "{rods} bend more between their ends than single rods can represent. Divide {parts},"
         " with the menu of a rod or session.divide.",
         len(rows),
         rods=begun(rod_names(model, rows)),

@@ -106,10 +106,10 @@ def loose_event(model: Model, body: LooseBody, factor: float) -> Event:
         )
     else:
         message = plural(
-            "Free body: nothing holds {names} along {axis}, but no force acts on it there in all. Hold it by a support"
-            " along {axis}.",
-            "Free body: nothing holds {names} along {axis}, but no force acts on them there in all. Hold one of them by a"
-            " support along {axis}.",
+            "Free body: nothing holds {names} along {axis}, but the forces on it in that direction add up to zero."
+            " Hold it by a support along {axis}.",
+            "Free body: nothing holds {names} along {axis}, but the forces on them in that direction add up to zero."
+            " Hold one of them by a support along {axis}.",
             len(body.particles),
             names=who,
             axis=along,

@@ -21,6 +21,8 @@ from systems.statics.external import external_forces
 from systems.statics.released import Released, SetState
 from systems.statics.unknowns import ForceMethodError, Unknown, refuse_unsuited
 
+_ROUNDING = 1e-12  # of the geometric mean of their diagonal: smaller flexibilities are 0
+
 
 @dataclass(frozen=True)
 class Solution:
@@ -100,6 +102,8 @@ def solve(model: Model, unknowns: Sequence[Unknown]) -> Solution:
     gap = sign * (delta_base - unstrained)
     force: Array = np.linalg.solve(flexibility, prescribed - gap).astype(np.float64)
     deltas = (delta_real, delta_base, delta_unit)
+    size = np.sqrt(np.abs(np.diag(flexibility)))
+    flexibility = np.where(np.abs(flexibility) > _ROUNDING * np.outer(size, size), flexibility, 0.0)
     return Solution(
         tuple(unknowns), *deltas, force, real, base, units, gap + 0.0, flexibility + 0.0, prescribed
     )

@@ -172,7 +172,7 @@ class Loading:
         motion = structure.spread(following.rate)
         message = tr(
             "Plastic mechanism {at}: so many rods yield that the stiffness of the others no longer resists moving {motion};"
-            " only the change of shape still does.",
+            " from here on the structure resists it only by changing its shape.",
             at=self._at(self.point.t),
             motion=describe_motion(self.model, motion[None]),
         )
@@ -210,8 +210,9 @@ class Loading:
     def _leap(self) -> None:
         """Relax a structure that hardly resists some motion under the whole load, off its path."""
         message = tr(
-            "From the load factor {factor} on, the structure hardly resists some motion. The load is therefore no longer"
-            " increased step by step: the whole load acts at once, and the structure moves to equilibrium.",
+            "From the load factor {factor} on, there is a motion that the structure hardly resists. The load is"
+            " therefore no longer increased step by step: the whole load acts at once, and the structure moves to"
+            " equilibrium.",
             factor=written.number(self.factor(self.point.t)),
         )
         self._tell("note", self.point.t, message)

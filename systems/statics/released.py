@@ -182,15 +182,10 @@ class Released:
         """Moments on the ends of rods that hold their slopes at 0: by distributed forces and by warmth, (rods, 2)."""
         bending = self.structure.bending
         assert bending is not None
-        return -bending.moments(bending.initial_slopes) - self.across[:, None] * bending.load_shares
-
-    @cached_property
-    def across(self) -> Array:
-        """The distributed force to the left of each rod (kN/m), (rods,)."""
         x, y = self.structure.original_axis.T
         force = self.model.rods.distributed_force
-        across: Array = force[:, 1] * x - force[:, 0] * y
-        return across
+        across: Array = force[:, 1] * x - force[:, 0] * y  # to the left of each rod (kN/m)
+        return -bending.moments(bending.initial_slopes) - across[:, None] * bending.load_shares
 
     def _carried_over(self, fixed_end: Array, couple: Array) -> Array:
         """Moments on the ends while all slopes of ends that are not released are 0: those of hinges carry over."""

@@ -66,7 +66,10 @@ class Settlement:
         """The message, or else the status, and the first of the other events."""
         others = [event.message for event in self.events if event.message not in self.message]
         more = len(others) - MOST_TOLD
-        said = [self.message or tr("Settled: {status}.", status=tr(self.status)), *others[:MOST_TOLD]]
+        said = [
+            self.message or tr("The search for equilibrium ended: {status}.", status=tr(self.status)),
+            *others[:MOST_TOLD],
+        ]
         return joined(
             [*said, plural("And one more event.", "And {count} more events.", more) if more > 0 else ""]
         )
@@ -288,7 +291,7 @@ class _Settling:
             most=springs.max(),
         )
         if residual > UNBALANCED:
-            beyond = tr("The numbers of the computer have too few digits for this model.")
+            beyond = tr("The computer's numbers do not have enough digits for this model.")
             raise NoEquilibrium("limit reached", joined([beyond, message]))
         self.events.append(Event("note", factor, message))
 

@@ -142,7 +142,7 @@ def refuse_unsuited(model: Model, unknowns: Sequence[Unknown]) -> None:
                     particle=unknown.element.name,
                 )
             )
-        if unknown.axis == 2 and unknown.of_support and not _turns(model, row):
+        if unknown.axis == 2 and unknown.of_support and not is_turned(model, row):
             raise ForceMethodError(
                 tr(
                     "{name} is not a static unknown: no rod that bends is joined rigidly at {particle}.",
@@ -152,7 +152,8 @@ def refuse_unsuited(model: Model, unknowns: Sequence[Unknown]) -> None:
             )
 
 
-def _turns(model: Model, particle: int) -> bool:
+def is_turned(model: Model, particle: int) -> bool:
+    """True if a rod that bends is joined rigidly to a particle, so that its rotation counts."""
     return bool(((model.rods.between == particle) & (model.rods.turning_shares > 0.0)).any())
 
 

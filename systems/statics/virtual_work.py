@@ -18,8 +18,6 @@ from systems.statics.equations import Array, Rows
 from systems.statics.force_method import Solution
 from systems.statics.released import SetState
 
-_NOTHING = 0.0  # kN·m: a unit force does not act between the ends of rods
-
 
 @dataclass(frozen=True)
 class Work:
@@ -60,11 +58,9 @@ class Work:
     @property
     def flexibility(self) -> Array:
         """δ (m, m)."""
-        count = len(self.unit_axial)
-        found = (self.unit_axial * self.length / self.stiffness) @ self.unit_axial.T
-        for i in range(count):
-            found[i] += (self.turned * products(self.unit_moment[i], self.unit_moment, _NOTHING)).sum(axis=1)
-        total: Array = found
+        every = range(len(self.unit_axial))
+        terms = [[self.of_units(i, j) + self.of_unit_bending(i, j) for j in every] for i in every]
+        total: Array = np.array(terms).reshape(len(every), len(every), -1).sum(axis=2)
         return total
 
     def of_units(self, i: int, j: int) -> Array:
@@ -74,7 +70,7 @@ class Work:
 
     def of_unit_bending(self, i: int, j: int) -> Array:
         """∫ m m' dx/EI of two unknowns (rods,)."""
-        terms: Array = self.turned * products(self.unit_moment[i], self.unit_moment[j], _NOTHING)
+        terms: Array = self.turned * products(self.unit_moment[i], self.unit_moment[j])
         return terms
 
 
@@ -120,8 +116,8 @@ def virtual_work(model: Model, solution: Solution) -> Work:
     )
 
 
-def products(m: Array, moments: Array, load: Array | float) -> Array:
-    """∫ m M dξ from 0 to 1 of rods: m linear, M as well less the parabola ½ q L² ξ (1 − ξ); (…, rods, 2) and (rods,)."""
+def products(m: Array, moments: Array, load: Array | float = 0.0) -> Array:
+    """∫ m M dξ from 0 to 1 of rods: m linear, M as well, less the parabola ½ q L² ξ (1 − ξ); (…, rods, 2) and (rods,)."""
     straight = (
         m[..., 0] * (2.0 * moments[..., 0] + moments[..., 1])
         + m[..., 1] * (moments[..., 0] + 2.0 * moments[..., 1])

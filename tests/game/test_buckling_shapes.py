@@ -109,7 +109,7 @@ def test_a_picture_of_a_buckling_mode(tmp_path: Path, capsys: pytest.CaptureFixt
     ]
     assert main([*words, "1"]) == 0
     assert main([*words, "90"]) == 2
-    assert "There is no number 90 to draw; choose a number from 1 to" in capsys.readouterr().err
+    assert "There is no buckling mode 90; choose a number from 1 to" in capsys.readouterr().err
     assert main(["render", "collision_i", *words[2:], "1"]) == 2
     assert "No force or load acts on the rods" in capsys.readouterr().err
     assert math.isfinite(np.array(Session.open(str(path)).buckling().factors).sum())

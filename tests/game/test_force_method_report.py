@@ -8,19 +8,24 @@ from typing import Any
 
 import pytest
 
+from components.language import spoken
 from components.view import TEXTBOOK, THESIS
 from game.commands.command_line import main
 from game.documents import models
 from game.force_method.report import contents, report
 from game.force_method.tables import Column, Tables
+from systems.render.paper import LAYOUTS, WIDTH, Layout
 from systems.statics.force_method import solve
 from systems.statics.theory import linear
 from systems.statics.unknowns import find_unknown, redundants
 from tests.benchmarks.models import lattice
+from tests.game.force_method_models import panels, propped, two_span
+
+OWN = {"panels": panels, "propped": propped, "two_span": two_span}
 
 
 def solved(name: str, *released: str) -> Tables:
-    model = models.load(name)
+    model = OWN[name]() if name in OWN else models.load(name)
     unknowns = [find_unknown(model, one) for one in released] or redundants(model)
     return Tables.of(model, solve(model, unknowns))
 
@@ -60,6 +65,8 @@ def tables_of(found: Tables, head: str) -> list[list[str]]:
         ("tower", ["R0-R1", "R1-L2"]),
         ("portal", []),
         ("two_storey_frame", ["AC.start", "B.x"]),
+        ("panels", []),
+        ("three_bar_plastic", []),
     ],
 )
 def test_its_forces_are_those_of_linear_theory_to_the_digits_shown(name: str, released: list[str]) -> None:
@@ -101,7 +108,7 @@ def test_the_equation_gives_the_unknown_as_written() -> None:
     said = [
         part for part in written_in(contents(solved("hyperstatic", "BD"), TEXTBOOK)) if isinstance(part, str)
     ]
-    [equation] = [line for line in said if line.endswith("X₁ = 0") and "δ" not in line]
+    [equation] = [line for line in said if line.replace("\u00a0", " ").endswith("X₁ = 0") and "δ" not in line]
     gap, flexibility = (float(part) for part in re.findall(r"[0-9.]+", equation)[:2])
     assert "X₁ = −14.64 kN" in said
     assert f"{-gap / flexibility:.2f}" == "-14.64"
@@ -126,6 +133,72 @@ def test_large_structures_take_several_pages_and_say_what_is_left_out() -> None:
     left_out = model.rods.count - 120
     assert f"{left_out} more rows are not printed; sums are of all." in said
     assert len(report(found, TEXTBOOK)) > 10_000
+
+
+@pytest.mark.parametrize(
+    ("name", "released", "pages"),
+    [
+        ("hyperstatic", ["BD"], 1),
+        ("three_bar_plastic", [], 1),
+        ("panels", [], 1),
+        ("propped", [], 1),
+        ("propped", ["B.y"], 1),
+        ("two_span", [], 1),
+        ("two_span", ["B.y"], 1),
+        ("portal", ["AB.start"], 1),
+        ("portal", [], 2),
+    ],
+)
+@pytest.mark.parametrize("language", ["en", "pt"])
+def test_usual_exercises_fit_on_one_page(name: str, released: list[str], pages: int, language: str) -> None:
+    with spoken(language):
+        made = report(solved(name, *released), TEXTBOOK)
+    assert len(re.findall(rb"/Type /Page\b(?!s)", made)) == pages
+
+
+@pytest.mark.parametrize("layout", LAYOUTS)
+@pytest.mark.parametrize("name", ["panels", "portal", "two_span"])
+def test_nothing_stands_beyond_the_margins_or_over_its_neighbour(name: str, layout: Layout) -> None:
+    for row in rows_in(contents(solved(name), TEXTBOOK, layout)):
+        width, _ = row.wrap(WIDTH, 1e6)
+        assert width <= WIDTH + 0.5
+        for cell, column in zip(row._cellvalues[0], row._colWidths, strict=True):
+            assert all(part.wrap(column, 1e6)[0] <= column + 0.5 for part in cell)
+
+
+def rows_in(parts: Sequence[Any]) -> Iterator[Any]:
+    """The rows of blocks side by side of a report."""
+    for part in parts:
+        if hasattr(part, "_content"):
+            yield from rows_in(part._content)
+        elif hasattr(part, "_cellvalues") and not isinstance(part._cellvalues[0][0], str):
+            yield part
+
+
+def texts_of_figures(found: Tables) -> list[list[str]]:
+    """The texts in each figure of a report, in order."""
+    return [
+        part._picture.texts
+        for row in rows_in(contents(found, TEXTBOOK))
+        for cell in row._cellvalues[0]
+        for part in cell
+        if hasattr(part, "_picture")
+    ]
+
+
+def test_a_unit_force_is_shown_as_a_pair_at_the_cut_without_units() -> None:
+    _, loaded, unit, _ = texts_of_figures(solved("hyperstatic", "BD"))
+    assert "−100.0 kN" in loaded
+    assert "X₁ = 1" in unit
+    assert "−0.7071" in unit
+    assert not any("kN" in text for text in unit)
+
+
+@pytest.mark.parametrize(("name", "released"), [("two_span", "BD.start"), ("portal", "AB.start")])
+def test_a_unit_moment_is_shown_at_the_hinge_without_units(name: str, released: str) -> None:
+    found = texts_of_figures(solved(name, released))[2]
+    assert "X₁ = 1" in found
+    assert not any("kN" in text for text in found)
 
 
 def test_the_command_line_writes_it(tmp_path: Any, capsys: pytest.CaptureFixture[str]) -> None:

@@ -14,7 +14,7 @@ from game import Session
 from tests.properties.soundness import contents
 from tests.reference import bits
 from tests.reference.elements import Model
-from tests.reference.models import model, particle, square
+from tests.reference.models import model, particle, square, triangle
 from tests.reference.sessions import put_states_aside, states_put_aside
 
 Step = tuple[str, Any]
@@ -230,3 +230,17 @@ def test_what_was_moved_apart_before_an_edit_is_so_again_when_that_is_redone() -
     assert contents(session.model) == after
     assert session.undo()
     assert contents(session.model) == before
+
+
+def test_settling_at_the_end_of_a_load_is_repeated_there() -> None:
+    """Settling sets the clock to the time from which the loads are constant; undo and redo do so, too."""
+    rising = {"kind": "table", "times": [0.0, 0.5], "factors": [0.0, 1.0]}
+    session = Session.open(triangle() | {"loads": [{"on": "B", "force": [0.0, -10.0], "history": rising}]})
+    session.press("e")
+    settled = contents(session.model)
+    assert session.time == 0.5
+    session.undo()
+    assert session.time == 0.0
+    session.redo()
+    assert session.time == 0.5
+    assert contents(session.model) == settled

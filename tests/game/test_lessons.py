@@ -209,7 +209,8 @@ def test_a_wrong_number_is_explained_and_typed_anew(session: Session) -> None:
     course = begun(session, "04_supports_and_reactions", 1)
     for typed, said in (
         ("90", "reaction at A"),
-        ("-30", "sign"),
+        ("-30", "Think about the sign"),
+        ("-20", "Neither the sign nor the size"),
         ("1000", "too large"),
         ("--", "not a number"),
     ):
@@ -220,6 +221,99 @@ def test_a_wrong_number_is_explained_and_typed_anew(session: Session) -> None:
     session.type("3e0")
     session.press("return")
     assert course.accepted
+
+
+def test_return_goes_on_from_a_number_that_was_right(session: Session) -> None:
+    course = begun(session, "05_stiffness", 1)
+    for typed, said in (("-4", "size of −4 is too large"), ("-2", "size of −2 is too small")):
+        session.type(typed)
+        session.press("return")
+        assert said in course.said
+    session.type("-2.93")
+    session.press("return")
+    assert course.accepted
+    session.press("return")
+    assert (course.at, session.scene) == (1, "pause")
+    session.press("return")
+    session.scenes.apply(session)
+    assert session.scene == "properties", "a key of the program again"
+
+
+@pytest.mark.parametrize(
+    ("name", "task", "lines", "said"),
+    [
+        ("04_supports_and_reactions", 5, [], "still stable"),
+        ("01_first_structure", 1, [], "no particle yet"),
+        ("01_first_structure", 2, [{"action": "undo"}], "three particles"),
+        ("01_first_structure", 5, [{"set": "particles.*.fixed=false,false"}, {"press": "e"}], "mechanism"),
+        ("02_tension_or_compression", 3, [{"select": "rods.AB"}], "axial force is"),
+        ("04_supports_and_reactions", 3, [{"select": "particles.C"}], "its reaction x is 0 kN"),
+        ("06_statically_indeterminate", 2, [{"set": "particles.C.force=0,-300"}], "stay 100 kN"),
+    ],
+)
+def test_a_wrong_answer_is_explained_by_what_is_the_case(
+    session: Session, name: str, task: int, lines: list[dict[str, Any]], said: str
+) -> None:
+    course = begun(session, name, task)
+    for line in lines:
+        if "select" in line:
+            table, _, element = line["select"].partition(".")
+            session.select(session.model.tables[table][element])
+        else:
+            assert list(perform(session, line)) == []
+    session.press("f5")
+    assert not course.accepted
+    assert said in course.said
+
+
+@pytest.mark.parametrize("release", ["particles.A.fixed_rotation=false", "particles.B.fixed=false,false"])
+def test_any_unknown_of_the_propped_beam_may_be_released(session: Session, release: str) -> None:
+    course = begun(session, "07_force_method", 2)
+    for line in ({"set": release}, {"press": "e"}):
+        assert list(perform(session, line)) == []
+    session.update_view()
+    assert course.accepted, course.said
+
+
+@pytest.mark.parametrize(
+    "lines",
+    [
+        [
+            {"click": [3, 0]},
+            {"press": "l", "over": [3, 0]},
+            {"click": [6, 0]},
+            {"set": "rods.*.bending_stiffness=1e5"},
+        ],
+        [
+            {"set": "particles.M.position=3,1"},
+            {"click": [3, 1]},
+            {"press": "l", "over": [3, 1]},
+            {"click": [6, 0]},
+            {"press": "l", "over": [0, 0]},
+            {"click": [6, 0]},
+        ],
+    ],
+)
+def test_the_lightest_bridge_is_not_won_by_other_means(session: Session, lines: list[dict[str, Any]]) -> None:
+    course = begun(session, "15_lightest_bridge", 2)
+    for line in ({"press": "l", "over": [0, 0]}, *lines):
+        assert list(perform(session, line)) == []
+    session.update_view()
+    session.press("f5")
+    assert not course.accepted, course.said
+
+
+def test_a_task_begins_undeformed_and_without_a_mode(session: Session) -> None:
+    course = begun(session, "04_supports_and_reactions", 1)
+    session.press("e")
+    session.press("b")
+    session.answer(30)
+    session.press("f5")
+    session.update_view()
+    assert course.at == 1
+    assert session.view.shape is None
+    assert not session.particles.displacement.any()
+    assert session.notice == ""
 
 
 def test_the_lightest_bridge_keeps_its_best_score(session: Session) -> None:
@@ -235,7 +329,7 @@ def test_the_lightest_bridge_keeps_its_best_score(session: Session) -> None:
     session.particles["particle 1"].position = (3.0, 0.5)
     session.update_view()
     assert course.mood == "wrong"
-    assert "100 kN at most" in course.said
+    assert "100 kN are allowed" in course.said
 
 
 # --- progress, and the person's own work -----------------------------------------------------------------

@@ -56,7 +56,7 @@ def test_pause_is_the_hub(session: Session, start: str, target: str) -> None:
         session.frame(0.0)
         assert session.scene == target
     else:
-        with pytest.raises(SceneError, match=f"From {start} one cannot go to {target}"):
+        with pytest.raises(SceneError, match=f"From the scene '{start}' one cannot go to '{target}'"):
             session.scenes.request(target)
         session.frame(0.0)
         assert session.scene == start
@@ -71,7 +71,7 @@ def test_a_chain_of_transitions_is_checked_link_by_link(session: Session) -> Non
     session.scenes.request("save", "pause", "simulation")
     session.frame(0.0)
     assert session.scene == "simulation"
-    with pytest.raises(SceneError, match="From save one cannot go to load"):
+    with pytest.raises(SceneError, match="From the scene 'save' one cannot go to 'load'"):
         session.scenes.request("pause", "save", "load")
     session.frame(0.0)
     assert session.scene == "simulation"  # a chain with an illegal link does nothing at all

@@ -163,8 +163,8 @@ def test_of_a_large_structure_some_are_found_and_all_are_counted() -> None:
     ("kind", "number", "said"),
     [
         ("mechanism", 1, "There is no mechanism: every motion stretches a rod."),
-        ("mode", 4, "There is no number 4 to draw; choose a number from 1 to 3."),
-        ("mode", 0, "There is no number 0 to draw; choose a number from 1 to 3."),
+        ("mode", 4, "There is no mode 4; choose a number from 1 to 3."),
+        ("mode", 0, "There is no mode 0; choose a number from 1 to 3."),
     ],
 )
 def test_a_number_that_does_not_exist_is_refused(kind: str, number: int, said: str) -> None:

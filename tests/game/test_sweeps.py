@@ -368,7 +368,7 @@ VARY = {
     "particles.B.force.z=1,2": "load has no part 'z'; write one of force.x, force.y",
     "rods.CA.stiffness~normal(1)": "'normal(1)' is not a distribution; write one of normal, lognormal, uniform",
     "rods.CA.stiffness~weibull(1,2)": "'weibull(1,2)' is not a distribution",
-    "rods.CA.stiffness~normal(1,-2)": "the deviation must be at least 0",
+    "rods.CA.stiffness~normal(1,-2)": "the standard deviation must be at least 0",
     "rods.CA.stiffness~lognormal(-1,2)": "the mean of a lognormal above 0",
     "rods.CA.stiffness~uniform(2,1)": "write uniform(LOWEST,HIGHEST), the lower value first",
     "settings.plasticity~normal(1,2)": "plasticity is not a number; list its values after =",

@@ -72,7 +72,7 @@ def test_an_integrator_that_does_not_act_in_the_scene_is_replaced_with_a_note(wr
     session = struck(integrator="mine", time_step=1e-4)
     session.run(steps=10)
     assert session.simulation.integrator.key == "velocity_verlet"
-    said = "The integrator mine cannot act (not active in simulation, only in force method); velocity_verlet acts instead."
+    said = "The integrator mine cannot act (not active in 'simulation', only in force method); velocity_verlet acts instead."
     assert session.message == said
     session.settings.integrator = "velocity_verlet"
     session.run(steps=10)

@@ -10,6 +10,7 @@ from hypothesis.stateful import RuleBasedStateMachine, initialize, invariant, ru
 
 from game import Session
 from systems.input.bindings import BINDINGS, LIVE
+from systems.render.empty_card import card_button_at
 from tests.properties.soundness import check_sound, contents
 from tests.reference.sessions import put_states_aside
 
@@ -41,23 +42,25 @@ class Editing(RuleBasedStateMachine):
         if key not in ("return", "ctrl+o", "ctrl+s", "ctrl+n", "drag middle"):
             self.session.press(key)
 
-    def on_toolbar(self, at: tuple[float, float]) -> bool:
-        """Whether a point of the model lies behind the toolbar, where a click could leave the model for good."""
-        return self.session.view.strip.contains(self.session.point(*at))
+    def on_button(self, at: tuple[float, float]) -> bool:
+        """Whether a point lies behind the toolbar or the card of an empty model: a click could leave it for good."""
+        pixel, session = self.session.point(*at), self.session
+        on_card = card_button_at(session.model, session.view, pixel) is not None
+        return on_card or session.view.strip.contains(pixel)
 
     @rule(at=places, button=st.sampled_from(["click", "ctrl+click"]))
     def click(self, at: tuple[float, float], button: str) -> None:
-        if not self.on_toolbar(at):
+        if not self.on_button(at):
             self.session.click(*at, button)
 
     @rule(start=places, end=places, button=st.sampled_from(["click", "click", "ctrl+click"]))
     def drag(self, start: tuple[float, float], end: tuple[float, float], button: str) -> None:
-        if not self.on_toolbar(start):
+        if not self.on_button(start):
             self.session.drag(start, end, button)
 
     @rule(start=places, end=places)
     def grab(self, start: tuple[float, float], end: tuple[float, float]) -> None:
-        if not self.on_toolbar(start):
+        if not self.on_button(start):
             self.session.grab(*start)
             self.session.drag_to(*end)
 

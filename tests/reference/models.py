@@ -220,3 +220,56 @@ def two_discs(
         [],
         settings={"restitution": restitution},
     )
+
+
+def struck(integrator: str, *, bends: bool = True) -> Model:
+    """Return a braced portal with a cable and a beam that yields, on which two balls fall while loads change.
+
+    Its feet are clamped if its members bend. Steps end at impacts: they are tried, put back, and taken again.
+    """
+    more: Document = {"bending_stiffness": 5.0} if bends else {}
+    members = [rod(start, end, stiffness=2000, damping=0.5, **more) for start, end in ("AB", "BC", "CD")]
+    members[1] |= {"tensile_strength": 4.0, "compressive_strength": 4.0}
+    braces = [rod("A", "C", stiffness=500, damping=0.2, tension_only=True)]
+    braces += [] if bends else [rod("B", "D", stiffness=2000, damping=0.5)]
+    feet: Document = {"fixed": [True, True], "fixed_rotation": bends}
+    return model(
+        [
+            particle("A", 0, 0, **feet),
+            particle("B", 0, 1),
+            particle("C", 1, 1),
+            particle("D", 1, 0, **feet),
+            particle("ball", 0.02, 1.16, radius=0.1, mass=5, velocity=[0, -3]),
+            particle("other", 0.1, 1.38, radius=0.1, mass=2, velocity=[0, -6]),
+        ],
+        members + braces,
+        settings={"integrator": integrator},
+        environment={"acceleration": [0, -9.81], "drag": 0.5},
+        loads=[
+            {"on": "C", "force": [20, 0], "history": {"kind": "ramp", "start": 0.002, "duration": 0.0}},
+            {"on": "B", "force": [0, 1], "history": {"kind": "sine", "frequency": 30}},
+        ],
+    )
+
+
+def portal_in_wind(integrator: str, **settings: Any) -> Model:
+    """Return a portal frame at rest under the weight of its beam, until wind rises: faster than its rest let expect."""
+    column = {"stiffness": 1_640_000, "bending_stiffness": 12_000, "density": 61.3, "damping": 6000}
+    beam = {"stiffness": 1_130_000, "bending_stiffness": 18_000, "density": 2080, "damping": 3000}
+    feet = {"fixed": [True, True], "fixed_rotation": True}
+    sunk, turned = 0.000149325736, 0.003353410298
+    return model(
+        [
+            particle("A", 0, 0, **feet),
+            particle("B", 0, 4, displacement=[4.5364786e-05, -sunk], rotation=-turned),
+            particle("C", 6, 4, displacement=[-4.5364786e-05, -sunk], rotation=turned),
+            particle("D", 6, 0, **feet),
+        ],
+        [
+            rod("A", "B", **column),
+            rod("B", "C", **beam, distributed_force=[0, -20]),
+            rod("C", "D", **column),
+        ],
+        settings={"integrator": integrator} | settings,
+        loads=[{"on": "B", "force": [35, 0], "history": {"kind": "ramp", "start": 0.01, "duration": 0.5}}],
+    )

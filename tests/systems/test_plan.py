@@ -110,7 +110,7 @@ def test_in_pause_no_time_passes(capsys: pytest.CaptureFixture[str]) -> None:
     assert list(found["phases"]) == ["input", "edit", "step", "events", "render"]
     assert found["phases"]["step"] == []
     assert found["phases"]["edit"] == ["edit.actions", "edit.hover"]
-    assert found["left_out"]["physics.axial_damping"].startswith("not active in pause")
+    assert found["left_out"]["physics.axial_damping"].startswith("not active in 'pause'")
 
 
 @pytest.mark.parametrize("scene", ["properties", "save", "load"])
@@ -279,4 +279,4 @@ def test_what_an_event_noted_in_its_scene_is_kept_in_others(arcade: Callable[...
 
 def test_the_reason_names_all_scenes_in_which_a_system_is_active(arcade: Callable[..., Session]) -> None:
     reasons = arcade(BALL).plan("pause").left_out
-    assert reasons["run.time"] == "not active in pause, only in simulation, arcade"
+    assert reasons["run.time"] == "not active in 'pause', only in simulation, arcade"

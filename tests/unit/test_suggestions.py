@@ -11,7 +11,7 @@ from components.suggestions import missing, nearest
         ("raduis", ["mass", "radius"], "did you mean 'radius'?"),
         ("b", ["A", "B"], "did you mean 'B'?"),  # capitals do not count
         ("Q", ["A", "B"], "choose one of A, B."),
-        ("Q", [f"node {n}" for n in range(51)], "there are 51 others."),
+        ("Q", [f"node {n}" for n in range(51)], "there are 51 to choose from."),
         ("Q", [], "there are none."),
     ],
 )

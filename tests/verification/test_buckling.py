@@ -286,7 +286,7 @@ def test_notes_name_struts_and_strains() -> None:
     assert "is shortened by" in found.notes[0]
     assert "At a lower load, rod AB would buckle between its hinges" in found.notes[1]
     (coarse,) = buckling(parse(column(1, PINNED, HEADS["pinned"]))).notes
-    assert "Rod R0 bends more between its ends than one rod can follow" in coarse
+    assert "Rod R0 bends more between its ends than a single rod can represent" in coarse
     assert not buckling(parse(column(1, CLAMPED, HEADS["free"]))).notes
 
 

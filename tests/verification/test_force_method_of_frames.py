@@ -176,3 +176,11 @@ def test_unknowns_that_are_none_are_explained(name: str, words: str) -> None:
 def test_bundled_models(name: str) -> None:
     made = models.load(name)
     checked(made, redundants(made))
+
+
+def test_a_flexibility_that_is_zero_is_told_as_zero() -> None:
+    """By symmetry a horizontal force at the foot of a portal does not lift it."""
+    model = models.load("portal")
+    flexibility = solve(model, [find_unknown(model, name) for name in ("D.x", "D.y")]).flexibility
+    assert flexibility[0, 1] == flexibility[1, 0] == 0.0
+    assert (np.diag(flexibility) > 0.0).all()

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import math
+
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
@@ -12,6 +14,7 @@ from systems.program.compiler import Compile
 from tests.reference import bits
 from tests.reference.elements import Model
 from tests.reference.forms import all_modules, load_all, programs
+from tests.reference.models import portal_in_wind, struck
 from tests.reference.random_models import case, numbers_of
 from tests.verification.test_determinism import DOCUMENTS
 
@@ -23,6 +26,13 @@ KINDS = (
     "free discs that collide",
     "discs on trusses",
 )  # each is compiled
+
+STEPS = 90
+MEETING = {  # what may meet: steps that were tried are put back, and taken again
+    **{f"truss, {name}": struck(name, bends=False) for name in INTEGRATORS},
+    **{f"frame, {name}": struck(name) for name in INTEGRATORS},
+    **{f"portal, {name}": portal_in_wind(name) for name in INTEGRATORS},
+}
 
 
 def state(model: str | Model, steps: int, choice: Compile, switch: int | None = None, **chosen: str) -> bytes:
@@ -69,5 +79,25 @@ def test_machine_code_may_take_over_at_any_step(title: str, turn: int, switch: i
 def test_bits_do_not_depend_on_the_portions_of_interpreted_steps(
     document: Model, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr("systems.program.compiler.LONGEST_CALL", 1e-4)
+    monkeypatch.setattr("systems.program.compiler.LONGEST_CALL", 0.0)
     assert state(document, 300, Compile.NEVER) == state(document, 300, Compile.ALWAYS)
+
+
+@pytest.mark.parametrize("document", MEETING.values(), ids=list(MEETING))
+def test_bits_of_what_may_meet_do_not_depend_on_the_portions(
+    document: Model, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Portions are of one step where calls may take no time, and of 1, 8, 64, … where they may take any."""
+    found = set()
+    for longest in (0.0, math.inf):
+        monkeypatch.setattr("systems.program.compiler.LONGEST_CALL", longest)
+        found.add(state(document, STEPS, Compile.NEVER))
+    assert len(found) == 1
+
+
+@pytest.mark.parametrize("title", ["frame, velocity_verlet", "frame, dop853", "portal, dop853"])
+def test_machine_code_may_take_over_from_frames_at_any_step(title: str) -> None:
+    document = MEETING[title]
+    interpreted = state(document, STEPS, Compile.NEVER)
+    for switch in (1, 13, 40, STEPS - 1):
+        assert state(document, STEPS, Compile.ELSEWHERE, switch) == interpreted, switch

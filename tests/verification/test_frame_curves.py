@@ -154,7 +154,7 @@ def test_the_command_tells_points_and_events(capsys: pytest.CaptureFixture[str],
     assert last["rods"]["R0"]["bending_moment"][0] == found["bending_moment"]["R0.start"][-1]
     assert last["load_factor"] == found["load_factor"][-1]
     assert main([*words[:-2], "--branch", "3"]) == 1
-    assert "passes only 1 bifurcation, so that there is no branch 3" in capsys.readouterr().err
+    assert "The curve has one bifurcation, so there is no branch 3; choose 1 or -1." in capsys.readouterr().err
 
 
 @pytest.mark.parametrize(

@@ -179,7 +179,7 @@ def test_a_table_may_be_of_numpy() -> None:
     load = session.loads[0]
     load.history = {"kind": "table", "times": np.linspace(0.0, 1.0, 3), "factors": np.array([0, 1, 0])}
     assert load.history == {"kind": "table", "times": (0.0, 0.5, 1.0), "factors": (0.0, 1.0, 0.0)}
-    with pytest.raises(FieldError, match="history times is"):
+    with pytest.raises(FieldError, match="times of the history is"):
         load.history = {"kind": "table", "times": np.float64(1.0), "factors": [1.0]}
 
 

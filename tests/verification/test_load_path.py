@@ -96,7 +96,7 @@ def test_what_has_no_curve_is_refused(words: list[str], said: str, capsys: pytes
 
 def test_a_curve_that_ends_early_says_so(capsys: pytest.CaptureFixture[str]) -> None:
     assert main(["curve", "von_mises", "--until", "B.y=-2.2", "--points", "5"]) == 1
-    assert "The curve ends at the load factor" in capsys.readouterr().err
+    assert "The curve stops at the load factor" in capsys.readouterr().err
 
 
 def test_a_curve_of_a_mechanism_says_what_moves(capsys: pytest.CaptureFixture[str], tmp_path: Path) -> None:
@@ -113,8 +113,9 @@ def test_a_curve_of_a_mechanism_says_what_moves(capsys: pytest.CaptureFixture[st
     }
     (tmp_path / "square.json").write_text(json.dumps(square))
     assert main(["curve", str(tmp_path / "square.json")]) == 1
-    assert "ends at the load factor 0. The structure is a mechanism: C and D along x can move." in (
-        capsys.readouterr().err
+    assert (
+        "ends where it begins, at the load factor 0. The structure is a mechanism: C and D along x can move."
+        in (capsys.readouterr().err)
     )
 
 

@@ -202,8 +202,10 @@ def test_the_error_is_in_the_report(capsys: pytest.CaptureFixture[str]) -> None:
     found = json.loads(capsys.readouterr().out)["error_estimate"]
     assert 0.0 < found["displacement"] < 0.01 * found["relative"]  # of some millimetres
     assert main([*words, "table"]) == 0
-    shares = (found[f"relative{of}"] for of in ("", "_velocity", "_axial_force"))
-    assert f"{', '.join(f'{share:.7g}' for share in shares)} of the largest" in capsys.readouterr().out
+    names = {"displacements": "", "velocities": "_velocity", "axial forces": "_axial_force"}
+    shares = ", ".join(f"{name} {found[f'relative{of}']:.7g}" for name, of in names.items())
+    said = "errors as shares of the largest value, measured by a run with finer steps:"
+    assert f"{said}\n{shares}\n" in capsys.readouterr().out
 
 
 def test_the_error_is_in_the_energy_panel_while_nothing_moves() -> None:
@@ -211,14 +213,14 @@ def test_the_error_is_in_the_energy_panel_while_nothing_moves() -> None:
     session.view.energy = True
     (readout,) = own_readouts(session)
     assert readout.rows[-3] == (
-        "displacement error",
-        "0.0011 of the largest",
+        "error of displacements",
+        "0.11 % of the largest",
     )  # e^−ζωt (ωh)²/24 ωt
-    assert [title for title, _ in readout.rows[-2:]] == ["velocity error", "axial force error"]
+    assert [title for title, _ in readout.rows[-2:]] == ["error of velocities", "error of axial forces"]
     session.press("space")
     assert session.busy
     (readout,) = own_readouts(session)
-    assert readout.rows[-1][0] == "imbalance"
+    assert readout.rows[-1][0] == "numerical imbalance"
 
 
 def test_at_rest_time_that_passes_without_steps_is_not_run_again(capsys: pytest.CaptureFixture[str]) -> None:

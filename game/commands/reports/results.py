@@ -9,7 +9,7 @@ import numpy as np
 
 from components.field import Column, Field
 from components.handle import Handle
-from components.language import marked, tr
+from components.language import joined, marked, several, tr
 from components.model import Model
 from components.particle import Particle
 from components.rod import Rod, bends
@@ -111,9 +111,8 @@ def _elements(model: Model, name: str, given: Mapping[str, Column]) -> dict[str,
             element, value = model.describe(table[row]), field.loaded(column, row)
             raise ResultError(
                 tr(
-                    "{element}: {field} is {value}, not a finite number; report an earlier state.",
-                    element=element,
-                    field=field.title,
+                    "{where} is {value}, not a finite number; report an earlier state.",
+                    where=joined([element, field.named()], ": "),
                     value=str(value),
                 )
             )
@@ -172,7 +171,7 @@ def run_lines(run: Run) -> Iterator[str]:
     if error := run.get("error_estimate"):
         known = {tr(title): as_written(error[key]) for key, title in _ERRORS.items() if key in error}
         yield tr("errors as shares of the largest value, measured by a run with finer steps:")
-        yield ", ".join(f"{title} {value}" for title, value in known.items())
+        yield several(f"{title} {value}" for title, value in known.items())
     yield tr(
         "computed in {computing} s, compiled in {compiling} s",
         computing=as_written(run["wall_seconds"]),

@@ -349,7 +349,7 @@ def _formula(found: Found) -> str:
     count = Count(**numbers)
     said = count.by_rank(degrees["static"], degrees["mechanisms"])
     rule = f"{count.formula} = {count.numbers}"
-    return tr("{rule}; by rank: {said}", rule=rule, said=said) if said else rule
+    return tr("{rule}; by matrix rank: {said}", rule=rule, said=said) if said else rule
 
 
 def _verify_lines(found: Found) -> Iterator[str]:
@@ -369,7 +369,7 @@ def _verify_lines(found: Found) -> Iterator[str]:
                 yield tr("natural frequencies under load, Hz: {values}", values="  ".join(values))
     for quantity, (_, unit) in QUANTITIES.items():
         shown, factor = _IN_TABLES.get(unit, (unit, 1.0))
-        rows = {f"{name} {axis}".rstrip(): values for name, axis, values in _values(found, quantity)}
+        rows = {f"{name} {tr(axis)}".rstrip(): values for name, axis, values in _values(found, quantity)}
         if rows:
             yield ""
             yield from aligned(_cells(f"{tr(_TITLES[quantity])}, {shown}", factor, rows))

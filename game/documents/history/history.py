@@ -161,7 +161,10 @@ class History:
             self._simulation.resume(entry.before)
             title = "run"
         else:
-            target.push(Edit(self._model.apply(entry.inverse), self._like(entry.clock), entry.key))
+            clock = self._like(
+                entry.clock
+            )  # as the edit left it, such as settling at the end of a load's history
+            target.push(Edit(self._model.apply(entry.inverse), clock, entry.key))
             if entry.clock is not None:
                 self._simulation.resume(entry.clock)
             title = _title(entry.inverse)

@@ -98,7 +98,10 @@ def _form_scene(context: Context) -> FormScene:
     scene = context.scenes.active
     if not isinstance(scene, FormScene):
         raise SceneError(
-            tr("In {scene} there are no boxes; go to properties, save or load first.", scene=scene.name)
+            tr(
+                "In the scene '{scene}' there are no boxes; go to 'properties', 'save' or 'load' first.",
+                scene=scene.name,
+            )
         )
     return scene
 

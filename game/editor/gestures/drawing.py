@@ -282,7 +282,7 @@ class DrawMoment(DrawFromParticle):
             )
         super().__init__(context, particle)
         self.hint = tr(
-            "moment on {particle}: click left of it for counter-clockwise, right for clockwise     Esc cancel",
+            "moment on {particle}: click at its left (counter-clockwise) or right     Esc cancel",
             particle=particle.name,
         )
 

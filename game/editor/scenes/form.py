@@ -19,7 +19,9 @@ from systems.render.panel import caret_at
 from systems.render.picture import Stage
 
 # By titles that boxes once had, and scripts still name them by, those of today.
-FORMER = {f"applied force {axis}": f"load {axis}" for axis in "xy"}
+FORMER = {f"applied force {axis}": f"load {axis}" for axis in "xy"} | {
+    "undeformed diagrams": "diagrams on undeformed rods"
+}
 
 
 class Texts(dict[str, str]):

@@ -71,7 +71,7 @@ MODEL = {
         ("plot isostatic", "required: --of, --until, --output. See: pinjoint plot --help"),
         ("plot missing --of time --until 1 --output x.csv", "no bundled model 'missing'"),
         ("plot isostatic --of rods.AX.strain --until 1 --output x.csv", "no 'AX' among the rods"),
-        ("plot isostatic --of time --until 1 --output x.pdf", "ends with .csv or .png"),
+        ("plot isostatic --of time --until 1 --output x.pdf", "ends with one of .csv, .png"),
         ("shake isostatic missing.csv --output x.json", "missing.csv cannot be read: No such file"),
         ("play missing.jsonl", "There is no file and no lesson 'missing.jsonl'; choose one of 01_first"),
         ("play 1_draw_truss", "did you mean '1_draw_a_truss'?"),

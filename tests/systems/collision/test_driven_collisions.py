@@ -17,7 +17,12 @@ from systems.collision.driven.compiled import DRIVEN, kernels
 from systems.collision.driven.neighbours import NeighbourList
 from systems.collision.system import persistent_contacts
 from systems.edit.pull import hand_on
+from systems.physics.integrators import INTEGRATORS
+from systems.program.compiler import Compile
 from systems.program.program import Program
+from tests.reference import bits
+from tests.reference.forms import programs
+from tests.reference.models import portal_in_wind, struck
 
 GRAVITY = {"acceleration": [0.0, -9.81]}
 
@@ -529,6 +534,35 @@ def test_a_step_that_is_cut_does_not_outlast_the_run() -> None:
     )
     session.run(time=1e-4)
     assert session.time == pytest.approx(0.1001, abs=1e-15)
+
+
+@pytest.mark.parametrize("integrator", list(INTEGRATORS))
+def test_a_frame_in_which_nothing_meets_moves_as_without_collisions(integrator: str) -> None:
+    """Also where more steps were taken at once than could be known to be clear, which are put back."""
+    found = []
+    with programs(Compile.NEVER):
+        for collisions in (True, False):
+            session = Session.open(portal_in_wind(integrator, collisions=collisions))
+            session.run(steps=90)
+            assert session.simulation.programs.collides is collisions
+            found.append(bits.state(session.model))
+    assert bits.different(*found) == []
+
+
+@pytest.mark.parametrize("integrator", list(INTEGRATORS))
+def test_up_to_an_impact_a_frame_moves_as_without_collisions(integrator: str) -> None:
+    """The step that ends there is taken again, from the forces and moments at its beginning."""
+    document = struck(integrator)
+    with programs(Compile.NEVER):
+        session, alone = Session.open(document), Session.open(document)
+        alone.settings.collisions = False
+        while session.model.clock.collisions == 0:
+            session.run(steps=1)
+        alone.simulation.run_to(session.time)
+    frame, expected = session.model.particles, alone.model.particles
+    assert np.abs(expected.angular_velocity).max() > 1e-3
+    assert frame.rotation == pytest.approx(expected.rotation, rel=1e-12, abs=1e-15)
+    assert frame.angular_velocity == pytest.approx(expected.angular_velocity, rel=1e-12, abs=1e-13)
 
 
 def test_an_impact_that_would_be_reflected_for_minutes_ends() -> None:
