@@ -212,7 +212,7 @@ def apply_override(model: Model, override: str) -> None:
             raise PathError(tr("it has no value; {form}.", form=tr(OVERRIDE_FORM)))
         if not target.handles:
             raise PathError(
-                tr("the model has no {table}; add some, or leave this out.", table=target.table.name)
+                tr("the model has no {table}; add some, or leave this out.", table=tr(target.table.name))
             )
         model.assign(target.handles, target.field.name, _values(target, rest[1:].strip()))
 

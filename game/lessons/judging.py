@@ -195,7 +195,8 @@ def _asked_for(truth: Session, asked: str) -> tuple[list[Handle], dict[Handle, s
         ]
     target, _ = locate(truth.model, path.strip(), readable)
     unit, factor = target.field.shown
-    title = f"{tr(target.field.title)} {target.axis}" if target.axis else target.field.title
+    title = tr(target.field.title)
+    title = f"{title} {target.axis}" if target.axis else title
     written_values = {
         handle: tr(
             "its {title} is {value} {unit}", title=title, value=_number(factor * value), unit=unit

@@ -131,7 +131,7 @@ def _read(model: Model, text: str) -> Variation:
     try:
         target, rest = locate(model, text, settable)
         if not target.handles:
-            raise PathError(tr("the model has no {table}; vary something else.", table=target.table.name))
+            raise PathError(tr("the model has no {table}; vary something else.", table=tr(target.table.name)))
         if target.field.shape and not target.axis:
             raise PathError(tr("vary one component, {key}.x or {key}.y.", key=target.field.key))
         if rest.startswith("="):

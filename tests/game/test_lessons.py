@@ -10,6 +10,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from components.language import spoken
 from components.model import Model
 from game import Session
 from game.documents import preferences
@@ -58,6 +59,17 @@ def test_any_triangle_is_a_first_structure(session: Session) -> None:
     assert course.accepted
     session.press("f5")
     assert course.at == 1
+
+
+def test_a_refused_selection_is_said_wholly_in_the_language(session: Session) -> None:
+    with spoken("pt"):
+        course = begun(session, "02_tension_or_compression", 2)
+        session.select(session.rods["AB"])
+        session.press("f5")
+        assert "esforço axial" in course.said and "axial force" not in course.said
+        session.select(session.particles["A"])
+        session.press("f5")
+        assert "barras" in course.said and "rods" not in course.said
 
 
 def test_predictions_do_not_depend_on_what_was_tried(session: Session) -> None:
