@@ -94,7 +94,7 @@ class Performance:
         finally:
             session.performing, session.footer = False, None
             self._grow(-grown)
-        if not self._ended:
+        if not self._ended and session.course is None:  # where a task was shown, its card says what to do next
             session.notice = tr(DONE)
         return failures
 

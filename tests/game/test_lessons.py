@@ -455,6 +455,24 @@ def test_own_lessons_stand_on_the_start_page(
     assert session.course.lesson.title == "Mine"
 
 
+def test_the_start_page_offers_to_continue_what_was_begun(session: Session) -> None:
+    def first() -> Any:
+        session.press("d")
+        titles = [tile.title for tile in session.scenes.active.form.tiles]  # type: ignore[attr-defined]
+        session.press("escape")
+        return next(title for title in titles if title.startswith(("Learn: ", "Continue: ")))
+
+    names = lessons_with_tasks()
+    assert first() == "Learn: 1 Draw a structure"
+    progress.keep(names[4], 1)
+    assert first() == "Learn: 1 Draw a structure"
+    progress.keep(names[0], 1)
+    assert first() == "Continue: 1 Draw a structure"
+    for number in range(2, 6):
+        progress.keep(names[0], number)
+    assert first() == "Continue: 2 Tension or compression"
+
+
 # --- the card --------------------------------------------------------------------------------------------
 
 

@@ -14,7 +14,7 @@ import pytest
 from components.model import Model
 from game import Session
 from game.app import App
-from game.documents import library, models
+from game.documents import library, models, preferences
 from game.documents.open_documents import ModelFile
 from game.editor.scenes.load import LESSONS
 from game.scripts.performance import FOOTER, Performance
@@ -139,3 +139,20 @@ def test_a_lesson_is_chosen_from_the_pictures() -> None:
     assert session.lesson is not None
     assert session.lesson.title.startswith("Two in")
     assert session.particles.count == models.load("newtons_cradle").particles.count
+
+
+def test_after_a_task_was_shown_only_its_card_says_what_to_do(
+    app: App, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setenv(preferences.CONFIG_VARIABLE, str(tmp_path))
+    session = app.session
+    session.begin_lesson(Script("03_stable_or_mechanism"))
+    assert session.course is not None
+    session.course.begin(1)
+    session.press("f7")
+    script, session.lesson = session.lesson, None
+    assert script is not None
+    assert Performance(app, script, pace=0.0).play() == []
+    app.frame(0.0)
+    assert session.course.accepted
+    assert session.notice == ""

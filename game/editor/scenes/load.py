@@ -161,8 +161,8 @@ def _yours(context: Context) -> list[Offer]:
 
 def _tasks() -> list[Offer]:
     """The lessons with tasks, from the first that is not done on; then those that are done."""
-    offers = []
-    for script in sorted(shelf(), key=is_done):
+    offers, scripts = [], shelf()
+    for script in sorted(scripts, key=is_done):
         count, done = count_of(script), len(progress.done(script.name).tasks)
         caption = tr("a lesson of {count} tasks", count=count)
         if is_done(script):
@@ -174,7 +174,10 @@ def _tasks() -> list[Offer]:
             Offer(tr(LESSONS), title, caption, script.name, script, about, "✓" if is_done(script) else "▶")
         )
     if offers and not is_done(offers[0].source):
-        offers[0] = offers[0]._replace(title=tr("Learn: {lesson}", lesson=offers[0].title))
+        first, title = offers[0].source, offers[0].title
+        begun = first is not scripts[0] or progress.done(first.name).tasks
+        title = tr("Continue: {lesson}", lesson=title) if begun else tr("Learn: {lesson}", lesson=title)
+        offers[0] = offers[0]._replace(title=title)
     return offers
 
 
