@@ -36,6 +36,7 @@ class Label(NamedTuple):
     quantity and row, if the label is to stay where it was in the last picture. of: whose it is. own: what it must be
     nearest to among the parts of the picture, if anything. anchors: of a value, where a line from it may lead, (k, 2), the
     best first; none: it is a name, which gives way to values. outward: the direction in which it had best stand from there.
+    close: how many of the first places are so close that it may be nearer to something else if need be.
     """
 
     text: str
@@ -51,6 +52,7 @@ class Label(NamedTuple):
     own: Owner | None = None
     anchors: Points = np.empty((0, 2))
     outward: Points = np.array([0.0, -1.0])
+    close: int = 0
 
 
 @lru_cache(maxsize=8192)
@@ -70,16 +72,30 @@ def place_labels(labels: Iterable[Label], occupancy: Occupancy, unit: float, pla
     marks: list[Mark] = []
     if ranked:
         occupancy.parts.gather(np.concatenate([label.places for label in ranked]))
-    for group in ([label for label in ranked if (len(label.anchors) == 0) == name] for name in (False, True)):
-        found = _beside(
-            group, [former.get(label.key, -1) if label.key else -1 for label in group], occupancy, unit
-        )
-        for index, (place, x, y) in found.items():
-            marks += _marks(group[index], place, x, y, unit, placed)
-        left = [label for index, label in enumerate(group) if index not in found and len(label.anchors)]
-        if left:
-            marks += _led(left[:TRIED], former, occupancy, unit, placed)
+    values, names = ([label for label in ranked if (len(label.anchors) == 0) == name] for name in (False, True))
+    left = _put(values, former, occupancy, unit, placed, marks)
+    if left:
+        marks += _led(left[:TRIED], former, occupancy, unit, placed)
+    left = _put(names, former, occupancy, unit, placed, marks)
+    close = [n._replace(places=n.places[: n.close], own=None) for n in left if n.close]
+    _put(close, former, occupancy, unit, placed, marks)
     return marks
+
+
+def _put(
+    labels: Sequence[Label],
+    former: dict[Key, int],
+    occupancy: Occupancy,
+    unit: float,
+    placed: Placed,
+    marks: list[Mark],
+) -> list[Label]:
+    """Add the marks of labels that may be at one of their places; returns the others."""
+    before = [former.get(label.key, -1) if label.key else -1 for label in labels]
+    found = _beside(labels, before, occupancy, unit)
+    for index, (place, x, y) in found.items():
+        marks += _marks(labels[index], place, x, y, unit, placed)
+    return [label for index, label in enumerate(labels) if index not in found]
 
 
 def _marks(label: Label, place: int, x: float, y: float, unit: float, placed: Placed) -> list[Mark]:

@@ -21,6 +21,7 @@ from systems.render.symbols import LARGEST_STAMP, RIM, arcs, circle, dashed
 from systems.render.theme import Colour, faded
 
 _CLOSEST_LINES = 8.0  # points between grid lines
+_CLOSE = 8  # places of a name that touch its particle
 _CABLE = 0.5  # width of a cable, of that of another rod
 _DASH = 5.0  # points
 _GHOST_FROM = 4.0  # points of displacement
@@ -290,7 +291,8 @@ def label_names(sheet: Sheet) -> None:
             else:
                 label = Label(name, at, size, sheet.theme.muted, 1e12, weight, lines="avoid", key=key)
             own = None if is_marked else (table, row)  # what is marked is not taken for another
-            sheet.labels.append(label._replace(of=(table, row), own=own))
+            close = _CLOSE if table == "particles" else 0
+            sheet.labels.append(label._replace(of=(table, row), own=own, close=close))
 
 
 def _beside_particle(sheet: Sheet, row: int, half: tuple[float, float]) -> list[tuple[float, float]]:

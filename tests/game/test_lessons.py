@@ -21,6 +21,9 @@ from game.lessons.course import Course
 from game.scripts.lines import perform
 from game.scripts.script import Script, ScriptError, lessons_with_tasks
 from systems.render.lesson_card import CardLayout
+from systems.render.marks import Text
+from systems.render.picture import compose_all
+from systems.render.theme import load_theme
 from systems.render.typography import text_width
 
 
@@ -500,6 +503,22 @@ def test_every_task_is_legible_in_windows_of_all_sizes(
             assert card.top <= top < top + line.height <= layout.bottom + 1.0
             for part in line.text.split("\n"):
                 assert layout.left + text_width(part, line.size) <= layout.right, part
+
+
+@pytest.mark.parametrize("size", [(1024, 640), (1280, 800)])
+@pytest.mark.parametrize("name", ["02_tension_or_compression", "04_supports_and_reactions", "12_frames"])
+def test_every_joint_that_a_task_speaks_of_has_its_name_on_the_picture(
+    name: str, size: tuple[int, int]
+) -> None:
+    session = Session(Model())
+    session.resize(*size)
+    course = begun(session, name)
+    for number in range(len(course.lesson.tasks)):
+        course.begin(number)
+        session.update_view()
+        pictures = compose_all(session.stages, load_theme("light"))
+        texts = {mark.text for picture in pictures for mark in picture.marks if isinstance(mark, Text)}
+        assert texts >= {particle.name for particle in session.particles}, number + 1
 
 
 def test_a_film_puts_a_lesson_away_but_not_its_solution(session: Session) -> None:
