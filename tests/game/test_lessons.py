@@ -319,6 +319,13 @@ def test_a_task_begins_undeformed_and_without_a_mode(session: Session) -> None:
     assert session.notice == ""
 
 
+def test_the_task_without_a_load_shows_none_and_equilibrium_is_said(session: Session) -> None:
+    begun(session, "06_statically_indeterminate", 5)
+    assert not session.particles.force.any()
+    session.press("e")
+    assert session.notice == "The structure is in equilibrium."
+
+
 def test_the_lightest_bridge_keeps_its_best_score(session: Session) -> None:
     course = begun(session, "15_lightest_bridge", 2)
     for line in course.task.solution:
