@@ -67,8 +67,10 @@ def test_a_refused_selection_is_said_wholly_in_the_language(session: Session) ->
         session.select(session.rods["AB"])
         session.press("f5")
         assert "esforço axial" in course.said
+        assert "axial force" not in course.said
         session.select(session.particles["A"])
         session.press("f5")
+        assert "barras" in course.said
         assert "rods" not in course.said
 
 
