@@ -10,7 +10,7 @@ WIDE, COLUMN, WIDEST, COLUMN_SHARE = (
     380.0,
     0.27,
 )  # points: from which width on it is a column; its width
-STRIP, HIGHEST, STRIP_SHARE = 132.0, 220.0, 0.32  # points, and share of the height: of a strip below the model
+STRIP, HIGHEST, STRIP_SHARE = 132.0, 230.0, 0.38  # points, and share of the height: of a strip below the model
 
 
 @dataclass(frozen=True)
@@ -31,7 +31,7 @@ class Card:
     title: of the lesson. progress: which task of how many, and done: those that were done. paragraphs: the task.
     choices: (text, chosen) of possible answers, with the action of each in `answers`. entry: what was typed, with its unit;
     None: nothing is to be typed. said: what is said of the last check, or a hint, and its `mood`: "right", "wrong", "hint".
-    first: lines that are scrolled away.
+    first: by how many lines it is scrolled on, or back if negative.
     """
 
     title: str

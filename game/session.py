@@ -307,8 +307,7 @@ class Session(Context):
 
     def leave_lesson(self) -> None:
         """Leave the lesson for the document that was open before it."""
-        self.course = self.beside = None
-        self.resize(*self.extent, self.view.pixel_ratio)
+        self._put_away_lesson()
         if self.scene != "pause":
             self.scenes.request("pause")
             self.scenes.apply(self)
@@ -317,6 +316,10 @@ class Session(Context):
             self.documents.move(-1)
         self.begin_document()
 
+    def _put_away_lesson(self) -> None:
+        self.course = self.beside = None
+        self.resize(*self.extent, self.view.pixel_ratio)
+
     def answer(self, value: Any) -> None:
         """Answer the task of a lesson: names of elements to select, a number, or the text of a choice."""
         if self.course is None:
@@ -324,8 +327,10 @@ class Session(Context):
         self.course.answer(value)
 
     def take_up_lesson(self) -> None:
-        """Begin the lesson with tasks that a person chose."""
+        """Begin the lesson with tasks that a person chose; one to watch puts that away which was begun."""
         script = self.lesson
+        if script is not None and not script.has_tasks and self.course is not None and script.name:
+            self._put_away_lesson()
         if script is None or not script.has_tasks:
             return
         self.lesson = None

@@ -53,9 +53,7 @@ class ProgramPreparation(Protocol):
 class Course(Protocol):
     """A lesson that a person is in, and its present task; see game/lessons/course.py."""
 
-    accepted: bool
     typed: str
-    first: int
 
     @property
     def awaits_number(self) -> bool:

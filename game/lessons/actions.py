@@ -100,10 +100,9 @@ for _number in range(1, MOST_ANSWERS + 1):
 
 @action("lesson up", while_drawing=True)
 def _up(session: Session, pixel: Vector) -> None:
-    course = _course(session)
-    course.first = max(course.first - 2, 0)
+    _course(session).scroll(-2)
 
 
 @action("lesson down", while_drawing=True)
 def _down(session: Session, pixel: Vector) -> None:
-    _course(session).first += 2
+    _course(session).scroll(2)

@@ -20,6 +20,7 @@ from game.scripts.script import ScriptError
 
 RIGHT, WRONG, HINT = "right", "wrong", "hint"  # moods of what is said
 IN_NUMBERS = frozenset("0123456789.,-−+")  # not e, which is a key
+MOST_LINES = 40  # by which a card is scrolled
 LONGEST = 16  # characters of a number that is typed
 SOLVED = marked("That was one way to do it. Now try it: Again starts the task once more; Next goes on.")
 FINISHED = marked("This lesson is done.")
@@ -42,6 +43,7 @@ class Course:
         self.first = 0
         self._hints = 0  # that were shown
         self._begun: Document = {}
+        self._opened = ""  # the name of its model
         self._unit = ""
         self._seen: object = None
         self._scored = ""
@@ -113,6 +115,7 @@ class Course:
             session.scenes.apply(session)
         own = not session.document.practice and session.model.particles.count > 0
         session.adopt(model, ModelFile(None, name), keep=own)
+        self._opened = name
         session.document.practice = True
         session.notice = ""
 
@@ -128,7 +131,7 @@ class Course:
 
     def again(self) -> None:
         """Begin the task anew, from the model with which it began."""
-        self._open(load(self._begun), self._session.file.name)
+        self._open(load(self._begun), self._opened)
         self._forget()
 
     def next(self) -> bool:
@@ -269,6 +272,10 @@ class Course:
         seen = [value for value in vars(session.view).values() if isinstance(value, bool | str | Shape | None)]
         chosen = self._selected() if self.task.kind == SELECT else ()
         return id(session.document), session.model.revision, session.simulation.halted, seen, chosen
+
+    def scroll(self, lines: int) -> None:
+        """Move what is said on the card up by some lines, down if negative."""
+        self.first = min(max(self.first + lines, -MOST_LINES), MOST_LINES)
 
     # --- the card ----------------------------------------------------------------------------------
 

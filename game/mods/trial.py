@@ -131,14 +131,14 @@ class _Trial:
         for binding in BINDINGS:
             if binding.action.startswith(f"{self.mod.name}."):
                 for scene in sorted(set(binding.scenes) - scenes):
-                    self._note(
-                        tr(
-                            "The key '{key}' for {action}: {problem}",
-                            key=binding.key,
-                            action=binding.action,
-                            problem=missing(marked("scenes"), scene, scenes),
-                        )
+                    problem = missing(marked("scenes"), scene, scenes)
+                    sentence = tr(
+                        "The key '{key}' for {action}: {problem}",
+                        key=binding.key,
+                        action=binding.action,
+                        problem=problem,
                     )
+                    self._note(sentence)
 
     # --- what must be tried ----------------------------------------------------------------------------
 

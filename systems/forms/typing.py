@@ -173,7 +173,8 @@ def _entered(box: Box, character: str) -> tuple[str, int] | None:
     """Text and caret after a character was typed; None if the box does not accept it."""
     words: Sequence[str] = box.words or ()
     whole = box.marked or (box.text in words and box.accepts != NAME)
-    before, after = ("", "") if whole else (box.said_text[: box.caret], box.said_text[box.caret :])
+    held = box.said_text if box.accepts == NAME else box.text  # numbers are held with a point
+    before, after = ("", "") if whole else (held[: box.caret], held[box.caret :])
     after = "" if box.accepts == NAME and box.text in words else after
     if box.accepts == NUMBER:
         if box.unit in LENGTHS and _WITH_UNIT_SO_FAR.fullmatch(before + character + after):

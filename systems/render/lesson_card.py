@@ -10,7 +10,7 @@ from components.camera import Rectangle
 from components.card import CardButton
 from components.field import Vector
 from components.view import View
-from systems.render.marks import Mark, Panel, Points, Stamps, Strokes, Text, boxes
+from systems.render.marks import Fills, Mark, Panel, Points, Stamps, Strokes, Text, boxes
 from systems.render.theme import Colour, Theme, faded
 from systems.render.typography import font_size, line_height, shortened, text_width, wrapped
 
@@ -53,8 +53,9 @@ class CardLayout:
         self.bottom = (v.bottom if self.strip else self.buttons[0][0].top) - _GAP * u
         self.lines = self._lines(font_size(_TEXT, u))
         if sum(line.height for line in self.lines) > self.bottom - self.top:
-            self.lines = self._lines(font_size(_LEAST, u))
-        self.first = min(self.card.first, self._most_scrolled())
+            self.lines = self._lines(font_size(_LEAST, u), 0.5)
+        most = self._most_scrolled()
+        self.first = min(max((most if self.card.said else 0) + self.card.first, 0), most)
         self.shown = self._shown()
 
     def _buttons(self, view: View) -> list[tuple[Rectangle, CardButton]]:
@@ -75,21 +76,22 @@ class CardLayout:
                 placed.append((Rectangle(x, y, width, height), button))
         return placed
 
-    def _lines(self, size: int) -> list[_Line]:
-        """All that is said and asked, in lines."""
+    def _lines(self, size: int, loose: float = 1.0) -> list[_Line]:
+        """All that is said and asked, in lines; loose: the share of the usual space between parts."""
         card, u, width, high = self.card, self.unit, self.right - self.left, line_height(size)
+        row_height, gap = high + (_ROW - 20.0) * loose * u, _GAP * loose * u
         lines: list[_Line] = []
         for text in card.paragraphs:
             lines += [_Line(part, high, size) for part in wrapped(text, width, size)]
-            lines.append(_Line("", _GAP * u, size))
+            lines.append(_Line("", gap, size))
         for number, (text, chosen) in enumerate(card.choices):
             parts = wrapped(text, width - 40.0 * u, size)
-            row = max(_ROW * u, high * len(parts) + 8.0 * u)
+            row = row_height + high * (len(parts) - 1)
             lines.append(_Line("\n".join(parts), row, size, answer=number, chosen=chosen))
         if card.entry is not None:
-            lines.append(_Line(card.entry, _ROW * u, size, entry=True))
+            lines.append(_Line(card.entry, row_height, size, entry=True))
         if card.said:
-            lines.append(_Line("", _GAP * u, size))
+            lines.append(_Line("", gap, size))
         for number, text in enumerate(card.said):
             for index, part in enumerate(wrapped(text, width - 22.0 * u, size)):
                 lines.append(_Line(part, high, size, card.mood if index + number == 0 else "more"))
@@ -106,7 +108,7 @@ class CardLayout:
         return len(self.lines) - count
 
     def _shown(self) -> list[tuple[float, _Line]]:
-        """The lines in sight, and their upper edges. What is said is seen first, unless somebody scrolled."""
+        """The lines in sight, and their upper edges: the last ones if something is said, unless somebody scrolled."""
         y, shown = self.top, []
         for line in self.lines[self.first :]:
             if y + line.height > self.bottom + 1.0:
@@ -143,9 +145,10 @@ class CardLayout:
         marks: list[Mark] = [boxes(theme.line, edge), *self._heading(theme)]
         for top, line in self.shown:
             marks += self._line(top, line, theme, pointer)
-        if self.hidden:
-            y, size = self.bottom, font_size(_SMALL, u)
-            marks.append(Text("▾", self.right, y, size, theme.muted, "semibold", "right"))
+        for more, y, way in ((self.first > 0, self.top - 6.0 * u, -1.0), (self.hidden, self.bottom, 1.0)):
+            if more:
+                tip = np.array([[[-5.0, 0.0], [5.0, 0.0], [0.0, 5.0 * way]]]) * u + [self.right - 6.0 * u, y]
+                marks.append(Fills(tip, theme.muted))
         for place, button in self.buttons:
             marks += _button(place, button, theme, u, pointer)
         return marks

@@ -370,3 +370,14 @@ def test_every_task_is_legible_in_windows_of_all_sizes(
             assert card.top <= top < top + line.height <= layout.bottom + 1.0
             for part in line.text.split("\n"):
                 assert layout.left + text_width(part, line.size) <= layout.right, part
+
+
+def test_a_film_puts_a_lesson_away_but_not_its_solution(session: Session) -> None:
+    course = begun(session, "03_stable_or_mechanism", 2)
+    session.lesson = Script.of_lines("how", course.task.solution)
+    session.take_up_lesson()
+    assert session.course is course
+    session.lesson = Script("2_yield_and_unload")
+    session.take_up_lesson()
+    assert session.course is None
+    assert session.view.camera.viewport.width == session.extent[0]

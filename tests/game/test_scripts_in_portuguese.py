@@ -9,11 +9,14 @@ from pathlib import Path
 import pytest
 
 from components.language import language, spoken
+from components.model import Model
 from game.commands.command_line import main
 from game.documents import library
+from game.lessons.checking import check_lesson
 from game.scripts.playing import Recorder, play, session_of
-from game.scripts.script import Script, ScriptError, lessons
+from game.scripts.script import Script, ScriptError, lessons, lessons_with_tasks
 from game.session import Session
+from tests.pseudo import pseudo
 
 SCRIPTED = sorted((Path(__file__).parents[1] / "scripted").glob("*.jsonl"))
 
@@ -22,6 +25,18 @@ SCRIPTED = sorted((Path(__file__).parents[1] / "scripted").glob("*.jsonl"))
 def test_scripts_play_in_portuguese_as_in_english(source):
     with spoken("pt"), library.data_apart():
         assert not play(Script(source))
+
+
+@pytest.mark.parametrize("source", [*lessons(), *SCRIPTED], ids=lambda source: Path(source).stem)
+def test_scripts_play_in_a_language_in_which_every_word_differs(source):
+    with pseudo(), library.data_apart():
+        assert not play(Script(source))
+
+
+@pytest.mark.parametrize("name", lessons_with_tasks())
+def test_tasks_of_lessons_are_solved_in_a_language_in_which_every_word_differs(name):
+    with pseudo(), library.data_apart():
+        assert not check_lesson(Script(name), lambda: Session(Model()))
 
 
 TAKEN = re.compile(r'"[a-z_]*seconds": [0-9.e-]+')  # how long it took
