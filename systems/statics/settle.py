@@ -67,7 +67,7 @@ class Settlement:
         others = [event.message for event in self.events if event.message not in self.message]
         more = len(others) - MOST_TOLD
         said = [
-            self.message or tr("The search for equilibrium ended: {status}.", status=tr(self.status)),
+            self.message or tr("Result: {status}.", status=tr(self.status)),
             *others[:MOST_TOLD],
         ]
         return joined(
