@@ -100,7 +100,7 @@ def _speeds(speed: Array, mean_square: float, revision: int) -> Readout:
     return Readout(
         tr("Speeds"),
         rows,
-        Plot(tr("speed (m/s)"), tr("probability density (s/m)"), curves, hash((revision, speed.tobytes()))),
+        Plot(tr("speed (m/s)"), tr("density (s/m)"), curves, hash((revision, speed.tobytes()))),
         closes="collisions.speeds",
     )
 

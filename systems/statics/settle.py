@@ -66,12 +66,10 @@ class Settlement:
         """The message, or else the status, and the first of the other events."""
         others = [event.message for event in self.events if event.message not in self.message]
         more = len(others) - MOST_TOLD
-        ended = (
-            tr("The structure is in equilibrium.")
-            if self.status == STABLE
-            else tr("The search for equilibrium ended: {status}.", status=tr(self.status))
-        )
-        said = [self.message or ended, *others[:MOST_TOLD]]
+        said = [
+            self.message or tr("Result: {status}.", status=tr(self.status)),
+            *others[:MOST_TOLD],
+        ]
         return joined(
             [*said, plural("And one more event.", "And {count} more events.", more) if more > 0 else ""]
         )
