@@ -96,9 +96,10 @@ def remove_catalogues(domain: str) -> None:
 
 @contextmanager
 def spoken(code: str) -> Iterator[None]:
-    """Say everything in a language for a while. Raises ValueError if there is no such language."""
+    """Say everything in a language for a while; "": in the present one. Raises ValueError if there is no such language."""
     before = _SPOKEN.code, _SPOKEN.catalogue
-    speak(code)
+    if code:
+        speak(code)
     try:
         yield
     finally:

@@ -6,10 +6,12 @@ import gettext
 import re
 from collections.abc import Iterator
 from contextlib import contextmanager
+from unittest.mock import patch
 
 from components import language
 from components.language import spoken
 
+CODE = "pseudo"  # of its own: what is kept by language must not be taken for that of another
 _LETTERS = str.maketrans(
     "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ",
     "áƀćđéƒğĥíĵķĺḿńóṕʠŕšťúṽŵẋýžÁƁĆĐÉƑĞĤÍĴĶĹḾŃÓṔɊŔŠŤÚṼŴẊÝŽ",
@@ -43,6 +45,6 @@ def accented(message: str) -> str:
 @contextmanager
 def pseudo() -> Iterator[None]:
     """Say everything in that language for a while; numbers as in Portuguese."""
-    with spoken("pt"):
-        language._SPOKEN.catalogue = Pseudo()
+    with spoken("pt"), patch.object(language, "_COMMA", (*language._COMMA, CODE)):
+        language._SPOKEN.code, language._SPOKEN.catalogue = CODE, Pseudo()
         yield

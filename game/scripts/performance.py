@@ -8,7 +8,7 @@ from collections.abc import Mapping
 from typing import Any, Protocol
 
 from components.field import Vector
-from components.language import language, marked, spoken, tr
+from components.language import marked, spoken, tr
 from components.view import Page, Status, View
 from game.documents import library
 from game.documents.open_documents import ModelFile
@@ -74,7 +74,7 @@ class Performance:
         return failures
 
     def _play(self) -> list[Failure]:
-        with spoken(self._script.language or language()):
+        with spoken(self._script.language):
             return self._perform_all()
 
     def _perform_all(self) -> list[Failure]:

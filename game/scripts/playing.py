@@ -66,7 +66,7 @@ def _loaded_mods() -> dict[str, str]:
 def play(script: Script, session: Session | None = None) -> list[Failure]:
     """Play all lines in a session (None: that of the header); returns failed expectations. Raises ScriptError."""
     session = session or session_of(script)
-    with spoken(script.language or language()):
+    with spoken(script.language):
         return [
             failure
             for number, entry in script.lines[1:]

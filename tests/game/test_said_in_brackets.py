@@ -29,7 +29,7 @@ class _Brackets(gettext.NullTranslations):
 
 @pytest.fixture
 def brackets(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(language._SPOKEN, "code", "pt")
+    monkeypatch.setattr(language._SPOKEN, "code", "brackets")
     monkeypatch.setattr(language._SPOKEN, "catalogue", _Brackets())
 
 
@@ -71,7 +71,7 @@ def test_menus_toolbar_and_panels_are_said() -> None:
 
 def test_scripts_panels_and_colours_are_as_in_english(monkeypatch: pytest.MonkeyPatch) -> None:
     told = []
-    for code, catalogue in (("en", gettext.NullTranslations()), ("pt", _Brackets())):
+    for code, catalogue in (("en", gettext.NullTranslations()), ("brackets", _Brackets())):
         monkeypatch.setattr(language._SPOKEN, "code", code)
         monkeypatch.setattr(language._SPOKEN, "catalogue", catalogue)
         session = Session.open("isostatic")
