@@ -2,9 +2,7 @@
 
 from __future__ import annotations
 
-import json
 import os
-from contextlib import suppress
 from pathlib import Path
 from typing import Any
 
@@ -12,13 +10,12 @@ from platformdirs import user_config_path
 
 from components.language import LANGUAGES
 from components.view import CONVENTIONS, MAGNIFICATIONS, TEXTBOOK
-from game.documents import models
+from game.documents import choices
 from systems.render.theme import theme_names
 
 CONFIG_VARIABLE = "PINJOINT_CONFIG"  # names another folder than the system's own
 DEFAULT_THEME = "light"
 FARTHEST = 100_000  # points that a window is away from a corner of the display, or wide, at most
-PUT_ASIDE = "settings-unreadable.json"
 
 
 def settings_path() -> Path:
@@ -80,21 +77,10 @@ def preferred_place() -> tuple[int, int, int, int] | None:
 def remember(entry: str, choice: str | float | list[int]) -> None:
     """Keep a choice: "theme", "language", "convention" of the force method, "magnification" or the place of the "window".
 
-    Where nothing can be written, it is not kept. A file that cannot be read, such as one with a slip in keys written
-    by hand, is put aside.
+    Where nothing can be written, it is not kept; see `choices.keep`.
     """
-    path, entries = settings_path(), _read()
-    with suppress(OSError):
-        path.parent.mkdir(parents=True, exist_ok=True)
-        if not entries and path.is_file() and path.stat().st_size > 0:
-            models.replace(path.with_name(PUT_ASIDE), path.read_bytes())
-        models.replace(path, json.dumps({**entries, entry: choice}, indent=1).encode() + b"\n")
+    choices.keep(settings_path(), entry, choice)
 
 
 def _read() -> dict[str, Any]:
-    """What the file says; nothing if it is damaged."""
-    try:
-        entries = json.loads(settings_path().read_text(encoding="utf-8"))
-    except (OSError, ValueError, RecursionError):
-        return {}
-    return entries if isinstance(entries, dict) else {}
+    return choices.read(settings_path())

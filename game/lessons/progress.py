@@ -2,16 +2,15 @@
 
 from __future__ import annotations
 
-import json
 from collections.abc import Iterator, Mapping
-from contextlib import contextmanager, suppress
+from contextlib import contextmanager
 from pathlib import Path
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
-from game.documents import models
+from game.documents import choices
 from game.documents.preferences import settings_path
 
-FILE, PUT_ASIDE = "lessons.json", "lessons-unreadable.json"
+FILE = "lessons.json"
 
 
 class Done(NamedTuple):
@@ -41,7 +40,7 @@ def path() -> Path:
 
 def done(lesson: str) -> Done:
     """What was done of a lesson; nothing where that cannot be read."""
-    entry = _read().get(lesson)
+    entry = choices.read(path()).get(lesson)
     if not isinstance(entry, dict):
         return Done()
     tasks, best = entry.get("tasks"), entry.get("best")
@@ -56,29 +55,15 @@ def done(lesson: str) -> Done:
 def keep(lesson: str, task: int, score: float | None = None) -> None:
     """Note that a task was done, and its score if it is less than before.
 
-    Where nothing can be written, it is not kept. A file that cannot be read is put aside.
+    Where nothing can be written, it is not kept; see `choices.keep`.
     """
     if not _KEPT[-1]:
         return
-    entries, before = _read(), done(lesson)
+    before = done(lesson)
     best = dict(before.best)
     if score is not None:
         best[task] = min(score, best.get(task, score))
     entry = {"tasks": sorted(before.tasks | {task})} | (
         {"best": {str(number): best[number] for number in sorted(best)}} if best else {}
     )
-    file = path()
-    with suppress(OSError):
-        file.parent.mkdir(parents=True, exist_ok=True)
-        if not entries and file.is_file() and file.stat().st_size > 0:
-            models.replace(file.with_name(PUT_ASIDE), file.read_bytes())
-        models.replace(file, json.dumps({**entries, lesson: entry}, indent=1).encode() + b"\n")
-
-
-def _read() -> dict[str, Any]:
-    """What the file says; nothing if it is damaged."""
-    try:
-        entries = json.loads(path().read_text(encoding="utf-8"))
-    except (OSError, ValueError, RecursionError):
-        return {}
-    return entries if isinstance(entries, dict) else {}
+    choices.keep(path(), lesson, entry)

@@ -359,7 +359,7 @@ def test_progress_survives_a_restart_and_a_damaged_file(session: Session) -> Non
     assert third.course.at == 0
     third.answer(1)
     assert progress.done("06_statically_indeterminate").tasks == {1}
-    assert progress.path().with_name(progress.PUT_ASIDE).is_file()
+    assert progress.path().with_name("lessons-unreadable.json").is_file()
     assert course.accepted
 
 

@@ -69,7 +69,7 @@ def test_what_cannot_be_read_is_put_aside(folder: Path) -> None:
     (folder / "settings.json").write_bytes(slip)
     preferences.remember("theme", "dark")
     assert preferences.preferred_theme() == "dark"
-    assert (folder / preferences.PUT_ASIDE).read_bytes() == slip
+    assert (folder / "settings-unreadable.json").read_bytes() == slip
 
 
 def test_where_nothing_can_be_written_nothing_is_kept(folder: Path) -> None:
