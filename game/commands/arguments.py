@@ -39,6 +39,10 @@ OF_ARGPARSE = (
     marked("invalid %(type)s value: %(value)r"),
     marked("not allowed with argument %s"),
     marked("ambiguous option: %(option)s could match %(matches)s"),
+    marked("ignored explicit argument %r"),
+    marked("one of the arguments %s is required"),
+    marked("expected at most one argument"),
+    marked("invalid choice: %(value)r, maybe you meant %(closest)r? (choose from %(choices)s)"),
 )
 
 

@@ -2,37 +2,16 @@
 
 from __future__ import annotations
 
-import gettext
 import locale
 import os
 from collections.abc import Iterable, Sequence
 
-from components.language import DOMAIN, ENGLISH, LANGUAGES, LOCALE, language, marked, speak, tr
+from components.language import ENGLISH, LANGUAGES, speak, tr
 from game.commands.arguments import Parser, UsageError
 from game.documents.preferences import preferred_language
 
 VARIABLE = "PINJOINT_LANGUAGE"
 _OF_SYSTEM = ("LANGUAGE", "LC_ALL", "LC_MESSAGES", "LANG")  # the first that is set counts, as for gettext
-
-OF_ARGPARSE = (  # its words, for the catalogues: it looks them up itself
-    marked("usage: "),
-    marked("positional arguments"),
-    marked("options"),
-    marked("show this help message and exit"),
-    marked("argument %(argument_name)s: %(message)s"),
-    marked("unrecognized arguments: %s"),
-    marked("not allowed with argument %s"),
-    marked("ignored explicit argument %r"),
-    marked("the following arguments are required: %s"),
-    marked("one of the arguments %s is required"),
-    marked("expected one argument"),
-    marked("expected at most one argument"),
-    marked("expected at least one argument"),
-    marked("ambiguous option: %(option)s could match %(matches)s"),
-    marked("invalid %(type)s value: %(value)r"),
-    marked("invalid choice: %(value)r (choose from %(choices)s)"),
-    marked("invalid choice: %(value)r, maybe you meant %(closest)r? (choose from %(choices)s)"),
-)
 
 
 def speak_as_asked(words: Sequence[str]) -> list[str]:
@@ -55,10 +34,6 @@ def speak_as_asked(words: Sequence[str]) -> list[str]:
             )
         os.environ[VARIABLE] = code  # for this process and those that it starts
         speak(code)
-    if language() != ENGLISH:  # argparse asks gettext for its words, and gettext the environment
-        os.environ["LANGUAGE"] = language()
-        gettext.bindtextdomain(DOMAIN, LOCALE)
-        gettext.textdomain(DOMAIN)
     return others
 
 

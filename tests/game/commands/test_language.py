@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import gettext
 import json
 import locale
 import sys
@@ -24,9 +23,7 @@ def person(tmp_path, monkeypatch):
         monkeypatch.setenv(variable, "")
     monkeypatch.setattr(locale, "getlocale", lambda: (None, None))
     monkeypatch.setenv(CONFIG_VARIABLE, str(tmp_path))
-    domain = gettext.textdomain()
-    yield monkeypatch
-    gettext.textdomain(domain)
+    return monkeypatch
 
 
 @pytest.mark.parametrize(
