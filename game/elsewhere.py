@@ -6,12 +6,16 @@ import importlib
 import os
 import subprocess
 import sys
+import tempfile
 import threading
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
+from pathlib import Path
 
-from components.language import tr
+import msgspec
+
+from components.language import language, tr
 from game.mods import MODS
-from game.prepare import LATER, NEXT, Job
+from game.prepare import START, UNITS, Job, Task
 from systems.physics.integrators import INTEGRATORS
 from systems.program.compiler import GeneratedModule, interpreted_here, tell
 from systems.program.writer import read_sources
@@ -29,11 +33,14 @@ def slower(problem: str) -> str:
 class Elsewhere:
     """What is compiled in another process, and loaded by a thread of this one while its other threads go on.
 
-    ended: the jobs that were done, with what went wrong, or "". compiles: False if nothing ever is compiled.
+    ended: the jobs that were done, with what went wrong, or "". lacking: those of which it waits for the documents.
+    compiles: False if nothing ever is compiled.
     """
 
     def __init__(self, *, compiles: bool = True) -> None:
         self.ended: dict[Job, str] = {}
+        self.lacking: list[Job] = []
+        self._documents: Mapping[Job, bytes] = {}
         self._compiles = compiles
         self._needed: Jobs = {}
         self._later: Jobs = {}
@@ -49,9 +56,9 @@ class Elsewhere:
         if self._thread.ident is None:
             self._thread.start()
 
-    def ask(self, needed: Jobs, later: Jobs) -> None:
-        """Compile and load what is needed, in order, then what may be needed later."""
-        self._needed, self._later = needed, later
+    def ask(self, needed: Jobs, later: Jobs, documents: Mapping[Job, bytes]) -> None:
+        """Compile and load what is needed, in order, then what may be needed later; documents: of their models."""
+        self._needed, self._later, self._documents = needed, later, documents
 
     @property
     def has_loaded_all(self) -> bool:
@@ -115,8 +122,13 @@ class Elsewhere:
             needed = self._left(self._needed)
         self._urgent, self._process = bool(needed), None
         self._at_work = needed or self._left(self._later)
-        if self._at_work and not self._closed.is_set():
-            self._process = started(self._at_work, self._urgent)
+        documents = {job: b"" if job[0] in UNITS else self._documents.get(job) for job in self._at_work}
+        self.lacking = [job for job, document in documents.items() if document is None]
+        if self._at_work and not self.lacking and not self._closed.is_set():
+            try:
+                self._process = started({job: held or b"" for job, held in documents.items()}, self._urgent)
+            except OSError as error:  # no room for another process, or for what it is given
+                self.ended |= dict.fromkeys(self._at_work, error.strerror or str(error))
 
     def _left(self, jobs: Jobs) -> list[Job]:
         return [job for job, module in jobs.items() if job not in self.ended and not module.is_compiled()]
@@ -133,18 +145,37 @@ class Elsewhere:
         self.ended |= dict(zip(self._at_work, [*said, *([status] if process.returncode else [])], strict=False))
 
 
-def started(jobs: Sequence[Job], urgent: bool) -> subprocess.Popen[str]:
-    """The process that compiles these jobs; the window goes before it, and everything before what is not urgent."""
-    mods = [word for mod in MODS if mod.loaded and mod.folder for word in ("--mods", str(mod.folder))]
-    words = [word for job in jobs for word in (NEXT if urgent else LATER, *job)]
+def started(jobs: Mapping[Job, bytes], urgent: bool) -> subprocess.Popen[str]:
+    """The process that compiles jobs for models; the window goes before it, and everything before what is not urgent.
+
+    It imports from where this one does, but never from the folder that somebody happens to be in.
+    """
+    documents = list(dict.fromkeys(jobs.values()))
+    mods = [str(mod.folder) for mod in MODS if mod.loaded and mod.folder]
+    asked = [(job, documents.index(document)) for job, document in jobs.items()]
+    task = Task(language(), mods, not urgent, asked, documents)
     priority = "BELOW_NORMAL_PRIORITY_CLASS" if urgent else "IDLE_PRIORITY_CLASS"  # as Windows has it
-    return subprocess.Popen(
-        [sys.executable, "-m", "game.prepare", *mods, "--no-mods", *words],
-        stdin=subprocess.DEVNULL,
-        stdout=subprocess.PIPE,
-        stderr=subprocess.DEVNULL,
-        env=os.environ | {"PYTHONUTF8": "1"},
-        encoding="utf-8",
-        errors="replace",
-        creationflags=getattr(subprocess, priority, 0),
-    )
+    with tempfile.TemporaryFile() as given:
+        given.write(msgspec.msgpack.encode(task))
+        given.seek(0)
+        return subprocess.Popen(
+            [sys.executable, "-P", "-c", START, *_imported_from()],
+            stdin=given,
+            stdout=subprocess.PIPE,
+            stderr=subprocess.DEVNULL,
+            cwd=_HOME,
+            env=os.environ | {"PYTHONUTF8": "1"},
+            encoding="utf-8",
+            errors="replace",
+            creationflags=getattr(subprocess, priority, 0),
+        )
+
+
+_HOME = Path(__file__).parent
+
+
+def _imported_from() -> list[str]:
+    """Where this process imports from, but for the current folder, unless the program lies there."""
+    here, ours = Path.cwd(), _HOME.parent
+    places = [entry for entry in sys.path if entry and Path(entry).resolve() != here]
+    return places if any(Path(entry).resolve() == ours for entry in places) else [*places, str(ours)]

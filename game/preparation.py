@@ -6,16 +6,16 @@ Programs begin interpreted, so that most models never wait: see `is_live`.
 from __future__ import annotations
 
 import time
-from collections.abc import Iterable, Iterator, Sequence, Set
+from collections.abc import Iterable, Iterator, Mapping, Sequence, Set
 from itertools import islice
 from typing import Any
 
 from components.language import tr
 from components.model import Model
-from components.rod import is_warm
+from game.documents.format import ModelError
 from game.editor.host import Waiting
 from game.elsewhere import Elsewhere, slower
-from game.prepare import UNITS, WARM, Job, problem_of
+from game.prepare import UNITS, Job, described, in_a_line, problem_of
 from systems import cache
 from systems.base import Phase, StepSystem, System
 from systems.collision.driven.compiled import DRIVEN
@@ -33,7 +33,7 @@ from systems.physics.system import (
 from systems.plasticity.system import FirstYield, Strength, Yielding
 from systems.program.compiler import LARGE, UNCOMPILED, Choice, Compile, GeneratedModule, tell
 from systems.program.program import module_of
-from systems.program.writer import form_of
+from systems.program.writer import form_of, traits_of
 from systems.render.raster import RASTER, Raster, load_raster
 from systems.run.simulation import Simulation
 
@@ -73,10 +73,11 @@ class Preparation(System):
         self.elsewhere = Elsewhere(compiles=self._asked is not Compile.NEVER)
         self._frames = 0
         self._modules: dict[Job, GeneratedModule | None] = {}  # None: it cannot be written
+        self._documents: dict[Job, bytes] = {}  # of models, for the other process
         self._needed: dict[Job, Simulation] = {}  # by this frame, in order, and by what
         self._waiting: dict[Job, float] = {}  # what keeps a simulation waiting, and since when
         self._given_up: set[Job] = set()  # of these: what cannot be compiled at all
-        self._problems: dict[str, None] = {}  # with what is needed
+        self._told: set[Job] = set()  # of these: what went wrong with them, in the language of then
         self._said: set[str] = set()
         self._draws_many = False
         self._seen = -1  # the model's revision in the last frame
@@ -112,10 +113,25 @@ class Preparation(System):
         for job, by in islice(unknown, 1):  # finding it takes a part of a frame
             self._modules[job] = _module_of(job, by)
         if (found := self._known(needed)) is not None:
-            self.elsewhere.ask(found, self._known(later) or {})
-        self._problems = dict.fromkeys(filter(None, map(self._problem_of, needed)))
+            self._describe(needed | later)
+            self.elsewhere.ask(found, self._known(later) or {}, self._documents)
+        for job in needed:
+            if job not in self._told and (problem := self._problem_of(job)):
+                self._told.add(job)
+                tell(slower(problem))
         self._waiting = {job: since for job, since in self._waiting.items() if job in needed}
         self._needed = {}
+
+    def _describe(self, jobs: Mapping[Job, Simulation]) -> None:
+        """Note of which models the jobs are that the other process is about to do."""
+        self._documents = {job: document for job, document in self._documents.items() if job in jobs}
+        made: dict[Simulation, bytes] = {}
+        for job in self.elsewhere.lacking:
+            try:
+                if (by := jobs.get(job)) is not None:
+                    self._documents[job] = made[by] = made.get(by) or described(by.model)
+            except ModelError as error:
+                self.elsewhere.ended[job] = in_a_line(error)
 
     def _known(self, jobs: Iterable[Job]) -> dict[Job, GeneratedModule] | None:
         """The modules of jobs, once all are known: they are compiled by one process."""
@@ -135,13 +151,11 @@ class Preparation(System):
         for job in self._waiting:
             if self._problem_of(job) and job not in self._given_up:
                 self._given_up.add(job)
-                if problem := problem_of(job):
+                if problem := problem_of(job, self._documents.get(job, b"")):
                     tell(slower(problem))
                 return
 
     def _tell(self, session: Any) -> None:
-        for problem in self._problems:
-            tell(slower(problem))
         for sentence in (*cache.TROUBLE, *UNCOMPILED):
             if sentence not in self._said:
                 self._said.add(sentence)
@@ -233,8 +247,8 @@ def _job_with(simulation: Simulation, names: Set[str], without: str = "") -> Job
 
 def _job(simulation: Simulation, plan: Sequence[StepSystem]) -> Job:
     form = form_of(simulation.model, simulation.integrator, plan)
-    warmth = (WARM,) if is_warm(simulation.model) else ()
-    return simulation.integrator.key, form, *warmth, *(system.name for system in plan)
+    traits = " ".join(traits_of(simulation.model))
+    return simulation.integrator.key, form, traits, *(system.name for system in plan)
 
 
 def _module_of(job: Job, simulation: Simulation) -> GeneratedModule | None:
@@ -242,7 +256,7 @@ def _module_of(job: Job, simulation: Simulation) -> GeneratedModule | None:
     if job[0] in UNITS:
         return UNITS[job[0]]
     try:
-        plan = simulation.schedule.named(name for name in job[2:] if name != WARM)
+        plan = simulation.schedule.named(job[3:])
         return module_of(simulation.model, plan, simulation.integrator, job[1])
     except Exception:  # of a mod, which is told of when the program is needed
         return None

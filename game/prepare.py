@@ -1,7 +1,7 @@
-"""Compile ahead of need: `python -m game.prepare [later] JOB , JOB …`; each job is a unit or a step program.
+"""Compile ahead of need, in a process of its own; `START` begins it, and standard input holds a `Task`.
 
-`UNIT`, or `INTEGRATOR FORM [warm] SYSTEM…` for a step program. The window runs this in another process, because a
-compiler in its own would hold it up, in a thread too. A line for each job says why it could not be done, or is empty.
+The window runs this in another process, because a compiler in its own would hold it up, in a thread too. A line for
+each job says why it could not be done, or is empty.
 """
 
 from __future__ import annotations
@@ -11,79 +11,81 @@ import importlib
 import os
 import sys
 from collections.abc import Sequence
-from itertools import groupby
 
-from components.language import tr
+import msgspec
+
+from components.language import speak, tr
 from components.model import Model
-from components.particle import Particle
-from components.rod import spawn_rods
 from game import Session
-from game.commands.with_mods import load_as_asked
+from game.documents.document import parse
+from game.documents.facts import gathered
+from game.mods.loading import load
 from systems import cache
+from systems.base import Integrator, StepSystem
 from systems.collision.driven.compiled import DRIVEN
 from systems.collision.free.discs import EVENTS, HORIZONS, PILES
 from systems.physics.integrators import INTEGRATORS
 from systems.program.compiler import Choice, Compile, forget_unused
 from systems.program.parallel import make_program
-from systems.program.program import Program
 from systems.render.raster import RASTER
 
 UNITS = {unit.name: unit for unit in (RASTER, EVENTS, HORIZONS, PILES, DRIVEN)}
-WARM = "warm"  # the program is for rods whose temperature may have changed
-NEXT, LATER = ",", "later"  # between jobs, and before those that nobody waits for
+START = "import sys; sys.path[:] = sys.argv[1:]; from game.prepare import main; main()"  # for `python -P -c`
 
-Job = tuple[str, ...]  # the name of a unit, or a step program: integrator, form, perhaps WARM, systems
+Job = tuple[str, ...]  # the name of a unit, or a step program: integrator, form, traits of the model, systems
 
 
-def main(words: Sequence[str]) -> None:
+class Task(msgspec.Struct, frozen=True):
+    """Jobs, each with the document of the model that they are of. mods: their folders. later: nobody waits for it."""
+
+    language: str
+    mods: list[str]
+    later: bool
+    jobs: list[tuple[Job, int]]
+    documents: list[bytes]
+
+
+def main() -> None:
     """Compile jobs into the cache."""
-    jobs = load_as_asked(words)
+    task = msgspec.msgpack.decode(sys.stdin.buffer.read(), type=Task)
     if hasattr(os, "nice"):  # to what runs at the same time, the window above all
-        os.nice(19 if jobs[0] == LATER else 5)
-    for between, job in groupby(jobs, lambda word: word in (NEXT, LATER)):
-        if not between:
-            print(problem_of(tuple(job)), flush=True)
+        os.nice(19 if task.later else 5)
+    gc.disable()  # looking through all that the compiler makes would take a fifth of the time
+    Choice.compile = Compile.ALWAYS
+    load(task.mods)
+    speak(task.language)
+    for job, place in task.jobs:
+        print(problem_of(job, task.documents[place]), flush=True)
     forget_unused()
 
 
-def problem_of(job: Job) -> str:
-    """Do a job; returns why it could not be done, "" if it could."""
+def described(model: Model) -> bytes:
+    """A model as other processes read it. Raises ModelError."""
+    return msgspec.json.encode(gathered(model))
+
+
+def problem_of(job: Job, document: bytes) -> str:
+    """Do a job for the model of a document; returns why it could not be done, "" if it could."""
     try:
         importlib.import_module("systems.machine_code")
     except Exception as error:  # numba is not there, or damaged
-        return tr("numba cannot be imported ({error})", error=_in_a_line(error))
+        return tr("numba cannot be imported ({error})", error=in_a_line(error))
     try:
-        compile_job(job)
+        if job[0] in UNITS:
+            UNITS[job[0]].load()
+        else:
+            make_program(*parts_of(job, document)).load()
     except Exception as error:  # numba raises many kinds
-        return _in_a_line(error)
+        return in_a_line(error)
     return cache.TROUBLE[0].partition(". ")[0] if cache.TROUBLE else ""
 
 
-def _in_a_line(error: Exception) -> str:
+def in_a_line(error: Exception) -> str:
     return " ".join(str(error).split()).removesuffix(".") or type(error).__name__
 
 
-def compile_job(job: Job) -> None:
-    """Load what a job is about, compiled first if nobody has."""
-    if job[0] in UNITS:
-        UNITS[job[0]].load()
-    else:
-        example(job).load()
-
-
-def example(job: Job) -> Program:
-    """The step program of a job, of the smallest model that has one."""
-    name, form, *systems = job
-    model = Model()
-    first, second = model.create(Particle, 2, position=[[0.0, 0.0], [1.0, 0.0]])
-    if WARM in systems:
-        systems.remove(WARM)
-        spawn_rods(model, [[first.row, second.row]], temperature_change=1.0)
-    session = Session(model)
-    return make_program(model, session.schedule.named(systems), INTEGRATORS[name], form)
-
-
-if __name__ == "__main__":
-    gc.disable()  # looking through all that the compiler makes would take a fifth of the time
-    Choice.compile = Compile.ALWAYS
-    main(sys.argv[1:])
+def parts_of(job: Job, document: bytes) -> tuple[Model, Sequence[StepSystem], Integrator, str]:
+    """What the step program of a job is made of, for the very model that asks for it."""
+    integrator, form, _, *systems = job
+    model = parse(msgspec.json.decode(document))
+    return model, Session(model).schedule.named(systems), INTEGRATORS[integrator], form

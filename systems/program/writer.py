@@ -105,6 +105,18 @@ entered = entry(_nrt={may_allocate})
 '''
 
 
+TRAITS = {
+    "warm": is_warm,
+    "bends": bends,
+    "loaded": bears_between,
+}  # of a whole model, that its program follows from
+
+
+def traits_of(model: Model) -> list[str]:
+    """The traits that a model has."""
+    return [name for name, has in TRAITS.items() if has(model)]
+
+
 def form_of(model: Model, integrator: Integrator, systems: Iterable[StepSystem] = ()) -> str:
     """The form of program that suits a model: rod by rod, in stages, or in blocks shared by cores.
 
@@ -128,8 +140,8 @@ class Writer:
         self.model = model
         self.form = form
         self.integrator = integrator
-        self.warm = is_warm(model)
-        self.bends, self.loaded = bends(model), bears_between(model)
+        traits = traits_of(model)
+        self.warm, self.bends, self.loaded = (trait in traits for trait in TRAITS)
         self.shift = SHIFT | TURNED if self.bends else SHIFT
         self.drift = DRIFT | SPUN if self.bends else DRIFT
         self.collides = any(system.impulsive for system in systems)

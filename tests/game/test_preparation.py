@@ -10,6 +10,7 @@ import tempfile
 import time
 from collections.abc import Callable, Iterator
 from pathlib import Path
+from typing import Any
 
 os.environ.setdefault("SDL_VIDEODRIVER", "dummy")
 
@@ -17,19 +18,20 @@ import pygame
 import pytest
 
 from components.field import Role
-from game import elsewhere, preparation
+from components.language import spoken
+from game import elsewhere, mods, preparation
 from game.app import App
 from game.documents import models
 from game.editor.view_model import COMPILING
 from game.preparation import Preparation, _job, _jobs_of, is_live
-from game.prepare import Job, example, problem_of
+from game.prepare import UNITS, Job, described, parts_of, problem_of
 from game.session import Session
 from systems import cache
 from systems.input import pygame_input
 from systems.program import compiler as programs
 from systems.program.compiler import Choice, Compile, GeneratedModule, forget_unused
-from systems.program.program import _writer
-from systems.program.writer import FEW, form_of
+from systems.program.program import module_of
+from systems.program.writer import FEW
 from systems.render.raster import RASTER
 from tests.benchmarks.models import lattice, mesh
 
@@ -63,8 +65,8 @@ class Compiler:
         self.compiled = False
         self.loaded: list[GeneratedModule] = []
 
-    def start(self, jobs: list[Job], urgent: bool) -> Process:
-        self.processes.append(Process(jobs, self.status))
+    def start(self, jobs: dict[Job, bytes], urgent: bool) -> Process:
+        self.processes.append(Process(list(jobs), self.status))
         return self.processes[-1]
 
     def load(self, module: GeneratedModule) -> bool:
@@ -269,7 +271,7 @@ def test_what_is_awaited_and_cannot_be_compiled_there_is_compiled_here(
     large: App, compiler: Compiler, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     here: list[Job] = []
-    monkeypatch.setattr(preparation, "problem_of", lambda job: here.append(job) or "")
+    monkeypatch.setattr(preparation, "problem_of", lambda job, document: here.append(job) or "")
     large.session.press("space")
     compiler.status = compiler.processes[0].returncode = 1
     until(large, lambda: bool(here))
@@ -349,17 +351,97 @@ def test_a_window_leaves_the_choice_of_the_form_as_it_was(monkeypatch: pytest.Mo
 # --- jobs ------------------------------------------------------------------------------------------------
 
 
-@pytest.mark.parametrize("name", ["isostatic", "tower", "ball_on_truss", "hanging_net"])
-@pytest.mark.parametrize("warmth", [0.0, 20.0])
-def test_what_another_process_compiles_is_what_the_model_needs(name: str, warmth: float) -> None:
-    session = Session(models.load(name))
-    session.model.assign(list(session.rods), "temperature_change", warmth)
+def _is_left_alone(session: Session) -> None:
+    pass
+
+
+def _warms(session: Session) -> None:
+    session.model.assign(list(session.rods), "temperature_change", 20.0)
+
+
+def _is_hung_by_cables(session: Session) -> None:
+    session.model.assign(list(session.rods), "tension_only", True)
+
+
+def _is_hinged(session: Session) -> None:
+    session.model.assign(list(session.rods), "hinged", (True, False))
+
+
+def _is_loaded_between(session: Session) -> None:
+    session.model.assign(list(session.rods), "distributed_force", (0.0, -2.0))
+
+
+def _collides(session: Session) -> None:
+    session.settings.collisions = True
+
+
+def _moves_in_fixed_steps(session: Session) -> None:
+    session.settings.integrator = "velocity_verlet"
+
+
+EDITS = (
+    _is_left_alone,
+    _warms,
+    _is_hung_by_cables,
+    _is_hinged,
+    _is_loaded_between,
+    _collides,
+    _moves_in_fixed_steps,
+)
+OF_EACH_KIND = ("isostatic", "portal", "ball_on_frame", "hanging_net")
+ASSETS = elsewhere._HOME.parent / "assets"
+OF_MODS = {
+    "magnets": "particles.magnets_pole",
+    "stiffening": "rods.stiffening_cubic",
+    "wind": "particles.wind_area",
+}
+
+
+@pytest.mark.parametrize("name", models.bundled())
+def test_what_another_process_compiles_is_what_the_model_needs(name: str) -> None:
+    """Also what it may come to need, such as the program for a hand that pulls."""
+    for edit in EDITS if name in OF_EACH_KIND else EDITS[:1]:
+        session = Session(models.load(name))
+        edit(session)
+        _assert_the_same_there(session)
+
+
+def test_what_another_process_compiles_is_what_lessons_need() -> None:
+    given = [
+        line["model"]
+        for file in sorted((ASSETS / "lessons").rglob("*.jsonl"))
+        for line in map(json.loads, file.read_text(encoding="utf-8").splitlines())
+        if "model" in line
+    ]
+    assert len(given) > 20
+    for model in given:
+        _assert_the_same_there(Session(models.load(model)))
+
+
+@pytest.mark.parametrize("mod", OF_MODS)
+def test_what_another_process_compiles_is_what_a_mod_needs(mod: str) -> None:
+    before = len(mods.MODS)
+    try:
+        mods.load_all([ASSETS / "mods" / mod])
+        for name in ("isostatic", "portal", "ball_on_truss"):
+            session = Session(models.load(name))
+            table, _, field = OF_MODS[mod].partition(".")
+            session.model.assign(list(session.model.tables[table]), field, 0.5)
+            assert any(system.name.startswith(mod) for system in session.simulation.plan)
+            _assert_the_same_there(session)
+    finally:
+        mods.unload(mods.MODS[before:])
+
+
+def _assert_the_same_there(session: Session) -> None:
     simulation = session.simulation
-    plan = session.simulation.plan
-    there = example(_job(simulation, plan))
-    here = _writer(session.model, plan, simulation.integrator, form_of(session.model, simulation.integrator))
-    assert there.source == here.source()
-    assert there.module is preparation._module_of(_job(simulation, plan), simulation)
+    jobs = [*_jobs_of(simulation), *preparation._jobs_later(simulation)]
+    document = described(session.model)
+    for job in jobs:
+        if job[0] not in UNITS:
+            here = preparation._module_of(job, simulation)
+            assert here is not None
+            assert module_of(*parts_of(job, document)).key == here.key
 
 
 def test_a_large_picture_is_a_sketch_until_its_drawing_is_compiled(app: App, compiler: Compiler) -> None:
@@ -378,9 +460,17 @@ ALONE = (
     '{"format": "pinjoint model", "version": 1, "particles": [{"name": "A", "position": [0, 0]}],'
     ' "settings": {"integrator": "velocity_verlet"}}'  # the quickest to compile
 )
-CHECK = f"""
+BENT = {
+    "particles": [
+        {"name": "A", "position": [0, 0], "fixed": [True, True], "fixed_rotation": True},
+        {"name": "B", "position": [1, 0]},
+    ],
+    "rods": [{"name": "AB", "between": ["A", "B"], "stiffness": 1e4, "bending_stiffness": 10.0}],
+}
+CHECK = """
+import json, sys
 from game import Session
-session = Session.open({ALONE})
+session = Session.open(json.loads(sys.argv[1]))
 session.simulation.program
 module = session.simulation.programs.compiled.module
 print(module.load_kept())
@@ -389,25 +479,91 @@ for entry in (module.form.advance, module.form.observe):
 """
 
 
-def test_another_process_compiles_what_this_one_loads(tmp_path: Path) -> None:
-    session = Session.open(json.loads(ALONE))
-    names = [system.name for system in session.simulation.plan]
+PLANTED = """
+import os, sys
+with open(os.environ["PLANTED"], "a") as file:
+    print(__name__, os.getpid(), file=file)
+"""
+
+
+@pytest.mark.parametrize("name", ["alone", "bent"])
+def test_another_process_compiles_what_this_one_loads(
+    name: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """From nothing that lies in the folder somebody is in."""
     folders = {"XDG_CACHE_HOME": str(tmp_path), "LOCALAPPDATA": str(tmp_path), "HOME": str(tmp_path)}
-    command = [
-        sys.executable,
-        "-m",
-        "game.prepare",
-        "--no-mods",
-        session.simulation.integrator.key,
-        FEW,
-        *names,
-    ]
-    subprocess.run(command, env=os.environ | folders, check=True, timeout=300)
-    assert list(tmp_path.rglob("pinjoint_program_*.done"))
+    for variable, value in (folders | {"PLANTED": str(tmp_path / "planted")}).items():
+        monkeypatch.setenv(variable, value)
+    planted = tmp_path / "models"
+    planted.mkdir()
+    for module in ("msgspec", "random", "game", "json", "numpy", "numba", "sitecustomize", "components"):
+        (planted / f"{module}.py").write_text(PLANTED, encoding="utf-8")
+    monkeypatch.chdir(planted)
+    monkeypatch.setattr(sys, "path", ["", str(planted), *sys.path])
+    document: dict[str, Any] = json.loads(ALONE)
+    if name == "bent":
+        document = {**document, **BENT}
+    simulation = Session.open(document).simulation
+    [job] = _jobs_of(simulation)
+    process = elsewhere.started({job: described(simulation.model)}, urgent=True)
+    assert process.communicate(timeout=300) == ("\n", None)
+    assert process.returncode == 0
+    assert not (tmp_path / "planted").exists()
+    made: Any = preparation._module_of(job, simulation)
+    assert list(tmp_path.rglob(f"{made.key}.done"))
+    monkeypatch.chdir(tmp_path)
     done = subprocess.run(
-        [sys.executable, "-c", CHECK], env=os.environ | folders, check=True, capture_output=True, text=True
+        [sys.executable, "-c", CHECK, json.dumps(document)], check=True, capture_output=True, text=True
     )
     assert done.stdout.split() == ["True", *["1", "0"] * 2]
+
+
+@pytest.mark.parametrize("name", ["portal", "hanging_net"])
+def test_a_window_goes_on_in_machine_code(name: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """What another process compiled is what its program loads."""
+    for variable in ("XDG_CACHE_HOME", "LOCALAPPDATA", "HOME"):
+        monkeypatch.setenv(variable, str(tmp_path))
+    folder: Callable[[], Path] = cache.folder.__wrapped__
+    kept = folder()
+    monkeypatch.setattr(cache, "folder", lambda: kept)
+    monkeypatch.setattr(preparation, "AHEAD", ())
+    monkeypatch.setattr(preparation, "BY_AN_EDIT", ())
+    monkeypatch.setattr(programs, "_modules", {})
+    monkeypatch.setattr(Choice, "compile", Compile.SOON)
+    model = models.load(name)
+    model.settings.integrator = "velocity_verlet"  # the quickest to compile
+    window = App(model, preparation=Preparation())
+    try:
+        window.session.press("space")
+        late = time.monotonic() + 300.0
+        programs_of = window.session.simulation.programs
+        while not (programs_of.ready and programs_of.compiled.module.is_loaded):
+            assert time.monotonic() < late
+            assert "slower" not in window.session.notice
+            window.frame(1 / 60)
+        assert window.session.model.clock.steps > 0
+    finally:
+        window.preparation.close()  # type: ignore[union-attr]
+        window.close()
+
+
+def test_another_process_speaks_the_language_of_the_window() -> None:
+    job, damaged = ("dop853", FEW, ""), b'{"format": "another"}'
+    with spoken("pt"):
+        process = elsewhere.started({job: damaged}, urgent=True)
+        problem = problem_of(job, damaged)
+        assert process.communicate(timeout=300)[0] == f"{problem}\n"
+    assert problem != problem_of(job, damaged)
+
+
+def test_what_was_said_is_not_said_again_in_another_language(app: App, compiler: Compiler) -> None:
+    end(compiler.processes[0], "", -9)
+    until(app, lambda: bool(app.session.notice))
+    app.session.notice = ""
+    with spoken("pt"):
+        frames(app, 5)
+    assert app.session.notice == ""
+    assert len(programs.UNCOMPILED) == 1
 
 
 def test_where_it_is_not_known_what_was_compiled_it_is_compiled_anew(
@@ -444,7 +600,7 @@ def test_experience_of_compiling_is_of_what_was_compiled_and_of_no_other_process
 
 def test_without_numba_all_jobs_have_the_same_problem(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setitem(sys.modules, "systems.machine_code", None)
-    problems = {problem_of(job) for job in [("raster",), ("dop853", FEW, "physics.elasticity")]}
+    problems = {problem_of(job, b"") for job in [("raster",), ("dop853", FEW, "physics.elasticity")]}
     assert len(problems) == 1
     assert "numba cannot be imported" in problems.pop()
 
