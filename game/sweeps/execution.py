@@ -149,8 +149,8 @@ def _local_client(distributed: Any, workers: int) -> Iterator[Any]:
         ) as client:
             yield client
     finally:
-        if before is None:
-            del os.environ[SAFE_PATH]
+        os.environ.pop(SAFE_PATH)
+        os.environ |= {SAFE_PATH: before} if before is not None else {}
 
 
 def _client_of(distributed: Any, scheduler: str) -> Any:
