@@ -21,6 +21,7 @@ from systems.program.compiler import GeneratedModule, interpreted_here, tell
 from systems.program.writer import read_sources
 
 INTERVAL = 0.05  # s between two looks
+ENDING = 0.5  # s that what a thread is at may take before the window goes without it
 
 Jobs = Mapping[Job, GeneratedModule]
 
@@ -74,7 +75,7 @@ class Elsewhere:
         """Let go of what is still being compiled."""
         self._closed.set()
         if self._thread.ident is not None:
-            self._thread.join()
+            self._thread.join(ENDING)
         if self._process is not None and self._process.poll() is None:
             self._end(self._process)
 

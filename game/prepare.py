@@ -9,7 +9,10 @@ from __future__ import annotations
 import gc
 import importlib
 import os
+import signal
 import sys
+import threading
+import time
 from collections.abc import Sequence
 
 import msgspec
@@ -47,6 +50,8 @@ class Task(msgspec.Struct, frozen=True):
 
 def main() -> None:
     """Compile jobs into the cache."""
+    signal.signal(signal.SIGINT, signal.SIG_DFL)  # a compiler hears of nothing else
+    threading.Thread(target=_end_after, args=(os.getppid(),), daemon=True).start()
     task = msgspec.msgpack.decode(sys.stdin.buffer.read(), type=Task)
     if hasattr(os, "nice"):  # to what runs at the same time, the window above all
         os.nice(19 if task.later else 5)
@@ -57,6 +62,13 @@ def main() -> None:
     for job, place in task.jobs:
         print(problem_of(job, task.documents[place]), flush=True)
     forget_unused()
+
+
+def _end_after(parent: int) -> None:
+    """End with the process that waits for this one, however that ends; where that is not told, after it is done."""
+    while os.getppid() == parent:
+        time.sleep(0.2)
+    os._exit(1)
 
 
 def described(model: Model) -> bytes:

@@ -358,9 +358,14 @@ class _Rewriting(ast.NodeTransformer):
     def _divided(self, node: ast.BinOp) -> ast.expr:
         if isinstance(node.right, ast.Constant) and node.right.value != 0:
             return node
-        first, second = self._twice(node.right)
-        divided, otherwise = ast.BinOp(node.left, ast.Div(), second), call_of("quotient__", node.left, second)
-        return ast.copy_location(ast.IfExp(first, divided, otherwise), node)
+        (early, a), (first, b) = self._twice(node.left), self._twice(node.right)
+        if (
+            early is not a
+        ):  # found before, once: written twice, a quotient of quotients doubles with each of them
+            first = ast.BoolOp(ast.Or(), [ast.Compare(early, [ast.Is()], [ast.Constant(None)]), first])
+        return ast.copy_location(
+            ast.IfExp(first, ast.BinOp(a, ast.Div(), b), call_of("quotient__", a, b)), node
+        )
 
     def _raised(self, node: ast.BinOp) -> ast.expr:
         exponent = literal(node.right)

@@ -3,8 +3,10 @@
 from __future__ import annotations
 
 import logging
+import os
 from collections import Counter
 from collections.abc import Iterator, Mapping, Sequence
+from contextlib import contextmanager
 from dataclasses import dataclass, field
 from typing import Any
 
@@ -19,6 +21,7 @@ MOST_IN_A_TASK = 64  # variants; what a kill loses at most of each worker
 TASKS_PER_WORKER = 16  # so that no worker waits long for another's last task
 ANSWER_WITHIN = 10.0  # s
 LARGE = 30_000  # variants × rods from which workers are worth the seconds in which they start
+SAFE_PATH = "PYTHONSAFEPATH"  # of the environment
 LIGHT = 100  # rods up to which a variant takes as long as one of this many
 
 
@@ -130,15 +133,24 @@ def compute_all(
         yield from _distributed(distributed, client, plan, numbers, here.at_a_time)
 
 
-def _local_client(distributed: Any, workers: int) -> Any:
-    return distributed.Client(
-        n_workers=workers,
-        threads_per_worker=1,
-        env={VARIABLE: "1"},
-        processes=True,
-        dashboard_address="127.0.0.1:0",  # any port: several sweeps may run at once
-        silence_logs=logging.CRITICAL,
-    )
+@contextmanager
+def _local_client(distributed: Any, workers: int) -> Iterator[Any]:
+    """Workers of this machine, which import nothing from the folder that somebody happens to be in."""
+    before = os.environ.get(SAFE_PATH)
+    os.environ[SAFE_PATH] = "1"
+    try:
+        with distributed.Client(
+            n_workers=workers,
+            threads_per_worker=1,
+            env={VARIABLE: "1"},
+            processes=True,
+            dashboard_address="127.0.0.1:0",  # any port: several sweeps may run at once
+            silence_logs=logging.CRITICAL,
+        ) as client:
+            yield client
+    finally:
+        if before is None:
+            del os.environ[SAFE_PATH]
 
 
 def _client_of(distributed: Any, scheduler: str) -> Any:

@@ -1,11 +1,13 @@
 """Ctrl+C while the program loads, and while a script does."""
 
 import os
+import random
 import signal
 import subprocess
 import sys
 import time
 from collections.abc import Iterator
+from contextlib import suppress
 from pathlib import Path
 
 import pytest
@@ -81,6 +83,64 @@ with interrupts.closed_by_signals(lambda: None):
 def test_a_window_that_hangs_is_ended() -> None:
     done = subprocess.run([sys.executable, "-c", ENDLESS], cwd=ROOT, capture_output=True, timeout=60)
     assert done.returncode == -signal.SIGALRM
+
+
+SWALLOWS = """
+import signal, time
+from game import interrupts
+
+signal.signal(signal.SIGINT, signal.default_int_handler)
+interrupts.PATIENCE = 0.2
+interrupts.end_in_time()
+while True:
+    try:
+        signal.raise_signal(signal.SIGINT)
+        time.sleep(9.0)
+    except KeyboardInterrupt:
+        pass
+"""
+
+
+def test_a_program_that_does_not_heed_a_signal_is_ended() -> None:
+    done = subprocess.run([sys.executable, "-c", SWALLOWS], cwd=ROOT, capture_output=True, timeout=60)
+    assert done.returncode == 128 + signal.SIGINT
+
+
+def test_what_compiles_ends_with_the_window() -> None:
+    code = "import os; from game.prepare import _end_after; _end_after(os.getppid() + 1)"
+    assert subprocess.run([sys.executable, "-c", code], cwd=ROOT, timeout=60).returncode == 1
+
+
+COMMANDS = (
+    "run tower",
+    "verify warren_bridge",
+    "sweep isostatic --vary rods.AB.stiffness=1e5:2e5:3000 --measure rods.AB.axial_force --output out.csv --workers 2",
+    "mods check stiffening",
+    "ball_on_frame",
+)
+
+
+@pytest.mark.parametrize("command", COMMANDS, ids=lambda words: words[:8])
+@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
+def test_anything_ends_when_it_is_told_to(command: str, number: signal.Signals, tmp_path: Path) -> None:
+    """While it loads, compiles, rewrites kernels, computes, or draws, with an empty cache."""
+    moment = random.Random(f"{command} {number}").uniform(0.5, 6.0)
+    folders = dict.fromkeys(("XDG_CACHE_HOME", "XDG_DATA_HOME", "XDG_CONFIG_HOME"), str(tmp_path))
+    words = [str(ROOT / "assets" / "mods" / word) if word == "stiffening" else word for word in command.split()]
+    with (tmp_path / "said").open("w+") as said:
+        program = subprocess.Popen(
+            [sys.executable, "-m", "game", *words],
+            env=os.environ | folders | {"SDL_VIDEODRIVER": "dummy", DATA_VARIABLE: str(tmp_path)},
+            cwd=tmp_path,
+            stdout=said,
+            stderr=said,
+        )
+        with suppress(subprocess.TimeoutExpired):
+            program.wait(moment)
+        program.send_signal(number)
+        program.wait(20)
+        said.seek(0)
+        assert "Traceback" not in said.read()
 
 
 def test_a_window_ends_cleanly_when_it_is_told_to(tmp_path: Path) -> None:

@@ -187,6 +187,27 @@ def test_workers_compute_the_same_bits(tmp_path: Path, recwarn: pytest.WarningsR
     assert (tmp_path / "1.csv").read_bytes() == (tmp_path / "2.csv").read_bytes()
 
 
+PLANTED = """
+import sys
+sys.path.remove("")
+from game.sweeps.run import sweep
+
+if __name__ == "__main__":
+    sweep("isostatic", {"rods.AB.stiffness": [1e5, 2e5]}, ["rods.AB.axial_force"], workers=2, output="out.csv")
+"""
+
+
+def test_workers_import_nothing_from_the_current_folder(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, fresh_process: Callable[..., str]
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    for module in ("_weakrefset", "random", "socket", "msgspec"):
+        (tmp_path / f"{module}.py").write_text("open('ran', 'w').close()")
+    fresh_process(PLANTED)
+    assert (tmp_path / "out.csv").exists()
+    assert not (tmp_path / "ran").exists()
+
+
 # --- kills -----------------------------------------------------------------------------------------------
 
 

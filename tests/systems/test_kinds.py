@@ -16,7 +16,7 @@ import pytest
 from hypothesis import HealthCheck, given, reject, settings
 from hypothesis import strategies as st
 
-from systems.interpreter import NoPlainForm
+from systems.interpreter import NoPlainForm, in_lists
 from systems.kinds import typed
 from systems.machine_code import machine_code
 
@@ -317,3 +317,19 @@ def test_kernels_of_our_own_have_kinds_too() -> None:
         declared = getattr(kernels, name)
         kinds = [numbers.get(p, "f") for p in inspect.signature(declared.py_func).parameters]
         assert typed(declared, kinds).result in ("f", ("f", "f"))
+
+
+def test_quotients_of_quotients_are_written_once(tmp_path: Path) -> None:
+    """Written twice each, a line of forty of them was never done."""
+    sizes = []
+    for count in (4, 8, 16):
+        names = [f"x{k}" for k in range(count)]
+        file = tmp_path / f"quotients_{count}.py"
+        file.write_text(f"def quotients({', '.join(names)}):\n    return {' / '.join(names)}\n")
+        scope: dict[str, Any] = {}
+        exec(compile(file.read_text(), str(file), "exec"), scope)
+        plain = in_lists(scope["quotients"])
+        assert plain(*[2.0] * count) == 2.0 ** (2 - count)
+        assert plain(1.0, *[0.0] * (count - 1)) == math.inf
+        sizes.append(len(plain.__code__.co_code))  # type: ignore[attr-defined]
+    assert sizes[2] - sizes[1] < 3 * (sizes[1] - sizes[0])
