@@ -2,7 +2,8 @@
 
 `collide` is compiled once for all programs (systems/collision/driven/kernels/steps.py); `driven` holds its arrays. So is
 `list_pairs` (neighbours.py there), with those of `listing`: apart, as each array costs time in every call of `collide`.
-Their rows are those of the model. rows: the model's row of each particle of the program; of none: they are the same.
+Their rows are those of the model. rows: the model's row of each particle of the program; empty if they are the
+same, or if the program holds no particles (all are asleep).
 place, speed: of the model's particles, other arrays than displacement and velocity only where there are `rows`.
 *kept: copies of what a step that is taken back had changed. Contact forces (`support`, kN) last during a step and are
 added last of all (`unpushed` is the sum without them), so that others can be tried without evaluating the rest again.
@@ -44,8 +45,9 @@ def drive(
     real = driven.real
     alone = whole[Whole.ALONE] == 1
     coming = 0
-    acceleration = driven.acceleration if rows.shape[0] == 0 else own_acceleration
-    pressing = driven.support if rows.shape[0] == 0 else own_support
+    holds_all = rows.shape[0] < displacement.shape[0]
+    acceleration = driven.acceleration if holds_all else own_acceleration
+    pressing = driven.support if holds_all else own_support
     order = Order.TAKE.value
     if not alone:
         order = collide(driven, control, account, place, speed)
@@ -70,7 +72,7 @@ def drive(
             while breaks[coming] <= control[Control.TIME]:
                 coming += 1
             real[Real.BREAK] = breaks[coming]
-            few = rows.shape[0] == 0 and whole[Whole.NEAR] > 0
+            few = holds_all and whole[Whole.NEAR] > 0
             near = driven.near if few else every
             for p in range(whole[Whole.NEAR] if few else every.shape[0]):
                 i = near[p]

@@ -350,3 +350,21 @@ def test_sleeping_changes_nothing_that_is_reported(
         scale = abs(energy_off.work) + energy_off.elastic
         for name, value in energy_off.as_dict().items():
             assert getattr(energy_on, name) == pytest.approx(value, abs=1e-6 * scale)
+
+
+def test_a_program_that_holds_nobody_reads_nothing() -> None:
+    """Its rows, which are none, are not taken for those of the whole model.
+
+    Restarted, a run whose file does not say how fast it began rests altogether, beside a disc near a rod.
+    """
+    moves = particle("A", 0, 0, mass=1.0, displacement=[0.005, 0], velocity=[5, 0])
+    others = [particle("B", 1.36, 0.05), particle("C", 0.97, 0.22), particle("D", 1.38, -0.08)]
+    resting = [particle_ | {"asleep": True} for particle_ in others]
+    state = {"time": 0.001, "steps": 1, "origin": 0.001, "origin_steps": 1}
+    rods = [rod("C", "D", stiffness=6e5, bending_stiffness=4e3)]
+    session = Session.open(model([moves, *resting], rods, settings={"restitution": 0.0}, state=state))
+    session.press(".")
+    session.press("r")
+    session.run(time=1e-3)
+    assert session.particles.asleep.all()
+    assert not session.particles.velocity.any()
