@@ -31,7 +31,7 @@ from systems.physics.system import (
     Slackness,
 )
 from systems.plasticity.system import FirstYield, Strength, Yielding
-from systems.program.compiler import LARGE, UNCOMPILED, Choice, Compile, GeneratedModule, tell
+from systems.program.compiler import LARGE, LOG, UNCOMPILED, Choice, Compile, GeneratedModule, tell
 from systems.program.program import module_of
 from systems.program.writer import form_of, traits_of
 from systems.render.raster import RASTER, Raster, load_raster
@@ -156,7 +156,7 @@ class Preparation(System):
                 return
 
     def _tell(self, session: Any) -> None:
-        for sentence in (*cache.TROUBLE, *UNCOMPILED):
+        for sentence in (*cache.REFUSED, *cache.TROUBLE, *UNCOMPILED):
             if sentence not in self._said:
                 self._said.add(sentence)
                 session.notice = sentence
@@ -259,4 +259,5 @@ def _module_of(job: Job, simulation: Simulation) -> GeneratedModule | None:
         plan = simulation.schedule.named(job[3:])
         return module_of(simulation.model, plan, simulation.integrator, job[1])
     except Exception:  # of a mod, which is told of when the program is needed
+        LOG.info("A program cannot be written.", exc_info=True)
         return None

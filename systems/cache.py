@@ -1,13 +1,16 @@
 """The cache of compiled programs on disk, which processes share: each file is whole and as it was written, or is none.
 
-A power cut leaves empty files, a full disk parts of them, and damaged machine code would end the process.
+A power cut leaves empty files, a full disk parts of them, and damaged machine code would end the process. What
+somebody else could have written is not run.
 """
 
 from __future__ import annotations
 
+import errno
 import hashlib
 import logging
 import os
+import stat
 import tempfile
 from contextlib import suppress
 from functools import cache
@@ -20,53 +23,120 @@ from components.language import tr
 NOWHERE = Path(os.devnull)  # stands for a folder where none can be had: there is nothing in it, nor can be
 LOG = logging.getLogger("pinjoint.cache")
 TROUBLE: list[str] = []  # the sentence that programs cannot be kept, and why, once that is known
+REFUSED: list[str] = []  # sentences about what was not trusted, and why
 
 
 @cache
 def folder() -> Path:
     """A folder that can be written to: the user's cache, or a temporary one.
 
-    What lies in it is run: a folder of another owner is not used.
+    What lies in it is run: one that somebody else could write to is refused, which is said.
     """
-    owner = os.getuid() if hasattr(os, "getuid") else 0
+    own = user_cache_path("pinjoint") / "programs"
+    trouble: OSError = PermissionError(errno.EACCES, os.strerror(errno.EACCES))
     try:
-        shared = Path(tempfile.gettempdir()) / f"pinjoint-programs-{owner}"
-        for tried in (user_cache_path("pinjoint") / "programs", shared):
-            if _can_be_used(tried, owner):
+        for tried in (own, Path(tempfile.gettempdir()) / f"pinjoint-programs-{_user()}"):
+            if _can_be_used(tried):
                 return tried
-        return Path(tempfile.mkdtemp(prefix="pinjoint-programs-"))
     except OSError as error:
-        _say(user_cache_path("pinjoint") / "programs", error)
-        return NOWHERE
+        trouble = error
+    _say(own, trouble)
+    return NOWHERE
 
 
-def _can_be_used(tried: Path, owner: int) -> bool:
+def _can_be_used(tried: Path) -> bool:
     try:
         tried.mkdir(mode=0o700, parents=True, exist_ok=True)
+        if problem := _folder_problem(tried):
+            _refuse(tried, problem)
+            return False
         with tempfile.TemporaryFile(dir=tried):
-            pass
-        return not hasattr(os, "getuid") or tried.stat().st_uid == owner
+            return True
     except OSError:
         return False
 
 
+def _user() -> int:
+    return os.getuid() if hasattr(os, "getuid") else 0
+
+
+def _problem(path: Path) -> str:
+    """Why what lies there may be another's, in words; "" if it is this person's alone. Raises OSError."""
+    if not hasattr(os, "getuid"):
+        return ""
+    found = path.lstat()
+    if stat.S_ISLNK(found.st_mode):
+        return tr("it is a link")
+    if found.st_uid != _user():
+        return tr("it belongs to another user")
+    return tr("others may write to it") if found.st_mode & (stat.S_IWGRP | stat.S_IWOTH) else ""
+
+
+def _folder_problem(path: Path) -> str:
+    """The same of a folder, which others could put another in the place of if they may write to one around it."""
+    around = Path(os.path.realpath(path)).parents if hasattr(os, "getuid") else ()
+    for folder in around:
+        mode = folder.stat().st_mode
+        if mode & stat.S_IWOTH and not mode & stat.S_ISVTX:
+            return tr("others may write to {folder}", folder=folder)
+    return _problem(path)
+
+
+def _refuse(path: Path, problem: str) -> None:
+    said = tr(
+        "Compiled programs in {path} are not used, since they would be run and {problem}; delete it, or let nobody but"
+        " yourself write there.",
+        path=path,
+        problem=problem,
+    )
+    _note(REFUSED, said)
+
+
+def _note(known: list[str], said: str) -> None:
+    if said not in known:
+        known.append(said)
+        LOG.warning(said)
+
+
 def read(name: str) -> bytes | None:
-    """What was written under this name; None if nothing was, or if it is damaged, and then the file is deleted."""
+    """What was written under this name; None if nothing was.
+
+    What is damaged, was written under another name or may be another's is deleted.
+    """
     path = folder() / name
     try:
-        digest, content = _divided(path.read_bytes())
+        if problem := _problem(path):
+            _refuse(path, problem)
+        else:
+            written = path.read_bytes()
+            content = written[_SIZE:]
+            if written[:_SIZE] == _digest(name, content):
+                return content
     except OSError:
         return None
-    if hashlib.sha256(content).digest() == digest:
-        return content
-    with suppress(OSError):
-        path.unlink(missing_ok=True)
+    _delete(path)
     return None
 
 
-def _divided(written: bytes) -> tuple[bytes, bytes]:
-    size = hashlib.sha256().digest_size
-    return written[:size], written[size:]
+def drop(name: str, problem: Exception) -> None:
+    """Delete what is whole and can still not be used, which is said once for each kind of problem."""
+    kind = f"{type(problem).__name__}: {problem}"
+    _note(
+        REFUSED, tr("What was compiled before cannot be loaded, and is compiled anew: {problem}.", problem=kind)
+    )
+    _delete(folder() / name)
+
+
+def _delete(path: Path) -> None:
+    with suppress(OSError):
+        path.unlink(missing_ok=True)
+
+
+def _digest(name: str, content: bytes) -> bytes:
+    return hashlib.sha256(name.encode() + b"\0" + content).digest()
+
+
+_SIZE = hashlib.sha256().digest_size
 
 
 def write(name: str, content: bytes) -> None:
@@ -79,7 +149,7 @@ def write(name: str, content: bytes) -> None:
         handle, temporary = tempfile.mkstemp(dir=path.parent, prefix=name, suffix=".tmp")
         try:
             with os.fdopen(handle, "wb") as file:
-                file.write(hashlib.sha256(content).digest() + content)
+                file.write(_digest(name, content) + content)
             os.replace(temporary, path)
         except BaseException:
             os.unlink(temporary)
@@ -90,12 +160,10 @@ def write(name: str, content: bytes) -> None:
 
 def _say(where: Path, error: OSError) -> None:
     if not TROUBLE:
-        TROUBLE.append(
-            tr(
-                "Compiled programs cannot be kept in {folder}: {error}. Everything works, but starts more slowly next time."
-                " Make room in that folder, or allow writing to it.",
-                folder=where,
-                error=error.strerror,
-            )
+        said = tr(
+            "Compiled programs cannot be kept in {folder}: {error}. Everything works, but starts more slowly next time."
+            " Make room in that folder, or allow writing to it.",
+            folder=where,
+            error=error.strerror,
         )
-        LOG.warning(TROUBLE[0])
+        _note(TROUBLE, said)

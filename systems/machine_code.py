@@ -185,12 +185,14 @@ class _MachineCode(NullCache):
         rtsys.initialize(
             target
         )  # all that Pinjoint's own kernels need; a compiler would take six times as long
-        content = cache.read(self._name(signature))
+        name = self._name(signature)
+        content = cache.read(name)
         if content is None:
             return None
         try:
             return CompileResult._rebuild(target, *pickle.loads(content))
-        except Exception:  # such as a module that is gone
+        except Exception as error:  # such as a module that is gone
+            cache.drop(name, error)
             return None
 
     def save_overload(self, signature: Any, result: Any) -> None:

@@ -18,7 +18,7 @@ import numpy as np
 from systems.interpreter import plain_function
 from systems.kernels import PLAIN
 
-_LAYOUT = 4  # of what is kept on disk: raise it where former files are of no use any more
+_LAYOUT = 5  # of what is kept on disk: raise it where former files are of no use any more
 
 
 def meaning_of(functions: Iterable[Callable[..., Any]]) -> str:
@@ -75,7 +75,9 @@ def _constant(value: Any) -> str:
         return repr((value.dtype.str, value.shape, value.tobytes()))
     if isinstance(value, type) and issubclass(value, IntEnum):
         return repr((value.__name__, [(member.name, member.value) for member in value]))
-    plain = isinstance(value, bool | int | float | complex | str | tuple | None | np.generic)
+    if isinstance(value, tuple):  # of arrays, too, whose own words leave out most of what is long
+        return f"{type(value).__name__}{getattr(value, '_fields', '')}({', '.join(map(_constant, value))})"
+    plain = isinstance(value, bool | int | float | complex | str | None | np.generic)
     return repr(value) if plain else type(value).__name__
 
 

@@ -6,7 +6,6 @@ import json
 import os
 import subprocess
 import sys
-import tempfile
 import time
 from collections.abc import Callable, Iterator
 from pathlib import Path
@@ -643,17 +642,6 @@ def test_programs_that_nobody_uses_are_forgotten(tmp_path: Path, monkeypatch: py
         "pinjoint_program_new.advance-1.code-killed.tmp",
         "pinjoint_program_new.advance-1.nbi",
     }
-
-
-@pytest.mark.skipif(not hasattr(os, "getuid"), reason="folders have owners on POSIX systems only")
-def test_a_folder_of_somebody_else_is_not_used(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    """What lies in the cache is run: one that another person made where all may write is left alone."""
-    monkeypatch.setattr(cache, "user_cache_path", lambda name: tmp_path / "blocked")
-    (tmp_path / "blocked").write_text("not a folder")
-    monkeypatch.setattr(tempfile, "gettempdir", lambda: str(tmp_path))
-    monkeypatch.setattr(os, "getuid", lambda: 12345)
-    find: Callable[[], Path] = cache.folder.__wrapped__
-    assert find().parent != tmp_path or find().name != "pinjoint-programs-12345"
 
 
 def test_a_cache_that_cannot_be_written_is_said_once(app: App, monkeypatch: pytest.MonkeyPatch) -> None:

@@ -55,6 +55,7 @@ def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     """An empty cache."""
     monkeypatch.setattr(cache, "folder", lambda: tmp_path)
     monkeypatch.setattr(cache, "TROUBLE", [])
+    monkeypatch.setattr(cache, "REFUSED", [])
     return tmp_path
 
 
@@ -99,11 +100,94 @@ def test_a_damaged_program_is_compiled_anew(
 def test_a_program_that_cannot_be_loaded_is_compiled_anew(
     folder: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """It is whole, but of no use here: what it names is gone."""
+    """It is whole, but of no use here: what it names is gone. That is said once, and not found again."""
     answer(monkeypatch)
     (kept,) = folder.glob("*.code")
-    cache.write(kept.name, b"cgone_module\nname\n.")
+    for _ in range(2):
+        cache.write(kept.name, b"cgone_module\nname\n.")
+        assert answer(monkeypatch) == 42.0
+    assert len(cache.REFUSED) == 1
+    assert "gone_module" in cache.REFUSED[0]
+    assert len(cache.read(kept.name) or b"") > 1000
+
+
+def test_a_file_in_the_place_of_another_is_deleted(folder: Path) -> None:
+    """Both are whole: one entry run as another would be called with arguments that it does not take."""
+    cache.write("some.code", b"content")
+    os.replace(folder / "some.code", folder / "other.code")
+    assert cache.read("other.code") is None
+    assert not any(folder.iterdir())
+
+
+def _by_a_link(path: Path) -> None:
+    path.replace(path.with_name("elsewhere"))
+    path.symlink_to(path.with_name("elsewhere"))
+
+
+REFUSALS: dict[str, Callable[[Path], None]] = {
+    "may write to it": lambda path: path.chmod(path.stat().st_mode | 0o020),
+    "others may write": lambda path: path.chmod(path.stat().st_mode | 0o002),
+    "is a link": _by_a_link,
+}
+POSIX = pytest.mark.skipif(
+    not hasattr(os, "getuid"), reason="files have owners and modes on POSIX systems only"
+)
+
+
+@POSIX
+@pytest.mark.parametrize("why", [*REFUSALS, "another user"])
+def test_a_file_that_others_could_have_written_is_not_run(
+    folder: Path, monkeypatch: pytest.MonkeyPatch, why: str
+) -> None:
     assert answer(monkeypatch) == 42.0
+    (kept,) = folder.glob("*.code")
+    if why in REFUSALS:
+        REFUSALS[why](kept)
+    else:
+        monkeypatch.setattr(os, "getuid", lambda: 12345)
+    assert cache.read(kept.name) is None
+    assert not kept.exists()
+    assert not kept.is_symlink()
+    assert len(cache.REFUSED) == 1
+    assert str(kept) in cache.REFUSED[0]
+    assert why in cache.REFUSED[0]
+    monkeypatch.undo()
+    monkeypatch.setattr(cache, "folder", lambda: folder)
+    assert answer(monkeypatch) == 42.0
+    assert cache.read(kept.name) is not None
+
+
+@POSIX
+@pytest.mark.parametrize("why", [*REFUSALS, "another user", "may write to"])
+@pytest.mark.parametrize("own", [True, False], ids=["own", "temporary"])
+def test_a_folder_that_others_could_have_written_in_is_not_used(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, own: bool, why: str
+) -> None:
+    """The other place is taken, where that is safe; else nothing is kept, and both are said."""
+    monkeypatch.setattr(cache, "REFUSED", [])
+    monkeypatch.setattr(cache, "TROUBLE", [])
+    cached, temporary = tmp_path / "cache", tmp_path / "temporary"
+    temporary.mkdir()
+    if not own:
+        cached.write_text("not a folder")
+    monkeypatch.setattr(cache, "user_cache_path", lambda name: cached)
+    monkeypatch.setattr("tempfile.gettempdir", lambda: str(temporary))
+    find: Callable[[], Path] = cache.folder.__wrapped__
+    found = find()
+    assert found.parent == (cached if own else temporary)
+    assert not cache.REFUSED
+    if why in REFUSALS:
+        REFUSALS[why](found)
+    elif why == "another user":
+        monkeypatch.setattr(cache, "_user", lambda: 12345)
+        found.rename(found := temporary / "pinjoint-programs-12345") if not own else None
+    else:
+        found.parent.chmod(0o777)
+    later = find()
+    assert later.parent == temporary if own and why != "another user" else later == cache.NOWHERE
+    assert str(found) in cache.REFUSED[0]
+    assert why in cache.REFUSED[0]
+    assert bool(cache.TROUBLE) == (later == cache.NOWHERE)
 
 
 def test_a_folder_in_the_place_of_a_file_is_done_without(folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:

@@ -5,11 +5,13 @@ from __future__ import annotations
 import ast
 from enum import IntEnum
 
+import numpy as np
 import pytest
 
 from game import Session
 from systems.base import StopReason
 from systems.entries import ACCOUNTS, Account, Control, Mark, Measure, Search, Side
+from systems.kernels import part
 from systems.program.binding import StepRole, bind, by_role
 from systems.program.identity import meaning_of
 from systems.program.pasting import expanded, fragment, pasted
@@ -100,6 +102,23 @@ def test_a_program_is_compiled_anew_when_an_entry_moves() -> None:
 
     Moved.__name__ = Stayed.__name__ = "Account"
     assert meaning_of([Moved]) != meaning_of([Stayed])
+
+
+def test_a_program_is_compiled_anew_when_a_number_of_a_long_table_changes() -> None:
+    """Also of one within a tuple, of which numpy would say the first and the last numbers only."""
+
+    def reading(tables) -> str:
+        @part()
+        def read(row: int) -> float:
+            return float(tables[1][0][row])
+
+        return meaning_of([read])
+
+    table = np.zeros(5000)
+    changed = table.copy()
+    changed[2500] = 1.0
+    assert reading((table, (table,))) == reading((table.copy(), (table,)))
+    assert reading((table, (table,))) != reading((table, (changed,)))
 
 
 def test_entries_are_numbered_without_gaps() -> None:
