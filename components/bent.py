@@ -96,6 +96,16 @@ def axes(model: Model, rows: Rows) -> Axes:
     return Axes(drawn[:, 0], drawn[:, 1], state.left, scale * (state.cubic + state.sag), drift)
 
 
+def deflected(model: Model, row: int, shares: Array) -> tuple[Array, Array]:
+    """Of points at shares (k,) of a rod's axis as it is bent now: how far they are from its chord (m, (k, 2)), and the
+    slopes there to it (k,).
+    """
+    state = _state(model, np.array([row]))
+    bow = state.cubic + state.sag
+    slopes = values(derivative(bow), shares)[0]
+    return values(bow, shares).T * state.left, slopes / max(float(state.length[0]), 1e-300)
+
+
 def _drift(state: _State) -> Array | None:
     """How far points move along the chords, so that ends with slopes φ lie at angles φ to them, not arctan φ."""
     length = state.length

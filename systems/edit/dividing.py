@@ -10,6 +10,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from components.bent import deflected
 from components.derived import chord_rotation
 from components.field import SAVED
 from components.language import begun, marked, plural, tr
@@ -121,41 +122,30 @@ def _names(model: Model, rod: Rod, count: int) -> list[str]:
 
 
 def _particles(model: Model, rod: Rod, shares: Numbers) -> list[Particle]:
-    """New particles on the rod as it is bent now: its cubic between the slopes of its rigid ends."""
+    """New particles on the rod as it is bent now: its cubic, and what a distributed force adds to it."""
     first, second = rod.ends
     rows = [first.row, second.row]
-    particles, at = model.particles, shares[:, None]
+    particles = model.particles
 
     def along(column: str) -> Any:
         start, end = particles.column(column)[rows]
         return start + np.multiply.outer(shares, end - start)
 
-    chord = chord_rotation(model)[rod.row]
-    start, end = _slopes(model, rod, float(chord))
-    present = np.subtract(second.position, first.position) + np.subtract(
-        second.displacement, first.displacement
-    )
-    across = start * at * (1.0 - at) ** 2 - end * at**2 * (1.0 - at)
-    turned = start * (1.0 - 4.0 * shares + 3.0 * shares**2) + end * (3.0 * shares**2 - 2.0 * shares)
+    across, slopes = deflected(model, rod.row, shares)
+    if not (
+        particles.displacement.any() or particles.rotation.any()
+    ):  # the beginning, which stays as it was drawn
+        across, slopes = 0.0 * across, 0.0 * slopes
     return model.create(
         Particle,
         len(shares),
         position=along("position"),
-        displacement=along("displacement") + across * [-present[1], present[0]],
+        displacement=along("displacement") + across,
         velocity=along("velocity"),
-        rotation=chord + turned,
+        rotation=chord_rotation(model)[rod.row] + slopes,
         angular_velocity=along("angular_velocity"),
         radius=min(first.radius, second.radius),
     )
-
-
-def _slopes(model: Model, rod: Rod, chord: float) -> tuple[float, float]:
-    """Of the ends of a rod, to its chord; a hinged end turns as far as its moment is zero."""
-    rigid = model.rods.turning_shares[rod.row] > 0.0
-    start, end = (particle.rotation - chord for particle in rod.ends)
-    if not rigid.any():
-        return 0.0, 0.0
-    return (start if rigid[0] else -0.5 * end), (end if rigid[1] else -0.5 * start)
 
 
 def _let_sliders_move(model: Model, rod: Rod, parts: Sequence[Rod]) -> None:

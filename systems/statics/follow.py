@@ -36,6 +36,10 @@ LEAST_SHARE = 0.01  # of an increment to try next where a rod leaves its piece s
 REVERSAL = 1e-5  # increment to which the end of yielding is located; the error goes with its square
 SMALLEST = 1e-12  # increment, of the change of load, below which a path is lost
 NARROWINGS = 42  # halvings that locate a loss of stability
+CONFIRMING = range(
+    12, 28
+)  # halvings after which what is found beyond has to be close by, before round-off counts
+FARTHER = 8.0  # times the way between two states on a path: they are on two if they are that far apart
 FEW_NARROWINGS = 14  # the same in structures larger than EXACT_EVENTS
 ACTIVE_SET_ROUNDS = 12
 WAYS = (
@@ -572,17 +576,26 @@ class Path:
 
     # --- loss of stability -----------------------------------------------------------------------------
 
-    def narrow(
-        self, point: Point, tangent: Tangent, beyond: Tangent, increment: float
-    ) -> tuple[Point, Tangent, Tangent]:
-        """The last stable point of an increment, its tangent, and that of the first point that is not."""
-        start, along, stable = point, tangent, 0.0
-        for _ in range(NARROWINGS if self.exact_events else FEW_NARROWINGS):
-            middle = 0.5 * (stable + increment)
-            found = self.attempt(start, along, middle)
-            if isinstance(found, tuple) and found[1].stable:
-                point, tangent, stable = *found, middle
+    def narrow(self, point: Point, tangent: Tangent, beyond: Step) -> tuple[Point, Tangent, Tangent | None]:
+        """Where stability is lost on the way to a point beyond: the last stable point, its tangent, the tangent after it.
+
+        The last is None if the states that come nearest are farther apart than the way between them: the unstable one
+        lies on another branch, and the path goes on. An increment that fails is made smaller, and says nothing.
+        """
+        found, following, ahead = beyond.point, beyond.tangent, beyond.taken
+        for narrowing in range(NARROWINGS if self.exact_events else FEW_NARROWINGS):
+            size = HALF * ahead
+            tried = self.attempt(point, tangent, size)
+            while not isinstance(tried, tuple) and size > SMALLEST * ahead:
+                size *= min(tried, HALF)
+                tried = self.attempt(point, tangent, size)
+            if not isinstance(tried, tuple):
+                break
+            if tried[1].stable:
+                (point, tangent), ahead = tried, ahead - size
             else:
-                increment = middle
-                beyond = found[1] if isinstance(found, tuple) else beyond
-        return point, tangent, beyond
+                (found, following), ahead = tried, size
+            apart = self.size(self._change(point, found).moved)
+            if narrowing in CONFIRMING and apart > FARTHER * ahead * self.reference > 0.0:
+                return point, tangent, None
+        return point, tangent, following

@@ -13,7 +13,7 @@ from systems.statics.equations import Array, Flags, largest, normalised
 from systems.statics.events import Event, NoEquilibrium
 from systems.statics.explain import describe_motion, moved, rod_names, slack_named
 from systems.statics.factor import SOFT, is_stable, regular, soft_modes, softest, unresisted
-from systems.statics.follow import Path, Point, Tangent
+from systems.statics.follow import HALF, Path, Point, Tangent
 from systems.statics.relax import RUNAWAY, STEPS, relax
 
 BEYOND = 1e-6  # of the change of load, by which a jump begins beyond a loss of stability
@@ -116,7 +116,10 @@ class Loading:
             self.point = found
             return self._jump(following), np.inf
         else:
-            self.point, _, beyond = path.narrow(start, tangent, following, step.taken)
+            self.point, last, beyond = path.narrow(start, tangent, step)
+            if beyond is None:
+                self._note_yields(tangent, self.point, last)
+                return last, HALF * step.taken
             return self._jump(beyond), np.inf
         self.point = found
         self._note_plastic_mechanism(tangent, following)

@@ -6,7 +6,7 @@ from typing import Any
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
 from components.model import Model
@@ -45,8 +45,8 @@ def checked(made: Model, unknowns: list[Unknown], within: float = 1e-9) -> Solut
         moments = np.abs(theory.diagrams["bending_moment"]).max() + 1e-3
         assert np.abs(whole.bending_moment - theory.diagrams["bending_moment"]).max() <= within * moments
         assert np.abs(whole.reaction[:, 2] - theory.reaction_moment).max() <= within * moments
-        assert np.abs(whole.rotation - theory.rotation).max() <= within * (np.abs(theory.rotation).max() + 1e-9)
-    moved = np.abs(theory.displacement).max() + 1e-9
+        assert np.abs(whole.rotation - theory.rotation).max() <= within * (np.abs(theory.rotation).max() + 1e-6)
+    moved = np.abs(theory.displacement).max() + 1e-6  # m: where all is held, sums of sets leave round-off
     assert np.abs(whole.displacement - theory.displacement).max() <= within * moved
     return found
 
@@ -133,8 +133,7 @@ def test_warmth_across_a_beam_clamped_at_both_ends() -> None:
 def test_random_frames_by_all_their_unknowns_and_by_some(seed: int) -> None:
     made = parse(random_frame(seed))
     degrees = indeterminacy(made)
-    if degrees.mechanisms or not degrees.static:
-        return
+    assume(degrees.static and not degrees.mechanisms)
     unknowns = redundants(made)
     assert len(unknowns) == degrees.static
     checked(made, unknowns)
@@ -148,8 +147,7 @@ def test_random_frames_by_all_their_unknowns_and_by_some(seed: int) -> None:
 def test_random_trusses_with_warm_and_misfitting_rods(seed: int) -> None:
     made = parse(random_truss(seed))
     degrees = indeterminacy(made)
-    if degrees.mechanisms or not degrees.static:
-        return
+    assume(degrees.static and not degrees.mechanisms)
     lot = np.random.default_rng(seed)
     for rod in made.rods:
         rod.temperature_change = float(lot.uniform(-30.0, 30.0))

@@ -5,7 +5,7 @@ from typing import Any
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 from scipy.integrate import solve_ivp
 from scipy.optimize import brentq
@@ -58,8 +58,8 @@ def test_random_frames_are_in_balance_by_the_slow_reference(seed: int) -> None:
     document["settings"] = {"collisions": False}
     loaded = parse(document)
     found = settle(loaded).final
-    if found.balanced:
-        held_by_reference(loaded, found, 2e-11)
+    assume(found.balanced)  # else it collapses; hypothesis fails if too many do
+    held_by_reference(loaded, found, 2e-11)
 
 
 @pytest.mark.parametrize("number", range(4))
@@ -289,3 +289,26 @@ def test_a_frame_is_held_until_it_snaps() -> None:
     assert snap.load_factor * 0.034 == pytest.approx(
         0.03387 * 1.019, rel=5e-3
     )  # 1.9 % above that of fine divisions
+
+
+@pytest.mark.parametrize("number", range(10))
+def test_a_column_that_leans_ever_further_never_snaps(number: int) -> None:
+    """A small force beside a column makes its bending grow steadily, below the critical load and beyond it."""
+    lot = np.random.default_rng([89, number])
+    parts, length, critical = int(lot.integers(2, 7)), 3.0, math.pi**2 * EI / (4.0 * 3.0**2)
+    aside, share = critical * 10.0 ** lot.uniform(-8, -2), lot.uniform(0.9, 2.0)
+    particles: list[dict[str, Any]] = [
+        {"name": f"P{i}", "position": [0.0, length * i / parts]} for i in range(parts + 1)
+    ]
+    particles[0] |= {"fixed": [True, True], "fixed_rotation": True}
+    particles[-1] |= {"force": [aside, -share * critical]}
+    stiff = {"stiffness": 10.0 ** lot.uniform(5, 8), "bending_stiffness": EI}
+    rods = [{"name": f"R{i}", "between": [f"P{i}", f"P{i + 1}"], **stiff} for i in range(parts)]
+    column = model(particles, rods) | {"settings": {"collisions": False}}
+    at_once, slowly = settle(parse(column)), settle(parse(column), np.linspace(0.0, 1.0, 40).tolist())
+    for found in (at_once, slowly):
+        assert found.final.balanced
+        assert not [event for state in found.states for event in state.events if event.kind != "note"]
+    tip = [found.final.displacement[-1] for found in (at_once, slowly)]
+    assert tip[0] == pytest.approx(tip[1], abs=1e-7)
+    assert tip[0][0] > 0.0

@@ -88,6 +88,28 @@ def test_the_state_is_that_of_the_bent_rod() -> None:
     assert np.abs(forces(m)[1][2:]).max() < 1e-3 * np.abs(moments).max()
 
 
+@pytest.mark.parametrize("parts", [2, 3, 8])
+@pytest.mark.parametrize("hinged", [[False, False], [False, True]])
+@pytest.mark.parametrize("warmth", [0.0, 40.0])
+def test_a_settled_beam_under_load_keeps_its_moments(parts: int, hinged: list[bool], warmth: float) -> None:
+    """Parts begin on the axis as the load bends it, and it is said that this is no equilibrium of the parts."""
+    session = beam(hinged=hinged, distributed_force=[0, -20], plastic_strain=0, temperature_gradient=warmth)
+    session.model.particles["A"].fixed_rotation = False
+    session.settle()
+    before = session.rods["AB"].bending_moment
+    largest = 20.0 * 4.0**2 / 8.0
+    session.divide("AB", parts)
+    found = [moment for rod in session.rods for moment in rod.bending_moment]
+    shares = [share for k in range(parts) for share in (k / parts, (k + 1) / parts)]
+    expected = [4.0 * largest * x * (1.0 - x) + before[0] * (1.0 - x) + before[1] * x for x in shares]
+    assert found == pytest.approx(expected, abs=0.01 * largest)
+    assert not session.document.assessment.balanced
+    assert session.settle() == "equilibrium"
+    assert [m for rod in session.rods for m in rod.bending_moment] == pytest.approx(
+        expected, abs=2e-3 * largest
+    )
+
+
 @pytest.mark.parametrize("parts", [1, 0, -3, 2.5, True, "four", 100_000])
 def test_a_wrong_number_of_parts_is_refused(parts: object) -> None:
     session = beam()

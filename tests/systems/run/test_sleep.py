@@ -15,6 +15,7 @@ from systems.base import StopReason
 from systems.edit.pull import Hand
 from systems.entries import ACCOUNT
 from systems.islands import islands
+from systems.machine_code import machine_code
 from systems.physics.kernels import judge
 from systems.physics.rest import RestMeasure
 from systems.run import policy
@@ -213,9 +214,11 @@ def test_an_island_is_at_rest_by_the_rule_by_which_a_run_ends() -> None:
     of_particle = islands(state)
     of_rod = of_particle[state.rods.between].max(axis=1)
 
+    decided = machine_code(judge)
+
     @njit(error_model="numpy")
     def decide(measures: Any, account: Any, dt: float) -> int:
-        return judge(measures, account, dt, 0.0, 0.0, True)
+        return decided(measures, account, dt, 0.0, 0.0, True)
 
     judged: list[bool] = []
     while not session.simulation.halted:
