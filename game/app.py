@@ -8,6 +8,7 @@ import os
 import sys
 import time
 from collections.abc import Sequence
+from contextlib import nullcontext, suppress
 from pathlib import Path
 from typing import Any
 
@@ -20,6 +21,7 @@ from components.field import Vector
 from components.language import language, tr
 from components.model import Model
 from components.view import MAGNIFICATIONS, View, magnified
+from game.boundary import Boundary
 from game.documents import library, models
 from game.documents.autosave import Autosave, unkept
 from game.documents.open_documents import ModelFile, OpenDocument
@@ -53,6 +55,7 @@ FRAME_RATE = 60  # Hz
 FIRST_SIZE = (1000, 720)  # points
 FRAME = (16, 80)  # points that the frame of a window and the bars of a desktop take at least beside it
 SMALLEST_SIZE = (320, 240)
+FAULT_SIZE = 20.0  # points, of the letters that say why there is no picture
 SELDOM = 1_000_000  # new objects, after which the garbage collector runs even while a person works
 MANY_NEW = 20_000  # new objects, from which on it runs while nothing happens
 DISPLAYS = ("DISPLAY", "WAYLAND_DISPLAY")  # where Linux says what to draw on
@@ -197,29 +200,40 @@ class App:
         self.session.view.fit(model)
         self._full_screen = False
         self._known: OpenDocument | None = None
+        self._boundary = Boundary(self.session)
 
     def run(self) -> list[Failure]:
         """Run frames at 60 Hz until the window is closed; returns the failed expectations of played scripts."""
         failures: list[Failure] = []
         thresholds = gc.get_threshold()
         gc.set_threshold(SELDOM)  # else it runs in the middle of large edits; see _clean_up
+        played, around = self.session.lesson is not None, self._boundary.around
+        self._boundary.begin()
         try:
             with closed_by_signals(self.input.close):
                 while not self.closed:
                     self.next_frame()
-                    self.session.take_up_lesson()
-                    if self.session.lesson is not None:
-                        lesson, self.session.lesson = self.session.lesson, None
-                        failures += Performance(self, lesson).play()
+                    with nullcontext() if played else around("lessons"):  # a script gets its exceptions
+                        self.session.take_up_lesson()
+                        failures += self._play()
+                    played = False
         finally:
             gc.set_threshold(*thresholds)
-        self._remember_place()
+        with around("preferences"):
+            self._remember_place()
         if self.autosave is not None:
-            self.autosave.close(self.session.documents)
+            with around(self.autosave.name):
+                self.autosave.close(self.session.documents)
         if self.preparation is not None:
-            self.preparation.close()
+            with around(self.preparation.name):
+                self.preparation.close()
         self.close()
         return failures
+
+    def _play(self) -> list[Failure]:
+        """Play the script that was asked for, if one was."""
+        lesson, self.session.lesson = self.session.lesson, None
+        return Performance(self, lesson).play() if lesson is not None else []
 
     def _remember_place(self) -> None:
         """Keep where the window is for the next time, if somebody saw it and it does not fill the screen."""
@@ -248,15 +262,37 @@ class App:
 
     def frame(self, elapsed: float) -> Frame:
         """One frame: input, steps and picture."""
-        self._follow_size()
-        self._follow_title()
-        frame = self.session.frame(elapsed)
-        self._follow_choices()
-        if self.render.drawn:
-            self.window.flip()
-        elif not self.session.busy:
-            self._clean_up()
+        around = self._boundary.around
+        for follow in (self._follow_size, self._follow_title):
+            with around("window"):
+                follow()
+        frame = Frame(self.session, elapsed)
+        with around("frame"):
+            frame = self.session.frame(elapsed)
+        with around("window"):
+            self._follow_choices()
+            if self._boundary.undrawn:
+                self._draw_plainly()
+            if self.render.drawn:
+                self.window.flip()
+            elif not self.session.busy:
+                self._clean_up()
         return frame
+
+    def _draw_plainly(self) -> None:
+        """Show why there is no picture, with as little as that needs."""
+        surface, edge = self.render.surface, round(FAULT_SIZE * self.session.view.pixel_ratio)
+        surface.fill("black")
+        self.render.shown, self.render.drawn = None, True
+        with suppress(pygame.error):
+            pygame.font.init()
+            font = pygame.font.Font(None, edge)
+            surface.blit(
+                font.render(
+                    self._boundary.said, True, "white", None, max(surface.get_width() - 2 * edge, edge)
+                ),
+                (edge, edge),
+            )
 
     @property
     def closed(self) -> bool:

@@ -555,10 +555,12 @@ class Session(Context):
     def frame(self, elapsed: float) -> Frame:
         """One frame, `elapsed` s after the last: input, edit, step, events and render. Raises ValueError."""
         frame = Frame(self, _forward("elapsed", elapsed))
-        self.exaggerate()
         try:
-            for phase in Phase:
-                self.schedule.run(phase, frame)
+            try:
+                self.exaggerate()
+            finally:
+                for phase in Phase:
+                    self.schedule.run(phase, frame)
         except Exception as error:
             if not blamed_on_mod(error):
                 raise

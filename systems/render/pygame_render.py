@@ -22,7 +22,10 @@ from systems.render.theme import load_theme
 
 
 class PygameRender(System):
-    """Composes and draws the picture on `surface`; `drawn` tells whether the last frame needed it."""
+    """Composes and draws the picture on `surface`; `drawn` tells whether the last frame needed it.
+
+    shown: all that the picture on it follows from; None: it is to be drawn anew.
+    """
 
     name = "render.pygame"
     phase = Phase.RENDER
@@ -34,13 +37,13 @@ class PygameRender(System):
         self.surface = surface
         self.drawn = False
         self._canvas = Canvas(raster)
-        self._shown: Any = None
+        self.shown: Any = None
         self._placed: dict[str, Placed] = {}
         self._sketch = False  # the last picture was a sketch, before the drawing of large ones was compiled
 
     def draw_on(self, surface: pygame.Surface, frame: Any) -> None:
         """Draw on another surface, on which nothing is yet."""
-        self.surface, self._shown = surface, None
+        self.surface, self.shown = surface, None
         self.process(frame)
 
     def process(self, frame: Any) -> None:
@@ -48,15 +51,16 @@ class PygameRender(System):
         stages = frame.session.stages
         looks = tuple(repr(view) for _, view in stages)
         shown = (id(self.surface), language(), looks, _revisions(stages))
-        self.drawn = shown != self._shown or (self._sketch and self._canvas.draws_all)
+        self.drawn = shown != self.shown or (self._sketch and self._canvas.draws_all)
         if self.drawn:
+            self.shown = None  # until all of it is drawn
             theme = load_theme(frame.session.view.theme)
             self._sketch = False
             self._placed = {_looked_at(*stage): self._placed.get(_looked_at(*stage), {}) for stage in stages}
             for picture in compose_all(stages, theme, lambda *stage: self._placed[_looked_at(*stage)]):
                 self._canvas.draw(self.surface, picture)
                 self._sketch |= self._canvas.sketch
-            self._shown = (id(self.surface), language(), looks, _revisions(stages))
+            self.shown = (id(self.surface), language(), looks, _revisions(stages))
 
 
 def draw_unseen(frame: Any, size: tuple[int, int]) -> None:

@@ -10,7 +10,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from components.language import plural, tr
+from components.language import marked, plural, tr
 from components.model import Model
 from systems.statics.assembly import Matrix
 from systems.statics.bending import needed_parts
@@ -40,6 +40,10 @@ STIFFENED = (
     1e-8,
     1e-10,
 )  # of the rods' stiffness: by what tension is to hold a mechanism before it gives way
+UNCOMPUTED = marked(
+    "The buckling loads cannot be computed: the stiffnesses or lengths of the rods differ too much. Make the stiffest softer"
+    " or the shortest longer."
+)
 STRAINED = 0.1  # strain at a critical factor above which no material is still elastic
 
 
@@ -145,30 +149,40 @@ def _modes(structure: Structure, stiffness: Matrix, softening: Matrix, count: in
     size = structure.size
     if size == 0 or count == 0:
         return np.zeros((size, 0))
-    if not Factor(stiffness).definite:  # by round-off: factors are computed without what is added
-        stiffness = shifted(stiffness, structure.weight)
     count = min(count, size // 3) if size > FULL else min(count, size)
-    if size <= FULL:
-        from scipy.linalg import eigh
-
-        root = np.sqrt(structure.weight)
-        both = [m if isinstance(m, np.ndarray) else m.toarray() for m in (softening, stiffness)]
-        soft, stiff = (m / root[:, None] / root for m in both)
-        values, vectors = eigh(-soft, stiff)
-        vectors = vectors / root[:, None]
-    else:
-        values, vectors = _largest(structure, -softening, stiffness, count)
+    find = _largest if size > FULL else _every
+    weight = structure.weight
+    if not Factor(stiffness).definite:  # by round-off: factors are computed without what is added
+        stiffness = shifted(stiffness, weight)
+    try:
+        values, vectors = find(weight, -softening, stiffness, count)
+    except (ValueError, RuntimeError):  # the ends of very short rods are far stiffer than their weight
+        try:
+            values, vectors = find(np.maximum(weight, stiffness.diagonal()), -softening, stiffness, count)
+        except (ValueError, RuntimeError):
+            raise NoEquilibrium("collapse", tr(UNCOMPUTED)) from None
     order = np.argsort(-values)[:count]
     found: Array = vectors[:, order[values[order] > NOTHING * np.abs(values).max(initial=0.0)]]
     return found
 
 
-def _largest(structure: Structure, one: Matrix, other: Matrix, count: int) -> tuple[Array, Array]:
+def _every(weight: Array, one: Matrix, other: Matrix, count: int) -> tuple[Array, Array]:
+    """All eigenvalues of A φ = μ B φ and their φ. Raises LinAlgError where B is not definite."""
+    from scipy.linalg import eigh
+
+    root = np.sqrt(weight)
+    both = [m if isinstance(m, np.ndarray) else m.toarray() for m in (one, other)]
+    soft, stiff = (m / root[:, None] / root for m in both)
+    values, vectors = eigh(soft, stiff)
+    return values, vectors / root[:, None]
+
+
+def _largest(weight: Array, one: Matrix, other: Matrix, count: int) -> tuple[Array, Array]:
     """The largest eigenvalues of A φ = μ B φ and their φ, sparse; those that are found of few, beside many that are 0."""
     from scipy.sparse.linalg import ArpackNoConvergence, LinearOperator, eigsh
 
     inverse = LinearOperator(other.shape, matvec=Factor(other).solve, dtype=np.float64)
-    first, basis = pseudo_random(structure.size, 1)[:, 0], max(LANCZOS, 3 * count)
+    first, basis = pseudo_random(len(weight), 1)[:, 0], max(LANCZOS, 3 * count)
     try:
         found: tuple[Array, Array] = eigsh(
             one, count, M=other, Minv=inverse, which="LA", v0=first, ncv=basis, maxiter=RESTARTS

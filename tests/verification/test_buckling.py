@@ -270,6 +270,31 @@ def test_what_cannot_buckle_says_why() -> None:
     assert not len(strut.factors)
 
 
+def _with_a_short_beam(length: float) -> Model:
+    """A frame of which the ends of a rod turn a billion times as hard as others."""
+    frame = Session.open("two_storey_frame").model
+    frame.particles[2].position = 6.00000000000114, 0.0
+    frame.particles[4].position = 6.0 + length, 7.0
+    frame.particles[1].force = 0.0, -33789827153.788177
+    frame.rods[4].stiffness = 7.7345620118367115
+    return frame
+
+
+def test_very_short_rods_leave_the_loads_of_the_others_as_they_are() -> None:
+    found, longer = buckling(_with_a_short_beam(7.434768331e-6), 2), buckling(_with_a_short_beam(7e-5), 2)
+    assert found.factors == pytest.approx(longer.factors, rel=1e-4)
+
+
+def test_what_round_off_alone_resists_has_no_answer() -> None:
+    """The lowest load would be whatever is added to have it computed."""
+    frame = Session.open("hyperstatic").model
+    frame.rods[1].bending_stiffness, frame.rods[3].bending_stiffness = 48.69781049172676, 95464805.12276378
+    frame.particles[0].position = 1.5000000000135028, 1.5000000000135028
+    frame.particles[3].force = 0.0, -2783206662.9832897
+    with pytest.raises(NoEquilibrium, match="differ too much"):
+        buckling(frame)
+
+
 def test_notes_name_struts_and_strains() -> None:
     document = model(
         [
