@@ -132,6 +132,13 @@ class Structure:
         """The same structure with the arbitrary translations of free bodies among the unknowns."""
         return replace(self, unknown=_held_by_rods(len(self.position), self.ends, self.bending) & ~self.fixed)
 
+    def grown(self, share: float) -> Structure:
+        """The same structure with a share of its lack of fit and warmth."""
+        bending = self.bending
+        if bending is not None:
+            bending = replace(bending, initial_slopes=share * bending.initial_slopes)
+        return replace(self, misfit=share * self.misfit, bending=bending)
+
     # --- unknowns ----------------------------------------------------------------------------------
 
     @cached_property

@@ -174,8 +174,8 @@ class Loading:
         self.mechanism = True
         motion = structure.spread(following.rate)
         message = tr(
-            "Plastic mechanism {at}: so many rods yield that the stiffness of the others no longer resists moving {motion};"
-            " from here on the structure resists it only by changing its shape.",
+            "Plastic mechanism {at}: so many rods yield that the stiffness of the others no longer resists moving {motion}."
+            " This is the collapse load of textbooks; from here on the structure resists only by changing its shape.",
             at=self._at(self.point.t),
             motion=describe_motion(self.model, motion[None]),
         )
@@ -287,6 +287,15 @@ class Loading:
             rods=rod_names(self.model, rows),
             motion=describe_motion(self.model, motion[None]),
         )
+        earlier = next((event for event in self.events if event.kind == "plastic mechanism"), None)
+        if earlier is not None:
+            message = tr(
+                "The changed shape gives way, too, {at}: nothing resists moving {motion} any more. The collapse load of"
+                " textbooks, of the plastic mechanism in the original shape, is at the load factor {factor}.",
+                at=self._at(self.point.t),
+                motion=describe_motion(self.model, motion[None]),
+                factor=written.number(earlier.load_factor),
+            )
         self._tell("collapse", self.point.t, message, flowing, motion)
         return NoEquilibrium("collapse", message)
 

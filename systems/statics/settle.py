@@ -28,6 +28,10 @@ from systems.statics.follow import Path, Point
 from systems.statics.loading import Loading, first_order_mechanism
 from systems.statics.state import NEUTRAL, STABLE, UNSTABLE, Start, StaticState, state_of
 
+LARGEST_GROWTH, SMALLEST_GROWTH = (
+    1 / 16,
+    1e-6,
+)  # shares by which lack of fit and warmth grow where rods yield by them
 MOST_TOLD = 3  # events in an account besides the message
 TOLD = ("free body", "mechanism", "snap-through", "bifurcation", "note")  # kinds of events that messages repeat
 NEARLY_SOFT = 1e-9  # of the rods' stiffness: a note about a motion that is resisted less
@@ -163,6 +167,9 @@ class _Settling:
         self.point = at_rest.start(
             self.structure.field(start.displacement, start.rotation), start.plastic_strain
         )
+        yields = (self.point.plastic_strain != start.plastic_strain).any()
+        if yields and not self.structure.gather(self.point.displacement).any():
+            self.point = self._grown(start) or self.point
         self.largest = self.structure.largest_force(self.point.response)
         self.load = self._holding()
         self.factor = self.share = self._held_factor()
@@ -171,6 +178,24 @@ class _Settling:
             at_present = Path(self.structure, self._nothing, self._nothing, (self.share, self.share))
             self.point = at_present.start(self.point.displacement, start.plastic_strain)
         self.slack = at_rest.branches(self.point.response).slack
+
+    def _grown(self, start: Start) -> Point | None:
+        """The equilibrium without load once lack of fit, warmth and moved supports have grown; None if there is none.
+
+        Joints move as rods yield on the way: with all joints held at first, rods would yield that never do.
+        """
+        moved, share, step = self.point.displacement, 0.0, LARGEST_GROWTH
+        point = Point(0.0 * moved, start.plastic_strain, 0.0, self.point.response, 0.0)
+        while share < 1.0 and step > SMALLEST_GROWTH:
+            further = min(share + step, 1.0)
+            path = Path(self.structure.grown(further), self._nothing, self._nothing)
+            known = np.where(self.structure.unknown, point.displacement, further * moved)
+            found = path.correct(point, known, 0.0, None)
+            if found is None:
+                step *= 0.5
+            else:
+                point, share = found, further
+        return point if share == 1.0 else None
 
     @property
     def _nothing(self) -> Array:

@@ -154,3 +154,42 @@ def test_a_rod_cannot_cool_to_nothing() -> None:
     with pytest.raises(FieldError, match="rod AM: a temperature change of -90000 K would leave it no length"):
         session.rods["AM"].temperature_change = -90000.0
     assert session.rods["AM"].temperature_change == 0.0
+
+
+@pytest.mark.parametrize("number", range(6))
+def test_warmth_that_makes_bars_yield_acts_as_if_it_had_grown_slowly(number: int) -> None:
+    """A braced field with strengths drawn by lot, warmed at once and in many small steps from one state to the next."""
+    lot = np.random.default_rng([20, number])
+    particles = [
+        particle(f"P{i}{j}", i + lot.normal(0, 0.05), j + lot.normal(0, 0.05))
+        for i in range(3)
+        for j in range(2)
+    ]
+    particles[0]["fixed"], particles[4]["fixed"] = [True, True], [number % 2 == 0, True]
+    pairs = [(f"P{i}0", f"P{i}1") for i in range(3)]
+    pairs += [(f"P{i}{a}", f"P{i + 1}{b}") for i in range(2) for a in range(2) for b in range(2)]
+    rods = [
+        rod(
+            *pair,
+            stiffness=1e5,
+            thermal_expansion=1.2e-5,
+            tensile_strength=lot.uniform(20, 80),
+            compressive_strength=lot.uniform(20, 80),
+            temperature_change=lot.normal(0, 80),
+        )
+        for pair in pairs
+    ]
+    at_once = Session.open(model(particles, rods))
+    assert at_once.settle() == "equilibrium"
+    assert (at_once.rods.plastic_strain != 0.0).any()
+    found = at_once.rods.axial_force
+    errors = []
+    for steps in (50, 200):  # in each of which joints are held at first, so that they are of first order
+        slowly = Session.open(model(particles, rods))
+        warmth = slowly.rods.temperature_change.copy()
+        for share in np.arange(1, steps + 1) / steps:
+            slowly.rods.temperature_change = share * warmth
+            assert slowly.settle() == "equilibrium"
+        errors.append(np.abs(slowly.rods.axial_force - found).max() / np.abs(found).max())
+    assert errors[0] < 0.02
+    assert errors[1] < 0.4 * errors[0] + 1e-7

@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 from typing import Any
 
+import numpy as np
 import pytest
 from numba import njit
 
@@ -12,6 +13,7 @@ from game import Session
 from game.commands.command_line import main
 from game.documents import models
 from systems.base import Law
+from systems.statics.settle import settle
 from tests.reference.models import von_mises_truss
 
 
@@ -126,3 +128,23 @@ def test_nothing_is_said_where_a_law_acts_that_statics_does_not_know() -> None:
     assert session.run(until="rest") == "at rest"
     assert session.rods["AB"].plastic_strain != 0.0
     assert session.remarks == ()
+
+
+def test_the_collapse_load_of_textbooks_is_not_that_of_the_changed_shape() -> None:
+    """Two bars in a shallow V: limit analysis knows their original slope, 0.1; they bear until they hang straight down."""
+    strength = {"stiffness": 1e6, "tensile_strength": 10.0}
+    particles = [
+        {"name": "A", "position": [-1.0, 0.1], "fixed": [True, True]},
+        {"name": "B", "position": [0.0, 0.0], "force": [0.0, -40.0]},
+        {"name": "C", "position": [1.0, 0.1], "fixed": [True, True]},
+    ]
+    rods = [{"name": pair, "between": list(pair), **strength} for pair in ("AB", "BC")]
+    session = Session.open({"format": "pinjoint model", "version": 1, "particles": particles, "rods": rods})
+    found = settle(session.model)
+    (limit,) = (e for e in found.events if e.kind == "plastic mechanism")
+    (lost,) = (e for e in found.events if e.kind == "collapse")
+    assert limit.load_factor == pytest.approx(2.0 * 10.0 * 0.1 / np.hypot(1.0, 0.1) / 40.0, rel=1e-3)
+    assert "the collapse load of textbooks" in limit.message
+    assert lost.load_factor > 4.0 * limit.load_factor
+    assert "Plastic collapse" not in lost.message
+    assert f"at the load factor {limit.load_factor:.4g}" in lost.message
