@@ -6,8 +6,11 @@ what is nothing but rounding is 0, and the decimal sign is that of the language.
 
 from __future__ import annotations
 
+import csv
+import io
 import math
 from collections.abc import Iterable
+from typing import Any
 
 from components.field import CM
 from components.language import decimals, english, joined, several, tr
@@ -17,10 +20,32 @@ GIVEN_DIGITS = 6  # of a number that a person set, without zeros at its end
 MORE_DIGITS = 2  # that a sum may take so that it adds up as written
 ROUNDING = 1e-9  # of the largest of its kind: a result below is written as 0
 
+_FORMULA = ("=", "+", "-", "@", "\t", "\r")  # what a formula of a spreadsheet begins with
+_QUOTING = csv.QUOTE_MINIMAL, csv.QUOTE_NONNUMERIC  # the former leaves carriage returns bare
 _LENGTH, _PER_METRE = CM
 _PLAIN = range(-4, 7)  # powers of ten within which numbers are written out
 _RAISED = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
 _PREFIXES = ((1.0, ""), (1e-3, "m"), (1e-6, "µ"), (1e-9, "n"))
+
+
+def as_csv(rows: Iterable[Iterable[Any]]) -> str:
+    """Rows as CSV: numbers in full, True and False as 1 and 0, None as nothing, texts so that they stay texts.
+
+    A spreadsheet takes a text that begins with =, +, -, @, a tabulator or a carriage return for a formula: such a text, or
+    one with apostrophes before that, gets an apostrophe in front, which a reader takes away again.
+    """
+    text = io.StringIO()
+    usual, quoted = (csv.writer(text, lineterminator="\n", quoting=style) for style in _QUOTING)
+    for row in rows:
+        cells = [_cell(value) for value in row]
+        (quoted if any(isinstance(cell, str) and "\r" in cell for cell in cells) else usual).writerow(cells)
+    return text.getvalue()
+
+
+def _cell(value: Any) -> Any:
+    if isinstance(value, str) and value.lstrip("'").startswith(_FORMULA):
+        return f"'{value}"
+    return int(value) if isinstance(value, bool) else value
 
 
 def number(value: float, digits: int = DIGITS, *, nothing: float = 0.0) -> str:

@@ -3,9 +3,12 @@
 from __future__ import annotations
 
 import argparse
+import itertools
 import math
+import os
 import re
 from collections.abc import Callable
+from pathlib import Path
 from typing import Any, NoReturn
 
 from components.language import marked, tr
@@ -13,6 +16,7 @@ from components.mistake import Mistake
 from game.streams import put
 
 BAD_INPUT = 2
+OUTPUTS = ("output", "events", "report", "record", "plot")  # options of all commands that name a file to write
 
 
 class UsageError(Mistake):
@@ -53,6 +57,22 @@ class Parser(argparse.ArgumentParser):
         super().__init__(*args, **options)
         self._negative_number_matcher = re.compile(r"-\.?\d")
 
+    def parse_args(self, *args: Any, **options: Any) -> Any:
+        """The options. Raises UsageError, also if what is to be written would replace what is read."""
+        found = super().parse_args(*args, **options)
+        files = [(name, path) for name, value in vars(found).items() for path in _paths(value)]
+        for (name, path), (other, same) in itertools.permutations(files, 2):
+            if name in OUTPUTS and (other not in OUTPUTS or name < other) and _is_one_file(path, same):
+                self.error(
+                    tr(
+                        "--{option} {file} is {other} itself, which would be lost; choose another file",
+                        option=name,
+                        file=path,
+                        other=same,
+                    )
+                )
+        return found
+
     def exit(self, status: int = 0, message: str | None = None) -> NoReturn:
         """End the program once what was printed is written. Raises OSError if it cannot be."""
         put("")
@@ -61,6 +81,19 @@ class Parser(argparse.ArgumentParser):
     def error(self, message: str) -> NoReturn:
         sentence = message[:1].upper() + message[1:]
         raise UsageError(tr("{sentence}. See: {program} --help", sentence=sentence, program=self.prog))
+
+
+def _paths(value: Any) -> list[Path]:
+    """The files that an option may name."""
+    return [Path(one) for one in (value if isinstance(value, list) else [value]) if isinstance(one, str | Path)]
+
+
+def _is_one_file(one: Path, other: Path) -> bool:
+    """True if two names are of one file, by links, too, or will be."""
+    try:
+        return one.samefile(other)
+    except (OSError, ValueError):
+        return os.path.realpath(one) == os.path.realpath(other)
 
 
 def positive(text: str) -> float:

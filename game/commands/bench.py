@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import csv
 import importlib
 import math
 import sys
@@ -10,6 +9,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
+from components import written
 from components.language import tr
 from game.commands.arguments import Parser, UsageError
 from game.commands.options import ANSWERED
@@ -124,10 +124,8 @@ def write_files(name: str, tables: Tables, folder: Path) -> None:
     """One CSV file per table, and a picture where the benchmark has one."""
     folder.mkdir(parents=True, exist_ok=True)
     for title, rows in tables.items():
-        with open(folder / f"{name}_{title}.csv", "w", newline="", encoding="utf-8") as file:
-            writer = csv.DictWriter(file, list(rows[0]))
-            writer.writeheader()
-            writer.writerows(rows)
+        table = written.as_csv([rows[0], *(row.values() for row in rows)])
+        (folder / f"{name}_{title}.csv").write_text(table, encoding="utf-8")
     module = importlib.import_module(f"tests.benchmarks.{name}")
     if hasattr(module, "draw"):
         module.draw(tables, folder / f"{name}.png")

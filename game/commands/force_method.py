@@ -64,6 +64,14 @@ def command(words: Sequence[str]) -> int:
         solution = _solution(session.model, options.release)
     except ForceMethodError as error:
         raise UsageError(str(error)) from None
+    if options.report is not None and not solution.unknowns:
+        raise UsageError(
+            tr(
+                "{model} is statically determinate: there is nothing to release, and nothing to report. Equilibrium alone"
+                " gives its forces: pinjoint run {model} --static.",
+                model=options.model,
+            )
+        )
     tables = Tables.of(session.model, solution)
     laws = session.schedule.left_out_of_statics(session.model)
     found = _data(tables, single=options.release is not None and len(options.release) == 1)

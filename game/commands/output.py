@@ -3,8 +3,6 @@
 from __future__ import annotations
 
 import argparse
-import csv
-import io
 import math
 import os
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
@@ -14,6 +12,7 @@ from typing import Any, Literal
 
 import numpy as np
 
+from components import written
 from components.language import ENGLISH, Said, decimals, spoken, tr
 from components.mistake import Mistake
 from components.wording import printable
@@ -99,7 +98,7 @@ def formatted(
     if chosen != "table":
         with spoken(ENGLISH):
             data = plain(data, "result")
-            return laid_out(data, depth=4) + "\n" if chosen == "json" else _as_csv(rows(data))
+            return laid_out(data, depth=4) + "\n" if chosen == "json" else written.as_csv(rows(data))
     data = plain(data, "result", as_said=True)
     made = lines(data) if lines else aligned(_cells(rows(data)))
     return "".join(f"{line}\n" for line in made)
@@ -128,15 +127,6 @@ def writing(place: object) -> Iterator[None]:
 
 
 # --- values as text ------------------------------------------------------------------------------------
-
-
-def _as_csv(rows: Iterable[Row]) -> str:
-    """Full double precision; True and False are 1 and 0."""
-    text = io.StringIO()
-    writer = csv.writer(text, lineterminator="\n")
-    for row in rows:
-        writer.writerow([int(value) if isinstance(value, bool) else value for value in row])
-    return text.getvalue()
 
 
 def _cells(rows: Iterable[Row]) -> list[list[str]]:

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import csv
-import io
 import weakref
 from array import array
 from collections.abc import Iterable, Sequence
@@ -218,11 +216,8 @@ def write_csv(probe: Probe, path: Path) -> None:
     against = [] if probe.against.path == TIME else [1]
     titles = [*([probe.against.title] if against else []), *(read.title for read in probe.read)]
     heads = ["time (s)", *map(english, titles)]
-    text = io.StringIO()
-    writer = csv.writer(text)
-    writer.writerow(heads)
-    writer.writerows(probe.table[:, [0, *against, *range(2, 2 + len(probe.read))]].tolist())
-    replace(path, text.getvalue().encode())
+    samples = probe.table[:, [0, *against, *range(2, 2 + len(probe.read))]].tolist()
+    replace(path, written.as_csv([heads, *samples]).encode())
 
 
 def write_png(probe: Probe, path: Path, theme: str = "light") -> None:

@@ -12,7 +12,7 @@ from typing import Any
 import msgspec
 import numpy as np
 
-from components.language import tr
+from components.language import english, tr
 from game import __version__
 from game.commands.reports.report import Analysis
 from game.documents import models
@@ -145,12 +145,13 @@ class Plan:
 
     def failure(self, number: int, reason: str) -> Outcome:
         """The record of a variant that could not be computed."""
-        return number, [(FAILED, reason, *[None] * (len(RECORDED) - 2 + len(self.measures)))]
+        return number, [(FAILED, english(reason), *[None] * (len(RECORDED) - 2 + len(self.measures)))]
 
     def fingerprint(self) -> str:
         """Tells plans apart: model, variations, seed, what is asked and measured, versions."""
-        everything = msgspec.json.encode([msgspec.to_builtins(self), np.__version__], order="deterministic")
-        return hashlib.sha256(everything).hexdigest()
+        everything = [msgspec.to_builtins(self, enc_hook=english), np.__version__]
+        content = msgspec.json.encode(everything, order="deterministic")
+        return hashlib.sha256(content).hexdigest()
 
 
 def plan_of(

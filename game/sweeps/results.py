@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import csv
 import importlib.util
 import io
 from collections import Counter
@@ -13,6 +12,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from components import written
 from components.language import tr
 from game.commands.reports.report import FOUND
 from game.documents.models import replace
@@ -81,13 +81,7 @@ class Results:
         replace(path, self._as_csv() if path.suffix == ".csv" else self._as_parquet())
 
     def _as_csv(self) -> bytes:
-        made = io.BytesIO()
-        text = io.TextIOWrapper(made, encoding="utf-8", newline="")
-        writer = csv.writer(text, lineterminator="\n")
-        writer.writerow(self.columns)
-        writer.writerows(zip(*self.columns.values(), strict=True))
-        text.flush()
-        return made.getvalue()
+        return written.as_csv([self.columns, *zip(*self.columns.values(), strict=True)]).encode()
 
     def _as_parquet(self) -> bytes:
         """Units are kept with each column."""

@@ -2,14 +2,13 @@
 
 from __future__ import annotations
 
-import csv
-import io
 import math
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
+from components import written
 from components.language import tr
 from components.model import Model
 from components.obstacles import obstacles
@@ -90,9 +89,8 @@ class Impacts:
     def as_csv(self) -> str:
         """One impact a line: time (s), the particles' names, impulse (N·s), energy lost (J), point (m)."""
         names = [*self._model.particles.names, *obstacles(self._model).names]
-        text = io.StringIO()
-        writer = csv.writer(text, lineterminator="\n")
-        writer.writerow(_COLUMNS)
-        for time, first, second, *numbers in self._table[: len(self)].tolist():
-            writer.writerow([time, names[int(first)], names[int(second)], *numbers])
-        return text.getvalue()
+        impacts = self._table[: len(self)].tolist()
+        rows = (
+            [time, names[int(first)], names[int(second)], *others] for time, first, second, *others in impacts
+        )
+        return written.as_csv([_COLUMNS, *rows])

@@ -2,14 +2,33 @@
 
 from __future__ import annotations
 
+import csv
+import io
 import math
 
 import pytest
+from hypothesis import assume, example
 from hypothesis import given as generated
 from hypothesis import strategies as st
 
 from components import written
 from components.language import english, spoken
+
+
+@generated(st.lists(st.one_of(st.text(st.characters(exclude_categories=["Cs"])), st.floats(), st.integers())))
+@example(["=1+1", "+x", "-x", "@x", "\tx", "\rx", "'=x", "''-", "'x", "x=1", "−1", -1.5, "-1.5", True, None])
+def test_texts_in_csv_are_no_formulas_and_numbers_are_numbers(row: list[object]) -> None:
+    assume(row)
+    (cells,) = csv.reader(io.StringIO(written.as_csv([row]), newline=""))
+    for value, cell in zip(row, cells, strict=True):
+        if isinstance(value, str):
+            assert not cell.startswith(("=", "+", "-", "@", "\t", "\r"))
+            assert value == (cell[1:] if cell != value else cell)
+            assert cell in (value, f"'{value}")
+        elif isinstance(value, float):
+            assert float(cell) == value or math.isnan(value)
+        else:
+            assert cell == ("" if value is None else str(int(value)))
 
 
 @pytest.mark.parametrize(

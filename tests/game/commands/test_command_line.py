@@ -252,6 +252,61 @@ def test_no_command_writes_where_it_cannot(command: str, capsys: pytest.CaptureF
     assert "choose from" in capsys.readouterr().err
 
 
+@pytest.mark.parametrize("same", ["itself", "a link", "another name", "a path"])
+@pytest.mark.parametrize(
+    "command",
+    [
+        "run {model} --static --output {file}",
+        "run {model} --static --events {file}",
+        "verify {model} --theory-only --output {file}",
+        "render {model} --output {file}",
+        "shake {model} {record} --output {file}",
+        "sweep {model} --vary settings.restitution=0:1:2 --measure rods.AB.strain --output {file}",
+        "plot {model} --of time --until 0.001 --output {file}",
+        "{model} --record {file}",
+        "shake isostatic {model} --output {file}",
+    ],
+)
+def test_no_command_replaces_what_it_reads(
+    command: str, same: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    model, record = tmp_path / "model.csv", tmp_path / "record.csv"  # plot and sweep look at the ending
+    content = (ROOT / "assets" / "models" / "isostatic.json").read_bytes()
+    model.write_bytes(content)
+    record.write_text("0,0\n1,1\n", encoding="utf-8")
+    file = tmp_path / "other.csv"
+    if same == "a link":
+        file.symlink_to(model)
+    elif same == "another name":
+        file.hardlink_to(model)
+    else:
+        file = model if same == "itself" else Path(f"{tmp_path}/../{tmp_path.name}/model.csv")
+    assert main(command.format(model=model, record=record, file=file).split()) == 2
+    assert "which would be lost; choose another file" in capsys.readouterr().err
+    assert model.read_bytes() == content
+
+
+def test_two_results_do_not_go_into_one_file(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    both = str(tmp_path / "result.csv")
+    assert main(["run", "isostatic", "--static", "--output", both, "--events", both]) == 2
+    assert "choose another file" in capsys.readouterr().err
+
+
+def test_there_is_no_report_of_what_is_determinate(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    report = tmp_path / "report.pdf"
+    assert main(["force-method", "isostatic", "--all", "--report", str(report)]) == 2
+    assert "isostatic is statically determinate" in capsys.readouterr().err
+    assert not report.exists()
+
+
+@pytest.mark.parametrize("language", ["en", "pt"])
+def test_random_variants_in_every_language(language: str, tmp_path: Path) -> None:
+    words = "sweep hyperstatic --static --samples 2 --measure rods.CD.strain --vary rods.CD.stiffness~normal(1e5,1e3)"
+    found = pinjoint(*words.split(), "--output", str(tmp_path / "r.csv"), PINJOINT_LANGUAGE=language)
+    assert found.returncode == 0, found.stderr
+    assert len((tmp_path / "r.csv").read_text(encoding="utf-8").splitlines()) == 3
+
+
 def printed_by(command: str, capsys: pytest.CaptureFixture[str]) -> str:
     assert main(command.split()) == 0
     return capsys.readouterr().out
