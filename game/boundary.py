@@ -10,6 +10,7 @@ from contextlib import contextmanager, suppress
 from typing import Any
 
 from components.language import tr
+from components.mistake import Mistake
 from components.wording import cut
 from game.documents.library import data_folder
 from game.editor.context import Context
@@ -70,7 +71,11 @@ class Boundary:
             if not self._holds:
                 raise
             with suppress(Exception):  # such as a MemoryError while it is told
-                if not blamed_on_mod(error):
+                if isinstance(
+                    error, Mistake
+                ):  # of a person, such as in a script that was dropped on the window
+                    self._context.notice = self.said = str(error)
+                elif not blamed_on_mod(error):
                     self._tell(what, error)
 
     def _tell(self, what: str, error: Exception) -> None:

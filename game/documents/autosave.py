@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import contextlib
 import itertools
+import logging
 import threading
 import time
 import uuid
@@ -25,6 +26,7 @@ from game.documents.open_documents import OpenDocument
 from game.documents.sliders import slider_entries
 from systems.base import Phase, System
 
+LOG = logging.getLogger("pinjoint.autosave")
 INTERVAL = 2.0  # s between recovery files of the same model, at least
 SHARE = 0.2  # of one core at most is spent on writing them; 10⁵ rods take less than 0.1 s
 
@@ -34,13 +36,13 @@ def recovered_name(path: Path) -> str:
     return models.name_of(path).partition(".")[2].partition(".")[2]
 
 
-def unkept(folder: Path, error: OSError) -> str:
+def unkept(folder: Path, error: Exception) -> str:
     """The sentence that unsaved work would not survive a crash, and why."""
     return tr(
         "Unsaved work cannot be kept in {folder}, so a crash would lose it: {reason}. Make room there, or set {variable} to"
         " another folder and start Pinjoint again.",
         folder=folder,
-        reason=error.strerror,
+        reason=getattr(error, "strerror", None) or str(error) or type(error).__name__,
         variable=library.DATA_VARIABLE,
     )
 
@@ -126,21 +128,28 @@ class Autosave(System):
             self._count += 1
             name = opened.file.name.encode()[: library.MOST_BYTES].decode(errors="ignore")
             opened.recovery = self._folder / f"{self._id}.{self._count}.{name}.json"
-        self._written[opened] = opened.newest
-        still = _Still(opened.model)
-        self._thread = threading.Thread(target=self._put, args=(opened.recovery, still), daemon=True)
+        self._written.setdefault(opened, -1)
+        self._thread = threading.Thread(
+            target=self._put, args=(opened, opened.recovery, opened.newest, _Still(opened.model)), daemon=True
+        )
         self._thread.start()
         return self._thread
 
-    def _put(self, path: Path, still: _Still) -> None:
-        began = time.monotonic()
-        with contextlib.suppress(models.ModelError, ValueError):  # what no file can hold; saving says so
-            content = msgspec.json.encode(gathered(cast(Model, still), still.sliders))
-            try:
-                models.replace(path, content)
-                self._trouble = ""
-            except OSError as error:
-                self._trouble = unkept(self._folder, error)
+    def _put(self, opened: OpenDocument, path: Path, revision: int, still: _Still) -> None:
+        """Write a file; what could not be written, on a full disk above all, is tried again."""
+        began, trouble = time.monotonic(), ""
+        try:
+            models.replace(path, msgspec.json.encode(gathered(cast(Model, still), still.sliders)))
+        except models.ModelError as error:  # no file can hold it as it is now
+            trouble = tr(
+                "The unsaved work on '{name}' cannot be kept, so a crash would lose it: {reason}",
+                name=opened.file.name or tr("Untitled"),
+                reason=error,
+            )
+        except Exception as error:
+            trouble, revision = unkept(self._folder, error), self._written[opened]
+        self._written[opened] = revision
+        self._trouble = trouble
         self._due = began + max(self._interval, time.thread_time() / SHARE)
 
     def _remove(self, opened: OpenDocument) -> None:
@@ -157,6 +166,8 @@ class Autosave(System):
         for opened in edited:
             if self._written.get(opened) != opened.newest:
                 self._write(opened).join()
+                if self._trouble:  # no window says it any more
+                    LOG.warning(self._trouble)
         for opened in self._written.keys() - set(edited):
             self._remove(opened)
         for lock in self._locks:

@@ -9,6 +9,8 @@ import math
 import os
 import re
 import shutil
+import sys
+import time
 import uuid
 from collections.abc import Iterator, Mapping
 from contextlib import contextmanager, suppress
@@ -26,7 +28,9 @@ from components.suggestions import nearest
 from components.wording import quoted
 from game.documents.document import document, parse
 from game.documents.format import ModelError
+from game.documents.locks import lock_file
 
+UNHELD = 60.0  # s after which a running program holds a file that it made
 _ENCODER = msgspec.json.Encoder()
 
 __all__ = [
@@ -272,18 +276,38 @@ def replace(path: str | Path, content: bytes) -> None:
     if path.exists() and not (path.is_file() and os.access(path.parent, os.W_OK)):
         path.write_bytes(content)
         return
+    _clear_leftovers(path.parent)
     temporary = path.with_name(f".{uuid.uuid4().hex}.tmp")
+    file = lock_file(temporary) or temporary.open("ab")
     try:
-        with temporary.open("xb") as file:
-            file.write(content)
-            file.flush()
-            os.fsync(file.fileno())
+        file.write(content)
+        file.flush()
+        os.fsync(file.fileno())
         if path.exists():
             shutil.copymode(path, temporary)
+        if sys.platform == "win32":  # where no open file can be renamed, nor deleted
+            file.close()
         temporary.replace(path)
         _sync(path.parent)
     finally:
+        with suppress(OSError):  # what it could not write it would try to write again
+            file.close()
         temporary.unlink(missing_ok=True)
+
+
+@cache
+def _clear_leftovers(folder: Path) -> None:
+    """Delete what programs that were killed while they saved have left in a folder; a running one holds its file.
+
+    An empty one may be about to be held.
+    """
+    for path in folder.glob(f".{'[0-9a-f]' * 32}.tmp"):
+        with suppress(OSError):
+            found = path.lstat()
+            held_by_now = found.st_size > 0 or time.time() - found.st_mtime > UNHELD
+            if held_by_now and (file := lock_file(path)) is not None:
+                file.close()
+                path.unlink()
 
 
 def _sync(folder: Path) -> None:

@@ -216,22 +216,112 @@ def test_what_is_saved_needs_no_recovery_file(data: Path) -> None:
     assert not (data / "models").exists()
 
 
-def test_that_no_recovery_file_can_be_written_is_said_once(data: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    def full(path: Path, content: bytes) -> None:
+def passing(keeper: Autosave, session: Session) -> str:
+    """Let a file be written, or not; returns what is said then."""
+    session.notice, keeper._due = "", 0.0
+    session.frame(0.0)
+    assert keeper._thread is not None
+    keeper._thread.join(10.0)
+    session.frame(0.0)
+    return session.notice
+
+
+def test_a_full_disk_is_said_once_and_what_it_kept_out_is_written_once_there_is_room(
+    data: Path, monkeypatch: pytest.MonkeyPatch, caplog: pytest.LogCaptureFixture
+) -> None:
+    def full(handle: int) -> None:
         raise OSError(errno.ENOSPC, "No space left on device")
 
     keeper = Autosave(interval=0.0)
     session = Session.open(triangle(), [keeper])
-    monkeypatch.setattr(models, "replace", full)
-    for stiffness, said in ((5.0, True), (6.0, False)):
-        session.rods["AB"].stiffness = stiffness
-        session.notice = ""
-        session.frame(0.0)
-        assert keeper._thread is not None
-        keeper._thread.join(10.0)
-        session.frame(0.0)
-        assert ("a crash would lose it" in session.notice and "No space left" in session.notice) is said
+    with monkeypatch.context() as patch:
+        patch.setattr(os, "fsync", full)
+        for stiffness, is_said in ((5.0, True), (6.0, False)):
+            session.rods["AB"].stiffness = stiffness
+            said = passing(keeper, session)
+            assert ("a crash would lose it" in said and "No space left" in said) is is_said
+        assert not list((data / "autosave").glob("*.json"))
+        assert not list((data / "autosave").glob(".*.tmp"))
+    passing(keeper, session)
+    (written,) = (data / "autosave").glob("*.json")
+    assert stiffness_in(written) == 6.0, "though nobody edited it since"
+    session.rods["AB"].stiffness = 7.0
+    with monkeypatch.context() as patch:
+        patch.setattr(os, "fsync", full)
+        passing(keeper, session)
     keeper.close(session.documents)
+    assert stiffness_in(written) == 7.0, "also if the window is closed before it would be tried again"
+    assert not caplog.records
+
+
+def test_work_that_is_lost_as_the_window_closes_is_told_of(
+    data: Path, monkeypatch: pytest.MonkeyPatch, caplog: pytest.LogCaptureFixture
+) -> None:
+    keeper = Autosave(interval=0.0)
+    session = Session.open(triangle(), [keeper])
+    session.rods["AB"].stiffness = 5.0
+
+    def no_memory(path: Path, content: bytes) -> None:
+        raise MemoryError
+
+    monkeypatch.setattr(models, "replace", no_memory)
+    keeper.close(session.documents)
+    assert "MemoryError" in caplog.text
+
+
+def test_a_model_that_no_file_can_hold_is_told_of_and_keeps_the_others_from_nothing(data: Path) -> None:
+    keeper = Autosave(interval=0.0)
+    session = Session.open(triangle(), [keeper])
+    session.rods["AB"].stiffness = 5.0
+    session.model.writable("particles.velocity")[0] = np.nan
+    said = passing(keeper, session)
+    assert "a crash would lose it" in said
+    assert "nan" in said
+    session.open_here("isostatic")
+    session.rods["AB"].stiffness = 7.0
+    passing(keeper, session)
+    (written,) = (data / "autosave").glob("*.json")
+    assert stiffness_in(written) == 7.0
+    keeper.close(session.documents)
+
+
+SAVING = """
+import os, sys
+from pathlib import Path
+from game.documents import models
+if len(sys.argv) > 2:
+    sync = os.fsync
+    def pause(handle):
+        sync(handle)
+        print("saving", flush=True)
+        sys.stdin.read()
+    os.fsync = pause
+models.replace(Path(sys.argv[1]), b"content" * 1000)
+"""
+
+
+@pytest.mark.skipif(not hasattr(signal, "SIGKILL"), reason="this system has no SIGKILL")
+def test_what_a_program_left_that_was_killed_while_it_saved_is_deleted(tmp_path: Path) -> None:
+    """But nothing of one that is still saving, nor what only looks alike."""
+    path, alike = tmp_path / "model.json", tmp_path / f".{'g' * 32}.tmp"
+    alike.write_text("of somebody else")
+    command = [sys.executable, "-c", SAVING, str(path)]
+    killed, saving = (
+        subprocess.Popen([*command, "slow"], cwd=ROOT, stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True)
+        for _ in range(2)
+    )
+    for process in (killed, saving):
+        assert process.stdout is not None
+        assert process.stdout.readline() == "saving\n"
+    killed.kill()
+    killed.communicate()
+    assert len(list(tmp_path.glob(".*.tmp"))) == 3
+    subprocess.run(command, cwd=ROOT, check=True)
+    assert len(list(tmp_path.glob(".*.tmp"))) == 2
+    saving.communicate()
+    assert saving.returncode == 0
+    assert list(tmp_path.glob(".*.tmp")) == [alike]
+    assert path.read_bytes() == b"content" * 1000
 
 
 def test_every_model_with_unsaved_work_has_its_recovery_file(data: Path) -> None:

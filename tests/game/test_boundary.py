@@ -15,6 +15,7 @@ from game.documents import library, models
 from game.documents.autosave import Autosave
 from game.documents.open_documents import ModelFile
 from game.editor.context import ACTIONS
+from systems.input.bindings import FILES
 from systems.render.pygame_canvas import Canvas
 from tests.reference.models import triangle
 
@@ -132,3 +133,13 @@ def test_a_picture_that_cannot_be_drawn_is_replaced_by_words_until_it_can(
     assert looks[1:5] == [(True, False, False)] * 4
     assert looks[5:7] == [(False, False, True)] * 2, "once it can be drawn"
     assert looks[7:] == [(True, False, False)] * 2
+
+
+def test_a_script_that_was_dropped_on_the_window_says_what_is_wrong_with_it(
+    app: App, monkeypatch: pytest.MonkeyPatch, tmp_path: Path, caplog: pytest.LogCaptureFixture
+) -> None:
+    header = '{"format": "pinjoint session", "version": 1, "model": "isostatic"}'
+    (tmp_path / "wrong.jsonl").write_text(f'{header}\n{{"action": "no such"}}\n', encoding="utf-8")
+    said = shown_to(app, monkeypatch, f"{FILES}{tmp_path / 'wrong.jsonl'}", "", "")
+    assert "no such" in said[-1]
+    assert not caplog.records
