@@ -202,11 +202,31 @@ class Path:
         self.u = np.array([particle.displacement for particle in self.elements.particles]).ravel()
         self.plastic_strain = [rod.plastic_strain for rod in self.elements.rods]
         self.largest_move = LARGEST_MOVE * min(rod.rest_length for rod in self.elements.rods)
-        self.plastic_strain = self.respond(self.u).plastic_strain  # what begins beyond its strength has yielded
+        self.grown = 1.0  # share of lack of fit and warmth
+        held = self.respond(self.u)
+        if held.plastic_strain != self.plastic_strain and not self.u[self.free].any():
+            self.grow(max(map(abs, held.axial_force)))
+        else:
+            self.plastic_strain = held.plastic_strain  # what begins beyond its strength has yielded
         holding = np.where(self.free, self.respond(self.u).internal, 0.0)
         scaled = _scaled_forces(self.elements).ravel()
         self.patterns = np.array([scaled, _acceleration_forces(self.elements).ravel(), holding])
         self.amounts = np.array([0.0, 0.0, 1.0])
+
+    def grow(self, scale: float) -> None:
+        """Let lack of fit, warmth and settlements that make rods yield grow, little by little, without load."""
+        whole, share, step = self.u.copy(), 0.0, min(1 / 64, self.largest_increment)
+        self.u = np.zeros_like(whole)
+        while share < 1.0:
+            before, self.grown = self.u, min(1.0, share + step)
+            self.u = np.where(self.free, before, self.grown * whole)
+            found = self.newton(np.zeros_like(whole), scale)
+            if found is not None:
+                (self.u, self.plastic_strain), share = found, self.grown
+                continue
+            self.u, step = before, step / 2
+            if step < SMALLEST_INCREMENT:
+                raise ArithmeticError("There is no equilibrium without load.")
 
     def settle_initial_state(self) -> None:
         """Release what holds the given state at zero load (misfit, settlements), little by little."""
@@ -289,7 +309,8 @@ class Path:
         original = np.array(span)
         change = ends[2:] - ends[:2]
         original_length = math.hypot(*span)
-        misfit = original_length - free_length
+        misfit = self.grown * (original_length - free_length)
+        free_length = original_length - misfit
         if not self.exact:
             along = original / original_length
             return float(along @ change) + misfit, along, original_length
