@@ -21,7 +21,6 @@ MORE_DIGITS = 2  # that a sum may take so that it adds up as written
 ROUNDING = 1e-9  # of the largest of its kind: a result below is written as 0
 
 _FORMULA = ("=", "+", "-", "@", "\t", "\r")  # what a formula of a spreadsheet begins with
-_QUOTING = csv.QUOTE_MINIMAL, csv.QUOTE_NONNUMERIC  # the former leaves carriage returns bare
 _LENGTH, _PER_METRE = CM
 _PLAIN = range(-4, 7)  # powers of ten within which numbers are written out
 _RAISED = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
@@ -35,7 +34,8 @@ def as_csv(rows: Iterable[Iterable[Any]]) -> str:
     one with apostrophes before that, gets an apostrophe in front, which a reader takes away again.
     """
     text = io.StringIO()
-    usual, quoted = (csv.writer(text, lineterminator="\n", quoting=style) for style in _QUOTING)
+    usual = csv.writer(text, lineterminator="\n")  # leaves carriage returns bare
+    quoted = csv.writer(text, lineterminator="\n", quoting=csv.QUOTE_NONNUMERIC)
     for row in rows:
         cells = [_cell(value) for value in row]
         (quoted if any(isinstance(cell, str) and "\r" in cell for cell in cells) else usual).writerow(cells)
