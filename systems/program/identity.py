@@ -5,6 +5,7 @@ from __future__ import annotations
 import hashlib
 import importlib.metadata
 import inspect
+import os
 import platform
 import sys
 from collections.abc import Callable, Iterable, Iterator, Mapping
@@ -104,4 +105,5 @@ def _circumstances() -> tuple[str, ...]:
         compiler = importlib.metadata.version("numba")
     except importlib.metadata.PackageNotFoundError:
         compiler = ""
-    return compiler, sys.version, platform.machine(), *processor
+    bounds = f"bounds are checked: {os.environ.get('NUMBA_BOUNDSCHECK', '')}"
+    return compiler, sys.version, platform.machine(), bounds, *processor

@@ -43,7 +43,7 @@ class Card:
         widest = max((self._width(tool) for tool in tools), default=0.0)
         width = min(max(widest + 2 * _PAD * u, 280.0 * u), v.width - 28.0 * u)
         height = self.emblem + (_HEAD + 14.0) * u + len(tools) * _ROW * u
-        bottom = v.bottom - (BAR * u if view.status.state else 0.0)
+        bottom = v.bottom - BAR * u  # that of the status
         left, top = v.left + (v.width - width) / 2, v.top + (bottom - v.top - height) / 2
         self.place, first = Rectangle(left, top, width, height), top + self.emblem + _HEAD * u
         inner = left + (_PAD - 12.0) * u, width - 2 * (_PAD - 12.0) * u

@@ -93,7 +93,7 @@ def compose(
 def on_status_bar(view: View, pixel: Vector) -> bool:
     """True if a pixel of the picture of a model shows the status bar."""
     v = view.canvas
-    return bool(view.status.state) and v.contains(pixel) and pixel[1] >= v.bottom - BAR * view.pixel_ratio
+    return v.contains(pixel) and pixel[1] >= v.bottom - BAR * view.pixel_ratio
 
 
 def panel_at(model: Model, view: View, theme: Theme, pixel: Vector) -> ShownPanel | None:

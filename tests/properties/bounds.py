@@ -1,0 +1,52 @@
+"""Nothing reads or writes outside an array: code run in a process in which machine code checks every index.
+
+`python -m tests.properties.bounds editing windows --count 20` is `python -m tests.properties.fuzz` in such a process. It
+compiles all that it runs, in a cache folder of its own, for what was compiled without checks has none. A kernel called by its
+address cannot raise: numba prints the error and goes on with zero, so the process ends at once instead.
+"""
+
+from __future__ import annotations
+
+import os
+import subprocess
+import sys
+import tempfile
+from collections.abc import Sequence
+from pathlib import Path
+
+OUTSIDE = 70  # status of a process in which a kernel, called by address, has read outside an array
+
+_GUARD = f"""
+import os, sys
+def end(unraisable):
+    sys.__unraisablehook__(unraisable)
+    sys.stderr.flush()
+    os._exit({OUTSIDE})
+sys.unraisablehook = end
+"""
+
+
+def checked(code: str, *words: str, timeout: float | None = None) -> subprocess.CompletedProcess[str]:
+    """Run this code, which gets the words in `sys.argv`, with all indices of machine code checked."""
+    with tempfile.TemporaryDirectory() as folder:
+        own = {"NUMBA_BOUNDSCHECK": "1", "PINJOINT_COMPILE": "always", "XDG_CACHE_HOME": folder}
+        return subprocess.run(
+            [sys.executable, "-c", _GUARD + code, *words],
+            env=os.environ | own | {"PYTHONPATH": str(Path(__file__).parents[2])},
+            stdout=subprocess.PIPE,
+            stderr=subprocess.STDOUT,
+            text=True,
+            timeout=timeout,
+        )
+
+
+def main(words: Sequence[str] | None = None) -> int:
+    """Fuzz with checked indices; returns the status of the process that did."""
+    code = "from tests.properties.fuzz import main\nraise SystemExit(main())"
+    done = checked(code, *(sys.argv[1:] if words is None else words))
+    print(done.stdout, end="")
+    return done.returncode
+
+
+if __name__ == "__main__":
+    raise SystemExit(main())
