@@ -178,7 +178,8 @@ class Flight:
         if until < math.inf:
             steps = min(steps, max(math.floor((until - origin) / size * (1.0 + 1e-15)) - first, 0))
         target = origin + (first + steps) * size
-        if landing < math.inf and origin + (first + steps + 1) * size > landing > clock.time:
+        last = steps == 0 or origin + (first + steps + 1) * size > landing  # late in a run neither is exact
+        if last and math.inf > landing > clock.time:
             return self._land(landing)
         if steps == 0:
             return 0, StopReason.DONE

@@ -409,3 +409,15 @@ def test_energy_does_not_grow_where_rows_fit_exactly_between_walls(
         assert now <= before + 1e-3 * (abs(first) + abs(before))
         before = now
     assert sinking(session) <= 1e-3
+
+
+def test_a_moment_at_which_a_step_ends_is_reached_where_its_number_is_rounded_down() -> None:
+    session = Session.open(gas())
+    size, origin = 2.5298381201802593e-06, 0.03260847205211093
+    now = {"step_size": size, "origin": origin, "steps": 97, "time": origin + 97 * size}
+    for name, value in now.items():
+        session.model.writable(f"clock.{name}")[0] = value
+    target = origin + 98 * size
+    assert (target - origin) / size * (1.0 + 1e-15) < 98
+    session.simulation._stepper.land(target)
+    assert session.model.clock.time == target
