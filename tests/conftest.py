@@ -58,7 +58,7 @@ def fresh_process() -> Callable[..., str]:
             text=True,
             timeout=timeout,
         )
-        assert finished.returncode == 0, finished.stderr
+        assert finished.returncode == 0, finished.stdout + finished.stderr
         return finished.stdout
 
     return run

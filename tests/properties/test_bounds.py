@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import pytest
-
 from tests.properties.bounds import OUTSIDE, checked
 
 READS = """
@@ -36,14 +34,3 @@ print(call(address, np.zeros(3), 3))
     done = checked(READS + call, timeout=300)
     assert done.returncode == OUTSIDE, done.stdout
     assert "IndexError" in done.stdout
-
-
-@pytest.mark.parametrize(("words", "actions"), [("windows --count 2", 500)])
-def test_whatever_a_person_does_stays_within_arrays(words: str, actions: int) -> None:
-    done = checked(
-        "from tests.properties.fuzz import main; raise SystemExit(main())",
-        *words.split(),
-        *("--actions", str(actions)),
-        timeout=600,
-    )
-    assert done.returncode == 0, done.stdout

@@ -1,34 +1,28 @@
-"""A few of everything that `python -m tests.properties.fuzz` tries, which has as many as one likes."""
+"""Some of everything that `python -m tests.properties.fuzz` tries, which has as many as one likes."""
 
 from __future__ import annotations
 
-from pathlib import Path
+from collections.abc import Callable
 
 import pytest
 
-from game.documents import library, preferences
-from systems.input import pygame_input
 from tests.properties import damage
-from tests.properties.fuzz import Fuzz
-from tests.properties.windows import Monkey
+from tests.properties.bounds import checked, fuzzing
+
+PERSONS = (("editing", "--count", "5", "--actions", "200"), ("windows", "--count", "4", "--actions", "250"))
 
 
-@pytest.mark.parametrize("seed", [105, 110, 114, 120, 130])
-def test_anything_that_a_person_does(seed: int, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setenv(library.DATA_VARIABLE, str(tmp_path))  # set back afterwards
-    monkeypatch.chdir(tmp_path)
-    Fuzz(seed, tmp_path).run(200)
-
-
-@pytest.mark.parametrize("seed", [1, 2, 3])
-def test_anything_that_a_person_does_to_a_window(
-    seed: int, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+@pytest.mark.parametrize("words", PERSONS, ids=lambda words: words[0])
+def test_anything_that_a_person_does_interpreted(
+    words: tuple[str, ...], fresh_process: Callable[..., str]
 ) -> None:
-    monkeypatch.setenv(library.DATA_VARIABLE, str(tmp_path))
-    monkeypatch.setenv(preferences.CONFIG_VARIABLE, str(tmp_path))
-    monkeypatch.chdir(tmp_path)
-    monkeypatch.setattr(pygame_input, "IDLE_PAUSE", 0.0)
-    Monkey(seed, tmp_path).run(100)
+    fresh_process(fuzzing(*words, "--seed", "105"), {"PINJOINT_COMPILE": "never"})
+
+
+@pytest.mark.parametrize("words", PERSONS, ids=lambda words: words[0])
+def test_whatever_a_person_does_stays_within_arrays(words: tuple[str, ...]) -> None:
+    done = checked(fuzzing(*words, "--seed", "50"))
+    assert done.returncode == 0, done.stdout
 
 
 @pytest.mark.parametrize("first", range(0, 30, 5))
