@@ -1,7 +1,7 @@
 """Nothing reads or writes outside an array: code run in a process in which machine code checks every index.
 
 `python -m tests.properties.bounds editing windows --count 20` is `python -m tests.properties.fuzz` in such a process. It
-compiles all that it runs, in a cache folder of its own, for what was compiled without checks has none. A kernel called by its
+compiles all that it runs, in a cache folder of its own, for what was compiled without checks has none. A kernel called by an
 address cannot raise: numba prints the error and goes on with zero, so the process ends at once instead.
 """
 
