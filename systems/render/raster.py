@@ -72,9 +72,11 @@ def _around(clip: Clip, mark: Strokes) -> Clip:
     reach = 0.75 * mark.width + 1.0
     columns = [points[:, axis] for axis in (0, 1) for points in (mark.start, mark.end)]  # faster than by rows
     least, most = [column.min() - reach for column in columns], [column.max() + reach for column in columns]
-    left, top = max(clip[0], int(min(least[:2]))), max(clip[1], int(min(least[2:])))
-    right, bottom = min(clip[2], int(max(most[:2])) + 1), min(clip[3], int(max(most[2:])) + 1)
-    return left, top, max(right, left), max(bottom, top)
+    reached = int(min(least[:2])), int(min(least[2:])), int(max(most[:2])) + 1, int(max(most[2:])) + 1
+    left, top, right, bottom = (
+        min(max(side, clip[axis]), clip[axis + 2]) for side, axis in zip(reached, (0, 1, 0, 1), strict=True)
+    )
+    return left, top, right, bottom
 
 
 def _contiguous(numbers: NDArray[Any]) -> NDArray[np.float64]:

@@ -16,7 +16,7 @@ from components.field import Vector
 from systems.render.coverage import stroke_coverage
 from systems.render.marks import Bars, Discs, Mark, Picture, Points, Strokes
 from systems.render.pygame_canvas import Canvas
-from systems.render.raster import load_raster
+from systems.render.raster import _around, load_raster
 
 BLACK, WHITE = (0, 0, 0, 255), (255, 255, 255, 255)
 SIZE = 40
@@ -164,3 +164,12 @@ def test_surfaces_of_other_sizes_come_next() -> None:
         canvas.draw(surface, Picture(Viewport(0, 0, *size), None, marks))
         assert surface.get_at((size[0] - 1, size[1] - 1))[:3] == (255, 0, 0)
         assert surface.get_at((size[0] - 1, 5))[:3] == (0, 0, 0)
+
+
+@pytest.mark.parametrize("shift", [(0.0, 0.0), (300.0, 0.0), (-300.0, 0.0), (0.0, 900.0), (0.0, -900.0)])
+def test_what_strokes_can_reach_lies_within_the_clip(shift: Vector) -> None:
+    """Blocks beyond the last column would be read, and cleared, wherever strokes lie to the right of a window."""
+    start, end = np.array([[10.0, 20.0], [90.0, 300.0]]) + shift, np.array([[50.0, 20.0], [170.0, 10.0]]) + shift
+    left, top, right, bottom = _around((5, 7, 160, 360), Strokes(start, end, 2.0, (0, 0, 0, 255)))
+    assert 5 <= left <= right <= 160
+    assert 7 <= top <= bottom <= 360
