@@ -4,7 +4,7 @@ import os
 import sys
 import warnings
 
-from game.interrupts import end_in_time, ended_with, is_program, quietly_interrupted
+from game.interrupts import end_in_time, ended_with, quietly_interrupted
 from game.version import __version__
 
 
@@ -30,8 +30,7 @@ def main() -> int:
         except Mistake as error:  # of --language, or of a variable of the environment
             tell(str(error))
             return 2
-    if is_program():
-        end_in_time()
+    end_in_time()
     with told():
         status = command_line.main(words)
     return ended_with(status)

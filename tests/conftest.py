@@ -11,6 +11,7 @@ import pytest
 from hypothesis import HealthCheck, settings
 
 from components.language import ENGLISH, spoken
+from game.documents import library, preferences
 from systems.program.compiler import Choice
 
 ROOT = Path(__file__).resolve().parents[1]
@@ -24,9 +25,11 @@ settings.load_profile("pinjoint")
 
 @pytest.fixture(autouse=True, scope="session")
 def folder_of_the_tests(tmp_path_factory: pytest.TempPathFactory) -> Iterator[None]:
-    """Tests run outside the repository, in which they leave nothing: keys and commands write where they are."""
+    """Tests leave nothing in the repository and with the user: keys and commands write where they are, or among the models."""
     with pytest.MonkeyPatch.context() as patched, chdir(tmp_path_factory.mktemp("tests")):
         patched.setenv("PYTHONPATH", str(ROOT))  # for the processes that they start
+        patched.setenv(library.DATA_VARIABLE, str(tmp_path_factory.mktemp("data")))
+        patched.setenv(preferences.CONFIG_VARIABLE, str(tmp_path_factory.mktemp("config")))
         patched.setenv("PINJOINT_LANGUAGE", ENGLISH)
         yield
 

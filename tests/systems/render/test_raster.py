@@ -169,7 +169,10 @@ def test_surfaces_of_other_sizes_come_next() -> None:
 @pytest.mark.parametrize("shift", [(0.0, 0.0), (300.0, 0.0), (-300.0, 0.0), (0.0, 900.0), (0.0, -900.0)])
 def test_what_strokes_can_reach_lies_within_the_clip(shift: Vector) -> None:
     """Blocks beyond the last column would be read, and cleared, wherever strokes lie to the right of a window."""
-    start, end = np.array([[10.0, 20.0], [90.0, 300.0]]) + shift, np.array([[50.0, 20.0], [170.0, 10.0]]) + shift
+    start, end = (
+        np.array([[10.0, 20.0], [90.0, 300.0]]) + shift,
+        np.array([[50.0, 20.0], [170.0, 10.0]]) + shift,
+    )
     left, top, right, bottom = _around((5, 7, 160, 360), Strokes(start, end, 2.0, (0, 0, 0, 255)))
     assert 5 <= left <= right <= 160
     assert 7 <= top <= bottom <= 360
