@@ -25,7 +25,7 @@ settings.load_profile("pinjoint")
 
 @pytest.fixture(autouse=True, scope="session")
 def folder_of_the_tests(tmp_path_factory: pytest.TempPathFactory) -> Iterator[None]:
-    """Tests leave nothing in the repository and with the user: keys and commands write where they are, or among the models."""
+    """Tests leave nothing in the repository and with the user: keys and commands write where they are."""
     with pytest.MonkeyPatch.context() as patched, chdir(tmp_path_factory.mktemp("tests")):
         patched.setenv("PYTHONPATH", str(ROOT))  # for the processes that they start
         patched.setenv(library.DATA_VARIABLE, str(tmp_path_factory.mktemp("data")))
