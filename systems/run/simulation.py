@@ -563,7 +563,9 @@ def _why_not_at_rest(program: Dynamics, has_rods: bool, energy: Energy, limit: f
         )
     elif not program.resists_motion:
         reason = (
-            tr("Nothing damps the motion, so the model never comes to rest; give the rods damping or set a drag.")
+            tr(
+                "Nothing damps the motion, so the model never comes to rest; give the rods damping or set a drag."
+            )
             if has_rods
             else tr("Nothing damps the motion, so the model never comes to rest; set a drag.")
         )
