@@ -439,7 +439,7 @@ class Simulation:
                 self.run_to(limit)
                 break
         if not self.halted:
-            self.message = _why_not_at_rest(self.program, self.energy, limit)
+            self.message = _why_not_at_rest(self.program, self.model.rods.count > 0, self.energy, limit)
         return self.reason is StopReason.REST
 
     def show(self, target: float) -> bool:
@@ -577,7 +577,7 @@ class Simulation:
         return float(residual(self._measured()))
 
 
-def _why_not_at_rest(program: Dynamics, energy: Energy, limit: float) -> str:
+def _why_not_at_rest(program: Dynamics, has_rods: bool, energy: Energy, limit: float) -> str:
     """The message of a run that did not come to rest by the time `limit` (s)."""
     if program.lasting:
         reason = tr(
@@ -585,8 +585,12 @@ def _why_not_at_rest(program: Dynamics, energy: Energy, limit: float) -> str:
             system=program.lasting,
         )
     elif not program.resists_motion:
-        reason = tr(
-            "Nothing damps the motion, so the model never comes to rest; give the rods damping or set a drag."
+        reason = (
+            tr(
+                "Nothing damps the motion, so the model never comes to rest; give the rods damping or set a drag."
+            )
+            if has_rods
+            else tr("Nothing damps the motion, so the model never comes to rest; set a drag.")
         )
     elif program.changes_end > limit:
         reason = tr("A load is still changing at that time; raise the limit.")
@@ -595,5 +599,9 @@ def _why_not_at_rest(program: Dynamics, energy: Energy, limit: float) -> str:
             "Errors of the time steps, not dampers or drag, took most of the motion; make the time step smaller."
         )
     else:
-        reason = tr("Raise the limit, or the damping of the rods or the drag.")
+        reason = (
+            tr("Raise the limit, or the damping of the rods or the drag.")
+            if has_rods
+            else tr("Raise the limit, or the drag.")
+        )
     return joined([tr("Not at rest within {limit:g} s of simulated time.", limit=limit), reason])
