@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 import sys
 import time
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Generator, Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass, replace
 from typing import Any
@@ -22,8 +22,9 @@ from systems.base import REVIEW_INTERVAL, Integrator, StepSystem, StopReason
 from systems.collision.driven.stepper import DrivenCollisions
 from systems.collision.free.flight import Flight
 from systems.collision.impacts import Impacts
-from systems.collision.overlaps import part_overlaps
+from systems.collision.overlaps import PARTING, part_overlaps, work_ahead
 from systems.physics.rest import may_rest, rests_unseen
+from systems.program.compiler import Choice, Unfinished
 from systems.program.program import OBSERVED
 from systems.run.checkpoint import Checkpoint
 from systems.run.energy import Account, Energy
@@ -110,6 +111,9 @@ class Simulation:
         self._account = Account(model, self._measured)
         self._recovery = Recovery(model, self.programs, self._sleep, self.step_size)
         self._announces = True
+        self._parting: tuple[int, Generator[None, None, str]] | None = (
+            None  # that a frame left, at this revision
+        )
         self._present: tuple[int, Snapshot] | None = None  # the state at this revision
         self.armed = False
         self.armed_revision = -1
@@ -186,7 +190,7 @@ class Simulation:
             problem = incomputable(self.model)
             if not problem:
                 collides = any(system.impulsive for system in self.plan)
-                parted = part_overlaps(self.model) if collides else ""  # what edits left in one place
+                parted = self._parted() if collides else ""
                 self.program.commit()  # rods that edits left beyond a strength yield
                 self.note = joined([self.programs.note, parted, idle_moment(self.model)])
                 self._account.close()
@@ -205,6 +209,25 @@ class Simulation:
         if self._recovery.safe is None:
             self._recovery.safe = self._whole(self.present())
         self.programs.bind()
+
+    def _parted(self) -> str:
+        """Part what edits left in one place; returns a message, or "". Raises Unfinished, after which it can go on."""
+        revision = self.model.newest(Role.DOCUMENT, Role.STATE)
+        left, self._parting = self._parting, None
+        if left is not None and left[0] == revision:
+            parting = left[1]
+        else:
+            for module, work in zip((PARTING, self.program.module), work_ahead(self.model), strict=True):
+                module.expect(work)
+            parting = part_overlaps(self.model)
+        try:
+            while True:
+                next(parting)
+                if time.perf_counter() > Choice.deadline:
+                    self._parting = revision, parting
+                    raise Unfinished
+        except StopIteration as end:
+            return str(end.value)
 
     def account_for_edits(self) -> None:
         """If the run was edited, account for it now, so that its state is complete."""

@@ -1,12 +1,13 @@
 """Scenes that break engines: piles, crowds on one point, extreme speeds, sizes and masses. No hang, no NaN."""
 
+from collections.abc import Generator
+
 import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from systems.collision.columns import Reason
-from systems.collision.driven.compiled import kernels
 from systems.collision.free.discs import Discs
 from systems.collision.kernels.pile import begin_steps
 from systems.collision.overlaps import part
@@ -203,6 +204,14 @@ def test_five_hundred_towards_one_point() -> None:
     assert discs.impacts > 500
 
 
+def _in_full(portions: Generator[None, None, int]) -> int:
+    while True:
+        try:
+            next(portions)
+        except StopIteration as end:
+            return int(end.value)
+
+
 def test_five_hundred_on_one_point_are_parted() -> None:
     """Coincident centres have no line between them; where discs go is the same every time."""
     position, inverse_mass = np.zeros((500, 2)), np.ones((500, 2))
@@ -214,7 +223,7 @@ def test_five_hundred_on_one_point_are_parted() -> None:
 
     for _ in range(2):
         displacement = np.zeros((500, 2))
-        left = part(position, displacement, radius, inverse_mass, among, kernels().part)
+        left = _in_full(part(position, displacement, radius, inverse_mass, among))
         assert np.isfinite(displacement).all()
         parted.append(displacement)
     assert parted[0].tobytes() == parted[1].tobytes()

@@ -22,7 +22,7 @@ from systems.collision.columns import FLIGHT, ONCE, PILE_COUNTS, PILE_NUMBERS, D
 from systems.collision.free.discs import EVENTS, HORIZONS, Discs, ImpactColumns, state_on
 from systems.collision.impacts import MOST_KEPT, Impacts, TooManyImpacts
 from systems.entries import Measure
-from systems.program.compiler import Choice, Unfinished
+from systems.program.compiler import Choice, GeneratedModule, Unfinished
 
 EVENTS_AT_ONCE = 2**18  # of which the impacts are gathered
 CHECK_INTERVAL = 128  # steps, at multiples of which a run may end at rest
@@ -64,6 +64,11 @@ class Flight:
             module.begin(model.particles.count)
         self.bind()
         self.compile_seconds = time.perf_counter() - started
+
+    @property
+    def module(self) -> GeneratedModule:
+        """What lets events happen."""
+        return EVENTS
 
     @property
     def flying(self) -> Discs | None:
