@@ -28,7 +28,14 @@ from systems.program.compiler import Choice, Unfinished
 from systems.program.program import OBSERVED
 from systems.run.checkpoint import Checkpoint
 from systems.run.energy import Account, Energy
-from systems.run.policy import at_rest_since, begin_steps, energy_warning, is_sleep_review, residual
+from systems.run.policy import (
+    at_rest_since,
+    begin_steps,
+    energy_warning,
+    is_sleep_review,
+    overlap_warning,
+    residual,
+)
 from systems.run.program_steps import ProgramSteps
 from systems.run.programs import Dynamics, Programs
 from systems.run.recovery import Recovery
@@ -540,7 +547,8 @@ class Simulation:
         told = "" if warning else energy_warning(clock.largest_imbalance, clock.energy_scale)
         if told:
             warning = joined([told, self.step_size.remedy(clock.step_size)])
-        return joined([warning, self.note])
+        flying = self.programs.flying
+        return joined([warning, overlap_warning(flying.deepest) if flying is not None else "", self.note])
 
     @property
     def said(self) -> str:

@@ -6,6 +6,8 @@ import numpy as np
 import pytest
 
 from game import Session
+from systems.collision.kernels.pile import DEPTH
+from systems.run.policy import overlap_warning
 from systems.run.simulation import Simulation
 
 JAMS = Path(__file__).parent / "jams"
@@ -46,3 +48,11 @@ def test_what_a_jam_of_unequal_masses_loses_stays_lost() -> None:
     again = opened("unequal_masses")
     again.run_to(float(moment))
     assert again.energy == energy
+
+
+def test_overlaps_that_a_pile_did_not_keep_are_told() -> None:
+    """Up to 15 % of a radius, of masses from 10⁻³ to 10³ kg; what piles keep is not worth a word."""
+    run = opened("unequal_masses")
+    run.run_to(0.5)
+    assert "were in one another by up to" in run.said
+    assert overlap_warning(DEPTH) == ""
