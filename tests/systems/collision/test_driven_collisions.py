@@ -11,6 +11,8 @@ import numpy as np
 import pytest
 
 from components.collision_state import PersistentContacts
+from components.particle import Particle
+from components.rod import spawn_rods
 from game import Session
 from systems.collision.columns import Contact, Group
 from systems.collision.driven.compiled import DRIVEN, kernels
@@ -20,6 +22,7 @@ from systems.edit.pull import hand_on
 from systems.physics.integrators import INTEGRATORS
 from systems.program.compiler import Compile
 from systems.program.program import Program
+from tests.benchmarks.models import touching
 from tests.reference import bits
 from tests.reference.forms import programs
 from tests.reference.models import portal_in_wind, struck
@@ -583,3 +586,16 @@ def test_an_impact_that_would_be_reflected_for_minutes_ends() -> None:
     assert (group.motion**2 / group.mobility).sum() <= energy * (1.0 + 1e-9)
     change = (group.motion - group.initial) / group.mobility
     assert np.abs(change.sum(axis=0)).max() <= 1e-9 * np.abs(change).max()
+
+
+@pytest.mark.parametrize("count", [8, 60])
+def test_an_impact_along_a_row_of_discs_ends(count: int) -> None:
+    """It leaves some that approach each other by round-off, from which no other impact follows."""
+    model = touching(count, 1)
+    model.create(Particle, 2, position=[(5.0, -5.0), (6.0, -5.0)], fixed=[(True, True), (False, False)])
+    spawn_rods(model, [(count, count + 1)])
+    session = Session(model)
+    session.run(steps=3)
+    speed = session.particles.velocity[:count, 0]
+    assert speed[:-1] == pytest.approx(np.zeros(count - 1), abs=1e-12)
+    assert speed[-1] == pytest.approx(1.0, rel=1e-12)

@@ -199,18 +199,24 @@ def first_impact(driven, h, after):
     velocity Verlet, with an error of at most `path_error` (m) for other integrators. The time is doubtful if a watched
     pair comes so near that this error could hide an impact, and the error exceeds DOUBT of its size.
     """
-    earliest = INFINITY
+    earliest, fastest = INFINITY, 0.0
+    for m in range(driven.whole[Whole.NEAR]):
+        i = driven.near[m]
+        fastest = max(fastest, abs(driven.velocity[i, 0]) + abs(driven.velocity[i, 1]))
+    noise = (
+        2.0 * NOISE * fastest
+    )  # a joint impact leaves approaches as slow as that in a row, of however slow a pair
     for k in range(driven.whole[Whole.LISTED]):
         if driven.lasting[k] == 0:
-            earliest = min(earliest, _impact_of(driven, k, h, after))
+            earliest = min(earliest, _impact_of(driven, k, h, after, noise))
             if earliest == DOUBTFUL:
                 break
     return earliest if earliest <= h else INFINITY
 
 
 @compiled
-def _impact_of(driven, k, h, after):
-    """As first_impact(), of one pair."""
+def _impact_of(driven, k, h, after, noise):
+    """As first_impact(), of one pair; noise: speed of approach (m/s) that counts as none."""
     i, j = driven.pairs[k, 0], driven.pairs[k, 1]
     position, before, velocity, size = driven.position, driven.before, driven.velocity, driven.size
     alone = j >= before.shape[0]
@@ -246,7 +252,7 @@ def _impact_of(driven, k, h, after):
         ax, ay = 0.0, 0.0
     growth = NOISE * (abs(ax) + abs(ay))
     path = (dx, dy, vx, vy, ax, ay)
-    return first_touch(path, tx, ty, 0.0, reach, NOISE * moving, growth, h, overlapping)
+    return first_touch(path, tx, ty, 0.0, reach, noise, growth, h, overlapping)
 
 
 @compiled
