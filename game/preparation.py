@@ -10,6 +10,7 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence, Set
 from itertools import islice
 from typing import Any
 
+from components.field import Role
 from components.language import tr
 from components.model import Model
 from game.documents.format import ModelError
@@ -21,6 +22,7 @@ from systems.base import Phase, StepSystem, System
 from systems.collision.driven.compiled import DRIVEN
 from systems.collision.free.discs import EVENTS, HORIZONS, PILES
 from systems.collision.free.flight import may_pile
+from systems.collision.overlaps import PARTING, work_ahead
 from systems.edit.pull import Pull
 from systems.physics.system import (
     AxialDamping,
@@ -31,7 +33,16 @@ from systems.physics.system import (
     Slackness,
 )
 from systems.plasticity.system import FirstYield, Strength, Yielding
-from systems.program.compiler import LARGE, LOG, UNCOMPILED, Choice, Compile, GeneratedModule, tell
+from systems.program.compiler import (
+    LARGE,
+    LOG,
+    LONGEST_WORK,
+    UNCOMPILED,
+    Choice,
+    Compile,
+    GeneratedModule,
+    tell,
+)
 from systems.program.program import module_of
 from systems.program.writer import form_of, traits_of
 from systems.render.raster import RASTER, Raster, load_raster
@@ -47,7 +58,7 @@ BY_AN_EDIT: Sequence[
     ({Slackness.name, AxialDampingOfCables.name}, AxialDamping.name),
     ({Drag.name}, ""),
 )
-AHEAD = (RASTER, DRIVEN, EVENTS, HORIZONS, PILES)  # which any model may come to need
+AHEAD = (RASTER, PARTING, DRIVEN, EVENTS, HORIZONS, PILES)  # which any model may come to need
 
 
 def is_live(model: Model) -> bool:
@@ -80,6 +91,7 @@ class Preparation(System):
         self._told: set[Job] = set()  # of these: what went wrong with them, in the language of then
         self._said: set[str] = set()
         self._draws_many = False
+        self._worked: tuple[object, tuple[int, int]] = (), (0, 0)  # by a simulation, as it was then
         self._seen = -1  # the model's revision in the last frame
         self._structure = -1  # when anything was made or deleted last, as of the last frame
 
@@ -105,7 +117,7 @@ class Preparation(System):
 
     def _ask(self, simulation: Simulation) -> None:
         """Have compiled and loaded what this frame needed, then what may be needed next."""
-        needed = self._needed | dict.fromkeys(_jobs_of(simulation), simulation)
+        needed = self._needed | dict.fromkeys(self._jobs(simulation), simulation)
         if self._draws_many:
             needed = {(RASTER.name,): simulation} | needed
         later = {job: simulation for job in _jobs_later(simulation) if job not in needed}
@@ -173,16 +185,18 @@ class Preparation(System):
 
     def waits_for(self, simulation: Simulation) -> Waiting | None:
         """What a simulation waits for; None if it can go on, interpreted or compiled."""
-        jobs = _jobs_of(simulation)
+        jobs = self._jobs(simulation)
         self._needed |= dict.fromkeys(jobs, simulation)
         if self._asked is Compile.NEVER:
             return None
+        parting, impacts = (work > LONGEST_WORK for work in self._work_ahead(simulation))
         if (
             self._asked is not Compile.ALWAYS
             and is_live(simulation.model)
+            and not impacts
             and not any(map(self._is_refused, jobs))
         ):
-            return None
+            jobs = [(PARTING.name,)] if parting else []
         left = [job for job in jobs if not self._is_ready(job)]
         if not left:
             return None
@@ -191,6 +205,25 @@ class Preparation(System):
         modules = [module for job in left if (module := self._modules.get(job)) and not module.is_compiled()]
         expected = BEGINNING + sum(module.expected_seconds() for module in modules)
         return Waiting(now - since, expected)
+
+    def _jobs(self, simulation: Simulation) -> list[Job]:
+        """What a simulation runs with, and what parts its overlaps before, if that takes long."""
+        parts = self._work_ahead(simulation)[0] > LONGEST_WORK
+        return [*([(PARTING.name,)] if parts else []), *_jobs_of(simulation)]
+
+    def _work_ahead(self, simulation: Simulation) -> tuple[int, int]:
+        """Operations of the longest calls ahead; what touches is looked up after edits, not in the course of a run."""
+        model, armed = simulation.model, simulation.armed
+        seen = (
+            simulation,
+            armed,
+            simulation.armed_revision if armed else model.newest(Role.DOCUMENT, Role.STATE),
+        )
+        if seen != self._worked[0]:
+            collides = any(system.impulsive for system in simulation.plan)
+            self._worked = seen, work_ahead(model) if collides else (0, 0)
+        parting, impacts = self._worked[1]
+        return 0 if armed else parting, impacts
 
     def _is_refused(self, job: Job) -> bool:
         """True if it is known that something of it cannot be interpreted."""

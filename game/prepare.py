@@ -27,12 +27,13 @@ from systems import cache
 from systems.base import Integrator, StepSystem
 from systems.collision.driven.compiled import DRIVEN
 from systems.collision.free.discs import EVENTS, HORIZONS, PILES
+from systems.collision.overlaps import PARTING
 from systems.physics.integrators import INTEGRATORS
 from systems.program.compiler import Choice, Compile, forget_unused
 from systems.program.parallel import make_program
 from systems.render.raster import RASTER
 
-UNITS = {unit.name: unit for unit in (RASTER, EVENTS, HORIZONS, PILES, DRIVEN)}
+UNITS = {unit.name: unit for unit in (RASTER, PARTING, EVENTS, HORIZONS, PILES, DRIVEN)}
 START = "import sys; sys.path[:] = sys.argv[1:]; from game.prepare import main; main()"  # for `python -P -c`
 
 Job = tuple[str, ...]  # the name of a unit, or a step program: integrator, form, traits of the model, systems

@@ -401,6 +401,8 @@ class Number(IntEnum):
     WORK_SINCE = 10  # time since which Count.WORK is counted, s
     LOSS = 11  # energy that impacts and piles have taken so far, the present step of a pile in full, J
     STOP = 12  # at which forces change: a step of a pile ends there, s; ∞ if they do not
+    MOST_LOSS = 13  # the largest LOSS until the present step of a pile, J: what appears later is no loss undone
+    DEEPEST = 14  # overlap in which a step of a pile began so far, in radii of the smaller disc
 
 
 class Count(IntEnum):
@@ -425,7 +427,8 @@ class Count(IntEnum):
 
 # What a pile goes on from: FreeFlightState.pile, in this order.
 PILE_COUNTS = [Count.STEPPING, Count.CALM, Count.WORK, Count.PATIENCE]
-PILE_NUMBERS = [Number.STEP_END, Number.WORK_SINCE, Number.LOSS]
+PILE_NUMBERS = [Number.STEP_END, Number.WORK_SINCE, Number.LOSS, Number.MOST_LOSS, Number.DEEPEST]
+ONCE = 7  # entries that files of earlier programs hold
 
 
 class Reason(IntEnum):

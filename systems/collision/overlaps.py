@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Generator
 from typing import Any
 
 import numpy as np
@@ -13,12 +13,32 @@ from components.model import Model
 from components.obstacles import NO_OBSTACLES, Obstacles, obstacles
 from components.rod import nodes
 from systems.broad_phase import Floats, Rows, near_pairs, nearest
-from systems.collision.driven.compiled import kernels
+from systems.program.compiler import LONGEST_WORK, GeneratedModule, entries_to
 
 SLACK = 1e-13  # of the reach of two discs: a smaller overlap is round-off
 AROUND = 1.5  # radii: the neighbours of a disc within it are moved apart at a time
 MOST_ROUNDS = 100  # in each of which neighbours are found anew
+MOST_SWEEPS = 400  # over the same pairs; overlaps that these leave stay
+WORK_AT_ONCE = 2**22  # pairs × sweeps in machine code, after which a window may draw
+TOUCHING = 1.0 + 1e-9  # of the reach of two discs
+JOINT_WORK = 32  # operations in a joint impact, for each of the pairs and each disc of the row that passes it on (measured)
 UNSEEN_OVERLAP = 1e-3  # of a radius: too small to see, as steps of piles leave them, and not worth a message
+
+Among = Callable[[Rows], NDArray[np.bool_]]
+
+
+def _contents() -> tuple[str, dict[str, Callable[..., Any]]]:
+    from systems.collision.kernels import overlap
+
+    return entries_to({"part": overlap.separate})
+
+
+def _warm_up() -> None:
+    vectors, rows = np.zeros((2, 2)), np.zeros(0, dtype=np.int64)
+    PARTING.form.part(rows, rows, vectors, vectors, np.ones(2), vectors, vectors, SLACK, 0, 0)
+
+
+PARTING = GeneratedModule("parting", _contents, _warm_up)  # of its own: compiled within a second
 
 
 def overlaps(place: Floats, radius: Floats, others: Obstacles = NO_OBSTACLES) -> Rows:
@@ -37,13 +57,12 @@ def part(
     displacement: Floats,
     radius: Floats,
     inverse_mass: Floats,
-    among: Callable[[Rows], NDArray[np.bool_]],
-    kernel: Callable[..., Any],
+    among: Among,
     others: Obstacles = NO_OBSTACLES,
-) -> int:
-    """Move overlapping discs apart, changing `displacement`; returns the number of pairs that still overlap.
+) -> Generator[None, None, int]:
+    """Move overlapping discs apart, in portions, changing `displacement`; returns the number of pairs that still overlap.
 
-    among: selects the pairs that are to be parted. kernel: `separate` of kernels/overlap.py, compiled.
+    among: selects the pairs that are to be parted.
     """
     count, still = len(position), np.zeros((len(others), 2))
     places, moved = np.concatenate([position, others.start]), np.concatenate([displacement, still])
@@ -53,18 +72,21 @@ def part(
         near = near_pairs(position + moved[:count], AROUND * radius, others)
         near = near[among(near)]
         first, second = np.ascontiguousarray(near[:, 0]), np.ascontiguousarray(near[:, 1])
-        if kernel(first, second, places, moved, radii, inverse, span, SLACK) == 0:
+        sweep = last = 0
+        while sweep == last < MOST_SWEEPS:
+            yield
+            most = (WORK_AT_ONCE if PARTING.is_loaded else LONGEST_WORK) // max(len(near), 1)
+            last = min(sweep + max(most, 1), MOST_SWEEPS)
+            sweep = PARTING.form.part(first, second, places, moved, radii, inverse, span, SLACK, sweep, last)
+        if sweep == 0:
             break
     displacement[...] = moved[:count]
     left = overlaps(position + displacement, radius, others)
     return int(among(left).sum())
 
 
-def part_overlaps(model: Model) -> str:
-    """Move overlapping particles apart, except nodes of structures from each other; returns a message, or "".
-
-    There is no message about overlaps that are too small to see.
-    """
+def _colliding(model: Model) -> Among:
+    """Selects the pairs that collide: not nodes of structures with each other, nor what is held."""
     particles, others = model.particles, obstacles(model)
     node: NDArray[np.bool_] = np.ones(particles.count + len(others), dtype=bool)  # obstacles count as nodes
     held = node.copy()
@@ -75,6 +97,32 @@ def part_overlaps(model: Model) -> str:
         left_alone: NDArray[np.bool_] = np.logical_or(node[pairs].all(axis=1), held[pairs].all(axis=1))
         return np.logical_not(left_alone)
 
+    return among
+
+
+def work_ahead(model: Model) -> tuple[int, int]:
+    """Operations, counted at most, of parting what overlaps, and of an impact that all that touches takes part in.
+
+    Of what is pulled, large groups take steps as piles, which are short.
+    """
+    particles, others = model.particles, obstacles(model)
+    place = particles.position + particles.displacement
+    pairs, among = near_pairs(place, TOUCHING * particles.radius, others), _colliding(model)
+    if not len(pairs := pairs[among(pairs)]):
+        return 0, 0
+    overlapping = int(among(overlaps(place, particles.radius, others)).sum())
+    touching = place[pairs[:, 0]]
+    row = float(np.ptp(touching, axis=0).max() / (2.0 * particles.radius[pairs[:, 0]].min())) + 1.0
+    together = 0 if particles.constant_force.any() else len(pairs) - overlapping
+    return MOST_SWEEPS * overlapping, int(JOINT_WORK * together * row)
+
+
+def part_overlaps(model: Model) -> Generator[None, None, str]:
+    """Move overlapping particles apart, except nodes of structures from each other, in portions; returns a message, or "".
+
+    There is no message about overlaps that are too small to see.
+    """
+    particles, others, among = model.particles, obstacles(model), _colliding(model)
     displacement = particles.displacement.copy()
     touching = near_pairs(particles.position + displacement, particles.radius, others)
     if not among(touching).any():
@@ -85,7 +133,7 @@ def part_overlaps(model: Model) -> str:
     if count == 0:
         return ""
     columns = particles.position, displacement, particles.radius, particles.mobility
-    left = part(*columns, among, kernels().part, others)
+    left = yield from part(*columns, among, others)
     farthest = float(np.abs(displacement - particles.displacement).max())
     model.writable("particles.displacement")[...] = displacement
     if farthest <= UNSEEN_OVERLAP * float(particles.radius.min()) and not left:

@@ -150,7 +150,8 @@ def judge(measures, account, dt, shadow, ahead, loads_are_over):
     its energy too, while the second term grows past the elastic energy, and both past all that was supplied;
     at the stable step the two are equal, and there is many times more energy than was supplied.
     Rest: the largest residual and the kinetic energy are small relative to the present forces or, in a model that
-    swings out to nothing, to a small part of the largest ever; and it was not the method that took the motion.
+    swings out to nothing, to a small part of the largest ever; and it was not the method that took the motion. Discs
+    that touch swing through no elastic energy: what errors of their contact forces move is small beside all supplied.
     """
     kinetic, elastic = measures[Measure.KINETIC], measures[Measure.ELASTIC]
     power_norm, largest = measures[Measure.POWER_NORM], measures[Measure.LARGEST_FORCE]
@@ -178,7 +179,7 @@ def judge(measures, account, dt, shadow, ahead, loads_are_over):
     if min(max(swinging, elastic), deficit - elastic) > INSTABILITY_SHARE * scale + SMALLEST_ENERGY:
         return StopReason.DIVERGED
     still_force = REST_RESIDUAL * max(largest, SMALL_SHARE * account[Account.FORCE_SCALE])
-    still_energy = REST_RESIDUAL**2 * max(elastic, SMALL_SHARE**2 * scale)
+    still_energy = REST_RESIDUAL**2 * max(elastic, (SMALL_SHARE**2 if elastic > 0.0 else 1.0) * scale)
     is_still = measures[Measure.RESIDUAL] <= max(still_force, 8.0 * measures[Measure.ROUND_OFF])
     is_its_own = -present - damped <= damped + LOST_UNSEEN * scale + SMALLEST_ENERGY
     if loads_are_over and is_still and kinetic <= still_energy and is_its_own:

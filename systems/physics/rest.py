@@ -97,7 +97,8 @@ class RestMeasure:
             REST_RESIDUAL * np.maximum(largest, SMALL_SHARE * force_scale), 8.0 * round_off
         )
         elastic = np.bincount(of_rod, self.elastic, count)
-        still_energy = REST_RESIDUAL**2 * np.maximum(elastic, SMALL_SHARE**2 * energy_scale)
+        least = np.where(elastic > 0.0, SMALL_SHARE**2, 1.0) * energy_scale
+        still_energy = REST_RESIDUAL**2 * np.maximum(elastic, least)
         residual = _largest(count, (of_particle, self.residual))
         kinetic = np.bincount(of_particle, self.kinetic, count)
         rest: Mask = (residual <= still_force) & (kinetic <= still_energy)

@@ -68,6 +68,8 @@ LOADING = 0.03  # s of interpreting after which it is sooner to load what is com
 SMALL = 50  # rods or discs up to which the interpreted form may well take all steps of a run before another is loaded
 LARGE = 300  # rods or discs from which on one step, interpreted, takes as long as a picture
 LONGEST_CALL = 0.05  # s, interpreted
+LONGEST_WORK = 2**15  # counted operations of a call that nothing divides: about as much, interpreted
+OPERATIONS_PER_BYTE = 90  # of the interpreter's code, that are interpreted while it is compiled
 BEFORE_COMPILING = 1.0  # s of interpreting, for each that compiling is expected to take
 SECONDS_PER_BYTE = (
     1.3e-4  # of the interpreter's code, that compiling takes; for a machine that has compiled nothing yet
@@ -196,6 +198,13 @@ class GeneratedModule:
     def begin(self, elements: int) -> None:
         """Choose the form for a model of so many elements: one of many would not get far interpreted."""
         if Choice.compile is Compile.SOON and (elements > LARGE or (elements > SMALL and self.is_compiled())):
+            self.load_or_tell()
+
+    def expect(self, work: int) -> None:
+        """Choose the form for a single call of so many counted operations: a long one is not begun interpreted."""
+        if Choice.compile is not Compile.SOON or work <= LONGEST_WORK or self._patience == math.inf:
+            return
+        if not self._compiled and (self.is_compiled() or work > OPERATIONS_PER_BYTE * self._size):
             self.load_or_tell()
 
     def load_or_tell(self) -> None:

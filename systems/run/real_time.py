@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import math
 import time
+from collections.abc import Iterator
+from contextlib import contextmanager
 
 from systems.physics.pace import natural_pace
 from systems.program.compiler import Choice, Unfinished
@@ -17,6 +19,16 @@ GROWTH = 8  # times as many steps at once, at most, as have ever been taken at o
 FASTEST, SLOWEST = 1e3, 1e-5  # simulated seconds per second shown, times the natural pace at 1
 MANY, SHARE = 2000, 0.1  # above MANY elements, a change of their number by a smaller share keeps the pace
 SHORT = 0.125  # share of a frame that is left to the next where steps are as short: whole steps are shown
+
+
+@contextmanager
+def _in_time() -> Iterator[None]:
+    """What is done within leaves off, where that is possible, when the frame has to be drawn."""
+    Choice.deadline = time.perf_counter() + LONGEST_STEP
+    try:
+        yield
+    finally:
+        Choice.deadline = math.inf
 
 
 class TimeScale:
@@ -104,7 +116,11 @@ class RealTimeRunner:
             self._waited = True  # a picture shows the edit before anything is got ready
             return
         revision = simulation.armed_revision
-        simulation.advance(0)
+        try:
+            with _in_time():
+                simulation.advance(0)
+        except Unfinished:
+            return
         edited = revision != simulation.armed_revision
         if simulation.halted:  # the model cannot be computed
             return
@@ -122,25 +138,23 @@ class RealTimeRunner:
         if self._changes != Choice.changes:
             self._changes = Choice.changes
             clock.forget_cost()
-        Choice.deadline = time.perf_counter() + LONGEST_STEP
         try:
-            some = max(clock.affordable(left), 1)
-            while some > 0:
-                before = simulation.compute_seconds
-                taken = simulation.run_to(target, some, whole=whole or self._unfinished)
-                self._unfinished = False
-                seconds = simulation.compute_seconds - before
-                clock.cost(taken, seconds)
-                if taken < some:
-                    return False
-                left -= seconds
-                some = clock.affordable(left) if left > 0.0 else 0
+            with _in_time():
+                some = max(clock.affordable(left), 1)
+                while some > 0:
+                    before = simulation.compute_seconds
+                    taken = simulation.run_to(target, some, whole=whole or self._unfinished)
+                    self._unfinished = False
+                    seconds = simulation.compute_seconds - before
+                    clock.cost(taken, seconds)
+                    if taken < some:
+                        return False
+                    left -= seconds
+                    some = clock.affordable(left) if left > 0.0 else 0
         except Unfinished:
             self._unfinished = True
             clock.forget_cost()
             return True
-        finally:
-            Choice.deadline = math.inf
         return not simulation.halted and simulation.model.clock.time < target
 
     def _steps_are_short(self, due: float) -> bool:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 import sys
 import time
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Generator, Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass, replace
 from typing import Any
@@ -22,12 +22,20 @@ from systems.base import REVIEW_INTERVAL, Integrator, StepSystem, StopReason
 from systems.collision.driven.stepper import DrivenCollisions
 from systems.collision.free.flight import Flight
 from systems.collision.impacts import Impacts
-from systems.collision.overlaps import part_overlaps
+from systems.collision.overlaps import PARTING, part_overlaps, work_ahead
 from systems.physics.rest import may_rest, rests_unseen
+from systems.program.compiler import Choice, Unfinished
 from systems.program.program import OBSERVED
 from systems.run.checkpoint import Checkpoint
 from systems.run.energy import Account, Energy
-from systems.run.policy import at_rest_since, begin_steps, energy_warning, is_sleep_review, residual
+from systems.run.policy import (
+    at_rest_since,
+    begin_steps,
+    energy_warning,
+    is_sleep_review,
+    overlap_warning,
+    residual,
+)
 from systems.run.program_steps import ProgramSteps
 from systems.run.programs import Dynamics, Programs
 from systems.run.recovery import Recovery
@@ -103,6 +111,9 @@ class Simulation:
         self._account = Account(model, self._measured)
         self._recovery = Recovery(model, self.programs, self._sleep, self.step_size)
         self._announces = True
+        self._parting: tuple[int, Generator[None, None, str]] | None = (
+            None  # that a frame left, at this revision
+        )
         self._present: tuple[int, Snapshot] | None = None  # the state at this revision
         self.armed = False
         self.armed_revision = -1
@@ -179,7 +190,7 @@ class Simulation:
             problem = incomputable(self.model)
             if not problem:
                 collides = any(system.impulsive for system in self.plan)
-                parted = part_overlaps(self.model) if collides else ""  # what edits left in one place
+                parted = self._parted() if collides else ""
                 self.program.commit()  # rods that edits left beyond a strength yield
                 self.note = joined([self.programs.note, parted, idle_moment(self.model)])
                 self._account.close()
@@ -198,6 +209,25 @@ class Simulation:
         if self._recovery.safe is None:
             self._recovery.safe = self._whole(self.present())
         self.programs.bind()
+
+    def _parted(self) -> str:
+        """Part what edits left in one place; returns a message, or "". Raises Unfinished, after which it can go on."""
+        revision = self.model.newest(Role.DOCUMENT, Role.STATE)
+        left, self._parting = self._parting, None
+        if left is not None and left[0] == revision:
+            parting = left[1]
+        else:
+            for module, work in zip((PARTING, self.program.module), work_ahead(self.model), strict=True):
+                module.expect(work)
+            parting = part_overlaps(self.model)
+        try:
+            while True:
+                next(parting)
+                if time.perf_counter() > Choice.deadline:
+                    self._parting = revision, parting
+                    raise Unfinished
+        except StopIteration as end:
+            return str(end.value)
 
     def account_for_edits(self) -> None:
         """If the run was edited, account for it now, so that its state is complete."""
@@ -416,7 +446,7 @@ class Simulation:
                 self.run_to(limit)
                 break
         if not self.halted:
-            self.message = _why_not_at_rest(self.program, self.energy, limit)
+            self.message = _why_not_at_rest(self.program, self.model.rods.count > 0, self.energy, limit)
         return self.reason is StopReason.REST
 
     def show(self, target: float) -> bool:
@@ -517,7 +547,8 @@ class Simulation:
         told = "" if warning else energy_warning(clock.largest_imbalance, clock.energy_scale)
         if told:
             warning = joined([told, self.step_size.remedy(clock.step_size)])
-        return joined([warning, self.note])
+        flying = self.programs.flying
+        return joined([warning, overlap_warning(flying.deepest) if flying is not None else "", self.note])
 
     @property
     def said(self) -> str:
@@ -554,7 +585,7 @@ class Simulation:
         return float(residual(self._measured()))
 
 
-def _why_not_at_rest(program: Dynamics, energy: Energy, limit: float) -> str:
+def _why_not_at_rest(program: Dynamics, has_rods: bool, energy: Energy, limit: float) -> str:
     """The message of a run that did not come to rest by the time `limit` (s)."""
     if program.lasting:
         reason = tr(
@@ -562,8 +593,12 @@ def _why_not_at_rest(program: Dynamics, energy: Energy, limit: float) -> str:
             system=program.lasting,
         )
     elif not program.resists_motion:
-        reason = tr(
-            "Nothing damps the motion, so the model never comes to rest; give the rods damping or set a drag."
+        reason = (
+            tr(
+                "Nothing damps the motion, so the model never comes to rest; give the rods damping or set a drag."
+            )
+            if has_rods
+            else tr("Nothing damps the motion, so the model never comes to rest; set a drag.")
         )
     elif program.changes_end > limit:
         reason = tr("A load is still changing at that time; raise the limit.")
@@ -572,5 +607,9 @@ def _why_not_at_rest(program: Dynamics, energy: Energy, limit: float) -> str:
             "Errors of the time steps, not dampers or drag, took most of the motion; make the time step smaller."
         )
     else:
-        reason = tr("Raise the limit, or the damping of the rods or the drag.")
+        reason = (
+            tr("Raise the limit, or the damping of the rods or the drag.")
+            if has_rods
+            else tr("Raise the limit, or the drag.")
+        )
     return joined([tr("Not at rest within {limit:g} s of simulated time.", limit=limit), reason])

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
+from functools import partial
 from typing import Any
 
 import numpy as np
@@ -51,6 +53,32 @@ def islands(count: int, rods: int, **columns: Any) -> Model:
     )
     spawn_rods(model, np.concatenate([ends + k * particles.count for k in several]), **columns)
     return model
+
+
+def overlapping(count: int) -> Model:
+    """So many discs in 1 m², most of which overlap."""
+    model = Model()
+    model.create(Particle, count, position=np.random.default_rng(3).uniform(0.0, 1.0, (count, 2)))
+    return model
+
+
+def touching(columns: int, rows: int) -> Model:
+    """Discs in a grid that touch, the first of which sets out to the right."""
+    model = Model()
+    position = [(0.1 * (k % columns), 0.1 * (k // columns)) for k in range(columns * rows)]
+    model.create(
+        Particle, len(position), position=position, velocity=[(1.0, 0.0)] + [(0.0, 0.0)] * (len(position) - 1)
+    )
+    return model
+
+
+# Whose first steps have calls that would take long interpreted.
+CROWDS: dict[str, Callable[[], Model]] = {
+    "290 overlapping": partial(overlapping, 290),
+    "2000 overlapping": partial(overlapping, 2000),
+    "400 touching": partial(touching, 20, 20),
+    "290 in a row": partial(touching, 290, 1),
+}
 
 
 def mesh(rods: int, **columns: Any) -> Model:

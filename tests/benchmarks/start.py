@@ -19,6 +19,8 @@ from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
 
+from tests.benchmarks.models import CROWDS
+
 Row = dict[str, Any]
 
 PATIENCE = 120.0  # s that anything may take
@@ -27,7 +29,10 @@ SETTLED = 1.0  # s for which frames are watched after what was waited for
 QUICK = ("isostatic", "ball_on_truss")
 EDITS = ("plasticity", "rod", "break", "pull", "statics")  # in mid run; see _Edits
 BEGAN = "PINJOINT_BENCH_BEGAN"
-ASSETS = Path(__file__).parents[2] / "assets"
+ROOT = Path(__file__).parents[
+    2
+]  # from which the processes import the benchmarks, wherever this one was started
+ASSETS = ROOT / "assets"
 MODELS, MODS = ASSETS / "models", ASSETS / "mods"
 SCRIPT = "from game import Session; s = Session.open('hyperstatic'); assert s.run(until='rest') == 'at rest'"
 LAW = (
@@ -46,11 +51,12 @@ COMMANDS = {
 
 
 def report(*, quick: bool) -> dict[str, list[Row]]:
-    """The tables: first pictures and steps of models, edits of a running one, on busy cores, without a window."""
+    """The tables: first pictures and steps of models and of crowds, edits of a running one, on busy cores, no window."""
     models = QUICK if quick else tuple(sorted(path.stem for path in MODELS.glob("*.json")))
     edits = EDITS[:2] if quick else EDITS
     return {
         "models": [row for name in models for row in _cold_and_warm(name, "")],
+        "crowds": [row for name in list(CROWDS)[: 1 if quick else None] for row in _cold_and_warm(name, "")],
         "edits": [row for edit in edits for row in _cold_and_warm("isostatic", edit)],
         "two busy cores": list(_busily(QUICK[:1] if quick else QUICK)),
         "commands": [row for name in list(COMMANDS)[quick * 2 :] for row in _command(name)],
@@ -81,7 +87,9 @@ def _cold_and_warm(model: str, edit: str, *, again: bool = True) -> Iterator[Row
         for cache in ("empty", "full") if again else ("empty",):
             words = [sys.executable, "-m", "tests.benchmarks.start", model, edit]
             environment = _environment(Path(folder))
-            done = subprocess.run(words, env=environment, check=True, stdout=subprocess.PIPE, text=True)
+            done = subprocess.run(
+                words, env=environment, cwd=ROOT, check=True, stdout=subprocess.PIPE, text=True
+            )
             yield {"model": model, "edit": edit, "cache": cache, **json.loads(done.stdout.splitlines()[-1])}
 
 
@@ -103,7 +111,9 @@ def _command(name: str) -> Iterator[Row]:
 def _cost(words: list[str], folder: Path) -> tuple[float, float]:
     """Seconds by the clock, and of the processor."""
     began, cpu = time.perf_counter(), resource.getrusage(resource.RUSAGE_CHILDREN).ru_utime
-    subprocess.run([sys.executable, *words], env=_environment(folder), check=True, stdout=subprocess.DEVNULL)
+    subprocess.run(
+        [sys.executable, *words], env=_environment(folder), cwd=ROOT, check=True, stdout=subprocess.DEVNULL
+    )
     return time.perf_counter() - began, resource.getrusage(resource.RUSAGE_CHILDREN).ru_utime - cpu
 
 
@@ -122,7 +132,8 @@ class Watched:
         from game.documents import models
         from game.preparation import Preparation
 
-        self.app = App(models.load(model), preparation=Preparation())
+        made = CROWDS[model]() if model in CROWDS else models.load(model)
+        self.app = App(made, preparation=Preparation())
         self.session = self.app.session
         self.gap = self.work = 0.0
 

@@ -13,7 +13,7 @@ from components.settings import INTEGRATORS
 from game.commands import bench
 from game.commands.arguments import UsageError
 from game.commands.output import FORMATS, Format
-from tests.benchmarks import collisions, drawing, ratios, speed, stability
+from tests.benchmarks import collisions, drawing, ratios, speed, stability, start
 from tests.benchmarks.ceiling import bandwidth, seconds_per_rod
 from tests.benchmarks.models import lattice, mesh
 from tests.reference.scenes_of_discs import gas, packed
@@ -135,3 +135,9 @@ def test_the_map_of_stability_has_a_cell_for_every_integrator() -> None:
     assert (row["varied"], row["value"]) == ("damping ratio", "0.1")
     assert set(INTEGRATORS) < set(row)
     assert float(row["dop853"]) < 1e-8
+
+
+def test_windows_are_timed_from_any_folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.chdir(tmp_path)
+    monkeypatch.setattr(start, "COMMANDS", {"help": ["-c", "import tests.benchmarks.models"]})
+    assert [row["cache"] for row in start._command("help")] == ["empty", "full"]

@@ -1,12 +1,13 @@
 """Scenes that break engines: piles, crowds on one point, extreme speeds, sizes and masses. No hang, no NaN."""
 
+from collections.abc import Generator
+
 import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from systems.collision.columns import Reason
-from systems.collision.driven.compiled import kernels
 from systems.collision.free.discs import Discs
 from systems.collision.kernels.pile import begin_steps
 from systems.collision.overlaps import part
@@ -61,7 +62,7 @@ def test_a_dropped_pile_comes_to_rest(restitution: float, spread: float) -> None
 
 @pytest.mark.parametrize(("count", "columns"), [(40, 6), (300, 17)])
 def test_a_pile_at_rest_is_in_equilibrium(count: int, columns: int) -> None:
-    """Every disc is, and what the held ones carry is the weight of all; nothing is in one another, nothing is lost."""
+    """Every disc is, and what the held ones carry is the weight of all; nothing is in one another, nothing vanishes."""
     scene = stacked(count, columns)
     discs = fly(scene, 6.0, acceleration=DOWN, restitution=0.3)
     assert discs.at_rest
@@ -71,7 +72,8 @@ def test_a_pile_at_rest_is_in_equilibrium(count: int, columns: int) -> None:
     assert np.abs(forces[:count] + mass[:, None] * DOWN).max() <= 1e-9 * GRAVITY * mass.max()
     assert forces[count:].sum(axis=0) == pytest.approx([0, -GRAVITY * mass.sum()], rel=1e-9, abs=1e-6)
     fallen = GRAVITY * mass @ discs.state_at(6.0)[0][:count, 1]
-    assert discs.lost_at(6.0) == pytest.approx(-fallen, rel=1e-6)
+    appeared = discs.lost_at(6.0) + fallen  # as discs that had sunk in were pushed apart
+    assert -1e-9 <= appeared / (GRAVITY * mass.sum() * RADIUS) <= 2e-3
 
 
 def test_a_pile_comes_to_rest_without_a_jump() -> None:
@@ -92,7 +94,7 @@ def test_a_pile_comes_to_rest_without_a_jump() -> None:
 
 
 def test_falling_discs_hardly_sink_into_one_another() -> None:
-    """At no moment by more than 1e-3 of a radius, and the account of energy is even to 1e-9 of what the fall set free."""
+    """At no moment by more than 1e-3 of a radius; the account of energy is even to what lifts all by 2e-3 of one."""
     scene = stacked(200, 14)
     discs = Discs(**scene, acceleration=DOWN, restitution=0.3)
     mass = 1 / scene["inverse_mass"][:200, 0]
@@ -102,7 +104,7 @@ def test_falling_discs_hardly_sink_into_one_another() -> None:
         displacement, velocity = (part[:200] for part in discs.state_at(time))
         fallen = -GRAVITY * mass @ displacement[:, 1]
         left = fallen - mass @ (velocity**2).sum(axis=1) / 2 - discs.lost_at(time)
-        assert abs(left) <= 1e-9 * GRAVITY * mass.sum() * RADIUS
+        assert abs(left) <= 2e-3 * GRAVITY * mass.sum() * RADIUS
 
 
 def test_discs_that_fly_apart_in_a_step_have_been_pushed() -> None:
@@ -202,6 +204,14 @@ def test_five_hundred_towards_one_point() -> None:
     assert discs.impacts > 500
 
 
+def _in_full(portions: Generator[None, None, int]) -> int:
+    while True:
+        try:
+            next(portions)
+        except StopIteration as end:
+            return int(end.value)
+
+
 def test_five_hundred_on_one_point_are_parted() -> None:
     """Coincident centres have no line between them; where discs go is the same every time."""
     position, inverse_mass = np.zeros((500, 2)), np.ones((500, 2))
@@ -213,7 +223,7 @@ def test_five_hundred_on_one_point_are_parted() -> None:
 
     for _ in range(2):
         displacement = np.zeros((500, 2))
-        left = part(position, displacement, radius, inverse_mass, among, kernels().part)
+        left = _in_full(part(position, displacement, radius, inverse_mass, among))
         assert np.isfinite(displacement).all()
         parted.append(displacement)
     assert parted[0].tobytes() == parted[1].tobytes()

@@ -1,4 +1,4 @@
-"""The compiled part of driven collisions: what happens in steps, gaps, joint impacts, overlaps."""
+"""The compiled part of driven collisions: what happens in steps, gaps, joint impacts."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ from systems.program.compiler import GeneratedModule, entries_to
 def _contents() -> tuple[str, dict[str, Callable[..., Any]]]:
     """The source, and the kernels by the names that it calls them."""
     from systems.collision.driven.kernels import joint_impacts
-    from systems.collision.kernels import overlap, pairs
+    from systems.collision.kernels import pairs
 
     source, kernels = entries_to(
         {
@@ -29,7 +29,6 @@ def _contents() -> tuple[str, dict[str, Callable[..., Any]]]:
             "list_pairs": list_pairs,
             "gaps": pairs.measure_gaps,
             "resolve": joint_impacts.resolve,
-            "part": overlap.separate,
         }
     )
     layout = [_layout(arrays) for arrays in idle()]  # what is kept on disk is of no use for another

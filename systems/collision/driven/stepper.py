@@ -22,7 +22,6 @@ from systems.collision.driven.compiled import DRIVEN, idle, kernels
 from systems.collision.driven.kernels.joint_impacts import SEPARATE
 from systems.collision.driven.neighbours import NeighbourList
 from systems.collision.impacts import Impacts
-from systems.collision.overlaps import part_overlaps
 from systems.entries import Account, Control
 from systems.program.program import Program
 
@@ -107,7 +106,6 @@ def _warm_up() -> None:
     """Call every compiled function once."""
     model, (arrays, _) = Model(), idle()
     model.create(Particle, 2, position=[(0.0, 0.0), (0.09, 0.0)], velocity=[(1.0, 0.0), (0.0, 0.0)])
-    part_overlaps(model)
     near = NeighbourList(model)
     near.look_up()
     near.list_within(0.0)

@@ -119,7 +119,7 @@ class Discs:
         self.numbers[Number.SMALLEST] = self.rows[: self.count, Disc.RADIUS].min(initial=np.inf)
         self.numbers[Number.STEP_LENGTH] = PILE_STEP_SHARE * self._fall_time()
         self.numbers[Number.WORK_SINCE] = time
-        self.numbers[Number.LOSS] = lost
+        self.numbers[[Number.LOSS, Number.MOST_LOSS]] = lost
         self.numbers[Number.STOP] = np.inf
         self.queue = Queue.empty(2 * n + 64)
         self.grid = Grid.empty(n, 2)
@@ -226,6 +226,7 @@ class Discs:
         lying, free = self.rows[end.discs], weight[end.discs] > 0.0
         moving = lying[:, Disc.VX : Disc.VX + 2] ** 2 / 2.0
         fallen = lying[:, Disc.GX : Disc.GX + 2] * end.displacement[end.discs]
+        self.numbers[Number.MOST_LOSS] = max(self.numbers[[Number.MOST_LOSS, Number.LOSS]])
         self.numbers[Number.LOSS] += ((moving + fallen)[free] / weight[end.discs][free]).sum()
         self._columns(Disc.UX)[...] += end.displacement
         self.rows[end.discs, Disc.VX : Disc.AY + 1] = 0.0
@@ -265,7 +266,8 @@ class Discs:
         self.rows[: self.count, : state.motion.shape[1]] = state.motion
         counted = len(PILE_COUNTS)
         self.counts[PILE_COUNTS] = state.pile[:counted]
-        self.numbers[PILE_NUMBERS] = state.pile[counted:]
+        known = state.pile[counted:]
+        self.numbers[PILE_NUMBERS[: len(known)]] = known
         self.counts[Count.RENEW], self.counts[Count.LISTED] = 1, NONE
         self._enter_persistent(state.contacts, state.forces)
 
@@ -329,17 +331,23 @@ class Discs:
         return int(self.counts[Count.IMPACTS])
 
     def lost_at(self, time: float) -> float:
-        """Energy (J) lost until a time (s) between the last event and the next.
+        """Energy (J) lost until a time (s) between the last event and the next; it never falls.
 
-        In a step of a pile, weights on straight lines lose energy at a constant rate, after a jump at its start.
+        In a step of a pile, weights on straight lines lose energy at a constant rate, after a jump at its start. What
+        steps give back, as jammed discs are pushed apart, came from nowhere.
         """
         lost = float(self.numbers[Number.LOSS])
         if self.counts[Count.STEPPING] and self.numbers[Number.STEP_END] > time:
             weight, velocity = self._columns(Disc.WX), self._columns(Disc.VX)
             held = self._columns(Disc.GX) - self._columns(Disc.AX)
             rate = (held * velocity)[weight > 0.0] / weight[weight > 0.0]
-            lost -= float(rate.sum()) * float(self.numbers[Number.STEP_END] - time)
-        return lost
+            lost -= max(float(rate.sum()), 0.0) * float(self.numbers[Number.STEP_END] - time)
+        return max(lost, float(self.numbers[Number.MOST_LOSS]))
+
+    @property
+    def deepest(self) -> float:
+        """How far discs of a pile were in one another at most so far, in radii of the smaller disc."""
+        return float(self.numbers[Number.DEEPEST])
 
     def state_at(self, time: float) -> tuple[Floats, Floats]:
         """Displacements (m) and velocities (m/s) at a time (s) between the last event and the next."""

@@ -18,11 +18,11 @@ from components.load import loads_end
 from components.model import Model
 from components.obstacles import obstacles
 from systems.base import REVIEW_INTERVAL, Event, StopReason
-from systems.collision.columns import FLIGHT, PILE_COUNTS, PILE_NUMBERS, Disc, Number, Reason
+from systems.collision.columns import FLIGHT, ONCE, PILE_COUNTS, PILE_NUMBERS, Disc, Number, Reason
 from systems.collision.free.discs import EVENTS, HORIZONS, Discs, ImpactColumns, state_on
 from systems.collision.impacts import MOST_KEPT, Impacts, TooManyImpacts
 from systems.entries import Measure
-from systems.program.compiler import Choice, Unfinished
+from systems.program.compiler import Choice, GeneratedModule, Unfinished
 
 EVENTS_AT_ONCE = 2**18  # of which the impacts are gathered
 CHECK_INTERVAL = 128  # steps, at multiples of which a run may end at rest
@@ -64,6 +64,11 @@ class Flight:
             module.begin(model.particles.count)
         self.bind()
         self.compile_seconds = time.perf_counter() - started
+
+    @property
+    def module(self) -> GeneratedModule:
+        """What lets events happen."""
+        return EVENTS
 
     @property
     def flying(self) -> Discs | None:
@@ -124,7 +129,8 @@ class Flight:
         """True if saved paths lead through the present state, bit for bit."""
         particles, now = self.model.particles, self.model.clock.time
         count = particles.count + len(obstacles(self.model))
-        inside = (saved.contacts < count).all() and len(saved.pile) == len(PILE_COUNTS) + len(PILE_NUMBERS)
+        known = len(saved.pile) in (ONCE, len(PILE_COUNTS) + len(PILE_NUMBERS))
+        inside = (saved.contacts < count).all() and known
         shapes = (particles.count, Disc.BX), (particles.count, FLIGHT.stop)  # the former once
         if saved.motion.shape not in shapes or not inside:
             return False

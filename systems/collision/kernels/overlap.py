@@ -6,17 +6,17 @@ from systems.collision.kernels import compiled
 from systems.collision.kernels.time_of_impact import nearest_of_piece
 
 OVERCORRECTION = 0.05  # of an overlap, by which discs are moved farther than necessary, so that sweeps end
-MOST_OVERLAP_SWEEPS = 400  # over the same pairs
 GOLDEN_ANGLE = 2.399963229728653  # between the directions in which discs with one centre move
 
 
 @compiled
-def separate(first, second, position, displacement, radius, inverse_mass, span, slack):
-    """Move the discs of pairs that overlap by more than slack × reach apart; returns the number of sweeps.
+def separate(first, second, position, displacement, radius, inverse_mass, span, slack, begun, last):
+    """Move the discs of pairs that overlap by more than slack × reach apart, in sweeps from the one numbered `begun` on.
 
-    Held directions do not move, nor do obstacles, which have a span. Overlaps that MOST_OVERLAP_SWEEPS leave stay.
+    Returns the number of the sweep that found none, or `last`, before which it leaves off. Held directions do not
+    move, nor do obstacles, which have a span.
     """
-    for sweep in range(MOST_OVERLAP_SWEEPS):
+    for sweep in range(begun, last):
         apart = True
         for k in range(first.shape[0]):
             i, j = first[k], second[k]
@@ -47,4 +47,4 @@ def separate(first, second, position, displacement, radius, inverse_mass, span, 
             apart = False
         if apart:
             return sweep
-    return MOST_OVERLAP_SWEEPS
+    return last

@@ -127,6 +127,8 @@ def step(discs, grid, constraints, pile, report, numbers, counts):
         if stays_within_reach(h, discs, pile):
             break
     numbers[Number.STEP_END] = end
+    numbers[Number.MOST_LOSS] = max(numbers[Number.MOST_LOSS], numbers[Number.LOSS])
+    _note_deepest(active, discs, pile, numbers)
     _report_impacts(active, h, discs, pile, report, numbers, counts)
     pushing = _keep_forces(active, h, pile, counts)
     _mark_near(active, h, discs, pile)
@@ -159,6 +161,15 @@ def _begin_paths(discs, pile, numbers):
         discs[i, Disc.CHANGES] += 1.0
         pile.motion[Motion.ROOT, 2 * i] = math.sqrt(discs[i, Disc.WX])
         pile.motion[Motion.ROOT, 2 * i + 1] = math.sqrt(discs[i, Disc.WY])
+
+
+@compiled
+def _note_deepest(active, discs, pile, numbers):
+    """Note how far discs are in one another as the step begins."""
+    for c in range(active):
+        k = pile.order[c]
+        size = smaller_radius(pile.pairs[k, 0], pile.pairs[k, 1], discs)
+        numbers[Number.DEEPEST] = max(numbers[Number.DEEPEST], -pile.near[k, PilePair.GAP] / size)
 
 
 @compiled

@@ -57,8 +57,8 @@ def is_crowd(driven, place, speed):
     It is none where nodes of a structure are near, since a structure answers to forces in its own way.
     """
     real, pairs, listed = driven.real, driven.pairs, driven.whole[Whole.LISTED]
-    if driven.loose.shape[0] < CROWD_PARTICLES or listed < CROWD_CONTACTS:
-        return False
+    if driven.loose.shape[0] < CROWD_PARTICLES or 2 * listed < CROWD_CONTACTS:
+        return False  # a pair counts twice at most: how many pairs are listed, by chance, must not matter
     longest, travel = real[Real.CROWD_LENGTH], real[Real.CROWD_TRAVEL]
     h = longest
     for k in range(listed):
