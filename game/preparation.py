@@ -48,6 +48,7 @@ from systems.program.writer import form_of, traits_of
 from systems.render.raster import RASTER, Raster, load_raster
 from systems.run.simulation import Simulation
 
+LONGEST_IMPACT = 2**20  # operations, about a second: a window waits half a minute to compile what takes longer
 BEGINNING = 1.5  # s in which the other process gets ready to compile
 BY_AN_EDIT: Sequence[
     tuple[Set[str], str]
@@ -189,14 +190,14 @@ class Preparation(System):
         self._needed |= dict.fromkeys(jobs, simulation)
         if self._asked is Compile.NEVER:
             return None
-        parting, impacts = (work > LONGEST_WORK for work in self._work_ahead(simulation))
+        parting, impacts = self._work_ahead(simulation)
         if (
             self._asked is not Compile.ALWAYS
             and is_live(simulation.model)
-            and not impacts
+            and impacts <= LONGEST_IMPACT
             and not any(map(self._is_refused, jobs))
         ):
-            jobs = [(PARTING.name,)] if parting else []
+            jobs = [(PARTING.name,)] if parting > LONGEST_WORK else []
         left = [job for job in jobs if not self._is_ready(job)]
         if not left:
             return None

@@ -18,6 +18,7 @@ import pytest
 
 from components.field import Role
 from components.language import spoken
+from components.model import Model
 from game import elsewhere, mods, preparation
 from game.app import App
 from game.documents import models
@@ -32,7 +33,7 @@ from systems.program.compiler import Choice, Compile, GeneratedModule, forget_un
 from systems.program.program import module_of
 from systems.program.writer import FEW
 from systems.render.raster import RASTER
-from tests.benchmarks.models import lattice, mesh
+from tests.benchmarks.models import lattice, mesh, overlapping, touching
 
 RAW_LOAD = GeneratedModule.load_kept
 
@@ -281,6 +282,27 @@ def test_what_is_awaited_and_cannot_be_compiled_there_is_compiled_here(
 @pytest.mark.parametrize(("count", "live"), [(250, True), (600, False)])
 def test_models_wait_from_a_size_on(count: int, live: bool) -> None:
     assert is_live(lattice(count)) == live
+
+
+@pytest.mark.parametrize(
+    ("made", "jobs"),
+    [
+        (lambda: overlapping(290), {"parting"}),
+        (lambda: touching(290, 1), {"fly", "open_horizon"}),
+        (lambda: touching(15, 15), set()),
+        (lambda: overlapping(5), set()),
+    ],
+)
+def test_calls_that_would_take_long_interpreted_wait(
+    made: Callable[[], Model], jobs: set[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(Choice, "compile", Compile.SOON)
+    session, wanted = Session(made()), Preparation()
+    monkeypatch.setattr(Preparation, "_is_ready", lambda preparation, job: False)
+    assert (wanted.waits_for(session.simulation) is not None) == bool(jobs)
+    assert {job[0] for job in wanted._waiting} == jobs
+    session.simulation.armed = True  # overlaps are parted by then
+    assert (wanted.waits_for(session.simulation) is not None) == ("fly" in jobs)
 
 
 # --- faults ----------------------------------------------------------------------------------------------
