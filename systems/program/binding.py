@@ -253,7 +253,7 @@ def _bound(system: StepSystem, model: Model, kernel: str) -> Bound:
         if not bound.is_ours and (column := _column_in(array, model)):
             raise ProgramError(
                 tr(
-                                "The array '{name}' of {system} is {column} itself, which steps write to while kernels read it; hand"
+                    "The array '{name}' of {system} is {column} itself, which steps write to while kernels read it; hand"
                     " over a copy, or read the column.",
                     name=name,
                     system=system.name,
