@@ -205,7 +205,7 @@ class Released:
         alone = np.divide(
             right - other, np.stack([start, end], axis=1), where=self._hinges, out=np.zeros_like(slopes)
         )
-        both = self._hinges.all(axis=1)
+        both = self._hinges[:, 0] & self._hinges[:, 1]
         crossed = np.stack([end, start], axis=1) * right - mixed[:, None] * right[:, ::-1]
         together = np.divide(crossed, (start * end - mixed**2)[:, None], where=both[:, None], out=alone.copy())
         own: Array = np.where(both[:, None], together, alone)
