@@ -96,7 +96,7 @@ def _note(model: Model, angular_squared: Array) -> str:
     bent = (rods.turning_shares > 0.0).any(axis=1) & (mass > 0.0)
     own = 1000.0 * np.pi**4 * rods.bending_stiffness[bent] / (mass[bent] * rods.rest_length[bent] ** 3)
     waves = np.zeros(rods.count)  # half ones in each rod, as if it were hinged
-    waves[bent] = (lowest[:1].sum() / own) ** 0.25
+    waves[bent] = ((lowest[0] if len(lowest) else np.inf) / own) ** 0.25
     parts = np.clip(np.ceil(DIVIDED * waves - 0.01), 1, DIVIDED).astype(np.intp)
     rows = np.flatnonzero(parts > 1)
     return divide_named(model, rows, parts) if len(rows) else ""
