@@ -144,13 +144,14 @@ class Shape:
 
     title: such as "Mode 1 of 5: 9.276 Hz". displacement: (m), as drawn, (n, 2). about: the displacement (m) of the
     equilibrium that it leads away from, (n, 2); None: it leads away from the original positions. rotation: (rad), on the
-    scale of the displacement, (n,); None: nothing turns.
+    scale of the displacement, (n,); None: nothing turns. note: a sentence about what it leaves out, or "".
     """
 
     title: str
     displacement: NDArray[np.float64] = field(compare=False, repr=False)
     about: NDArray[np.float64] | None = field(default=None, compare=False, repr=False)
     rotation: NDArray[np.float64] | None = field(default=None, compare=False, repr=False)
+    note: str = field(default="", compare=False)
 
 
 @dataclass

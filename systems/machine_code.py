@@ -50,8 +50,11 @@ _FURTHER: dict[Use, dict[str, Any]] = {
     Use.BY_ITSELF: {"no_cfunc_wrapper": True},
     Use.PART: _NO_WRAPPERS,
     Use.SHARED: {**_NO_WRAPPERS, "parallel": True},
-    Use.KEPT: {},  # others may call them by their address
-    Use.ENTRY: {"no_cfunc_wrapper": True},
+    Use.KEPT: {"nogil": True},  # others may call them by their address
+    Use.ENTRY: {
+        "no_cfunc_wrapper": True,
+        "nogil": True,
+    },  # a thread ends the process where a call never returns
 }
 
 

@@ -50,12 +50,13 @@ def command(words: Sequence[str]) -> int:
         tell(tr("Buckling leaves out the laws of mods: {laws}.", laws=", ".join(laws)))
     if options.format != "table":
         tell(joined([found.message, *found.notes]))
-    return ANSWERED if len(found.factors) and not laws else NOT_ANSWERED
+    return ANSWERED if len(found.factors) and not found.coarse and not laws else NOT_ANSWERED
 
 
 def _data(model: Model, found: Buckling) -> dict[str, Any]:
     """Linear buckling as plain data.
 
+    factors: none where rods are too coarse for an answer; upper_bounds has what was found then, of the same modes.
     modes: {particle: [x, y, rotation]} of each factor. effective_length: {rod: m} of compressed rods that can bend, and
     effective_length_factor over their own lengths. axial_force: {rod: {"steady": kN, "factor 1": kN, "critical": kN}}.
     """
@@ -65,14 +66,17 @@ def _data(model: Model, found: Buckling) -> dict[str, Any]:
     lowest = found.factors[0] if len(found.factors) else 1.0
     forces = zip(found.dead.tolist(), found.live.tolist(), strict=True)
     lengths = {
-        name: length for name, length in zip(rods, found.effective_length, strict=True) if length == length
+        name: length
+        for name, length in zip(rods, found.effective_length, strict=True)
+        if length == length and not found.coarse
     }
     own = dict(zip(rods, model.rods.rest_length, strict=True))
     return {
-        "factors": found.factors,
+        "factors": found.factors[:0] if found.coarse else found.factors,
+        "upper_bounds": found.factors if found.coarse else found.factors[:0],
         "modes": [dict(zip(names, mode.tolist(), strict=True)) for mode in modes],
         "leading": [
-            {"rod": rods[row], "effective_length": length if length == length else None}
+            {"rod": rods[row], "effective_length": length if length == length and not found.coarse else None}
             for row, length in zip(found.leading, found.leading_length, strict=True)
         ],
         "effective_length": lengths,
@@ -88,23 +92,30 @@ def _data(model: Model, found: Buckling) -> dict[str, Any]:
 
 def _rows(found: Mapping[str, Any]) -> Iterator[Row]:
     """The modes as rows, one for every particle of each, headings first."""
-    yield "mode", "factor", "particle", "x", "y", "rotation"
-    for number, (factor, mode) in enumerate(zip(found["factors"], found["modes"], strict=True), start=1):
+    bounds = found["upper_bounds"]
+    yield "mode", "upper_bound" if bounds else "factor", "particle", "x", "y", "rotation"
+    for number, (factor, mode) in enumerate(
+        zip(bounds or found["factors"], found["modes"], strict=True), start=1
+    ):
         yield from ((number, factor, name, *motion) for name, motion in mode.items())
 
 
 def _lines(found: Mapping[str, Any]) -> Iterator[str]:
     """Factors, with who moves most, and the compressed members at the lowest, to read."""
-    if not found["factors"]:
+    factors = found["upper_bounds"] or found["factors"]
+    if not factors:
         yield found["message"]
         return
-    titles = [tr("buckling mode"), tr("load factor"), tr("divided by the lowest"), tr("moves most")]
+    if found["upper_bounds"]:
+        yield tr("These load factors are no answers but upper bounds, which may be far too high.")
+    factor = tr("load factor, at most") if found["upper_bounds"] else tr("load factor")
+    titles = [tr("buckling mode"), factor, tr("divided by the lowest"), tr("moves most")]
     rows = [[*titles, tr("most compressed"), tr("effective length, m")]]
-    for number, (factor, mode, by) in enumerate(
-        zip(found["factors"], found["modes"], found["leading"], strict=True), start=1
+    for number, (value, mode, by) in enumerate(
+        zip(factors, found["modes"], found["leading"], strict=True), start=1
     ):
         most = max(mode, key=lambda name: max(map(abs, mode[name])))
-        values = [as_written(factor), as_written(factor / found["factors"][0]), most]
+        values = [as_written(value), as_written(value / factors[0]), most]
         length = as_written(by["effective_length"])
         rows.append([tr("mode {number}", number=number), *values, by["rod"], length])
     yield from aligned(rows)

@@ -21,6 +21,9 @@ if TYPE_CHECKING:  # they import scipy
     from systems.statics.force_method import Solution
 
 
+MOST_SETS = 100  # unknowns; what each does to each, and to all rods, takes 100 MB for a thousand of them
+
+
 def command(words: Sequence[str]) -> int:
     """Do what the words after the command ask for; returns the exit status."""
     parser = Parser(
@@ -45,6 +48,14 @@ def command(words: Sequence[str]) -> int:
         choices=CONVENTIONS,
         default=CONVENTIONS[0],
         help=tr("sign convention of the text; textbook: δ₁₀ + δ₁₁ X₁ = 0; thesis: p = (Δ − Δ₀) / Δ₁"),
+    )
+    parser.add_argument(
+        "--sets",
+        action="store_true",
+        help=tr(
+            "write what each unknown alone does, too, where there are more than {count} unknowns",
+            count=MOST_SETS,
+        ),
     )
     parser.add_argument(
         "--report", type=writable, metavar="FILE.pdf", help=tr("write the whole solution to a PDF as well")
@@ -74,7 +85,8 @@ def command(words: Sequence[str]) -> int:
         )
     tables = Tables.of(session.model, solution)
     laws = session.schedule.left_out_of_statics(session.model)
-    found = _data(tables, single=options.release is not None and len(options.release) == 1)
+    single, sets = options.release is not None and len(options.release) == 1, options.sets
+    found = _data(tables, single=single, sets=sets or len(solution.unknowns) <= MOST_SETS)
     write_result(options, found | {"left_out": laws}, _rows, partial(_lines, tables, options.convention))
     if options.report is not None:
         from game.force_method.report import write_report
@@ -95,10 +107,11 @@ def _solution(model: Model, release: Sequence[str] | None) -> Solution:
     return solve(model, redundants(model) if names is None else [find_unknown(model, name) for name in names])
 
 
-def _data(tables: Tables, *, single: bool) -> dict[str, Any]:
+def _data(tables: Tables, *, single: bool, sets: bool) -> dict[str, Any]:
     """The solution as plain data, in m, rad, kN, kN·m: displacements and unknowns in lists and matrices.
 
     single: there is one unknown, so that its numbers stand alone. virtual_work: of every rod, in the order of the sums.
+    sets: with what each unknown alone does; else there are no matrices, and no virtual work.
     """
     from game.force_method.copies import exact_forces
 
@@ -108,17 +121,17 @@ def _data(tables: Tables, *, single: bool) -> dict[str, Any]:
         "unit": [unknown.unit for unknown in solution.unknowns],
         "delta_real": solution.delta_real,
         "delta_base": solution.delta_base,
-        "delta_unit": solution.delta_unit,
+        "delta_unit": solution.delta_unit if sets else None,
         "force": solution.force,
         "exact_force": exact_forces(tables.model, solution.unknowns),
         "gap": solution.gap,
-        "flexibility": solution.flexibility,
+        "flexibility": solution.flexibility if sets else None,
         "prescribed": solution.prescribed,
     }
     if single:
         found = {key: None if values is None else values[0] for key, values in found.items()}
         found |= {"delta_unit": solution.delta_unit[0, 0], "flexibility": solution.flexibility[0, 0]}
-    return found | {"virtual_work": _work(tables), "axial_force": _superposed(tables)}
+    return found | {"virtual_work": _work(tables) if sets else {}, "axial_force": _superposed(tables)}
 
 
 def _work(tables: Tables) -> dict[str, Any]:
@@ -165,7 +178,9 @@ def _rows(found: Mapping[str, Any]) -> Iterator[Row]:
     exact = found["exact_force"] or [None] * len(names)
     moments = "kN·m" in found["unit"]
     length, force = ("m, rad", "kN, kN·m") if moments else ("m", "kN")
-    unit = [f"delta_unit {name} ({length}/{'(kN, kN·m)' if moments else 'kN'})" for name in names]
+    rows = found["delta_unit"] or [[]] * len(names)  # none were asked for
+    per = f"{length}/{'(kN, kN·m)' if moments else 'kN'}"
+    unit = [f"delta_unit {name} ({per})" for name in names if found["delta_unit"]]
     yield (
         "released",
         f"delta_real ({length})",
@@ -174,7 +189,7 @@ def _rows(found: Mapping[str, Any]) -> Iterator[Row]:
         f"force ({force})",
         f"exact_force ({force})",
     )
-    parts = (names, found["delta_real"], found["delta_base"], found["delta_unit"], found["force"], exact)
+    parts = (names, found["delta_real"], found["delta_base"], rows, found["force"], exact)
     for name, real, base, row, force, exactly in zip(*parts, strict=True):
         yield name, real, base, *row, force, exactly
 
@@ -189,6 +204,11 @@ def _lines(tables: Tables, convention: str, found: Mapping[str, Any]) -> Iterato
     if not solution.unknowns:
         return
     if convention == THESIS:
+        return
+    if not found["virtual_work"]:
+        yield ""
+        yield tr("What each unknown alone does is left out, for there are many; --sets writes it.")
+        yield from _forces(tables)
         return
     yield ""
     for i, unknown in enumerate(solution.unknowns):
@@ -205,6 +225,11 @@ def _lines(tables: Tables, convention: str, found: Mapping[str, Any]) -> Iterato
             yield from aligned(table[:])
     yield ""
     yield from words.equations(solution, units.all, units.factor)
+    yield from _forces(tables)
+
+
+def _forces(tables: Tables) -> Iterator[str]:
+    """The forces and reactions of the structure, N₀ + Σ X n."""
     for table in (tables.axial_forces(), tables.moments() if tables.bends else None, tables.reactions()):
         if table:
             yield ""

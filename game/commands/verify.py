@@ -8,7 +8,6 @@ from components.language import tr
 from game.commands.arguments import BAD_INPUT, Parser, UsageError, positive
 from game.commands.options import ANSWERED, NOT_ANSWERED, add_model, session_of
 from game.commands.output import add_output, write_result
-from game.session import DEFAULT_LIMIT
 
 
 def command(words: Sequence[str]) -> int:
@@ -33,9 +32,10 @@ def command(words: Sequence[str]) -> int:
     parser.add_argument(
         "--limit",
         type=positive,
-        default=DEFAULT_LIMIT,
         metavar="SECONDS",
-        help=tr("stop waiting for rest after this much simulated time"),
+        help=tr(
+            "simulate until at rest, at most for this time; without it, a simulation that would take long is left out"
+        ),
     )
     add_output(parser)
     options = parser.parse_args(words)

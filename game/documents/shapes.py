@@ -156,7 +156,9 @@ def _buckled(model: Model, found: Buckling) -> list[Shape]:
             "rod": cut(str(model.rods.column("name")[row])),
         }
         title = marked("Buckling mode {number}: load × {factor}")
-        if math.isfinite(length):
+        if found.coarse:
+            title = marked("Buckling mode {number}: load × {factor} at most; divide the members")
+        elif math.isfinite(length):
             title = marked("Buckling mode {number}: load × {factor}; effective length {length} ({rod})")
         shapes.append(_shape(model, tr(title, **told), motion))
     return shapes
@@ -190,6 +192,7 @@ def mode_shapes(model: Model, most: int | None = None) -> list[Shape]:
             tr(title, number=number, count=unknowns - still, hertz=written.number(hertz)),
             motion,
             places,
+            found.note,
         )
         for number, (hertz, motion) in enumerate(modes[:wanted], start=1)
     ]
@@ -220,10 +223,14 @@ def numbered(model: Model, kind: str, number: int) -> Shape:
 
 
 def _shape(
-    model: Model, title: str, motion: NDArray[np.float64], about: NDArray[np.float64] | None = None
+    model: Model,
+    title: str,
+    motion: NDArray[np.float64],
+    about: NDArray[np.float64] | None = None,
+    note: str = "",
 ) -> Shape:
     drawn = DRAWN_SHARE * extent(model) / max(1.0, _bulge(model, motion)) * motion
-    return Shape(title, drawn[:, :2], about, drawn[:, 2] if drawn.shape[1] > 2 else None)
+    return Shape(title, drawn[:, :2], about, drawn[:, 2] if drawn.shape[1] > 2 else None, note)
 
 
 def _bulge(model: Model, motion: NDArray[np.float64]) -> float:

@@ -5,8 +5,7 @@ from __future__ import annotations
 import importlib
 import importlib.util
 import sys
-import threading
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Iterable, Sequence
 from pathlib import Path
 from types import ModuleType
 
@@ -19,12 +18,12 @@ from game.mods.app import App, check_plugin
 from game.mods.declared import as_declared
 from game.mods.finding import in_order, required
 from game.mods.mod import MANIFEST, Mod, ModError
+from game.mods.surroundings import Surroundings
 from game.version import __version__
 from systems.catalogue import all_systems
 from systems.input.bindings import prefer
 from systems.schedule import Schedule
 
-STREAMS = ("stdin", "stdout", "stderr")
 PATIENCE = 30.0  # s that loading one mod may take
 
 MODS: list[Mod] = []  # all that were found in this process, those that come with the program first
@@ -96,14 +95,13 @@ def unload(mods: Sequence[Mod]) -> None:
 
 def _load(mod: Mod) -> None:
     app = App(mod)
-    modules, threads = dict(sys.modules), set(threading.enumerate())
-    streams = {name: getattr(sys, name) for name in STREAMS}
+    surroundings = Surroundings()
     try:
         for name in required(mod):
             if any(other.name == name and other.off for other in MODS):
                 raise ModError(tr("It requires the mod '{name}', which cannot be used.", name=name))
         mod.within(PATIENCE, lambda: _plug_in(mod, app))
-        _check_left_behind(modules, threads, streams)
+        surroundings.check()
     except ModError as error:
         mod.problem = str(error)
     except BaseException as error:  # of code that is not ours
@@ -116,8 +114,7 @@ def _load(mod: Mod) -> None:
                 " which works without numba.",
                 place=mod.place_of(error),
             )
-    sys.modules.update(modules)
-    vars(sys).update(streams)
+    surroundings.put_back()
     if mod.off:
         app.withdraw()
         _forget(mod)
@@ -131,34 +128,6 @@ def _plug_in(mod: Mod, app: App) -> None:
     module = _import(mod)
     as_declared(check_plugin(getattr(module, "plugin", None))(app), None, tr("what plugin(app) returned"))
     Schedule(all_systems())
-
-
-def _check_left_behind(
-    modules: Mapping[str, ModuleType], threads: set[threading.Thread], streams: Mapping[str, object]
-) -> None:
-    """Raise ModError if a mod changed these modules or streams, or left a thread running besides these."""
-    for name, stream in streams.items():
-        if getattr(sys, name, None) is not stream:
-            raise ModError(
-                tr("It replaced or removed sys.{name}, which the program needs; leave it as it is.", name=name)
-            )
-    for name, module in modules.items():
-        if sys.modules.get(name) is not module:
-            raise ModError(
-                tr(
-                    "It replaced or removed the module '{name}' in sys.modules, which others use; leave it there.",
-                    name=name,
-                )
-            )
-    for thread in set(threading.enumerate()) - threads:
-        if thread.is_alive() and not thread.daemon:
-            raise ModError(
-                tr(
-                    "Its plugin(app) left the thread '{name}' running, which would keep the program from ending; start"
-                    " the thread with daemon=True.",
-                    name=thread.name,
-                )
-            )
 
 
 def _import(mod: Mod) -> ModuleType:

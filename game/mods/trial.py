@@ -26,11 +26,13 @@ from systems.catalogue import all_systems
 from systems.input.bindings import BINDINGS, PAUSE, SIMULATION
 from systems.physics.integrators import INTEGRATORS
 from systems.program.binding import KERNELS, ProgramError, bind
+from systems.program.endless import Patience
 from systems.program.faults import problem_of
 from systems.program.writer import read_sources
 
 SIZES = ((640, 480, 1.0), (160, 120, 2.0))  # pixels, and pixels to a point, of the pictures
 SCALES = (1.0, 1e4, 1e-4)  # by which a person may zoom
+PATIENCE = 30.0  # s that some steps of the small model may take
 
 
 def mistakes_of(mod: Mod) -> list[str]:
@@ -48,13 +50,13 @@ class _Trial:
     def __init__(self, mod: Mod) -> None:
         self.mod = mod
         self.found: list[str] = []
-        heard, known = LOG.disabled, len(FAULTS)
-        LOG.disabled = True
+        heard, known, patience = LOG.disabled, len(FAULTS), Patience.seconds
+        LOG.disabled, Patience.seconds = True, PATIENCE
         try:
             with data_apart():
                 self._try_all()
         finally:
-            LOG.disabled = heard
+            LOG.disabled, Patience.seconds = heard, patience
             del FAULTS[known:]
 
     def _try_all(self) -> None:

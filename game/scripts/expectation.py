@@ -186,9 +186,9 @@ def _frequency(session: Any) -> float:
 
 
 def _buckling(session: Any) -> float:
-    """The lowest load factor of linear buckling; NaN if there is none."""
-    factors = session.buckling(1).factors
-    return float(factors[0]) if len(factors) else math.nan
+    """The lowest load factor of linear buckling; NaN if there is none, or only an upper bound."""
+    found = session.buckling(1)
+    return float(found.factors[0]) if len(found.factors) and not found.coarse else math.nan
 
 
 _STATICS: dict[str, Callable[[Any], Any]] = {

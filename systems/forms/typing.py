@@ -10,6 +10,7 @@ from components.field import LENGTHS
 from components.form import Form
 from components.language import joined, marked, tr
 from components.tags import Selected
+from components.wording import cut
 
 YES_NO = (marked("no"), marked("yes"))
 MOST_CHARACTERS = 200  # in one box
@@ -99,10 +100,12 @@ def write(form: Form, text: str) -> str:
         return ""
     if box.unit:
         told = tr(
-            "Type a number in {unit}, such as 2.5 or 1e3, without “{refused}”.", unit=box.unit, refused=refused
+            "Type a number in {unit}, such as 2.5 or 1e3, without “{refused}”.",
+            unit=box.unit,
+            refused=cut(refused),
         )
     else:
-        told = tr("Type a number, such as 2.5 or 1e3, without “{refused}”.", refused=refused)
+        told = tr("Type a number, such as 2.5 or 1e3, without “{refused}”.", refused=cut(refused))
     return joined(
         [told, *(tr("“{word}” is possible, too.", word=box.said_word(word)) for word in box.words or ())]
     )

@@ -10,6 +10,7 @@ from dataclasses import dataclass
 from enum import Enum
 from typing import Any
 
+import numpy as np
 from numpy.typing import NDArray
 
 from components.field import Role
@@ -240,7 +241,7 @@ def _bound(system: StepSystem, model: Model, kernel: str) -> Bound:
     parameters = tuple(inspect.signature(plain).parameters)
     arrays = {name: read_only(array) for name, array in system.arrays(model).items()}
     bound = Bound(system, function, parameters, arrays, kernel, _cutoff(system, model))
-    for name in bound.arrays:
+    for name, array in bound.arrays.items():
         if _is_column(name, model):
             raise ProgramError(
                 tr(
@@ -249,10 +250,29 @@ def _bound(system: StepSystem, model: Model, kernel: str) -> Bound:
                     system=system.name,
                 )
             )
+        if not bound.is_ours and (column := _column_in(array, model)):
+            raise ProgramError(
+                tr(
+                    "The array '{name}' of {system} is {column} itself, which steps write to while kernels read it; hand"
+                    " over a copy, or read the column.",
+                    name=name,
+                    system=system.name,
+                    column=column,
+                )
+            )
     if bound.each != "loads":
         for parameter in bound.parameters:
             _check_parameter(bound, parameter, model)
     return bound
+
+
+def _column_in(array: NDArray[Any], model: Model) -> str:
+    """The column that an array shares memory with, "table.field", or ""; the forms of a program would differ by it."""
+    for table in model.tables.values():
+        for field in table.fields_in(Role.DOCUMENT, Role.STATE):
+            if np.may_share_memory(array, table.storage(field.name)):
+                return f"{table.name}.{field.name}"
+    return ""
 
 
 def _cutoff(system: StepSystem, model: Model) -> float:

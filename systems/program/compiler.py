@@ -30,6 +30,7 @@ from systems import cache
 from systems.interpreter import FORMS, NoPlainForm, Rewriting, plain_function, rewrite
 from systems.kernels import Kernel, Use
 from systems.kinds import Kind, typed
+from systems.program.endless import ending, others_of
 from systems.program.identity import key_of, reached_from
 
 Kinds = tuple[Kind, ...]
@@ -250,8 +251,13 @@ class GeneratedModule:
         self._patience = LOADING
         _interpreted.append(self)
         self._form = SimpleNamespace(
-            is_machine=False, **{name: timed(function) for name, function in interpreted.items()}
+            is_machine=False, **self._ended({name: timed(function) for name, function in interpreted.items()})
         )
+
+    def _ended(self, functions: dict[str, Callable[..., Any]]) -> dict[str, Callable[..., Any]]:
+        """The functions, which end the process where a kernel that others wrote never returns."""
+        others = others_of(self._source_and_kernels[1].values())
+        return {name: ending(f, others) for name, f in functions.items()} if others else functions
 
     def did(self, work: int) -> None:
         """Note how much the last call did, interpreted, so that the next one takes about LONGEST_CALL."""
@@ -309,34 +315,36 @@ class GeneratedModule:
                 return False
             from systems.machine_code import compile_for
 
-            machine = self._machine()
-            for name, function in vars(machine).items():
+            for name, function in (machine := self._machine()).items():
                 compile_for(function, kept, name)
-            self._form, self._compiled = machine, True
+            self._form, self._compiled = self._form_of(machine), True
             Choice.changes += 1
             _keep_note(self.key, None)
             return True
 
-    def _machine(self) -> SimpleNamespace:
+    def _form_of(self, machine: dict[str, Callable[..., Any]]) -> SimpleNamespace:
+        return SimpleNamespace(is_machine=True, **self._ended(machine))
+
+    def _machine(self) -> dict[str, Callable[..., Any]]:
         """The functions, to be compiled when they are called."""
         from systems.machine_code import adopt, machine_code
 
         adopt(self.module, self.key, reached_from(self._source_and_kernels[1].values()))
-        return SimpleNamespace(is_machine=True, **{name: machine_code(f) for name, f in self.functions.items()})
+        return {name: machine_code(f) for name, f in self.functions.items()}
 
     def _compile(self) -> None:
         """Compile by calling everything, and keep that."""
         from systems.machine_code import types_of
 
-        before, began = self._form, time.thread_time()
-        self._form, self._compiled = self._machine(), True
+        before, began, machine = self._form, time.thread_time(), self._machine()
+        self._form, self._compiled = self._form_of(machine), True
         Choice.changes += 1
         try:
             self.warm_up()
         except BaseException:
             self._form, self._compiled = before, False
             raise
-        types = types_of(vars(self._form))
+        types = types_of(machine)
         cache.write(_types_of(self.key), pickle.dumps(types))
         cost = time.thread_time() - began, self._size
         _keep_note(self.key, cost if any(types.values()) else None)  # else it is compiled when it is called

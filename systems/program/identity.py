@@ -19,7 +19,7 @@ import numpy as np
 from systems.interpreter import plain_function
 from systems.kernels import PLAIN
 
-_LAYOUT = 5  # of what is kept on disk: raise it where former files are of no use any more
+_LAYOUT = 6  # of what is kept on disk: raise it where former files are of no use any more
 
 
 def meaning_of(functions: Iterable[Callable[..., Any]]) -> str:

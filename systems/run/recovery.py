@@ -43,10 +43,17 @@ class Recovery:
         return before is None or not all(same(before.columns[name], state.columns[name]) for name in MOVING)
 
     def without_mod(self) -> bool:
-        """Switch off the mod whose numbers were not finite, and return to the good state; False if no mod is to blame."""
+        """Switch off the mod whose numbers were not finite, and return to the good state; False if no mod is to blame.
+
+        Whoever interrupts the search finds the good state, too, and not numbers that are blamed on an element.
+        """
         assert self.safe is not None
-        if find_culprit(self._programs.compiled, self.safe) is None:
-            return False
+        try:
+            if find_culprit(self._programs.compiled, self.safe) is None:
+                return False
+        except BaseException:
+            self._programs.return_to(self.safe)
+            raise
         self._programs.return_to(self.safe)
         return True
 

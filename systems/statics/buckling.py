@@ -56,7 +56,8 @@ class Buckling:
     effective_length: π √(EI/−N) of compressed rods with a bending stiffness at the lowest factor (m), else NaN, (rods,).
     leading: rows of the rods whose compression does most of the work in each mode, (k,), and leading_length, their effective
     lengths at its factor (m), NaN without bending stiffness, (k,).
-    notes: sentences about what the factors leave out. message: why there is none; "" if there are some.
+    notes: sentences about what the factors leave out. message: why there is none; "" if there are some. coarse: rods are so
+    compressed at the lowest factor that one cubic is too coarse for them: the factors are no answers but upper bounds.
     """
 
     factors: Array
@@ -68,6 +69,7 @@ class Buckling:
     leading_length: Array
     notes: tuple[str, ...] = ()
     message: str = ""
+    coarse: bool = False
 
 
 def buckling(model: Model, count: int = MODES, start: Start | None = None) -> Buckling:
@@ -101,6 +103,7 @@ def buckling(model: Model, count: int = MODES, start: Start | None = None) -> Bu
         np.array([length[row] for length, row in zip(lengths, leading, strict=True)]),
         tuple(_notes(model, factors, lowest)),
         "" if len(factors) else _why_none(model, live),
+        bool((needed_parts(model, lowest) > 1).any()),
     )
 
 

@@ -189,29 +189,26 @@ class Released:
 
     def _carried_over(self, fixed_end: Array, couple: Array) -> Array:
         """Moments on the ends while all slopes of ends that are not released are 0: those of hinges carry over."""
-        moment = np.where(self._hinges, couple, fixed_end)
-        for row in np.flatnonzero(self._hinges.sum(axis=1) == 1).tolist():
-            hinge = int(self._hinges[row, 1])
-            carried = self._carry(row, hinge) * (couple[row, hinge] - fixed_end[row, hinge])
-            moment[row, 1 - hinge] += carried
-        return moment
-
-    def _carry(self, row: int, hinge: int) -> float:
-        """How much of a moment at one end arrives at the other, which does not turn."""
         assert self.structure.bending is not None
-        start, mixed, end = self.structure.bending.end_stiffness[row].tolist()
-        own = end if hinge else start
-        return float(mixed / own) if own else 0.0
+        start, mixed, end = self.structure.bending.end_stiffness.T
+        stiff, one = np.stack([start, end], axis=1), self._hinges.sum(axis=1) == 1
+        share = np.divide(mixed[:, None], stiff, where=stiff != 0.0, out=np.zeros_like(stiff))
+        carried = np.where(self._hinges & one[:, None], share * (couple - fixed_end), 0.0)
+        moment: Array = np.where(self._hinges, couple, fixed_end) + carried[:, ::-1]
+        return moment
 
     def _own(self, fixed_end: Array, couple: Array, slopes: Array) -> Array:
         """The slopes of the rods themselves at released ends, to their chords, (rods, 2)."""
         assert self.structure.bending is not None
-        own = np.zeros_like(slopes)
-        for row in np.flatnonzero(self._hinges.any(axis=1)).tolist():
-            start, mixed, end = self.structure.bending.end_stiffness[row]
-            whole, at = np.array([[start, mixed], [mixed, end]]), self._hinges[row]
-            right = couple[row] - fixed_end[row] - whole[:, ~at] @ slopes[row, ~at]
-            own[row, at] = np.linalg.solve(whole[np.ix_(at, at)], right[at])
+        start, mixed, end = self.structure.bending.end_stiffness.T
+        right, other = couple - fixed_end, slopes[:, ::-1] * mixed[:, None]
+        alone = np.divide(
+            right - other, np.stack([start, end], axis=1), where=self._hinges, out=np.zeros_like(slopes)
+        )
+        both = self._hinges[:, 0] & self._hinges[:, 1]
+        crossed = np.stack([end, start], axis=1) * right - mixed[:, None] * right[:, ::-1]
+        together = np.divide(crossed, (start * end - mixed**2)[:, None], where=both[:, None], out=alone.copy())
+        own: Array = np.where(both[:, None], together, alone)
         return own
 
     def _state(self, displacement: Array, axial: Array, moment: Array | None, force: Array) -> SetState:

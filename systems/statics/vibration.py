@@ -11,6 +11,7 @@ from scipy.sparse.linalg import LinearOperator, eigsh
 
 from components.model import Model
 from systems.statics.equations import ROUND_OFF, Array, Structure, largest, normalised
+from systems.statics.explain import divide_named
 from systems.statics.external import external_forces
 from systems.statics.factor import Factor, pseudo_random
 from systems.statics.response import Response
@@ -19,6 +20,7 @@ from systems.statics.state import Start, StaticState
 FULL = 600  # unknowns up to which all modes are computed
 LOWEST = 10  # modes of larger structures, unless more are asked for
 BALANCED = 1e-6  # of the largest force: residual of an equilibrium; a run ends at 1e-8
+DIVIDED = 4  # rods for each half wave of a member, with whose masses the lowest frequencies are within 5 %
 SHIFT = 1e-9  # below zero, of the highest ω², so that mechanisms (ω = 0) can be found too
 
 
@@ -26,11 +28,13 @@ SHIFT = 1e-9  # below zero, of the highest ω², so that mechanisms (ω = 0) can
 class Vibrations:
     """angular_squared: ω² (rad²/s²), ascending, (k,); negative if the equilibrium is not stable.
 
-    modes: (k, n, 2), where members bend with rotations (n, 3), the largest motion of each 1.
+    modes: (k, n, 2), where members bend with rotations (n, 3), the largest motion of each 1. note: the sentence about rods
+    that would vibrate between their ends, where the model has no mass; "" if that hardly matters.
     """
 
     angular_squared: Array
     modes: Array
+    note: str
 
     @property
     def hertz(self) -> Array:
@@ -78,7 +82,24 @@ def vibrations(model: Model, state: StaticState | Start | None = None, count: in
         scaled = csc_matrix(diags(1.0 / root) @ stiffness @ diags(1.0 / root))
         values, vectors = _lowest(scaled, count or LOWEST)
     fields = structure.fields(vectors / root[:, None])
-    return Vibrations(values, np.array([normalised(field) for field in fields]).reshape(fields.shape))
+    modes = np.array([normalised(field) for field in fields]).reshape(fields.shape)
+    return Vibrations(values, modes, _note(model, values))
+
+
+def _note(model: Model, angular_squared: Array) -> str:
+    """Which rods to divide, as their own mass lies in their ends and would vibrate nearly as slowly between these.
+
+    Between hinges that is at ω² = π⁴ EI/(m L³). Of a member divided into n rods, it is n⁴ times as much.
+    """
+    rods, lowest = model.rods, angular_squared[angular_squared > 0.0]
+    mass = rods.density * rods.rest_length
+    bent = (rods.turning_shares > 0.0).any(axis=1) & (mass > 0.0)
+    own = 1000.0 * np.pi**4 * rods.bending_stiffness[bent] / (mass[bent] * rods.rest_length[bent] ** 3)
+    waves = np.zeros(rods.count)  # half ones in each rod, as if it were hinged
+    waves[bent] = ((lowest[0] if len(lowest) else np.inf) / own) ** 0.25
+    parts = np.clip(np.ceil(DIVIDED * waves - 0.01), 1, DIVIDED).astype(np.intp)
+    rows = np.flatnonzero(parts > 1)
+    return divide_named(model, rows, parts) if len(rows) else ""
 
 
 def _lowest(matrix: csc_matrix, count: int) -> tuple[Array, Array]:

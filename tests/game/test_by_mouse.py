@@ -404,6 +404,8 @@ def test_what_a_box_does_not_take_is_said(session: Session) -> None:
     assert session.message == (
         "Type a number in kN, such as 2.5 or 1e3, without “MN”. “automatic” is possible, too."
     )
+    session.type("\ud800")  # half a character
+    assert "without “\\ud800”" in session.message
     session.type("0")
     assert session.message == ""
     session.click_box("tension only")

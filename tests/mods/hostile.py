@@ -140,6 +140,8 @@ HOSTILE: dict[str, Hostile] = {
     "standard output taken away": Hostile(
         plugin("sys.stdout = None"), "It replaced or removed sys.stdout", (LOAD,)
     ),
+    "a root of its own": Hostile(plugin("math.sqrt = abs"), "It replaced or removed math.sqrt", (LOAD,)),
+    "zeros that are ones": Hostile(plugin("np.zeros = np.ones"), "It replaced or removed numpy.zeros", (LOAD,)),
     # --- what marks are ------------------------------------------------------------------------------------
     "a colour without opacity": Hostile(
         layer("[Text('hi', 9, 9, 12, (255, 0, 0))]"), "Text.colour is (255, 0, 0); it must have 4 entries"

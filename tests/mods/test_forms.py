@@ -180,3 +180,10 @@ def test_arrays_of_another_type_are_heeded(opened: Any) -> None:
     session.particles["C"].mass = 2.5
     session.run(steps=5)
     assert not is_interpreted(session)
+
+
+def test_an_array_that_is_a_column_itself_is_refused(opened: Any) -> None:
+    """Interpreted, its kernel would be given what the column held as a call began; compiled, what it holds now."""
+    kernel = "@compiled\ndef force(moved):\n    return -moved[0], 0.0"
+    with pytest.raises(mods.ModError, match=r"is particles\.displacement itself, which steps write to"):
+        opened(Compile.NEVER, kernel, "{'moved': model.particles.displacement[:]}").run(time=0.01)

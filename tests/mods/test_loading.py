@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import io
 import subprocess
 import sys
 from pathlib import Path
@@ -405,3 +406,14 @@ def test_a_name_that_python_reads_as_another_one_is_refused(write_mod: Write) ->
     """The micro sign: attributes and parameters of that name have the Greek letter."""
     (found,) = mods.load([write_mod("\N{MICRO SIGN}m")])
     assert "must be a Python name" in found.problem
+
+
+def test_a_mod_that_closes_standard_output_is_left_out(
+    write_mod: Write, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(sys, "stdout", io.StringIO())
+    folder = write_mod("apple", "import sys\ndef plugin(app):\n    sys.stdout.close()\n")
+    (mod,) = mods.load([folder])
+    assert mod.problem == "It closed sys.stdout, which the program needs; leave it open."
+    print("swallowed")
+    sys.stdout.close()

@@ -3,6 +3,7 @@
 import itertools
 import json
 import math
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -385,3 +386,18 @@ def test_slender_columns_keep_their_digits(stiffness: float) -> None:
     """Matrices of many short rods have lost them; the energy of deformations has not."""
     found = buckling(parse(column(100, CLAMPED, HEADS["free"], stiffness=stiffness)), count=1)
     assert found.factors[0] / ((math.pi / 2 / LENGTH) ** 2 * EI) - 1.0 == pytest.approx(8.4e-11, rel=0.2)
+
+
+def test_a_factor_that_is_too_coarse_is_no_answer(capsys: pytest.CaptureFixture[str], tmp_path: Path) -> None:
+    path = tmp_path / "column.json"
+    for parts, coarse in ((2, True), (3, True), (4, False)):  # three are worse than two
+        path.write_text(json.dumps(column(parts, CLAMPED, HEADS["clamped"])))
+        assert main(["buckling", str(path), "--modes", "1", "--format", "json"]) == coarse
+        found = json.loads(capsys.readouterr().out)
+        assert (found["factors"] == []) is coarse
+        assert (found["upper_bounds"] == []) is not coarse
+        assert (found["effective_length"] == {}) is coarse
+        assert main(["buckling", str(path), "--modes", "1"]) == coarse
+        assert ("load factor, at most" in capsys.readouterr().out) is coarse
+        main(["buckling", str(path), "--modes", "1", "--format", "csv"])
+        assert ("upper_bound" in capsys.readouterr().out) is coarse

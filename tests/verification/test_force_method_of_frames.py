@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 from typing import Any
 
 import numpy as np
@@ -10,6 +11,8 @@ from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
 from components.model import Model
+from game.commands import force_method as command
+from game.commands.command_line import main
 from game.documents import models
 from game.documents.models import parse
 from systems.statics.force_method import Solution, solve
@@ -182,3 +185,19 @@ def test_a_flexibility_that_is_zero_is_told_as_zero() -> None:
     flexibility = solve(model, [find_unknown(model, name) for name in ("D.x", "D.y")]).flexibility
     assert flexibility[0, 1] == flexibility[1, 0] == 0.0
     assert (np.diag(flexibility) > 0.0).all()
+
+
+def test_what_many_unknowns_do_alone_is_written_on_request(
+    capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def told(*words: str) -> str:
+        assert main(["force-method", "two_storey_frame", "--all", *words]) == 0
+        return capsys.readouterr().out
+
+    whole = json.loads(told())
+    monkeypatch.setattr(command, "MOST_SETS", 5)
+    few = json.loads(told())
+    assert few == whole | {"delta_unit": None, "flexibility": None, "virtual_work": {}}
+    assert json.loads(told("--sets")) == whole
+    assert "--sets writes it" in told("--format", "table")
+    assert "delta_unit" not in told("--format", "csv")

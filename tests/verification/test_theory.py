@@ -17,6 +17,7 @@ from components.model import Model
 from components.particle import Particle
 from components.rod import Rod
 from game.commands.command_line import main
+from game.commands.reports import verify as reports
 from game.commands.reports.verify import influence
 from game.documents import models
 from systems.statics.counting import counted
@@ -436,3 +437,15 @@ def test_an_empty_model_has_no_theory_to_fail() -> None:
     model = Model()
     assert len(vibrations(model).hertz) == len(mechanisms(model)) == len(self_stress(model)) == 0
     assert list(compare(model, theories(model), None).rows) == []
+
+
+def test_verify_leaves_out_a_simulation_that_takes_long_unless_it_is_asked_for(
+    capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(reports, "MOST_WORK", 100)
+    status, found = verify(capsys, "hyperstatic")
+    assert (status, found["status"], found["simulation"]["status"]) == (0, "theory only", "left out")
+    assert "--limit SECONDS lets it go on" in found["message"]
+    assert found["rods"]["AB"]["axial_force"]["simulation"] is None
+    status, found = verify(capsys, "hyperstatic", "--limit", "60")
+    assert (status, found["status"]) == (0, "verified")

@@ -52,6 +52,8 @@ def _next_shape(context: Context, pixel: Vector) -> None:
         return
     try:
         context.document.shapes.next()
+        shown = context.document.shapes.shown
+        context.notice = shown.note if shown is not None else ""
     except NoShape as error:
         raise Refusal(str(error)) from None
     context.view.shape = context.document.shapes.shown
