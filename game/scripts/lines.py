@@ -134,6 +134,9 @@ def perform(session: Session, entry: Mapping[str, Any]) -> Iterator[tuple[str, A
         if verb == "expect":
             yield from check(session, value)
         elif verb == "input":
+            session.update_view()  # a person acts on what a frame has shown
+            if pixel and value != "drag middle":  # of which it is how far
+                session.view.pointer = tuple(pixel)
             session.press(value, tuple(pixel) if pixel else None)
         elif verb in ("click", "drag"):
             _VERBS[verb](session, (*value, button))

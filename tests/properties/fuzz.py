@@ -122,8 +122,8 @@ class Fuzz:
         """One action of the person."""
         session, chance = self.session, self.random.random()
         if session.model.particles.count + session.model.rods.count > MOST_ELEMENTS and session.scene in LIVE:
-            session.press("ctrl+a", (0.0, 0.0))
-            session.press("delete", (0.0, 0.0))
+            self._do("ctrl+a", (0.0, 0.0))
+            self._do("delete", (0.0, 0.0))
         elif chance < 0.40:
             known = [binding.key for binding in BINDINGS if session.scene in binding.scenes]
             self._press(self.random.choice([*known, *2 * OFTEN[session.scene]]))
@@ -132,7 +132,7 @@ class Fuzz:
         elif chance < 0.65:
             self._press(self.random.choice(MOUSE))
         elif chance < 0.80:
-            session.press(TEXT + self.random.choice(TEXTS))
+            self._do(TEXT + self.random.choice(TEXTS))
         elif chance < 0.97:
             session.frame(self.random.choice(FRAMES))
         else:
@@ -140,17 +140,22 @@ class Fuzz:
         self._note_desk()
 
     def _press(self, key: str) -> None:
-        place = self._place()
         if key == "drag middle":
-            place = (self.random.uniform(-300.0, 300.0), self.random.uniform(-300.0, 300.0))
+            self._do(key, (self.random.uniform(-300.0, 300.0), self.random.uniform(-300.0, 300.0)))
         else:
-            self.session.view.pointer = place
-        self.session.press(key, place)
+            self._do(key, self._place())
         if key.endswith("drag"):
             for _ in range(self.random.randrange(3)):
-                self.session.press("drag to", self._place())
+                self._do("drag to", self._place())
             if self.random.random() < 0.9:
-                self.session.press("drop", self._place())
+                self._do("drop", self._place())
+
+    def _do(self, key: str, place: Vector | None = None) -> None:
+        """Press a key, after a frame, with the pointer at a place."""
+        self.session.update_view()
+        if place is not None and key != "drag middle":
+            self.session.view.pointer = place
+        self.session.press(key, place)
 
     def _place(self) -> Vector:
         """A pixel: mostly an element or near one."""
@@ -210,12 +215,12 @@ class Fuzz:
     def _come_to_pause(self) -> None:
         session = self.session
         if session.gesture is not None:
-            session.press("drop")
+            self._do("drop")
         for _ in range(4):
             if session.scene == "simulation":
-                session.press("space")
+                self._do("space")
             elif session.scene != "pause":
-                session.press("escape")
+                self._do("escape")
         assert session.scene == "pause", session.scene
 
     def check_log(self) -> None:

@@ -47,8 +47,8 @@ from systems.statics.vibration import vibrations
 VERIFIED, DIFFERS = marked("verified"), marked("differs from static theory")
 THEORY_ONLY, NOT_VERIFIED = marked("theory only"), marked("not verified")
 LEFT_OUT = marked("left out")  # of a simulation
-MOST_WORK = 10_000_000  # steps × elements of a simulation that nobody asked for: some seconds
-PORTIONS = 50  # in which they are taken
+MOST_WORK = 200_000  # steps × elements of a simulation that nobody asked for: some seconds, interpreted
+PORTIONS = 10  # in which they are taken
 DEGREES = ("static", "internal", "external", "mechanisms")
 SHOWN = 6  # mechanisms and frequencies in a table
 NOTHING = 1e-12  # of the largest value beside it: round-off
