@@ -87,7 +87,7 @@ class Recorder:
         spoken = {"language": language()} if language() != ENGLISH else {}
         self._write({**HEADER, "model": model, "mods": _loaded_mods(), **spoken})
         self._resized()
-        session.view.fit(session.model)  # what is fitted as a model is opened may differ
+        session.act("fit")  # what is fitted as a model is opened may differ
         self._write({"action": "fit"})
 
     def _resized(self) -> None:

@@ -204,6 +204,28 @@ def test_a_window_that_is_resized_replays_to_the_same_bits(tmp_path: Path) -> No
     assert _bits(replayed) == _bits(session)
 
 
+@pytest.mark.parametrize("name", ["gerber_beam", "isostatic"])
+def test_a_recording_begins_with_the_view_that_it_is_played_in(name: str, tmp_path: Path) -> None:
+    session, path = Session.open(name), tmp_path / "recorded.jsonl"
+    with path.open("w", encoding="utf-8") as file:
+        Recorder(session, file, name)
+    replayed = session_of(Script(path))
+    play(Script(path), replayed)
+    assert replayed.view.camera == session.view.camera
+
+
+def test_a_key_acts_where_the_pointer_was(tmp_path: Path) -> None:
+    session, path = Session.open("isostatic"), tmp_path / "recorded.jsonl"
+    with path.open("w", encoding="utf-8") as file:
+        Recorder(session, file, "isostatic")
+        session.update_view()
+        session.view.pointer = 100.0, 100.0
+        session.press("l", session.pointer)
+    replayed = session_of(Script(path))
+    play(Script(path), replayed)
+    assert replayed.view.pointer == session.view.pointer
+
+
 def test_what_was_pasted_from_another_program_is_in_the_recording(tmp_path: Path) -> None:
     other = Session.open("pendulum")
     other.press("ctrl+a")
