@@ -2,7 +2,7 @@
 
 For scripts and mods:
 
->>> from components import Model, Particle, Rod
+>>> from pinjoint.components import Model, Particle, Rod
 >>> model = Model()
 >>> a, b = model.create(Particle, 2, position=[(0.0, 0.0), (3.0, 4.0)])
 >>> (rod,) = model.create(Rod, between=[(a.row, b.row)], stiffness=1000.0)
@@ -12,23 +12,23 @@ For scripts and mods:
 (2, 2)
 """
 
-from components.commands import Assign, Command, Create, Custom, Delete, Group
-from components.component import Component
-from components.environment import Environment
-from components.field import CM, Field, FieldError, Role, Vector
-from components.grid import Grid
-from components.handle import Handle
-from components.load import HistoryKind, Load
-from components.model import Model
-from components.obstacles import Pieces
-from components.particle import Particle
-from components.rod import Rod
-from components.settings import Settings
-from components.snapshot import Snapshot
-from components.table import Table
-from components.tags import Selected
-from components.view import Plot, Readout
-from components.world import Derivation, World
+from pinjoint.components.commands import Assign, Command, Create, Custom, Delete, Group
+from pinjoint.components.component import Component
+from pinjoint.components.environment import Environment
+from pinjoint.components.field import CM, Field, FieldError, Role, Vector
+from pinjoint.components.grid import Grid
+from pinjoint.components.handle import Handle
+from pinjoint.components.load import HistoryKind, Load
+from pinjoint.components.model import Model
+from pinjoint.components.obstacles import Pieces
+from pinjoint.components.particle import Particle
+from pinjoint.components.rod import Rod
+from pinjoint.components.settings import Settings
+from pinjoint.components.snapshot import Snapshot
+from pinjoint.components.table import Table
+from pinjoint.components.tags import Selected
+from pinjoint.components.view import Plot, Readout
+from pinjoint.components.world import Derivation, World
 
 __all__ = [
     "CM",

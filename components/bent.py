@@ -11,10 +11,10 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from components.derived import chord_rotation
-from components.diagrams import all_slopes, cubic, moments_along, rigid_slopes
-from components.model import Model
-from components.settings import DIAGRAMS
+from pinjoint.components.derived import chord_rotation
+from pinjoint.components.diagrams import all_slopes, cubic, moments_along, rigid_slopes
+from pinjoint.components.model import Model
+from pinjoint.components.settings import DIAGRAMS
 
 Array = NDArray[np.float64]
 Rows = NDArray[np.intp]

@@ -6,9 +6,9 @@ import re
 import unicodedata
 from typing import Any
 
-from components.field import Field
-from components.handle import Handle
-from components.language import decimals, tr, tr_in
+from pinjoint.components.field import Field
+from pinjoint.components.handle import Handle
+from pinjoint.components.language import decimals, tr, tr_in
 
 NUMBER, WORD, TEXT, FILE_NAME = "number", "word", "text", "file name"
 NAME = "name"  # one of some words, or a text of a form that is known

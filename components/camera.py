@@ -7,7 +7,7 @@ from dataclasses import dataclass, field
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from components.field import Vector
+from pinjoint.components.field import Vector
 
 DEFAULT_SCALE = 100.0  # points per metre at the default zoom
 LEAST_MARGIN = 0.2  # of the room, where a margin would take more

@@ -5,11 +5,11 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import Any
 
-from components.collision_state import CollisionState, check_collision_state
-from components.departure import Departure, check_departure
-from components.field import Field, FieldError, state
-from components.handle import Handle
-from components.language import tr
+from pinjoint.components.collision_state import CollisionState, check_collision_state
+from pinjoint.components.departure import Departure, check_departure
+from pinjoint.components.field import Field, FieldError, state
+from pinjoint.components.handle import Handle
+from pinjoint.components.language import tr
 
 
 def check_events(value: Any, where: str) -> Mapping[str, tuple[str, ...]]:

@@ -15,8 +15,8 @@ from typing import Any, ClassVar
 import numpy as np
 from numpy.typing import NDArray
 
-from components.field import FieldError
-from components.language import tr
+from pinjoint.components.field import FieldError
+from pinjoint.components.language import tr
 
 Floats = NDArray[np.float64]
 Pairs = NDArray[np.int64]

@@ -9,7 +9,7 @@ from typing import Any, Protocol, runtime_checkable
 import numpy as np
 from numpy.typing import NDArray
 
-from components.handle import Handle
+from pinjoint.components.handle import Handle
 
 
 @dataclass(frozen=True)

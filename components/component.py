@@ -4,10 +4,10 @@ from __future__ import annotations
 
 from typing import ClassVar
 
-from components.field import Role
-from components.handle import Handle
-from components.language import tr
-from components.table import fields_of
+from pinjoint.components.field import Role
+from pinjoint.components.handle import Handle
+from pinjoint.components.language import tr
+from pinjoint.components.table import fields_of
 
 
 class Component:

@@ -8,10 +8,10 @@ from typing import Any
 
 import numpy as np
 
-from components.field import FieldError, Role
-from components.language import marked, tr
-from components.snapshot import Snapshot
-from components.world import World
+from pinjoint.components.field import FieldError, Role
+from pinjoint.components.language import marked, tr
+from pinjoint.components.snapshot import Snapshot
+from pinjoint.components.world import World
 
 _REFUSAL = marked(
     "{where}: this is not what Pinjoint saves here. Remove it: the run then goes on within its accuracy."

@@ -5,12 +5,12 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import ArrayLike
 
-from components.diagrams import NAMES, diagrams
-from components.field import Column
-from components.load import CONSTANT
-from components.particle import DEFAULT_MASS
-from components.rod import DEFAULT_STIFFNESS
-from components.world import Derivation, World
+from pinjoint.components.diagrams import NAMES, diagrams
+from pinjoint.components.field import Column
+from pinjoint.components.load import CONSTANT
+from pinjoint.components.particle import DEFAULT_MASS
+from pinjoint.components.rod import DEFAULT_STIFFNESS
+from pinjoint.components.world import Derivation, World
 
 FULL_TURN = 2.0 * np.pi  # rad
 

@@ -7,8 +7,8 @@ from typing import Any
 
 import numpy as np
 
-from components.field import Column
-from components.table import Table
+from pinjoint.components.field import Column
+from pinjoint.components.table import Table
 
 NAMES = ("end_axial_force", "shear", "bending_moment", "end_rotation", "largest_moment")
 

@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from components.field import Field, Vector
-from components.handle import Handle
+from pinjoint.components.field import Field, Vector
+from pinjoint.components.handle import Handle
 
 
 class Environment(Handle):

@@ -12,9 +12,9 @@ from typing import Any, Generic, Protocol, TypeVar, overload
 import numpy as np
 from numpy.typing import NDArray
 
-from components.language import decimals, joined, marked, tr
-from components.mistake import Mistake
-from components.wording import is_broken, quoted
+from pinjoint.components.language import decimals, joined, marked, tr
+from pinjoint.components.mistake import Mistake
+from pinjoint.components.wording import is_broken, quoted
 
 T = TypeVar("T")
 Vector = tuple[float, float]

@@ -5,12 +5,12 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import Any, cast
 
-from components.box import Box
-from components.field import Field
-from components.handle import Handle
-from components.table import Table
-from components.tags import Selected
-from components.world import World
+from pinjoint.components.box import Box
+from pinjoint.components.field import Field
+from pinjoint.components.handle import Handle
+from pinjoint.components.table import Table
+from pinjoint.components.tags import Selected
+from pinjoint.components.world import World
 
 
 class Heading(Handle):

@@ -12,14 +12,14 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from components.bent import distributed_shares, is_frame
-from components.derived import chord_rotation
-from components.diagrams import rigid_slopes
-from components.language import tr
-from components.load import factor_at
-from components.model import Model
-from components.rod import rigid_joints
-from components.written import ROUNDING
+from pinjoint.components.bent import distributed_shares, is_frame
+from pinjoint.components.derived import chord_rotation
+from pinjoint.components.diagrams import rigid_slopes
+from pinjoint.components.language import tr
+from pinjoint.components.load import factor_at
+from pinjoint.components.model import Model
+from pinjoint.components.rod import rigid_joints
+from pinjoint.components.written import ROUNDING
 
 Vectors = NDArray[np.float64]
 

@@ -8,9 +8,9 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from components.field import CM, Field, Vector
-from components.handle import Handle
-from components.table import Table
+from pinjoint.components.field import CM, Field, Vector
+from pinjoint.components.handle import Handle
+from pinjoint.components.table import Table
 
 
 class Grid(Handle):

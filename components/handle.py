@@ -11,10 +11,10 @@ from typing import TYPE_CHECKING, Any, ClassVar, Self
 import numpy as np
 from numpy.typing import NDArray
 
-from components.field import Column
-from components.language import tr
-from components.suggestions import missing
-from components.table import Store, Table, refuse_orphans
+from pinjoint.components.field import Column
+from pinjoint.components.language import tr
+from pinjoint.components.suggestions import missing
+from pinjoint.components.table import Store, Table, refuse_orphans
 
 
 class Handle:

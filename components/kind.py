@@ -8,12 +8,12 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from components.field import Role
-from components.handle import Handle
-from components.language import tr
-from components.model import ADDED, KINDS, Model
-from components.table import Table, fields_of
-from components.wording import is_identifier
+from pinjoint.components.field import Role
+from pinjoint.components.handle import Handle
+from pinjoint.components.language import tr
+from pinjoint.components.model import ADDED, KINDS, Model
+from pinjoint.components.table import Table, fields_of
+from pinjoint.components.wording import is_identifier
 
 
 def add_kind(mod: str, kind: type[Handle]) -> str:

@@ -11,12 +11,12 @@ from typing import Any
 
 import numpy as np
 
-from components.field import LARGEST, Field, FieldError, Vector
-from components.handle import Handle
-from components.language import tr
-from components.particle import Particle
-from components.wording import cut, quoted
-from components.world import World
+from pinjoint.components.field import LARGEST, Field, FieldError, Vector
+from pinjoint.components.handle import Handle
+from pinjoint.components.language import tr
+from pinjoint.components.particle import Particle
+from pinjoint.components.wording import cut, quoted
+from pinjoint.components.world import World
 
 History = Mapping[str, Any]
 
@@ -135,13 +135,15 @@ def _check_ramp(history: History, where: str) -> None:
 
 
 register_history(
-    HistoryKind("constant", {}, "systems.loads.kernels:constant", static=1.0, ends=lambda history: -math.inf)
+    HistoryKind(
+        "constant", {}, "pinjoint.systems.loads.kernels:constant", static=1.0, ends=lambda history: -math.inf
+    )
 )
 register_history(
     HistoryKind(
         "ramp",
         {"start": 0.0, "duration": 1.0},
-        "systems.loads.kernels:ramp",
+        "pinjoint.systems.loads.kernels:ramp",
         static=1.0,
         ends=lambda history: float(history["start"] + history["duration"]),
         breaks=lambda history: (history["start"], history["start"] + history["duration"]),

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from components.field import Vector
-from components.toolbar import Tool
+from pinjoint.components.field import Vector
+from pinjoint.components.toolbar import Tool
 
 
 @dataclass(frozen=True)

@@ -4,18 +4,18 @@ from __future__ import annotations
 
 from typing import Any
 
-from components.clock import Clock
-from components.derived import DERIVATIONS
-from components.environment import Environment
-from components.grid import Grid
-from components.handle import Handle
-from components.load import Load
-from components.particle import Particle
-from components.rod import Rod
-from components.settings import Settings
-from components.slider import Slider
-from components.table import Table
-from components.world import World
+from pinjoint.components.clock import Clock
+from pinjoint.components.derived import DERIVATIONS
+from pinjoint.components.environment import Environment
+from pinjoint.components.grid import Grid
+from pinjoint.components.handle import Handle
+from pinjoint.components.load import Load
+from pinjoint.components.particle import Particle
+from pinjoint.components.rod import Rod
+from pinjoint.components.settings import Settings
+from pinjoint.components.slider import Slider
+from pinjoint.components.table import Table
+from pinjoint.components.world import World
 
 KINDS = (Environment, Settings, Clock, Particle, Rod, Load, Grid)
 ADDED: dict[str, type[Handle]] = {}  # kinds of mods, as files call them: "walls.Wall"

@@ -6,11 +6,11 @@ from typing import Any
 
 import numpy as np
 
-from components.field import LARGEST, SMALLEST, Column, Field, Role
-from components.language import begun, decimals, joined, marked, tr
-from components.model import Model
-from components.obstacles import obstacles
-from components.wording import cut
+from pinjoint.components.field import LARGEST, SMALLEST, Column, Field, Role
+from pinjoint.components.language import begun, decimals, joined, marked, tr
+from pinjoint.components.model import Model
+from pinjoint.components.obstacles import obstacles
+from pinjoint.components.wording import cut
 
 UNKNOWN_SHARE = 1e-3  # of a radius: how well places must be known for impacts
 

@@ -10,12 +10,12 @@ from weakref import WeakKeyDictionary
 import numpy as np
 from numpy.typing import NDArray
 
-from components.field import Role
-from components.handle import Handle
-from components.language import tr
-from components.model import Model
-from components.table import Table
-from components.wording import quoted
+from pinjoint.components.field import Role
+from pinjoint.components.handle import Handle
+from pinjoint.components.language import tr
+from pinjoint.components.model import Model
+from pinjoint.components.table import Table
+from pinjoint.components.wording import quoted
 
 Floats = NDArray[np.float64]
 

@@ -8,10 +8,10 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from components.field import CM, Field, FieldError, Vector, derived, state
-from components.handle import Handle
-from components.language import tr
-from components.table import Store, Table, flags
+from pinjoint.components.field import CM, Field, FieldError, Vector, derived, state
+from pinjoint.components.handle import Handle
+from pinjoint.components.language import tr
+from pinjoint.components.table import Store, Table, flags
 
 DEFAULT_MASS = 1.0  # kg, of a particle without rods
 

@@ -9,11 +9,11 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from components.field import CM, ENDS, Column, Field, FieldError, Vector, derived, state
-from components.handle import Handle
-from components.language import begun, marked, tr
-from components.particle import Particle, rods_without_length
-from components.section import (
+from pinjoint.components.field import CM, ENDS, Column, Field, FieldError, Vector, derived, state
+from pinjoint.components.handle import Handle
+from pinjoint.components.language import begun, marked, tr
+from pinjoint.components.particle import Particle, rods_without_length
+from pinjoint.components.section import (
     MATERIALS,
     SECTIONS,
     by_area,
@@ -22,8 +22,8 @@ from components.section import (
     given_by,
     material_named,
 )
-from components.table import Table, flags
-from components.world import World
+from pinjoint.components.table import Table, flags
+from pinjoint.components.world import World
 
 DEFAULT_STIFFNESS = 164640.0  # kN, of a rod of which no other is known
 _NAMED_BY = {"area": "section", "second_moment": "section", "youngs_modulus": "material"}

@@ -14,10 +14,10 @@ from functools import cache
 from importlib.resources import files
 from typing import Any
 
-from components.field import LARGEST, FieldError
-from components.language import joined, marked, tr
-from components.suggestions import missing
-from components.wording import cut, quoted
+from pinjoint.components.field import LARGEST, FieldError
+from pinjoint.components.language import joined, marked, tr
+from pinjoint.components.suggestions import missing
+from pinjoint.components.wording import cut, quoted
 
 USUAL_SECTION, USUAL_MATERIAL = "IPE 200", "S235"  # of members of which nothing else is known
 RECTANGLE = "rectangle 300×500"  # the form of such a name: width × depth in mm
@@ -100,7 +100,7 @@ _SHAPES: dict[str, Callable[..., tuple[float, float, float]]] = {"I": rolled, "t
 
 @cache
 def _tables() -> tuple[dict[str, Section], dict[str, Material]]:
-    held = json.loads((files("assets") / "sections.json").read_text(encoding="utf-8"))
+    held = json.loads((files("pinjoint.assets") / "sections.json").read_text(encoding="utf-8"))
     sections = [
         _section(f"{family} {size}", _SHAPES[of["shape"]](*dimensions))
         for family, of in held["families"].items()

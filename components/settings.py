@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from components.field import Field, derived, look
-from components.handle import Handle
-from components.language import marked
+from pinjoint.components.field import Field, derived, look
+from pinjoint.components.handle import Handle
+from pinjoint.components.language import marked
 
 AUTOMATIC = "automatic"
 NO_DIAGRAMS = "none"

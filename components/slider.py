@@ -7,10 +7,10 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any, ClassVar
 
-from components.camera import LEAST_MARGIN, Rectangle, Viewport
-from components.field import Role
-from components.handle import Handle
-from components.round_numbers import round_down
+from pinjoint.components.camera import LEAST_MARGIN, Rectangle, Viewport
+from pinjoint.components.field import Role
+from pinjoint.components.handle import Handle
+from pinjoint.components.round_numbers import round_down
 
 WIDTH, HEIGHT, GAP, EDGE = 226.0, 36.0, 4.0, 8.0  # points, of a slider, between and around them
 PAD, BUTTON = 10.0, 30.0  # points: beside the track, and the width of the button at its right

@@ -8,8 +8,8 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
-from components.field import Column, Role
-from components.world import Layout, World
+from pinjoint.components.field import Column, Role
+from pinjoint.components.world import Layout, World
 
 
 @dataclass(frozen=True)

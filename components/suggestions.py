@@ -5,8 +5,8 @@ from __future__ import annotations
 import difflib
 from collections.abc import Collection
 
-from components.language import tr
-from components.wording import LONGEST, cut
+from pinjoint.components.language import tr
+from pinjoint.components.wording import LONGEST, cut
 
 _FEW = 50  # names; so few are listed: all keys of a rod are
 

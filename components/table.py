@@ -10,9 +10,9 @@ from typing import Any, Generic, NoReturn, Protocol, TypeVar
 import numpy as np
 from numpy.typing import NDArray
 
-from components.field import Column, Field, Role
-from components.language import tr
-from components.suggestions import missing
+from pinjoint.components.field import Column, Field, Role
+from pinjoint.components.language import tr
+from pinjoint.components.suggestions import missing
 
 _SMALLEST_CAPACITY = 8
 _TRIED = 64  # names at once, at least, in search of a free one
@@ -37,7 +37,7 @@ class Store(Protocol):
     def place(self, table: Table[Any], first: int) -> None: ...
 
 
-H = TypeVar("H")  # the handles of a kind; see components.handle.Handle
+H = TypeVar("H")  # the handles of a kind; see pinjoint.components.handle.Handle
 
 
 class Table(Generic[H]):

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from dataclasses import dataclass
 
-from components.camera import Rectangle, Viewport
+from pinjoint.components.camera import Rectangle, Viewport
 
 BUTTON = 30.0, 26.0  # points, width and height
 LEAST_HEIGHT = 23.5  # points of a button in a low window, before another column begins

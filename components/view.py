@@ -8,16 +8,16 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 from numpy.typing import NDArray
 
-from components.bent import AXIAL, middles
-from components.camera import LEAST_MARGIN, Camera, Viewport
-from components.card import Card
-from components.field import Vector
-from components.kind import all_points
-from components.menu import Menu
-from components.model import Model
-from components.rod import bends
-from components.slider import ARROW, SUPPORT, Place, SliderStack, under
-from components.toolbar import Button, Toolbar
+from pinjoint.components.bent import AXIAL, middles
+from pinjoint.components.camera import LEAST_MARGIN, Camera, Viewport
+from pinjoint.components.card import Card
+from pinjoint.components.field import Vector
+from pinjoint.components.kind import all_points
+from pinjoint.components.menu import Menu
+from pinjoint.components.model import Model
+from pinjoint.components.rod import bends
+from pinjoint.components.slider import ARROW, SUPPORT, Place, SliderStack, under
+from pinjoint.components.toolbar import Button, Toolbar
 
 CONVENTIONS = TEXTBOOK, THESIS = ("textbook", "thesis")  # of the force method
 

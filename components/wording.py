@@ -9,7 +9,7 @@ from keyword import iskeyword
 from typing import Any
 from unicodedata import normalize
 
-from components.language import tr
+from pinjoint.components.language import tr
 
 LONGEST = 60  # characters of a name or value in a sentence
 

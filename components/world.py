@@ -14,14 +14,14 @@ import esper
 import numpy as np
 from numpy.typing import NDArray
 
-from components.commands import Assign, Command, Create, Custom, Delete, Group, Removed, Restore
-from components.field import MADE, Column, Field, FieldError, Role, same
-from components.handle import Handle, set_entity
-from components.language import joined, tr
-from components.suggestions import missing
-from components.table import Table, flags, grown
-from components.tags import Rare
-from components.wording import cut
+from pinjoint.components.commands import Assign, Command, Create, Custom, Delete, Group, Removed, Restore
+from pinjoint.components.field import MADE, Column, Field, FieldError, Role, same
+from pinjoint.components.handle import Handle, set_entity
+from pinjoint.components.language import joined, tr
+from pinjoint.components.suggestions import missing
+from pinjoint.components.table import Table, flags, grown
+from pinjoint.components.tags import Rare
+from pinjoint.components.wording import cut
 
 H = TypeVar("H", bound=Handle)
 Layout = tuple[tuple[str, tuple[str, ...]], ...]
@@ -81,7 +81,8 @@ class World:
     def __reduce_ex__(self, protocol: object) -> NoReturn:
         raise TypeError(
             tr(
-                "A model cannot be copied or pickled. Save it, or open its document (game.documents.models) a second time."
+                "A model cannot be copied or pickled."
+                " Save it, or open its document (pinjoint.documents.models) a second time."
             )
         )
 

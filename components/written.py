@@ -12,8 +12,8 @@ import math
 from collections.abc import Iterable
 from typing import Any
 
-from components.field import CM
-from components.language import decimals, english, joined, several, tr
+from pinjoint.components.field import CM
+from pinjoint.components.language import decimals, english, joined, several, tr
 
 DIGITS = 4  # significant ones of a result
 GIVEN_DIGITS = 6  # of a number that a person set, without zeros at its end

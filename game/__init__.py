@@ -1,6 +1,6 @@
 """COMPOSITION: the program. `Session` drives it from scripts, without a window.
 
-__main__.py                 `pinjoint` and `python -m game`; interrupts.py lets Ctrl+C end it while it loads
+__main__.py                 `pinjoint` and `python -m pinjoint`; interrupts.py lets Ctrl+C end it while it loads
 commands/                   the command line and its reports
 app.py                      the window: pygame around a session
 session.py                  Session: a context that scripts and tests drive
@@ -13,6 +13,7 @@ mods/ included/             extensions by others, and ours that are written like
 api.py                      what mods and scripts may rely on, in one place
 checks.py                   check_system: a test of any system, for mods
 paths.py                    what particles.B.force and the like mean, wherever a person writes one
+completion.py               registering what is written as mods are, before the first model
 preparation.py              what a window has compiled, and which models wait for that
 elsewhere.py prepare.py     compiling in another process, and loading what it made in a thread
 """
@@ -20,31 +21,26 @@ elsewhere.py prepare.py     compiling in another process, and loading what it ma
 from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
-from game.interrupts import is_program, quietly_interrupted
-from game.version import __version__
-
 if TYPE_CHECKING:  # each is loaded where it is asked for
-    from game.checks import SystemCheckError, check_system
-    from game.editor.context import Context
-    from game.session import Session
+    from pinjoint.checks import SystemCheckError, check_system
+    from pinjoint.editor.context import Context
+    from pinjoint.session import Session
+    from pinjoint.version import __version__
 
 __all__ = ["Context", "Session", "SystemCheckError", "__version__", "check_system"]
 
 _HOMES = {
-    "Context": "game.editor.context",
-    "Session": "game.session",
-    "SystemCheckError": "game.checks",
-    "check_system": "game.checks",
+    "Context": "pinjoint.editor.context",
+    "Session": "pinjoint.session",
+    "SystemCheckError": "pinjoint.checks",
+    "__version__": "pinjoint.version",
+    "check_system": "pinjoint.checks",
 }
 
 
 def __getattr__(name: str) -> Any:
     if name not in _HOMES:
-        raise AttributeError(f"module 'game' has no attribute '{name}'")
-    with quietly_interrupted():
-        import_module("game.included")  # registers what is written as mods are
-        return getattr(import_module(_HOMES[name]), name)
-
-
-if not is_program():  # which loads what it needs
-    __getattr__("Session")  # so that models can hold all, whatever part of the program a script begins with
+        raise AttributeError(f"module 'pinjoint' has no attribute '{name}'")
+    if name != "__version__":
+        import_module("pinjoint.completion").complete()
+    return getattr(import_module(_HOMES[name]), name)

@@ -1,11 +1,11 @@
-"""The program: `pinjoint`, or `python -m game`."""
+"""The program: `pinjoint`, or `python -m pinjoint`."""
 
 import os
 import sys
 import warnings
 
-from game.interrupts import end_in_time, ended_with, quietly_interrupted
-from game.version import __version__
+from pinjoint.interrupts import end_in_time, ended_with, quietly_interrupted
+from pinjoint.version import __version__
 
 
 def main() -> int:
@@ -16,17 +16,17 @@ def main() -> int:
         return 0
     os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")  # the matrices are small, and waiting threads take 0.1 s
     with quietly_interrupted():
-        from components.mistake import Mistake
-        from game.streams import prepare_streams, tell
+        from pinjoint.components.mistake import Mistake
+        from pinjoint.streams import prepare_streams, tell
 
         prepare_streams()
         try:
-            from game.commands.language import speak_as_asked
+            from pinjoint.commands.language import speak_as_asked
 
             words = speak_as_asked(sys.argv[1:])
-            from game import included  # noqa: F401 (registers what is written as mods are)
-            from game.commands import command_line
-            from game.commands.progress import told
+            from pinjoint import included  # noqa: F401 (registers what is written as mods are)
+            from pinjoint.commands import command_line
+            from pinjoint.commands.progress import told
         except Mistake as error:  # of --language, or of a variable of the environment
             tell(str(error))
             return 2

@@ -1,13 +1,17 @@
 """What mods and scripts may rely on, in one place: it stays as it is with every version 0.1.x of Pinjoint.
 
->>> from game.api import Component, Law, Strokes
+>>> from pinjoint.api import Component, Law, Strokes
 >>> Law.each
 'rods'
 
 Everything is said in English unless a script says otherwise, by `speak("pt")` or `with spoken("pt")`.
 """
 
-from components import (
+from pinjoint import Context, Session, SystemCheckError, __version__, check_system
+from pinjoint.commands.arguments import Parser, UsageError, count, finite, numbers, positive, times
+from pinjoint.commands.options import ANSWERED, NOT_ANSWERED, add_analysis, add_model, analysis_of, session_of
+from pinjoint.commands.output import Row, add_output, write_result
+from pinjoint.components import (
     CM,
     Assign,
     Command,
@@ -38,16 +42,12 @@ from components import (
     Vector,
     World,
 )
-from components.language import english, language, listed, marked, plural, speak, spoken, tr, tr_in
-from game import Context, Session, SystemCheckError, __version__, check_system
-from game.commands.arguments import Parser, UsageError, count, finite, numbers, positive, times
-from game.commands.options import ANSWERED, NOT_ANSWERED, add_analysis, add_model, analysis_of, session_of
-from game.commands.output import Row, add_output, write_result
-from game.documents.models import ModelError
-from game.editor.scenes import PHYSICS, Scene
-from game.mods import FAULTS, App, Mod, ModError
-from game.paths import PathError
-from systems.base import (
+from pinjoint.components.language import english, language, listed, marked, plural, speak, spoken, tr, tr_in
+from pinjoint.documents.models import ModelError
+from pinjoint.editor.scenes import PHYSICS, Scene
+from pinjoint.mods import FAULTS, App, Mod, ModError
+from pinjoint.paths import PathError
+from pinjoint.systems.base import (
     ACCOUNTS,
     EVENT_INTERVAL,
     Commit,
@@ -59,9 +59,9 @@ from systems.base import (
     StopReason,
     System,
 )
-from systems.edit import Refusal
-from systems.kernels import compiled
-from systems.physics.integrators import (
+from pinjoint.systems.edit import Refusal
+from pinjoint.systems.kernels import compiled
+from pinjoint.systems.physics.integrators import (
     DormandPrince853,
     ImplicitRungeKutta4,
     RungeKutta4,
@@ -70,9 +70,9 @@ from systems.physics.integrators import (
     VelocityVerlet,
     runge_kutta_constants,
 )
-from systems.physics.tableaus import Tableau
-from systems.render.icons import Part
-from systems.render.marks import (
+from pinjoint.systems.physics.tableaus import Tableau
+from pinjoint.systems.render.icons import Part
+from pinjoint.systems.render.marks import (
     Bars,
     Discs,
     Fills,
@@ -85,8 +85,8 @@ from systems.render.marks import (
     Text,
     boxes,
 )
-from systems.render.sheet import Sheet
-from systems.render.theme import Colour, Theme, faded
+from pinjoint.systems.render.sheet import Sheet
+from pinjoint.systems.render.theme import Colour, Theme, faded
 
 __all__ = [
     "ACCOUNTS",

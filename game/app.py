@@ -16,16 +16,16 @@ import numpy as np
 import pygame
 from numpy.typing import NDArray
 
-from components.camera import Viewport
-from components.field import Vector
-from components.language import language, tr
-from components.model import Model
-from components.view import MAGNIFICATIONS, View, magnified
-from game.boundary import Boundary
-from game.documents import library, models
-from game.documents.autosave import Autosave, unkept
-from game.documents.open_documents import ModelFile, OpenDocument
-from game.documents.preferences import (
+from pinjoint.boundary import Boundary
+from pinjoint.components.camera import Viewport
+from pinjoint.components.field import Vector
+from pinjoint.components.language import language, tr
+from pinjoint.components.model import Model
+from pinjoint.components.view import MAGNIFICATIONS, View, magnified
+from pinjoint.documents import library, models
+from pinjoint.documents.autosave import Autosave, unkept
+from pinjoint.documents.open_documents import ModelFile, OpenDocument
+from pinjoint.documents.preferences import (
     DEFAULT_THEME,
     preferred_convention,
     preferred_magnification,
@@ -33,23 +33,23 @@ from game.documents.preferences import (
     preferred_theme,
     remember,
 )
-from game.editor.frame import Frame
-from game.editor.scenes.load import Load
-from game.interrupts import closed_by_signals
-from game.pictures import on_paper, write
-from game.preparation import Preparation
-from game.scripts.lines import Failure
-from game.scripts.performance import FOOTER, LARGER, Performance
-from game.scripts.playing import Recorder
-from game.scripts.script import Script
-from game.session import Session
-from systems.base import System
-from systems.edit.hover import Hover
-from systems.input.pygame_input import PygameInput
-from systems.render.pygame_images import encoded
-from systems.render.pygame_render import PygameRender
-from systems.render.raster import load_raster
-from systems.render.symbol_at import symbol_at
+from pinjoint.editor.frame import Frame
+from pinjoint.editor.scenes.load import Load
+from pinjoint.interrupts import closed_by_signals
+from pinjoint.pictures import on_paper, write
+from pinjoint.preparation import Preparation
+from pinjoint.scripts.lines import Failure
+from pinjoint.scripts.performance import FOOTER, LARGER, Performance
+from pinjoint.scripts.playing import Recorder
+from pinjoint.scripts.script import Script
+from pinjoint.session import Session
+from pinjoint.systems.base import System
+from pinjoint.systems.edit.hover import Hover
+from pinjoint.systems.input.pygame_input import PygameInput
+from pinjoint.systems.render.pygame_images import encoded
+from pinjoint.systems.render.pygame_render import PygameRender
+from pinjoint.systems.render.raster import load_raster
+from pinjoint.systems.render.symbol_at import symbol_at
 
 FRAME_RATE = 60  # Hz
 FIRST_SIZE = (1000, 720)  # points

@@ -9,13 +9,13 @@ from collections.abc import Iterator
 from contextlib import contextmanager, suppress
 from typing import Any
 
-from components.language import tr
-from components.mistake import Mistake
-from components.wording import cut
-from game.documents.library import data_folder
-from game.editor.context import Context
-from game.mods.heeding import blamed_on_mod
-from systems.base import Phase, System
+from pinjoint.components.language import tr
+from pinjoint.components.mistake import Mistake
+from pinjoint.components.wording import cut
+from pinjoint.documents.library import data_folder
+from pinjoint.editor.context import Context
+from pinjoint.mods.heeding import blamed_on_mod
+from pinjoint.systems.base import Phase, System
 
 LOG = logging.getLogger("pinjoint.window")
 REST = 1.0  # s for which what failed is left alone, unless a person does something

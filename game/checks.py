@@ -11,22 +11,22 @@ from typing import Any
 
 import numpy as np
 
-from components.field import SAVED, Column, Role, same
-from components.language import marked, tr
-from components.model import Model
-from components.suggestions import missing
-from game.documents import models
-from game.editor.frame import Frame
-from game.mods.loading import load_all
-from game.session import Session
-from systems.base import Commit, Integrator, Law, StepSystem, StopReason, System
-from systems.catalogue import all_systems
-from systems.physics.integrators import INTEGRATORS, register_integrator, remove_integrator
-from systems.program.binding import ProgramError, bind
-from systems.program.program import MOTION, TURNING
-from systems.program.reference_laws import KernelRows
-from systems.run.simulation import Simulation
-from systems.schedule import Schedule, ScheduleError
+from pinjoint.components.field import SAVED, Column, Role, same
+from pinjoint.components.language import marked, tr
+from pinjoint.components.model import Model
+from pinjoint.components.suggestions import missing
+from pinjoint.documents import models
+from pinjoint.editor.frame import Frame
+from pinjoint.mods.loading import load_all
+from pinjoint.session import Session
+from pinjoint.systems.base import Commit, Integrator, Law, StepSystem, StopReason, System
+from pinjoint.systems.catalogue import all_systems
+from pinjoint.systems.physics.integrators import INTEGRATORS, register_integrator, remove_integrator
+from pinjoint.systems.program.binding import ProgramError, bind
+from pinjoint.systems.program.program import MOTION, TURNING
+from pinjoint.systems.program.reference_laws import KernelRows
+from pinjoint.systems.run.simulation import Simulation
+from pinjoint.systems.schedule import Schedule, ScheduleError
 
 STEPS = 40  # that step systems are run for
 FRAMES = 3  # that frame systems are run for
@@ -99,7 +99,7 @@ def check_system(
     mods: folders of mods that are loaded first, with whose components the models are read; a system of theirs, or
         of mods loaded before, can then be given by its name. Raises ModError.
 
-    >>> from systems.physics.system import Drag
+    >>> from pinjoint.systems.physics.system import Drag
     >>> check_system(Drag).name
     'physics.drag'
     """

@@ -13,12 +13,12 @@ from pathlib import Path
 
 import msgspec
 
-from components.language import language, tr
-from game.mods import MODS
-from game.prepare import START, UNITS, Job, Task
-from systems.physics.integrators import INTEGRATORS
-from systems.program.compiler import GeneratedModule, interpreted_here, tell
-from systems.program.writer import read_sources
+from pinjoint.components.language import language, tr
+from pinjoint.mods import MODS
+from pinjoint.prepare import START, UNITS, Job, Task
+from pinjoint.systems.physics.integrators import INTEGRATORS
+from pinjoint.systems.program.compiler import GeneratedModule, interpreted_here, tell
+from pinjoint.systems.program.writer import read_sources
 
 INTERVAL = 0.05  # s between two looks
 ENDING = 0.5  # s that what a thread is at may take before the window goes without it
@@ -84,7 +84,7 @@ class Elsewhere:
     def _run(self) -> None:
         self._look()
         read_sources([integrator for integrator in INTEGRATORS.values() if integrator.mod is None])
-        for library in ("systems.plasticity.kernels", "scipy.spatial", "scipy.sparse.linalg"):
+        for library in ("pinjoint.systems.plasticity.kernels", "scipy.spatial", "scipy.sparse.linalg"):
             importlib.import_module(library)  # what edits and steps need, which takes several frames
         while not self._closed.wait(INTERVAL):
             self._look()
@@ -177,6 +177,5 @@ _HOME = Path(__file__).parent
 
 def _imported_from() -> list[str]:
     """Where this process imports from, but for the current folder, unless the program lies there."""
-    here, ours = Path.cwd(), _HOME.parent
-    places = [entry for entry in sys.path if entry and Path(entry).resolve() != here]
-    return places if any(Path(entry).resolve() == ours for entry in places) else [*places, str(ours)]
+    elsewhere = {Path.cwd()} - {_HOME.parent}
+    return [entry for entry in sys.path if entry and Path(entry).resolve() not in elsewhere]

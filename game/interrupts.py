@@ -22,14 +22,14 @@ LEFT_OVER = 2.0  # s that threads may take to end after the program
 
 
 def is_program() -> bool:
-    """True if the process is the program: `pinjoint` or `python -m game` (called "-m" before Python has found it)."""
+    """True if the process is the program: `pinjoint` or `python -m pinjoint` (called "-m" before Python has found it)."""
     called = next(iter(sys.argv), "")
     return Path(called).stem in ("pinjoint", "pinjoint-script", "-m") or Path(called).parent == _HERE
 
 
 @contextmanager
 def quietly_interrupted() -> Iterator[None]:
-    """Let Ctrl+C end the process at once, if it is the program itself; scripts that import game handle it themselves."""
+    """Let Ctrl+C end the process at once, if it is the program itself; scripts handle it themselves."""
     usual = signal.getsignal(signal.SIGINT) is signal.default_int_handler
     in_main_thread = threading.current_thread() is threading.main_thread()
     if not (usual and in_main_thread and is_program()):
@@ -126,7 +126,7 @@ def _threads() -> list[str]:
 
 def _end(status: int) -> None:
     """End the process if it still waits for threads after a while."""
-    from components.language import listed, tr  # this module is loaded before all that takes time
+    from pinjoint.components.language import listed, tr  # this module is loaded before all that takes time
 
     time.sleep(LEFT_OVER)
     said = tr("These threads did not end and were left: {threads}.", threads=listed(_threads()))

@@ -15,15 +15,15 @@ from typing import Any, Protocol
 
 import msgspec
 
-from components.field import ENDS, SAVED, Field, FieldError, Role
-from components.handle import Handle
-from components.language import joined, marked, tr
-from components.mistake import Mistake
-from components.model import Model
-from components.suggestions import missing, remedy
-from components.table import Table
-from components.wording import cut
-from systems.run.energy import Energy
+from pinjoint.components.field import ENDS, SAVED, Field, FieldError, Role
+from pinjoint.components.handle import Handle
+from pinjoint.components.language import joined, marked, tr
+from pinjoint.components.mistake import Mistake
+from pinjoint.components.model import Model
+from pinjoint.components.suggestions import missing, remedy
+from pinjoint.components.table import Table
+from pinjoint.components.wording import cut
+from pinjoint.systems.run.energy import Energy
 
 EVERY = "*"  # in place of a name: all elements of the table
 TIME = "time"  # the path of the simulated time

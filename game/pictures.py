@@ -11,20 +11,20 @@ from typing import Literal
 import numpy as np
 from numpy.typing import NDArray
 
-from components.camera import Camera, Viewport
-from components.model import Model
-from components.slider import SliderStack
-from components.toolbar import Toolbar
-from components.view import MARGIN, Plot, Status, View
-from game.documents import models
-from game.session import Session
-from systems.render.labels import Placed
-from systems.render.marks import Owner, Picture, Points
-from systems.render.pdf import as_pdf
-from systems.render.picture import compose, compose_all
-from systems.render.plots import draw_plot
-from systems.render.svg import as_svg
-from systems.render.theme import load_theme
+from pinjoint.components.camera import Camera, Viewport
+from pinjoint.components.model import Model
+from pinjoint.components.slider import SliderStack
+from pinjoint.components.toolbar import Toolbar
+from pinjoint.components.view import MARGIN, Plot, Status, View
+from pinjoint.documents import models
+from pinjoint.session import Session
+from pinjoint.systems.render.labels import Placed
+from pinjoint.systems.render.marks import Owner, Picture, Points
+from pinjoint.systems.render.pdf import as_pdf
+from pinjoint.systems.render.picture import compose, compose_all
+from pinjoint.systems.render.plots import draw_plot
+from pinjoint.systems.render.svg import as_svg
+from pinjoint.systems.render.theme import load_theme
 
 Size = tuple[int, int]
 Background = Literal["theme", "white", "transparent"]
@@ -92,7 +92,7 @@ def write(
 
 def _as_image(pictures: Sequence[Picture], size: Size, suffix: str, *, clear: bool) -> bytes:
     """Pictures as pixels."""
-    from systems.render.pygame_images import as_clear_png, as_image  # pygame takes a while to import
+    from pinjoint.systems.render.pygame_images import as_clear_png, as_image  # pygame takes a while to import
 
     return as_clear_png(pictures, size) if clear else as_image(pictures, size, suffix)
 
@@ -110,7 +110,7 @@ def frame(
 
     placed: where labels were in the last of several pictures, see compose().
     """
-    from systems.render.pygame_images import as_colours
+    from pinjoint.systems.render.pygame_images import as_colours
 
     session.update_view()
     status = replace(session.view.status, hint="")  # a picture takes no keys

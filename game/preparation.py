@@ -10,21 +10,21 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence, Set
 from itertools import islice
 from typing import Any
 
-from components.field import Role
-from components.language import tr
-from components.model import Model
-from game.documents.format import ModelError
-from game.editor.host import Waiting
-from game.elsewhere import Elsewhere, slower
-from game.prepare import UNITS, Job, described, in_a_line, problem_of
-from systems import cache
-from systems.base import Phase, StepSystem, System
-from systems.collision.driven.compiled import DRIVEN
-from systems.collision.free.discs import EVENTS, HORIZONS, PILES
-from systems.collision.free.flight import may_pile
-from systems.collision.overlaps import PARTING, work_ahead
-from systems.edit.pull import Pull
-from systems.physics.system import (
+from pinjoint.components.field import Role
+from pinjoint.components.language import tr
+from pinjoint.components.model import Model
+from pinjoint.documents.format import ModelError
+from pinjoint.editor.host import Waiting
+from pinjoint.elsewhere import Elsewhere, slower
+from pinjoint.prepare import UNITS, Job, described, in_a_line, problem_of
+from pinjoint.systems import cache
+from pinjoint.systems.base import Phase, StepSystem, System
+from pinjoint.systems.collision.driven.compiled import DRIVEN
+from pinjoint.systems.collision.free.discs import EVENTS, HORIZONS, PILES
+from pinjoint.systems.collision.free.flight import may_pile
+from pinjoint.systems.collision.overlaps import PARTING, work_ahead
+from pinjoint.systems.edit.pull import Pull
+from pinjoint.systems.physics.system import (
     AxialDamping,
     AxialDampingOfCables,
     Drag,
@@ -32,8 +32,8 @@ from systems.physics.system import (
     ElasticityAfterYielding,
     Slackness,
 )
-from systems.plasticity.system import FirstYield, Strength, Yielding
-from systems.program.compiler import (
+from pinjoint.systems.plasticity.system import FirstYield, Strength, Yielding
+from pinjoint.systems.program.compiler import (
     LARGE,
     LOG,
     LONGEST_WORK,
@@ -43,10 +43,10 @@ from systems.program.compiler import (
     GeneratedModule,
     tell,
 )
-from systems.program.program import module_of
-from systems.program.writer import form_of, traits_of
-from systems.render.raster import RASTER, Raster, load_raster
-from systems.run.simulation import Simulation
+from pinjoint.systems.program.program import module_of
+from pinjoint.systems.program.writer import form_of, traits_of
+from pinjoint.systems.render.raster import RASTER, Raster, load_raster
+from pinjoint.systems.run.simulation import Simulation
 
 LONGEST_IMPACT = 2**20  # operations, about a second: a window waits half a minute to compile what takes longer
 BEGINNING = 1.5  # s in which the other process gets ready to compile

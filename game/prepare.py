@@ -17,24 +17,26 @@ from collections.abc import Sequence
 
 import msgspec
 
-from components.language import speak, tr
-from components.model import Model
-from game import Session
-from game.documents.document import parse
-from game.documents.facts import gathered
-from game.mods.loading import load
-from systems import cache
-from systems.base import Integrator, StepSystem
-from systems.collision.driven.compiled import DRIVEN
-from systems.collision.free.discs import EVENTS, HORIZONS, PILES
-from systems.collision.overlaps import PARTING
-from systems.physics.integrators import INTEGRATORS
-from systems.program.compiler import Choice, Compile, forget_unused
-from systems.program.parallel import make_program
-from systems.render.raster import RASTER
+from pinjoint import Session
+from pinjoint.components.language import speak, tr
+from pinjoint.components.model import Model
+from pinjoint.documents.document import parse
+from pinjoint.documents.facts import gathered
+from pinjoint.mods.loading import load
+from pinjoint.systems import cache
+from pinjoint.systems.base import Integrator, StepSystem
+from pinjoint.systems.collision.driven.compiled import DRIVEN
+from pinjoint.systems.collision.free.discs import EVENTS, HORIZONS, PILES
+from pinjoint.systems.collision.overlaps import PARTING
+from pinjoint.systems.physics.integrators import INTEGRATORS
+from pinjoint.systems.program.compiler import Choice, Compile, forget_unused
+from pinjoint.systems.program.parallel import make_program
+from pinjoint.systems.render.raster import RASTER
 
 UNITS = {unit.name: unit for unit in (RASTER, PARTING, EVENTS, HORIZONS, PILES, DRIVEN)}
-START = "import sys; sys.path[:] = sys.argv[1:]; from game.prepare import main; main()"  # for `python -P -c`
+START = (
+    "import sys; sys.path[:] = sys.argv[1:]; from pinjoint.prepare import main; main()"  # for `python -P -c`
+)
 
 Job = tuple[str, ...]  # the name of a unit, or a step program: integrator, form, traits of the model, systems
 
@@ -80,7 +82,7 @@ def described(model: Model) -> bytes:
 def problem_of(job: Job, document: bytes) -> str:
     """Do a job for the model of a document; returns why it could not be done, "" if it could."""
     try:
-        importlib.import_module("systems.machine_code")
+        importlib.import_module("pinjoint.systems.machine_code")
     except Exception as error:  # numba is not there, or damaged
         return tr("numba cannot be imported ({error})", error=in_a_line(error))
     try:

@@ -10,56 +10,56 @@ from typing import TYPE_CHECKING, Any, NoReturn
 
 import numpy as np
 
-from components.camera import Viewport
-from components.card import share_of
-from components.environment import Environment
-from components.field import FieldError, Vector
-from components.language import begun, joined, listed, marked, tr
-from components.load import Load
-from components.model import Model
-from components.particle import Particle
-from components.rod import Rod
-from components.suggestions import missing
-from components.table import Table
-from components.view import View
-from components.wording import quoted
-from game.documents import models
-from game.documents.format import ModelError
-from game.documents.open_documents import ModelFile, Source, file_of
-from game.editor.actions import ACTIONS, WHILE_DRAWING
-from game.editor.context import FAULTS, Context
-from game.editor.dropping import open_dropped
-from game.editor.frame import Actions, Frame, HeadlessFrame, ShowView
-from game.editor.menu import IN_MENU
-from game.editor.routing import Layer, for_tools, layer, meaning
-from game.editor.scenes import all_scenes, scene_systems
-from game.editor.scenes.files import FileScene
-from game.editor.sliders import slider_stack, sliders_of
-from game.editor.toolbar import toolbar_of
-from game.editor.view_model import follows, show
-from game.lessons import actions  # noqa: F401 (it registers them)
-from game.lessons.course import Course
-from game.lessons.tasks import Lesson
-from game.mods import load_all
-from game.mods.heeding import blamed_on_mod, heeding_mods
-from game.scripts.expectation import expect
-from game.scripts.script import Script, ScriptError
-from systems.base import EVENT_INTERVAL, Phase, StopReason, System
-from systems.catalogue import SYSTEMS, step_systems
-from systems.edit import Refusal
-from systems.edit.dividing import divide
-from systems.edit.pull import Pull
-from systems.input.bindings import FILES, FORMS, LIVE, TEXT, key_named, only_in_pause
-from systems.render.picture import Stage
-from systems.run.simulation import Simulation
-from systems.run.system import Time
-from systems.run.watch import watched
-from systems.schedule import Plan, Schedule
+from pinjoint.components.camera import Viewport
+from pinjoint.components.card import share_of
+from pinjoint.components.environment import Environment
+from pinjoint.components.field import FieldError, Vector
+from pinjoint.components.language import begun, joined, listed, marked, tr
+from pinjoint.components.load import Load
+from pinjoint.components.model import Model
+from pinjoint.components.particle import Particle
+from pinjoint.components.rod import Rod
+from pinjoint.components.suggestions import missing
+from pinjoint.components.table import Table
+from pinjoint.components.view import View
+from pinjoint.components.wording import quoted
+from pinjoint.documents import models
+from pinjoint.documents.format import ModelError
+from pinjoint.documents.open_documents import ModelFile, Source, file_of
+from pinjoint.editor.actions import ACTIONS, WHILE_DRAWING
+from pinjoint.editor.context import FAULTS, Context
+from pinjoint.editor.dropping import open_dropped
+from pinjoint.editor.frame import Actions, Frame, HeadlessFrame, ShowView
+from pinjoint.editor.menu import IN_MENU
+from pinjoint.editor.routing import Layer, for_tools, layer, meaning
+from pinjoint.editor.scenes import all_scenes, scene_systems
+from pinjoint.editor.scenes.files import FileScene
+from pinjoint.editor.sliders import slider_stack, sliders_of
+from pinjoint.editor.toolbar import toolbar_of
+from pinjoint.editor.view_model import follows, show
+from pinjoint.lessons import actions  # noqa: F401 (it registers them)
+from pinjoint.lessons.course import Course
+from pinjoint.lessons.tasks import Lesson
+from pinjoint.mods import load_all
+from pinjoint.mods.heeding import blamed_on_mod, heeding_mods
+from pinjoint.scripts.expectation import expect
+from pinjoint.scripts.script import Script, ScriptError
+from pinjoint.systems.base import EVENT_INTERVAL, Phase, StopReason, System
+from pinjoint.systems.catalogue import SYSTEMS, step_systems
+from pinjoint.systems.edit import Refusal
+from pinjoint.systems.edit.dividing import divide
+from pinjoint.systems.edit.pull import Pull
+from pinjoint.systems.input.bindings import FILES, FORMS, LIVE, TEXT, key_named, only_in_pause
+from pinjoint.systems.render.picture import Stage
+from pinjoint.systems.run.simulation import Simulation
+from pinjoint.systems.run.system import Time
+from pinjoint.systems.run.watch import watched
+from pinjoint.systems.schedule import Plan, Schedule
 
 if TYPE_CHECKING:  # they import scipy
-    from systems.statics.buckling import Buckling
-    from systems.statics.path import Curve
-    from systems.statics.verify import Comparison
+    from pinjoint.systems.statics.buckling import Buckling
+    from pinjoint.systems.statics.path import Curve
+    from pinjoint.systems.statics.verify import Comparison
 
 FARTHEST = 1e9  # pixels from the corner of the window to which a click may be
 LARGEST_SIDE, LARGEST_RATIO = 65_536, 64.0  # of a window, in pixels, and in pixels per point
@@ -261,7 +261,7 @@ class Session(Context):
         rad, axial_force (k, rods) in kN, bending_moment (k, rods, 2) in kN·m and stable (k,); its events are limit points
         and bifurcations; complete: False if it could not be followed so far. Raises ValueError.
         """
-        from systems.statics.path import goal_of, load_path
+        from pinjoint.systems.statics.path import goal_of, load_path
 
         if points < 2:
             raise ValueError(tr("points is {points}; a curve has at least 2.", points=points))
@@ -274,7 +274,7 @@ class Session(Context):
         effective_length (rods,) in m, NaN of rods that are not compressed; message: why there is none. Raises
         ValueError, and NoEquilibrium without a state that could lose its stability.
         """
-        from systems.statics.buckling import buckling
+        from pinjoint.systems.statics.buckling import buckling
 
         if modes < 1:
             raise ValueError(tr("modes is {modes}; ask for at least 1.", modes=modes))

@@ -9,8 +9,8 @@ import re
 import sys
 from contextlib import suppress
 
-from components.language import tr
-from components.wording import printable
+from pinjoint.components.language import tr
+from pinjoint.components.wording import printable
 
 
 def prepare_streams() -> None:

@@ -2,7 +2,7 @@
 
 A law is a declaration and a kernel, a function of one row:
 
->>> from systems.kernels import compiled
+>>> from pinjoint.systems.kernels import compiled
 >>> @compiled
 ... def weight(particles_mass):
 ...     return 0.0, -0.00981 * particles_mass
@@ -25,10 +25,10 @@ from typing import Any, ClassVar, Protocol
 import esper
 from numpy.typing import NDArray
 
-from components.handle import Handle
-from components.language import marked
-from components.model import Model
-from systems.entries import ACCOUNTS
+from pinjoint.components.handle import Handle
+from pinjoint.components.language import marked
+from pinjoint.components.model import Model
+from pinjoint.systems.entries import ACCOUNTS
 
 __all__ = [
     "ACCOUNTS",
@@ -257,7 +257,7 @@ class Integrator(StepSystem):
         "clock.time",
     )
     order: ClassVar[int] = 0
-    entry: ClassVar[str] = "systems.program.templates.fixed_steps:advance"
+    entry: ClassVar[str] = "pinjoint.systems.program.templates.fixed_steps:advance"
     begins: ClassVar[str] = ""
     ends: ClassVar[str] = ""
     parts: ClassVar[tuple[str, ...]] = ()

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from components.obstacles import NO_OBSTACLES, Obstacles
+from pinjoint.components.obstacles import NO_OBSTACLES, Obstacles
 
 Floats = NDArray[np.float64]
 Rows = NDArray[np.int64]

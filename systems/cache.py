@@ -18,7 +18,7 @@ from pathlib import Path
 
 from platformdirs import user_cache_path
 
-from components.language import tr
+from pinjoint.components.language import tr
 
 NOWHERE = Path(os.devnull)  # stands for a folder where none can be had: there is nothing in it, nor can be
 LOG = logging.getLogger("pinjoint.cache")

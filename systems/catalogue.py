@@ -4,10 +4,10 @@ from __future__ import annotations
 
 from collections.abc import Callable
 
-from systems.base import StepSystem, System
-from systems.collision.system import Collision
-from systems.loads.system import varying_loads
-from systems.physics.system import (
+from pinjoint.systems.base import StepSystem, System
+from pinjoint.systems.collision.system import Collision
+from pinjoint.systems.loads.system import varying_loads
+from pinjoint.systems.physics.system import (
     AxialDamping,
     AxialDampingOfCables,
     Bending,
@@ -19,7 +19,7 @@ from systems.physics.system import (
     Slackness,
     TurningDrag,
 )
-from systems.plasticity.system import FirstYield, Strength, Yielding
+from pinjoint.systems.plasticity.system import FirstYield, Strength, Yielding
 
 SYSTEMS: list[Callable[[], System]] = []  # that mods add; made anew for every session
 

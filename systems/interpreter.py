@@ -27,6 +27,8 @@ from typing import Any
 
 import numpy as np
 
+from pinjoint.systems import is_ours
+
 Interpreted = Callable[..., Any]
 
 
@@ -570,7 +572,7 @@ def _in_scope(value: Any, name: str, scope: dict[str, Any]) -> Any:
 
 def _is_ours(plain: Any) -> bool:
     """True for kernels that surely have a plain form, so that they need not be rewritten to know."""
-    return str(plain.__module__).startswith("systems.") and plain not in _rewritten
+    return is_ours(plain.__module__) and plain not in _rewritten
 
 
 def _when_called(function: Callable[..., Any], name: str, scope: dict[str, Any]) -> Interpreted:

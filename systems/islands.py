@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from components.model import Model
+from pinjoint.components.model import Model
 
 Rows = NDArray[np.intp]
 

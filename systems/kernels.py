@@ -20,7 +20,7 @@ from enum import Enum
 from functools import cached_property, partial, update_wrapper
 from typing import Any
 
-from systems.interpreter import interpreted
+from pinjoint.systems.interpreter import interpreted
 
 PLAIN = os.environ.get("PINJOINT_PLAIN_NUMBA", "") == "1"
 

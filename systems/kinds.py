@@ -25,7 +25,7 @@ from typing import Any, NoReturn
 
 import numpy as np
 
-from systems.interpreter import (
+from pinjoint.systems.interpreter import (
     NoPlainForm,
     call_of,
     definition,

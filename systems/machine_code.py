@@ -38,10 +38,10 @@ from numba.core.serialize import dumps
 from numba.core.types import WrapperAddressProtocol, unliteral
 from numba.extending import typeof_impl
 
-from components.language import tr
-from systems import cache
-from systems.kernels import PLAIN, Kernel, Use
-from systems.translation import LeanCompiler
+from pinjoint.components.language import tr
+from pinjoint.systems import cache, is_ours
+from pinjoint.systems.kernels import PLAIN, Kernel, Use
+from pinjoint.systems.translation import LeanCompiler
 
 _PROCESSOR = repr(cpu_target.target_context.codegen().magic_tuple())
 
@@ -115,7 +115,7 @@ def adopt(module: ModuleType, name: str, kernels: Iterable[Any]) -> None:
     for kernel in kernels:
         if _is_compiled(kernel):
             kernel._cache = NullCache()
-        if not str(kernel.__module__).startswith("systems."):
+        if not is_ours(kernel.__module__):
             cpu_target.target_context.refresh()  # it may refer to anything of numba's
     module.__name__ = name
     sys.modules[name] = module  # what is cached looks the module up by its name

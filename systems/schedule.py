@@ -1,10 +1,10 @@
 """Schedule: which systems run, in which order, for a scene and a model; and how long each takes.
 
->>> from systems.base import System
+>>> from pinjoint.systems.base import System
 >>> class Idle(System):
 ...     name = "example.idle"
 ...     scenes = ("pause",)
->>> from components.model import Model
+>>> from pinjoint.components.model import Model
 >>> Schedule([Idle()]).plan("simulation", Model()).left_out
 {'example.idle': "not active in 'simulation', only in pause"}
 """
@@ -19,10 +19,10 @@ from fnmatch import fnmatchcase
 from graphlib import CycleError, TopologicalSorter
 from typing import Any, Protocol
 
-from components.language import tr
-from components.model import Model
-from components.suggestions import remedy
-from systems.base import Commit, Event, Integrator, Law, Phase, StepSystem, System
+from pinjoint.components.language import tr
+from pinjoint.components.model import Model
+from pinjoint.components.suggestions import remedy
+from pinjoint.systems.base import Commit, Event, Integrator, Law, Phase, StepSystem, System
 
 
 class ScheduleError(ValueError):

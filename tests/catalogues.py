@@ -22,7 +22,7 @@ from babel.messages.frontend import parse_keywords
 from babel.messages.mofile import write_mo
 from babel.messages.pofile import read_po, write_po
 
-from components.language import DOMAIN, ENGLISH, LANGUAGES, LOCALE
+from pinjoint.components.language import DOMAIN, ENGLISH, LANGUAGES, LOCALE
 
 ROOT = Path(__file__).parents[1]
 MODS = ROOT / "assets" / "mods"

@@ -10,9 +10,9 @@ from pathlib import Path
 import pytest
 from hypothesis import HealthCheck, settings
 
-from components.language import ENGLISH, spoken
-from game.documents import library, preferences
-from systems.program.compiler import Choice
+from pinjoint.components.language import ENGLISH, spoken
+from pinjoint.documents import library, preferences
+from pinjoint.systems.program.compiler import Choice
 
 ROOT = Path(__file__).resolve().parents[1]
 

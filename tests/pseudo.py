@@ -8,8 +8,8 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 from unittest.mock import patch
 
-from components import language
-from components.language import spoken
+from pinjoint.components import language
+from pinjoint.components.language import spoken
 
 CODE = "pseudo"  # of its own: what is kept by language must not be taken for that of another
 _LETTERS = str.maketrans(

@@ -9,11 +9,11 @@ from itertools import pairwise
 
 import numpy as np
 
-from components.snapshot import Snapshot
-from components.view import drawn_places
-from game.documents.models import replace
-from game.session import Session
-from systems.render.labels import Placed
+from pinjoint.components.snapshot import Snapshot
+from pinjoint.components.view import drawn_places
+from pinjoint.documents.models import replace
+from pinjoint.session import Session
+from pinjoint.systems.render.labels import Placed
 
 FRAME = 0.05  # s for which each picture is shown; viewers of GIFs slow down quicker ones
 LONGEST = 12.0  # s shown; a longer run to a time is shown faster, one until rest in part and at its end
@@ -30,7 +30,7 @@ def render_gif(
     """
     from PIL import Image
 
-    from game.pictures import frame
+    from pinjoint.pictures import frame
 
     status, moments = _run(session, until, limit)
     session.exaggerate()

@@ -11,9 +11,9 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import Any, NoReturn
 
-from components.language import marked, tr
-from components.mistake import Mistake
-from game.streams import put
+from pinjoint.components.language import marked, tr
+from pinjoint.components.mistake import Mistake
+from pinjoint.streams import put
 
 BAD_INPUT = 2
 OUTPUTS = ("output", "events", "report", "record", "plot")  # options of all commands that name a file to write

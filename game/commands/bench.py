@@ -9,11 +9,11 @@ from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
-from components import written
-from components.language import tr
-from game.commands.arguments import Parser, UsageError
-from game.commands.options import ANSWERED
-from game.commands.output import Row, add_format, aligned, formatted, write, writing
+from pinjoint.commands.arguments import Parser, UsageError
+from pinjoint.commands.options import ANSWERED
+from pinjoint.commands.output import Row, add_format, aligned, formatted, write, writing
+from pinjoint.components import written
+from pinjoint.components.language import tr
 
 CHECKOUT = Path(__file__).resolve().parents[2]
 NAMES = (

@@ -8,15 +8,15 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from components.language import joined, tr
-from components.model import Model
-from game.commands.arguments import Parser, UsageError, count
-from game.commands.options import ANSWERED, NOT_ANSWERED, add_model, session_of
-from game.commands.output import Row, add_output, aligned, as_written, write_result
-from game.streams import tell
+from pinjoint.commands.arguments import Parser, UsageError, count
+from pinjoint.commands.options import ANSWERED, NOT_ANSWERED, add_model, session_of
+from pinjoint.commands.output import Row, add_output, aligned, as_written, write_result
+from pinjoint.components.language import joined, tr
+from pinjoint.components.model import Model
+from pinjoint.streams import tell
 
 if TYPE_CHECKING:  # it imports scipy
-    from systems.statics.buckling import Buckling
+    from pinjoint.systems.statics.buckling import Buckling
 
 
 def command(words: Sequence[str]) -> int:
@@ -38,7 +38,7 @@ def command(words: Sequence[str]) -> int:
     add_output(parser)
     options = parser.parse_args(words)
     session = session_of(options)
-    from systems.statics.events import NoEquilibrium
+    from pinjoint.systems.statics.events import NoEquilibrium
 
     try:
         found = session.buckling(options.modes)

@@ -7,15 +7,15 @@ import sys
 from collections.abc import Callable, Sequence
 from importlib import import_module
 
-from components.language import marked, tr
-from components.mistake import Mistake
-from game.commands import COMMANDS, Command
-from game.commands.arguments import BAD_INPUT
-from game.commands.options import ANSWERED, NOT_ANSWERED, STOPPED, use_cores_as_asked
-from game.commands.output import write
-from game.commands.with_mods import load_as_asked
-from game.mods.heeding import switched_off
-from game.streams import discard_output, tell
+from pinjoint.commands import COMMANDS, Command
+from pinjoint.commands.arguments import BAD_INPUT
+from pinjoint.commands.options import ANSWERED, NOT_ANSWERED, STOPPED, use_cores_as_asked
+from pinjoint.commands.output import write
+from pinjoint.commands.with_mods import load_as_asked
+from pinjoint.components.language import marked, tr
+from pinjoint.components.mistake import Mistake
+from pinjoint.mods.heeding import switched_off
+from pinjoint.streams import discard_output, tell
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
@@ -52,7 +52,7 @@ def _of(module: str) -> Callable[[list[str]], int]:
     """What runs a command; its module is imported only for it."""
 
     def run(words: list[str]) -> int:
-        status: int = import_module(f"game.commands.{module}").command(words)
+        status: int = import_module(f"pinjoint.commands.{module}").command(words)
         return status
 
     return run

@@ -7,18 +7,18 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from components.field import ENDS
-from components.language import joined, marked, plural, tr
-from components.model import Model
-from components.rod import bends
-from game.commands.arguments import Parser, UsageError, count, finite
-from game.commands.options import ANSWERED, NOT_ANSWERED, add_model, session_of
-from game.commands.output import Row, add_output, write_result
-from game.streams import tell
-from systems.statics.events import event_record
+from pinjoint.commands.arguments import Parser, UsageError, count, finite
+from pinjoint.commands.options import ANSWERED, NOT_ANSWERED, add_model, session_of
+from pinjoint.commands.output import Row, add_output, write_result
+from pinjoint.components.field import ENDS
+from pinjoint.components.language import joined, marked, plural, tr
+from pinjoint.components.model import Model
+from pinjoint.components.rod import bends
+from pinjoint.streams import tell
+from pinjoint.systems.statics.events import event_record
 
 if TYPE_CHECKING:  # it imports scipy
-    from systems.statics.path import Curve
+    from pinjoint.systems.statics.path import Curve
 
 
 _UNITS = {"displacement": "m", "rotation": "rad", "axial_force": "kN", "bending_moment": "kN·m"}
@@ -115,8 +115,8 @@ def _why_it_ends(model: Model, curve: Curve, most: int) -> str:
 
 def _why_nothing_follows(model: Model) -> str:
     """Why a curve ends where it begins: the motion of a mechanism in words; "" if the structure is none."""
-    from systems.statics.explain import describe_motion
-    from systems.statics.theory import mechanisms
+    from pinjoint.systems.statics.explain import describe_motion
+    from pinjoint.systems.statics.theory import mechanisms
 
     moving = mechanisms(model)
     if not len(moving):

@@ -8,17 +8,17 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from components.language import tr
-from components.model import Model
-from components.view import CONVENTIONS, THESIS
-from game.commands.arguments import Parser, UsageError
-from game.commands.options import ANSWERED, NOT_ANSWERED, session_of
-from game.commands.output import Row, add_output, aligned, as_written, writable, write_result, writing
-from game.streams import tell
+from pinjoint.commands.arguments import Parser, UsageError
+from pinjoint.commands.options import ANSWERED, NOT_ANSWERED, session_of
+from pinjoint.commands.output import Row, add_output, aligned, as_written, writable, write_result, writing
+from pinjoint.components.language import tr
+from pinjoint.components.model import Model
+from pinjoint.components.view import CONVENTIONS, THESIS
+from pinjoint.streams import tell
 
 if TYPE_CHECKING:  # they import scipy
-    from game.force_method.tables import Tables
-    from systems.statics.force_method import Solution
+    from pinjoint.force_method.tables import Tables
+    from pinjoint.systems.statics.force_method import Solution
 
 
 MOST_SETS = 100  # unknowns; what each does to each, and to all rods, takes 100 MB for a thousand of them
@@ -68,8 +68,8 @@ def command(words: Sequence[str]) -> int:
     if options.report is not None and not options.report.lower().endswith(".pdf"):
         raise UsageError(tr("--report {file}: write a file that ends with .pdf.", file=options.report))
     session = session_of(options)
-    from game.force_method.tables import Tables
-    from systems.statics.unknowns import ForceMethodError
+    from pinjoint.force_method.tables import Tables
+    from pinjoint.systems.statics.unknowns import ForceMethodError
 
     try:
         solution = _solution(session.model, options.release)
@@ -89,7 +89,7 @@ def command(words: Sequence[str]) -> int:
     found = _data(tables, single=single, sets=sets or len(solution.unknowns) <= MOST_SETS)
     write_result(options, found | {"left_out": laws}, _rows, partial(_lines, tables, options.convention))
     if options.report is not None:
-        from game.force_method.report import write_report
+        from pinjoint.force_method.report import write_report
 
         with writing(options.report):
             write_report(tables, options.report, options.convention)
@@ -100,8 +100,8 @@ def command(words: Sequence[str]) -> int:
 
 def _solution(model: Model, release: Sequence[str] | None) -> Solution:
     """For these unknowns, or those whose release leaves an isostatic structure. Raises ForceMethodError."""
-    from systems.statics.force_method import solve
-    from systems.statics.unknowns import find_unknown, redundants
+    from pinjoint.systems.statics.force_method import solve
+    from pinjoint.systems.statics.unknowns import find_unknown, redundants
 
     names = None if release is None else dict.fromkeys(release)
     return solve(model, redundants(model) if names is None else [find_unknown(model, name) for name in names])
@@ -113,7 +113,7 @@ def _data(tables: Tables, *, single: bool, sets: bool) -> dict[str, Any]:
     single: there is one unknown, so that its numbers stand alone. virtual_work: of every rod, in the order of the sums.
     sets: with what each unknown alone does; else there are no matrices, and no virtual work.
     """
-    from game.force_method.copies import exact_forces
+    from pinjoint.force_method.copies import exact_forces
 
     solution = tables.solution
     found: dict[str, Any] = {
@@ -136,7 +136,7 @@ def _data(tables: Tables, *, single: bool, sets: bool) -> dict[str, Any]:
 
 def _work(tables: Tables) -> dict[str, Any]:
     """By rod: what the sums of virtual work are made of; n, m and terms of each unknown in the order of `released`."""
-    from game.force_method.tables import PRODUCTS
+    from pinjoint.force_method.tables import PRODUCTS
 
     work, found, count = tables.work, dict[str, Any](), len(tables.solution.unknowns)
     for row, name in enumerate(tables.model.rods.names):
@@ -196,8 +196,8 @@ def _rows(found: Mapping[str, Any]) -> Iterator[Row]:
 
 def _lines(tables: Tables, convention: str, found: Mapping[str, Any]) -> Iterator[str]:
     """The solution to read: in the textbook's convention with its tables, in the thesis' with its displacements."""
-    from game.force_method import words
-    from game.force_method.tables import PRODUCTS
+    from pinjoint.force_method import words
+    from pinjoint.force_method.tables import PRODUCTS
 
     solution, units = tables.solution, tables.units
     yield from aligned([[as_written(value) for value in row] for row in _rows(found)])

@@ -6,9 +6,9 @@ import locale
 import os
 from collections.abc import Iterable, Sequence
 
-from components.language import ENGLISH, LANGUAGES, speak, tr
-from game.commands.arguments import Parser, UsageError
-from game.documents.preferences import preferred_language
+from pinjoint.commands.arguments import Parser, UsageError
+from pinjoint.components.language import ENGLISH, LANGUAGES, speak, tr
+from pinjoint.documents.preferences import preferred_language
 
 VARIABLE = "PINJOINT_LANGUAGE"
 _OF_SYSTEM = ("LANGUAGE", "LC_ALL", "LC_MESSAGES", "LANG")  # the first that is set counts, as for gettext

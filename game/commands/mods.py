@@ -6,16 +6,16 @@ from collections.abc import Iterator, Sequence
 from pathlib import Path
 from typing import Any
 
-from components.language import tr
-from game.commands.arguments import Parser
-from game.commands.options import ANSWERED, NOT_ANSWERED
-from game.commands.output import Row, add_output, write_result
-from game.mods.finding import mods_folder
-from game.mods.loading import MODS, load
-from game.mods.mod import INCLUDED, Mod, ModError
-from game.mods.skeleton import write_skeleton
-from game.mods.trial import mistakes_of
-from game.version import __version__
+from pinjoint.commands.arguments import Parser
+from pinjoint.commands.options import ANSWERED, NOT_ANSWERED
+from pinjoint.commands.output import Row, add_output, write_result
+from pinjoint.components.language import tr
+from pinjoint.mods.finding import mods_folder
+from pinjoint.mods.loading import MODS, load
+from pinjoint.mods.mod import INCLUDED, Mod, ModError
+from pinjoint.mods.skeleton import write_skeleton
+from pinjoint.mods.trial import mistakes_of
+from pinjoint.version import __version__
 
 
 def command(words: Sequence[str]) -> int:

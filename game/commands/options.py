@@ -7,16 +7,16 @@ import os
 from collections.abc import Iterable, Sequence
 from functools import partial
 
-from components.language import tr
-from components.settings import INTEGRATORS
-from game.commands.arguments import Parser, UsageError, count, numbers, positive, times
-from game.commands.progress import follow
-from game.commands.reports.report import Analysis
-from game.paths import apply_override
-from game.session import DEFAULT_LIMIT, Session
-from game.streams import tell
-from systems.base import System
-from systems.program.parallel import VARIABLE
+from pinjoint.commands.arguments import Parser, UsageError, count, numbers, positive, times
+from pinjoint.commands.progress import follow
+from pinjoint.commands.reports.report import Analysis
+from pinjoint.components.language import tr
+from pinjoint.components.settings import INTEGRATORS
+from pinjoint.paths import apply_override
+from pinjoint.session import DEFAULT_LIMIT, Session
+from pinjoint.streams import tell
+from pinjoint.systems.base import System
+from pinjoint.systems.program.parallel import VARIABLE
 
 ANSWERED, NOT_ANSWERED, NO_DISPLAY, STOPPED = 0, 1, 3, 130  # exit statuses; BAD_INPUT is 2
 

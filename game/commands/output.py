@@ -12,13 +12,13 @@ from typing import Any, Literal
 
 import numpy as np
 
-from components import written
-from components.language import ENGLISH, Said, decimals, spoken, tr
-from components.mistake import Mistake
-from components.wording import printable
-from game.commands.arguments import UsageError
-from game.documents.models import laid_out, replace
-from game.streams import encodable_json, put
+from pinjoint.commands.arguments import UsageError
+from pinjoint.components import written
+from pinjoint.components.language import ENGLISH, Said, decimals, spoken, tr
+from pinjoint.components.mistake import Mistake
+from pinjoint.components.wording import printable
+from pinjoint.documents.models import laid_out, replace
+from pinjoint.streams import encodable_json, put
 
 Format = Literal["table", "json", "csv"]
 FORMATS: tuple[Format, ...] = ("table", "json", "csv")

@@ -7,12 +7,12 @@ from collections.abc import Iterator, Sequence
 from pathlib import Path
 from typing import Any
 
-from components.language import tr
-from game.commands.arguments import Parser, UsageError
-from game.commands.options import ANSWERED, add_model, session_of
-from game.commands.output import Row, add_output, write_result
-from game.session import Session
-from systems.base import Phase
+from pinjoint.commands.arguments import Parser, UsageError
+from pinjoint.commands.options import ANSWERED, add_model, session_of
+from pinjoint.commands.output import Row, add_output, write_result
+from pinjoint.components.language import tr
+from pinjoint.session import Session
+from pinjoint.systems.base import Phase
 
 
 def command(words: Sequence[str]) -> int:
@@ -29,7 +29,7 @@ def command(words: Sequence[str]) -> int:
     )
     add_output(parser)
     options = parser.parse_args(words)
-    from game.app import window_systems  # pygame takes a while to import
+    from pinjoint.app import window_systems  # pygame takes a while to import
 
     with tempfile.TemporaryDirectory() as folder:
         found = plan(session_of(options, window_systems(Path(folder))), options.scene)

@@ -7,22 +7,22 @@ from contextlib import ExitStack
 from pathlib import Path
 from typing import Any
 
-from components.language import ENGLISH, plural, spoken, tr
-from components.model import Model
-from game.commands.arguments import Parser
-from game.commands.language import asked_language
-from game.commands.options import ANSWERED, NOT_ANSWERED
-from game.commands.output import Row, add_output, write_result
-from game.commands.progress import follow
-from game.commands.window import in_window
-from game.documents import library, models
-from game.documents.open_documents import file_of
-from game.lessons import progress
-from game.lessons.checking import check_lesson
-from game.scripts import playing, script
-from game.scripts.script import EMPTY
-from game.session import Session
-from game.streams import tell
+from pinjoint.commands.arguments import Parser
+from pinjoint.commands.language import asked_language
+from pinjoint.commands.options import ANSWERED, NOT_ANSWERED
+from pinjoint.commands.output import Row, add_output, write_result
+from pinjoint.commands.progress import follow
+from pinjoint.commands.window import in_window
+from pinjoint.components.language import ENGLISH, plural, spoken, tr
+from pinjoint.components.model import Model
+from pinjoint.documents import library, models
+from pinjoint.documents.open_documents import file_of
+from pinjoint.lessons import progress
+from pinjoint.lessons.checking import check_lesson
+from pinjoint.scripts import playing, script
+from pinjoint.scripts.script import EMPTY
+from pinjoint.session import Session
+from pinjoint.streams import tell
 
 
 def command(words: Sequence[str]) -> int:

@@ -7,10 +7,10 @@ import time
 from collections.abc import Iterator
 from contextlib import contextmanager
 
-from components.language import tr
-from game.session import Session
-from game.streams import tell
-from systems.run.simulation import Simulation
+from pinjoint.components.language import tr
+from pinjoint.session import Session
+from pinjoint.streams import tell
+from pinjoint.systems.run.simulation import Simulation
 
 SILENT = 5.0  # s; what takes less says nothing
 FURTHER = 10.0  # s between two sentences

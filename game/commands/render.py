@@ -7,16 +7,16 @@ import re
 from collections.abc import Sequence
 from pathlib import Path
 
-from components.bent import QUANTITIES
-from components.language import tr
-from game import pictures
-from game.commands.arguments import Parser, UsageError, positive
-from game.commands.options import ANSWERED, NOT_ANSWERED, add_model, session_of
-from game.commands.output import writable, writing
-from game.commands.reports.report import FOUND
-from game.documents.shapes import numbered
-from game.session import DEFAULT_LIMIT, Session
-from systems.render.theme import load_theme, theme_names
+from pinjoint import pictures
+from pinjoint.commands.arguments import Parser, UsageError, positive
+from pinjoint.commands.options import ANSWERED, NOT_ANSWERED, add_model, session_of
+from pinjoint.commands.output import writable, writing
+from pinjoint.commands.reports.report import FOUND
+from pinjoint.components.bent import QUANTITIES
+from pinjoint.components.language import tr
+from pinjoint.documents.shapes import numbered
+from pinjoint.session import DEFAULT_LIMIT, Session
+from pinjoint.systems.render.theme import load_theme, theme_names
 
 _PICTURES = (".png", ".svg", ".pdf", ".gif", ".jpg", ".bmp")
 _CLEAR = (".png", ".svg", ".pdf")  # those that may be without a background
@@ -150,7 +150,7 @@ def _draw(session: Session, options: argparse.Namespace, size: tuple[int, int]) 
 
 
 def _animate(session: Session, options: argparse.Namespace, size: tuple[int, int]) -> str:
-    from game.commands.animation import render_gif
+    from pinjoint.commands.animation import render_gif
 
     _show_shape(session, options)
     until = None if options.until_rest or options.at is None else session.time + options.at

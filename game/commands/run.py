@@ -5,9 +5,8 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import replace
 
-from components.language import tr
-from game.commands.arguments import Parser
-from game.commands.options import (
+from pinjoint.commands.arguments import Parser
+from pinjoint.commands.options import (
     ANSWERED,
     NOT_ANSWERED,
     STOPPED,
@@ -16,9 +15,10 @@ from game.commands.options import (
     analysis_of,
     session_of,
 )
-from game.commands.output import add_output, writable, write, write_result
-from game.commands.reports.report import FOUND, INTERRUPTED
-from game.commands.reports.results import run_lines, run_rows
+from pinjoint.commands.output import add_output, writable, write, write_result
+from pinjoint.commands.reports.report import FOUND, INTERRUPTED
+from pinjoint.commands.reports.results import run_lines, run_rows
+from pinjoint.components.language import tr
 
 
 def command(words: Sequence[str]) -> int:

@@ -6,20 +6,20 @@ import sys
 from collections.abc import Sequence
 from pathlib import Path
 
-from components.language import plural, tr
-from game.commands.arguments import Parser, UsageError
-from game.commands.options import ANSWERED, NOT_ANSWERED, STOPPED, add_analysis, add_model, analysis_of
-from game.commands.reports.report import FOUND
-from game.streams import tell
-from game.sweeps import sweep
-from game.sweeps.variation import FORMS
+from pinjoint.commands.arguments import Parser, UsageError
+from pinjoint.commands.options import ANSWERED, NOT_ANSWERED, STOPPED, add_analysis, add_model, analysis_of
+from pinjoint.commands.reports.report import FOUND
+from pinjoint.components.language import plural, tr
+from pinjoint.streams import tell
+from pinjoint.sweeps import sweep
+from pinjoint.sweeps.variation import FORMS
 
 
 def command(words: Sequence[str]) -> int:
     """Do what the words after the command ask for; returns the exit status."""
     options = _parser().parse_args(words)
-    from game.sweeps.results import check_output
-    from game.sweeps.run import ProgressBar
+    from pinjoint.sweeps.results import check_output
+    from pinjoint.sweeps.run import ProgressBar
 
     if options.plot is not None:
         check_output(Path(options.plot), [".png"])

@@ -4,10 +4,10 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from components.language import tr
-from game.commands.arguments import BAD_INPUT, Parser, UsageError, positive
-from game.commands.options import ANSWERED, NOT_ANSWERED, add_model, session_of
-from game.commands.output import add_output, write_result
+from pinjoint.commands.arguments import BAD_INPUT, Parser, UsageError, positive
+from pinjoint.commands.options import ANSWERED, NOT_ANSWERED, add_model, session_of
+from pinjoint.commands.output import add_output, write_result
+from pinjoint.components.language import tr
 
 
 def command(words: Sequence[str]) -> int:
@@ -40,9 +40,9 @@ def command(words: Sequence[str]) -> int:
     add_output(parser)
     options = parser.parse_args(words)
     session = session_of(options)
-    from game.commands.reports import verify
-    from systems.statics.events import NoEquilibrium
-    from systems.statics.unknowns import ForceMethodError
+    from pinjoint.commands.reports import verify
+    from pinjoint.systems.statics.events import NoEquilibrium
+    from pinjoint.systems.statics.unknowns import ForceMethodError
 
     try:
         if options.influence:

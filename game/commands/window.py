@@ -8,20 +8,20 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
-from components.language import LANGUAGES, tr
-from components.model import Model
-from components.suggestions import nearest
-from game.commands import COMMANDS
-from game.commands.arguments import Parser, UsageError
-from game.commands.options import ANSWERED, NO_DISPLAY
-from game.commands.output import writable, writing
-from game.commands.with_mods import in_use
-from game.documents import models
-from game.documents.open_documents import ModelFile, file_of
-from game.scripts import script
-from game.scripts.lines import Failure
-from game.version import __version__
-from systems.render.theme import theme_names
+from pinjoint.commands import COMMANDS
+from pinjoint.commands.arguments import Parser, UsageError
+from pinjoint.commands.options import ANSWERED, NO_DISPLAY
+from pinjoint.commands.output import writable, writing
+from pinjoint.commands.with_mods import in_use
+from pinjoint.components.language import LANGUAGES, tr
+from pinjoint.components.model import Model
+from pinjoint.components.suggestions import nearest
+from pinjoint.documents import models
+from pinjoint.documents.open_documents import ModelFile, file_of
+from pinjoint.scripts import script
+from pinjoint.scripts.lines import Failure
+from pinjoint.systems.render.theme import theme_names
+from pinjoint.version import __version__
 
 
 def _refuse_misspelt(word: str) -> None:
@@ -86,7 +86,7 @@ def command(words: Sequence[str]) -> int:
 def in_window(model: Model, file: ModelFile, theme: str | None = None, **further: Any) -> list[Failure]:
     """Show a model until the window is closed; returns the failed expectations of the script that was played."""
     try:
-        from game.app import NoDisplay, open_window
+        from pinjoint.app import NoDisplay, open_window
     except ImportError as error:
         message = tr("The window needs pygame-ce, which cannot be imported: {error}. Install it.", error=error)
         raise UsageError(message, NO_DISPLAY) from None

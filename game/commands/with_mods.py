@@ -8,15 +8,15 @@ from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from pathlib import Path
 
-from components.language import marked, tr
-from game.commands import COMMANDS
-from game.commands.arguments import Parser
-from game.documents.library import data_folder
-from game.documents.locks import lock_file
-from game.editor.context import FAULTS
-from game.mods.loading import MODS, load
-from game.mods.mod import INCLUDED, LOG, ModError
-from game.streams import tell
+from pinjoint.commands import COMMANDS
+from pinjoint.commands.arguments import Parser
+from pinjoint.components.language import marked, tr
+from pinjoint.documents.library import data_folder
+from pinjoint.documents.locks import lock_file
+from pinjoint.editor.context import FAULTS
+from pinjoint.mods.loading import MODS, load
+from pinjoint.mods.mod import INCLUDED, LOG, ModError
+from pinjoint.streams import tell
 
 LEFT_OUT = marked(
     "Pinjoint crashed while your mods were loaded, so they are left out this time. The next"

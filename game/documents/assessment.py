@@ -7,20 +7,20 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from components.field import Role
-from components.free_body import apart
-from components.load import CONSTANT, static_factor
-from components.model import Model
-from components.snapshot import Snapshot
-from systems.base import Law, StopReason
-from systems.catalogue import step_systems
-from systems.run.simulation import Simulation
-from systems.statics.events import Event
+from pinjoint.components.field import Role
+from pinjoint.components.free_body import apart
+from pinjoint.components.load import CONSTANT, static_factor
+from pinjoint.components.model import Model
+from pinjoint.components.snapshot import Snapshot
+from pinjoint.systems.base import Law, StopReason
+from pinjoint.systems.catalogue import step_systems
+from pinjoint.systems.run.simulation import Simulation
+from pinjoint.systems.statics.events import Event
 
 if TYPE_CHECKING:  # they import scipy
-    from systems.run.measured_error import MeasuredError
-    from systems.statics.theory import Indeterminacy
-    from systems.statics.verify import Comparison, Theories
+    from pinjoint.systems.run.measured_error import MeasuredError
+    from pinjoint.systems.statics.theory import Indeterminacy
+    from pinjoint.systems.statics.verify import Comparison, Theories
 
 Moment = tuple[int, float]  # of a run: the revision of its last edit, and the time (s)
 _SHAPE = (  # on which the degrees depend
@@ -67,8 +67,8 @@ class Assessment:
     @property
     def theories(self) -> Theories:
         """Linear and exact answers from the beginning of the run, under the present load."""
-        from systems.statics.state import Start
-        from systems.statics.verify import theories
+        from pinjoint.systems.statics.state import Start
+        from pinjoint.systems.statics.verify import theories
 
         begun = self._begun
         revision = self._model.newest(Role.DOCUMENT, *(() if begun else (Role.STATE,)))
@@ -81,7 +81,7 @@ class Assessment:
     @property
     def indeterminacy(self) -> Indeterminacy:
         """Static and kinematic degrees by rank, found anew when the geometry or the supports change."""
-        from systems.statics.theory import indeterminacy
+        from pinjoint.systems.statics.theory import indeterminacy
 
         shape = tuple(self._model.version(name) for name in _SHAPE)
         if self._degrees is None or self._degrees[0] != shape:
@@ -127,7 +127,7 @@ class Assessment:
 
     def comparison(self) -> Comparison:
         """The run as it is now beside theory."""
-        from systems.statics.verify import compare, observed
+        from pinjoint.systems.statics.verify import compare, observed
 
         return compare(self._model, self.theories, observed(self._model))
 
@@ -138,7 +138,7 @@ class Assessment:
             return ()
         key = self._moment
         if self._remarks is None or self._remarks[0] != key:
-            from systems.statics.verify import remarks
+            from pinjoint.systems.statics.verify import remarks
 
             self._remarks = key, tuple(remarks(self._model, self.theories))
         return self._remarks[1]
@@ -149,7 +149,7 @@ class Assessment:
         most_work: evaluations of the forces of rods that measuring may take; None: few enough for one frame. An error
         measured before is kept.
         """
-        from systems.run.measured_error import IN_A_FRAME, measure_error, work
+        from pinjoint.systems.run.measured_error import IN_A_FRAME, measure_error, work
 
         key = self._moment
         if self._error is not None and self._error[0] == key:

@@ -14,17 +14,17 @@ from typing import Any, cast
 
 import msgspec
 
-from components.field import SAVED, Column
-from components.handle import Handle
-from components.language import tr
-from components.model import Model
-from components.table import Table
-from game.documents import library, models
-from game.documents.facts import gathered
-from game.documents.locks import lock_file
-from game.documents.open_documents import OpenDocument
-from game.documents.sliders import slider_entries
-from systems.base import Phase, System
+from pinjoint.components.field import SAVED, Column
+from pinjoint.components.handle import Handle
+from pinjoint.components.language import tr
+from pinjoint.components.model import Model
+from pinjoint.components.table import Table
+from pinjoint.documents import library, models
+from pinjoint.documents.facts import gathered
+from pinjoint.documents.locks import lock_file
+from pinjoint.documents.open_documents import OpenDocument
+from pinjoint.documents.sliders import slider_entries
+from pinjoint.systems.base import Phase, System
 
 LOG = logging.getLogger("pinjoint.autosave")
 INTERVAL = 2.0  # s between recovery files of the same model, at least

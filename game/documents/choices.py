@@ -7,7 +7,7 @@ from contextlib import suppress
 from pathlib import Path
 from typing import Any
 
-from game.documents import models
+from pinjoint.documents import models
 
 
 def read(path: Path) -> dict[str, Any]:

@@ -7,15 +7,15 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from components import written
-from components.field import Column, Role
-from components.language import joined, plural, tr
-from components.load import load_factor
-from components.model import Model
-from components.obstacles import obstacles
-from components.rod import can_yield, has_cables
-from systems.base import StopReason
-from systems.run.simulation import Simulation
+from pinjoint.components import written
+from pinjoint.components.field import Column, Role
+from pinjoint.components.language import joined, plural, tr
+from pinjoint.components.load import load_factor
+from pinjoint.components.model import Model
+from pinjoint.components.obstacles import obstacles
+from pinjoint.components.rod import can_yield, has_cables
+from pinjoint.systems.base import StopReason
+from pinjoint.systems.run.simulation import Simulation
 
 COLLAPSED = 4.0  # plastic strain over that of first yield, beyond which it is no overshoot if nothing resists
 LARGEST = 100  # rods up to which stability is looked at: a fraction of a millisecond
@@ -209,7 +209,7 @@ class Chronicle:
 
     def _look_at_stability(self) -> None:
         """A structure that is held no more collapses if rods yield on and on; else it snaps through."""
-        from systems.statics.stability import is_held  # not at the start of the program
+        from pinjoint.systems.statics.stability import is_held  # not at the start of the program
 
         model, rods = self._model, self._model.rods
         edited = model.newest(Role.DOCUMENT)

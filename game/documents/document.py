@@ -11,21 +11,22 @@ from typing import Any
 import msgspec
 import numpy as np
 
-from components.commands import Assign
-from components.departure import Departure
-from components.field import Column, Field, FieldError
-from components.grid import Grid
-from components.handle import Handle
-from components.language import joined, marked, tr
-from components.model import ADDED, Model
-from components.particle import Particle, check_spin, check_velocities
-from components.rod import Rod
-from components.section import NAMES, given_by
-from components.suggestions import missing, remedy
-from components.table import fields_of
-from components.wording import cut, is_broken, quoted
-from game.documents.facts import Gathered, gathered, spread
-from game.documents.format import (
+from pinjoint.completion import complete
+from pinjoint.components.commands import Assign
+from pinjoint.components.departure import Departure
+from pinjoint.components.field import Column, Field, FieldError
+from pinjoint.components.grid import Grid
+from pinjoint.components.handle import Handle
+from pinjoint.components.language import joined, marked, tr
+from pinjoint.components.model import ADDED, Model
+from pinjoint.components.particle import Particle, check_spin, check_velocities
+from pinjoint.components.rod import Rod
+from pinjoint.components.section import NAMES, given_by
+from pinjoint.components.suggestions import missing, remedy
+from pinjoint.components.table import fields_of
+from pinjoint.components.wording import cut, is_broken, quoted
+from pinjoint.documents.facts import Gathered, gathered, spread
+from pinjoint.documents.format import (
     BY_COLUMNS,
     FORMAT,
     SECTIONS,
@@ -36,10 +37,10 @@ from game.documents.format import (
     required,
     saved_fields,
 )
-from game.documents.mod_data import DATA as FOREIGN
-from game.documents.mod_data import MODS, upgraded
-from game.documents.sliders import KEY as SLIDERS
-from game.documents.sliders import read_sliders
+from pinjoint.documents.mod_data import DATA as FOREIGN
+from pinjoint.documents.mod_data import MODS, upgraded
+from pinjoint.documents.sliders import KEY as SLIDERS
+from pinjoint.documents.sliders import read_sliders
 
 Migration = Callable[[dict[str, Any]], dict[str, Any]]
 MIGRATIONS: dict[int, Migration] = {}  # by version: the function that turns a document into the next version
@@ -51,6 +52,7 @@ Columns = Mapping[str, Column]
 
 def parse(document: Mapping[str, Any], source: str = "") -> Model:
     """The model that a document describes; `source` is named in messages. Raises ModelError."""
+    complete()
     try:
         return _parsed(document)
     except RecursionError:

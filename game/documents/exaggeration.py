@@ -7,15 +7,15 @@ import math
 import numpy as np
 from numpy.typing import NDArray
 
-from components.bent import largest_sag
-from components.field import Role
-from components.model import Model
-from components.numeric_range import incomputable
-from components.obstacles import obstacles
-from components.round_numbers import round_down
-from systems.edit.arrows import extent
-from systems.islands import lowest_joined
-from systems.physics.pace import expected_displacement, loaded_mode
+from pinjoint.components.bent import largest_sag
+from pinjoint.components.field import Role
+from pinjoint.components.model import Model
+from pinjoint.components.numeric_range import incomputable
+from pinjoint.components.obstacles import obstacles
+from pinjoint.components.round_numbers import round_down
+from pinjoint.systems.edit.arrows import extent
+from pinjoint.systems.islands import lowest_joined
+from pinjoint.systems.physics.pace import expected_displacement, loaded_mode
 
 DRAWN = 0.08  # of the structure's size: the largest displacement as drawn, at most, when a factor is chosen
 KEPT = (0.02, 0.25)  # of the size, drawn, within which a factor stays as it is
@@ -101,8 +101,8 @@ def _with_yielding(model: Model, elastic: Displacement) -> Displacement | None:
     """
     if model.rods.count > LARGEST_YIELDING:
         return elastic if _spare(model) > 0 else None
-    from systems.statics.settle import settle  # scipy
-    from systems.statics.state import Start
+    from pinjoint.systems.statics.settle import settle  # scipy
+    from pinjoint.systems.statics.state import Start
 
     supports = np.where(model.particles.fixed, elastic, 0.0)
     clamps = np.where(model.particles.fixed_rotation, model.particles.rotation, 0.0)

@@ -9,13 +9,13 @@ import msgspec
 import numpy as np
 from numpy.typing import NDArray
 
-from components.clock import Clock
-from components.field import MADE, Column, Field
-from components.handle import Handle
-from components.language import tr
-from components.model import ADDED, Model
-from components.table import Table
-from game.documents.format import (
+from pinjoint.components.clock import Clock
+from pinjoint.components.field import MADE, Column, Field
+from pinjoint.components.handle import Handle
+from pinjoint.components.language import tr
+from pinjoint.components.model import ADDED, Model
+from pinjoint.components.table import Table
+from pinjoint.documents.format import (
     BY_COLUMNS,
     FORMAT,
     SECTIONS,
@@ -25,10 +25,10 @@ from game.documents.format import (
     required,
     saved_fields,
 )
-from game.documents.mod_data import DATA as FOREIGN
-from game.documents.mod_data import MODS, known_versions, versions_in
-from game.documents.sliders import KEY as SLIDERS
-from game.documents.sliders import slider_entries
+from pinjoint.documents.mod_data import DATA as FOREIGN
+from pinjoint.documents.mod_data import MODS, known_versions, versions_in
+from pinjoint.documents.sliders import KEY as SLIDERS
+from pinjoint.documents.sliders import slider_entries
 
 
 class Numbers(msgspec.Struct, frozen=True):

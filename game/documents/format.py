@@ -7,20 +7,20 @@ from collections.abc import Mapping, Sequence
 from types import MappingProxyType
 from typing import Any, NoReturn
 
-from components.clock import Clock
-from components.environment import Environment
-from components.field import SAVED, Field
-from components.grid import Grid
-from components.handle import Handle
-from components.language import joined, tr
-from components.load import Load
-from components.mistake import Mistake
-from components.model import ADDED, Model
-from components.particle import Particle
-from components.rod import Rod
-from components.settings import Settings
-from components.table import fields_of
-from components.wording import is_broken, quoted
+from pinjoint.components.clock import Clock
+from pinjoint.components.environment import Environment
+from pinjoint.components.field import SAVED, Field
+from pinjoint.components.grid import Grid
+from pinjoint.components.handle import Handle
+from pinjoint.components.language import joined, tr
+from pinjoint.components.load import Load
+from pinjoint.components.mistake import Mistake
+from pinjoint.components.model import ADDED, Model
+from pinjoint.components.particle import Particle
+from pinjoint.components.rod import Rod
+from pinjoint.components.settings import Settings
+from pinjoint.components.table import fields_of
+from pinjoint.components.wording import is_broken, quoted
 
 FORMAT = "pinjoint model"
 VERSION = 1

@@ -12,10 +12,10 @@ from tempfile import TemporaryDirectory
 
 from platformdirs import user_data_path
 
-from components import suggestions
-from components.box import fits_file_names
-from components.language import plural, tr
-from game.documents import models
+from pinjoint.components import suggestions
+from pinjoint.components.box import fits_file_names
+from pinjoint.components.language import plural, tr
+from pinjoint.documents import models
 
 DATA_VARIABLE = "PINJOINT_DATA"  # names another folder than the system's own
 LONGEST_NAME = 100  # characters

@@ -6,8 +6,8 @@ import copy
 from collections.abc import Callable, Iterator, Mapping
 from typing import Any
 
-from components.language import tr
-from components.wording import quoted
+from pinjoint.components.language import tr
+from pinjoint.components.wording import quoted
 
 DATA = "components"  # the key of the data of mods, at elements and in the document
 MODS = "mods"  # the key of the versions of the mods whose data a document holds

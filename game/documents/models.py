@@ -22,13 +22,13 @@ from typing import Any, NoReturn
 
 import msgspec
 
-from components.language import joined, marked, tr
-from components.model import Model
-from components.suggestions import nearest
-from components.wording import quoted
-from game.documents.document import document, parse
-from game.documents.format import ModelError
-from game.documents.locks import lock_file
+from pinjoint.components.language import joined, marked, tr
+from pinjoint.components.model import Model
+from pinjoint.components.suggestions import nearest
+from pinjoint.components.wording import quoted
+from pinjoint.documents.document import document, parse
+from pinjoint.documents.format import ModelError
+from pinjoint.documents.locks import lock_file
 
 UNHELD = 60.0  # s after which a running program holds a file that it made
 _ENCODER = msgspec.json.Encoder()
@@ -57,7 +57,9 @@ def bundled() -> list[str]:
 
 def _bundled_files() -> dict[str, Traversable]:
     """The files of these models by name."""
-    entries = (entry for folder in (*FOLDERS, files("assets") / "models") for entry in folder.iterdir())
+    entries = (
+        entry for folder in (*FOLDERS, files("pinjoint.assets") / "models") for entry in folder.iterdir()
+    )
     return {entry.name.removesuffix(".json"): entry for entry in entries if entry.name.endswith(".json")}
 
 

@@ -10,25 +10,25 @@ from typing import Any
 
 import numpy as np
 
-from components.collision_state import PersistentContacts
-from components.field import SAVED
-from components.language import joined, plural, tr
-from components.load import load_ends
-from components.model import Model
-from components.rod import bends, idle_moment
-from components.snapshot import Snapshot
-from game.documents import models
-from game.documents.assessment import Assessment
-from game.documents.chronicle import Chronicle
-from game.documents.exaggeration import Exaggeration
-from game.documents.history.history import History
-from game.documents.history.log import Edit, Entry
-from game.documents.history.timeline import Timeline
-from game.documents.shapes import Shapes
-from systems.edit.pull import Pull
-from systems.run.real_time import RealTimeRunner
-from systems.run.simulation import Simulation
-from systems.schedule import Schedule
+from pinjoint.components.collision_state import PersistentContacts
+from pinjoint.components.field import SAVED
+from pinjoint.components.language import joined, plural, tr
+from pinjoint.components.load import load_ends
+from pinjoint.components.model import Model
+from pinjoint.components.rod import bends, idle_moment
+from pinjoint.components.snapshot import Snapshot
+from pinjoint.documents import models
+from pinjoint.documents.assessment import Assessment
+from pinjoint.documents.chronicle import Chronicle
+from pinjoint.documents.exaggeration import Exaggeration
+from pinjoint.documents.history.history import History
+from pinjoint.documents.history.log import Edit, Entry
+from pinjoint.documents.history.timeline import Timeline
+from pinjoint.documents.shapes import Shapes
+from pinjoint.systems.edit.pull import Pull
+from pinjoint.systems.run.real_time import RealTimeRunner
+from pinjoint.systems.run.simulation import Simulation
+from pinjoint.systems.schedule import Schedule
 
 Source = str | Path | Mapping[str, Any]  # of a model: a file, the name of a bundled one, or its content
 Stamp = tuple[int, ...]
@@ -174,7 +174,7 @@ class OpenDocument:
 
         It is not called "equilibrium" where laws of mods act that statics does not know.
         """
-        from systems.statics.settle import settle  # scipy
+        from pinjoint.systems.statics.settle import settle  # scipy
 
         self._note_undeformed()
         model, clock = self.model, self.model.clock

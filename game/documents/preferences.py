@@ -8,10 +8,10 @@ from typing import Any
 
 from platformdirs import user_config_path
 
-from components.language import LANGUAGES
-from components.view import CONVENTIONS, MAGNIFICATIONS, TEXTBOOK
-from game.documents import choices
-from systems.render.theme import theme_names
+from pinjoint.components.language import LANGUAGES
+from pinjoint.components.view import CONVENTIONS, MAGNIFICATIONS, TEXTBOOK
+from pinjoint.documents import choices
+from pinjoint.systems.render.theme import theme_names
 
 CONFIG_VARIABLE = "PINJOINT_CONFIG"  # names another folder than the system's own
 DEFAULT_THEME = "light"

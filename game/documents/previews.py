@@ -10,8 +10,8 @@ from typing import Any
 
 import numpy as np
 
-from components.model import Model
-from game.documents import models
+from pinjoint.components.model import Model
+from pinjoint.documents import models
 
 LARGEST_SOLVED = 60  # rods, up to which a structure that never moved is solved for its picture
 LARGEST_SHOWN = 2000  # rods, up to which forces can be told apart in one
@@ -24,7 +24,7 @@ def preview(source: str | Path) -> Model:
     model = models.load(source)
     if has_moved(model) and model.rods.count <= LARGEST_SHOWN:
         # Here only, since most pictures do without.
-        from systems.statics.equations import Structure
+        from pinjoint.systems.statics.equations import Structure
 
         structure, particles = Structure.of(model), model.particles
         place = structure.field(particles.displacement, particles.rotation)
@@ -35,8 +35,8 @@ def preview(source: str | Path) -> Model:
 
 def solved(path: Path) -> Model | None:
     """A small structure that never moved, with forces of linear theory; None if a file has no such. Raises ModelError."""
-    from systems.statics.events import NoEquilibrium
-    from systems.statics.theory import linear  # scipy
+    from pinjoint.systems.statics.events import NoEquilibrium
+    from pinjoint.systems.statics.theory import linear  # scipy
 
     model = models.load(path)
     if has_moved(model) or not 0 < model.rods.count <= LARGEST_SOLVED:
@@ -64,5 +64,7 @@ def _example(name: str) -> Model:
 @cache
 def _states() -> dict[str, dict[str, Any]]:
     """By example and column what differs then from its beginning; tests/golden/previews.py computes it."""
-    states: dict[str, dict[str, Any]] = json.loads((files("assets") / "previews.json").read_text("utf-8"))
+    states: dict[str, dict[str, Any]] = json.loads(
+        (files("pinjoint.assets") / "previews.json").read_text("utf-8")
+    )
     return states

@@ -9,17 +9,17 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
-from components import written
-from components.field import Role
-from components.language import marked, tr
-from components.mistake import Mistake
-from components.model import Model
-from components.view import Shape
-from components.wording import cut
-from systems.edit.arrows import extent
+from pinjoint.components import written
+from pinjoint.components.field import Role
+from pinjoint.components.language import marked, tr
+from pinjoint.components.mistake import Mistake
+from pinjoint.components.model import Model
+from pinjoint.components.view import Shape
+from pinjoint.components.wording import cut
+from pinjoint.systems.edit.arrows import extent
 
 if TYPE_CHECKING:  # it imports scipy
-    from systems.statics.buckling import Buckling
+    from pinjoint.systems.statics.buckling import Buckling
 
 DRAWN_SHARE = 0.12  # of the structure's size that the largest displacement is drawn as
 LOWEST = 10  # mechanisms, and modes, in the round of `next`
@@ -98,8 +98,8 @@ def _first_ones(model: Model) -> list[Shape]:
 
 def mechanism_shapes(model: Model, most: int | None = None) -> list[Shape]:
     """Motions that elongate no rod; at most 20 of large structures, or `most`."""
-    from systems.statics.explain import describe_motion
-    from systems.statics.theory import indeterminacy, mechanisms
+    from pinjoint.systems.statics.explain import describe_motion
+    from pinjoint.systems.statics.theory import indeterminacy, mechanisms
 
     motions, count = mechanisms(model), indeterminacy(model).mechanisms
     return [
@@ -119,8 +119,8 @@ def mechanism_shapes(model: Model, most: int | None = None) -> list[Shape]:
 
 def buckling_shapes(model: Model, most: int = LOWEST) -> list[Shape]:
     """The modes in which the structure gives way under its load. Raises NoShape, saying why there is none."""
-    from systems.statics.buckling import buckling
-    from systems.statics.events import NoEquilibrium
+    from pinjoint.systems.statics.buckling import buckling
+    from pinjoint.systems.statics.events import NoEquilibrium
 
     try:
         found = buckling(model, most)
@@ -133,8 +133,8 @@ def buckling_shapes(model: Model, most: int = LOWEST) -> list[Shape]:
 
 def _meant(model: Model) -> list[Shape]:
     """The lowest buckling modes, but of factors at which what is compressed were strained beyond all that is elastic."""
-    from systems.statics.buckling import STRAINED, buckling
-    from systems.statics.events import NoEquilibrium
+    from pinjoint.systems.statics.buckling import STRAINED, buckling
+    from pinjoint.systems.statics.events import NoEquilibrium
 
     try:
         found = buckling(model, LOWEST_BUCKLING)
@@ -170,9 +170,9 @@ def mode_shapes(model: Model, most: int | None = None) -> list[Shape]:
     About the present state, if that is an equilibrium under load, whose forces stiffen or soften the structure;
     else of the unloaded structure, less its mechanisms.
     """
-    from systems.statics.state import Start
-    from systems.statics.theory import indeterminacy
-    from systems.statics.vibration import FULL, rests_under_load, vibrations
+    from pinjoint.systems.statics.state import Start
+    from pinjoint.systems.statics.theory import indeterminacy
+    from pinjoint.systems.statics.vibration import FULL, rests_under_load, vibrations
 
     if model.rods.count == 0:
         return []

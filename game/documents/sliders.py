@@ -6,14 +6,14 @@ import math
 from collections.abc import Iterator, Mapping
 from typing import Any
 
-from components.field import Field, FieldError
-from components.language import decimals, tr
-from components.model import Model
-from components.slider import Aim, Slider
-from components.suggestions import remedy
-from components.wording import cut, is_broken, quoted
-from game.documents.format import ModelError, fail
-from game.paths import EVERY, PathError, Target, locate, settable
+from pinjoint.components.field import Field, FieldError
+from pinjoint.components.language import decimals, tr
+from pinjoint.components.model import Model
+from pinjoint.components.slider import Aim, Slider
+from pinjoint.components.suggestions import remedy
+from pinjoint.components.wording import cut, is_broken, quoted
+from pinjoint.documents.format import ModelError, fail
+from pinjoint.paths import EVERY, PathError, Target, locate, settable
 
 KEY = "sliders"
 KEYS = ("of", "from", "to", "logarithmic", "title")

@@ -10,21 +10,21 @@ import msgspec
 import numpy as np
 from numpy.typing import NDArray
 
-from components.field import SAVED, Vector
-from components.handle import Handle
-from components.language import marked, tr
-from components.load import Load
-from components.model import ADDED, Model
-from components.particle import Particle
-from components.rod import Rod
-from components.table import Table, fields_of
-from components.tags import Selected
-from game.documents.document import parse
-from game.documents.facts import document_of
-from game.documents.format import ModelError
-from game.documents.models import laid_out
-from systems.edit import Refusal
-from systems.edit.moving import moving_rows
+from pinjoint.components.field import SAVED, Vector
+from pinjoint.components.handle import Handle
+from pinjoint.components.language import marked, tr
+from pinjoint.components.load import Load
+from pinjoint.components.model import ADDED, Model
+from pinjoint.components.particle import Particle
+from pinjoint.components.rod import Rod
+from pinjoint.components.table import Table, fields_of
+from pinjoint.components.tags import Selected
+from pinjoint.documents.document import parse
+from pinjoint.documents.facts import document_of
+from pinjoint.documents.format import ModelError
+from pinjoint.documents.models import laid_out
+from pinjoint.systems.edit import Refusal
+from pinjoint.systems.edit.moving import moving_rows
 
 Rows = NDArray[np.int64]
 Kind = type[Handle]

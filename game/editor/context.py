@@ -1,6 +1,6 @@
 """Context: what actions, gestures and scenes read and change; the base of gestures and scenes, and the table of actions.
 
-`game.session.Session` is the context that scripts drive.
+`pinjoint.session.Session` is the context that scripts drive.
 """
 
 from __future__ import annotations
@@ -9,25 +9,25 @@ import operator
 from collections.abc import Callable, Iterator, Sequence
 from typing import ClassVar
 
-from components.camera import Viewport
-from components.field import Vector
-from components.language import listed, marked, tr
-from components.model import Model
-from components.rod import bends
-from components.settings import NO_DIAGRAMS, Settings
-from components.slider import Place, under
-from components.view import Preview, Readout, View
-from game.documents import models
-from game.documents.format import missing_mods
-from game.documents.open_documents import ModelFile, Source, file_of
-from game.editor.host import Course
-from game.editor.workspace import Workspace
-from game.scripts.script import Script
-from systems.base import Mod
-from systems.edit.pull import Pull
-from systems.render.picture import Stage
-from systems.run.system import Time
-from systems.schedule import Schedule
+from pinjoint.components.camera import Viewport
+from pinjoint.components.field import Vector
+from pinjoint.components.language import listed, marked, tr
+from pinjoint.components.model import Model
+from pinjoint.components.rod import bends
+from pinjoint.components.settings import NO_DIAGRAMS, Settings
+from pinjoint.components.slider import Place, under
+from pinjoint.components.view import Preview, Readout, View
+from pinjoint.documents import models
+from pinjoint.documents.format import missing_mods
+from pinjoint.documents.open_documents import ModelFile, Source, file_of
+from pinjoint.editor.host import Course
+from pinjoint.editor.workspace import Workspace
+from pinjoint.scripts.script import Script
+from pinjoint.systems.base import Mod
+from pinjoint.systems.edit.pull import Pull
+from pinjoint.systems.render.picture import Stage
+from pinjoint.systems.run.system import Time
+from pinjoint.systems.schedule import Schedule
 
 # --- actions ---------------------------------------------------------------------------------------------
 

@@ -4,12 +4,12 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from components.language import tr
-from game.documents import models
-from game.documents.format import ModelError
-from game.documents.open_documents import file_of
-from game.editor.context import Context
-from game.scripts.script import Script
+from pinjoint.components.language import tr
+from pinjoint.documents import models
+from pinjoint.documents.format import ModelError
+from pinjoint.documents.open_documents import file_of
+from pinjoint.editor.context import Context
+from pinjoint.scripts.script import Script
 
 MODEL, SCRIPT = ".json", ".jsonl"
 

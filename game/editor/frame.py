@@ -5,11 +5,11 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 from typing import Any
 
-from components.field import Vector
-from components.model import Model
-from game.editor.context import Context
-from systems.base import Phase, System
-from systems.input.bindings import TEXT
+from pinjoint.components.field import Vector
+from pinjoint.components.model import Model
+from pinjoint.editor.context import Context
+from pinjoint.systems.base import Phase, System
+from pinjoint.systems.input.bindings import TEXT
 
 
 @dataclass

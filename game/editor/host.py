@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Protocol
 
-from systems.run.simulation import Simulation
+from pinjoint.systems.run.simulation import Simulation
 
 
 class Window(Protocol):

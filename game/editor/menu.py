@@ -4,17 +4,17 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from components.field import Vector
-from components.language import begun, marked, tr
-from components.menu import Menu
-from components.particle import Particle
-from components.rod import Rod, rigid_joints
-from game.editor.context import Context
-from game.editor.toolbar import tool
-from systems.edit.dividing import DIVISIONS
-from systems.edit.rods import is_rigid, share_at
-from systems.forms.properties import heading
-from systems.input.bindings import ADDED_BUTTONS, ADDED_TOOLS, FORCE_METHOD, LIVE, offers, toolbar
+from pinjoint.components.field import Vector
+from pinjoint.components.language import begun, marked, tr
+from pinjoint.components.menu import Menu
+from pinjoint.components.particle import Particle
+from pinjoint.components.rod import Rod, rigid_joints
+from pinjoint.editor.context import Context
+from pinjoint.editor.toolbar import tool
+from pinjoint.systems.edit.dividing import DIVISIONS
+from pinjoint.systems.edit.rods import is_rigid, share_at
+from pinjoint.systems.forms.properties import heading
+from pinjoint.systems.input.bindings import ADDED_BUTTONS, ADDED_TOOLS, FORCE_METHOD, LIVE, offers, toolbar
 
 Entry = str | tuple[str, str]  # an action, or an action and the title that suits the place
 Groups = Sequence[Sequence[Entry]]

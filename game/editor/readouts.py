@@ -9,22 +9,22 @@ from operator import itemgetter
 from textwrap import wrap
 from typing import TYPE_CHECKING
 
-from components import written
-from components.field import CM, FieldError
-from components.free_body import Force, on_joint, on_rod
-from components.handle import Handle
-from components.language import begun, joined, marked, plural, tr
-from components.model import Model
-from components.particle import Particle
-from components.rod import Rod, bends
-from components.view import Readout
-from game.documents.assessment import LARGEST
-from game.editor.context import Context
-from systems.base import StopReason
-from systems.statics.counting import counted
+from pinjoint.components import written
+from pinjoint.components.field import CM, FieldError
+from pinjoint.components.free_body import Force, on_joint, on_rod
+from pinjoint.components.handle import Handle
+from pinjoint.components.language import begun, joined, marked, plural, tr
+from pinjoint.components.model import Model
+from pinjoint.components.particle import Particle
+from pinjoint.components.rod import Rod, bends
+from pinjoint.components.view import Readout
+from pinjoint.documents.assessment import LARGEST
+from pinjoint.editor.context import Context
+from pinjoint.systems.base import StopReason
+from pinjoint.systems.statics.counting import counted
 
 if TYPE_CHECKING:  # it imports scipy
-    from systems.statics.verify import Comparison, Theories
+    from pinjoint.systems.statics.verify import Comparison, Theories
 
 BESIDE = marked("Theory beside the run")  # the title of a panel
 MOST_ELEMENTS = 3  # selected elements with a readout of their own
@@ -237,7 +237,7 @@ def _indeterminacy(context: Context) -> Iterator[tuple[str, str]]:
 
 def _verdict(context: Context, comparison: Comparison) -> Iterator[tuple[str, str]]:
     """Whether a run at rest is where a slowly growing load leads to, and if not, why."""
-    from systems.statics.verify import DEPARTURES, differs
+    from pinjoint.systems.statics.verify import DEPARTURES, differs
 
     if context.simulation.reason is not StopReason.REST or comparison.worst("simulation") is None:
         return

@@ -2,16 +2,16 @@
 
 from __future__ import annotations
 
-from components.field import Vector
-from game.editor.context import Context
-from game.editor.view_model import pages_of_help
-from systems.input.bindings import FORMS, LIVE, MENU, action_for
-from systems.render.empty_card import card_button_at
-from systems.render.help import help_closed_by
-from systems.render.lesson_card import lesson_button_at
-from systems.render.menu import menu_of
-from systems.render.picture import on_status_bar, panel_at
-from systems.render.theme import load_theme
+from pinjoint.components.field import Vector
+from pinjoint.editor.context import Context
+from pinjoint.editor.view_model import pages_of_help
+from pinjoint.systems.input.bindings import FORMS, LIVE, MENU, action_for
+from pinjoint.systems.render.empty_card import card_button_at
+from pinjoint.systems.render.help import help_closed_by
+from pinjoint.systems.render.lesson_card import lesson_button_at
+from pinjoint.systems.render.menu import menu_of
+from pinjoint.systems.render.picture import on_status_bar, panel_at
+from pinjoint.systems.render.theme import load_theme
 
 CLICKS = ("click", "ctrl+click", "double click", "drag", "ctrl+drag")  # the pointer may slip in a click
 ONCE = tuple(click for click in CLICKS if click != "double click")  # a panel that moves up is not closed, too

@@ -6,23 +6,23 @@ import math
 from collections.abc import Sequence
 from typing import Any
 
-from components.box import Box
-from components.field import Field
-from components.handle import Handle
-from components.language import begun, decimals, joined, marked, tr
-from components.load import Load, factor_at
-from components.model import Model
-from components.numeric_range import incomputable
-from components.particle import Particle
-from components.rod import Rod
-from components.round_numbers import round_up
-from components.settings import Settings
-from components.slider import Aim, Control, SetSliders, Slider, SliderStack
-from game.documents.sliders import unmovable
-from game.editor.context import Context
-from systems.edit import Refusal
-from systems.edit.arrows import extent, usual_force
-from systems.input.bindings import LIVE
+from pinjoint.components.box import Box
+from pinjoint.components.field import Field
+from pinjoint.components.handle import Handle
+from pinjoint.components.language import begun, decimals, joined, marked, tr
+from pinjoint.components.load import Load, factor_at
+from pinjoint.components.model import Model
+from pinjoint.components.numeric_range import incomputable
+from pinjoint.components.particle import Particle
+from pinjoint.components.rod import Rod
+from pinjoint.components.round_numbers import round_up
+from pinjoint.components.settings import Settings
+from pinjoint.components.slider import Aim, Control, SetSliders, Slider, SliderStack
+from pinjoint.documents.sliders import unmovable
+from pinjoint.editor.context import Context
+from pinjoint.systems.edit import Refusal
+from pinjoint.systems.edit.arrows import extent, usual_force
+from pinjoint.systems.input.bindings import LIVE
 
 SCALE = -1  # the key of the control of the displacement scale
 SCALES = Slider((), 1.0, 1000.0, logarithmic=True)  # of displacements, unless the model needs more

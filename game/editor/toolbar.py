@@ -5,20 +5,20 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import Any
 
-from components.bent import is_frame
-from components.language import tr
-from components.particle import Particle
-from components.rod import Rod
-from components.tags import DiagramShown
-from components.toolbar import Tool, Toolbar
-from game.editor.context import Context
-from game.editor.gestures.drawing import Drawing
-from game.force_method import PARTS
-from systems.edit.dividing import DIVISIONS
-from systems.edit.rods import is_rigid
-from systems.edit.supports import SUPPORTS, Held, held
-from systems.input.bindings import Binding, offers, toolbar
-from systems.render.bending_diagrams import NAMES
+from pinjoint.components.bent import is_frame
+from pinjoint.components.language import tr
+from pinjoint.components.particle import Particle
+from pinjoint.components.rod import Rod
+from pinjoint.components.tags import DiagramShown
+from pinjoint.components.toolbar import Tool, Toolbar
+from pinjoint.editor.context import Context
+from pinjoint.editor.gestures.drawing import Drawing
+from pinjoint.force_method import PARTS
+from pinjoint.systems.edit.dividing import DIVISIONS
+from pinjoint.systems.edit.rods import is_rigid
+from pinjoint.systems.edit.supports import SUPPORTS, Held, held
+from pinjoint.systems.input.bindings import Binding, offers, toolbar
+from pinjoint.systems.render.bending_diagrams import NAMES
 
 Condition = Callable[[Context], bool]
 

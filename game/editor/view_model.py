@@ -7,20 +7,20 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import NDArray
 
-from components.language import begun, english, joined, listed, marked, plural, tr
-from components.model import Model
-from components.tags import Hovered
-from components.view import MARGIN, Preview, Readout, Status, drawn_places, drawn_positions
-from game.editor.context import Context
-from game.editor.gestures.drawing import end_pointed_at, hint_of_tool
-from game.editor.host import Waiting
-from game.editor.readouts import own_readouts
-from systems.base import StopReason
-from systems.edit import Refusal
-from systems.forms.results import told
-from systems.input.bindings import LIVE, help_lines
-from systems.render.help import help_pages
-from systems.render.overlays import BAR
+from pinjoint.components.language import begun, english, joined, listed, marked, plural, tr
+from pinjoint.components.model import Model
+from pinjoint.components.tags import Hovered
+from pinjoint.components.view import MARGIN, Preview, Readout, Status, drawn_places, drawn_positions
+from pinjoint.editor.context import Context
+from pinjoint.editor.gestures.drawing import end_pointed_at, hint_of_tool
+from pinjoint.editor.host import Waiting
+from pinjoint.editor.readouts import own_readouts
+from pinjoint.systems.base import StopReason
+from pinjoint.systems.edit import Refusal
+from pinjoint.systems.forms.results import told
+from pinjoint.systems.input.bindings import LIVE, help_lines
+from pinjoint.systems.render.help import help_pages
+from pinjoint.systems.render.overlays import BAR
 
 COMPILING = marked("Compiling the program for this model, once: about {seconds:.0f} s left.")
 COMPILED_SOON = marked("Compiling the program for this model, once: nearly done.")

@@ -6,27 +6,27 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import TypeVar
 
-from components.handle import Handle
-from components.language import begun, tr
-from components.model import Model
-from components.settings import Settings
-from components.tags import Selected
-from game.documents import models
-from game.documents.autosave import Autosave
-from game.documents.chronicle import Happening
-from game.documents.history.history import History
-from game.documents.history.timeline import Timeline
-from game.documents.open_documents import ModelFile, OpenDocument, OpenDocuments
-from game.editor.clipboard import Part
-from game.editor.host import ProgramPreparation, Waiting, Window
-from systems.collision.impacts import Impacts
-from systems.edit.pull import Pull
-from systems.physics.pace import natural_pace
-from systems.run.energy import Energy
-from systems.run.real_time import TimeScale
-from systems.run.simulation import Simulation
-from systems.schedule import Schedule
-from systems.statics.events import Event
+from pinjoint.components.handle import Handle
+from pinjoint.components.language import begun, tr
+from pinjoint.components.model import Model
+from pinjoint.components.settings import Settings
+from pinjoint.components.tags import Selected
+from pinjoint.documents import models
+from pinjoint.documents.autosave import Autosave
+from pinjoint.documents.chronicle import Happening
+from pinjoint.documents.history.history import History
+from pinjoint.documents.history.timeline import Timeline
+from pinjoint.documents.open_documents import ModelFile, OpenDocument, OpenDocuments
+from pinjoint.editor.clipboard import Part
+from pinjoint.editor.host import ProgramPreparation, Waiting, Window
+from pinjoint.systems.collision.impacts import Impacts
+from pinjoint.systems.edit.pull import Pull
+from pinjoint.systems.physics.pace import natural_pace
+from pinjoint.systems.run.energy import Energy
+from pinjoint.systems.run.real_time import TimeScale
+from pinjoint.systems.run.simulation import Simulation
+from pinjoint.systems.schedule import Schedule
+from pinjoint.systems.statics.events import Event
 
 H = TypeVar("H", bound=Handle)
 

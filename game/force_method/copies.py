@@ -6,16 +6,16 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from components.commands import Assign
-from components.field import MADE
-from components.model import Model
-from components.written import ROUNDING
-from systems.statics.equations import largest
-from systems.statics.external import external_forces
-from systems.statics.force_method import unit_force
-from systems.statics.released import SetState
-from systems.statics.settle import settle
-from systems.statics.unknowns import Unknown
+from pinjoint.components.commands import Assign
+from pinjoint.components.field import MADE
+from pinjoint.components.model import Model
+from pinjoint.components.written import ROUNDING
+from pinjoint.systems.statics.equations import largest
+from pinjoint.systems.statics.external import external_forces
+from pinjoint.systems.statics.force_method import unit_force
+from pinjoint.systems.statics.released import SetState
+from pinjoint.systems.statics.settle import settle
+from pinjoint.systems.statics.unknowns import Unknown
 
 _STIFF = 1e9  # times the bending stiffness, so that what is drawn stays straight
 

@@ -9,31 +9,31 @@ from typing import Any
 
 import numpy as np
 
-from components.bent import AXIAL, MOMENT, SHEAR
-from components.field import Column, Vector
-from components.handle import Handle
-from components.language import tr
-from components.model import Model
-from components.particle import Particle
-from components.rod import Rod
-from components.round_numbers import round_down
-from components.table import Table
-from components.tags import Selected
-from components.view import THESIS, View
-from game.documents.shapes import DRAWN_SHARE
-from game.force_method import PARTS
-from game.force_method.copies import base_structure, exact_forces, loaded, still
-from game.force_method.tables import Tables
-from systems.edit.arrows import extent
-from systems.run.real_time import RealTimeRunner
-from systems.run.simulation import Simulation
-from systems.schedule import Schedule
-from systems.statics.counting import counted
-from systems.statics.equations import largest
-from systems.statics.force_method import Solution, solve
-from systems.statics.released import SetState
-from systems.statics.settle import settle
-from systems.statics.unknowns import ForceMethodError, Unknown, is_turned
+from pinjoint.components.bent import AXIAL, MOMENT, SHEAR
+from pinjoint.components.field import Column, Vector
+from pinjoint.components.handle import Handle
+from pinjoint.components.language import tr
+from pinjoint.components.model import Model
+from pinjoint.components.particle import Particle
+from pinjoint.components.rod import Rod
+from pinjoint.components.round_numbers import round_down
+from pinjoint.components.table import Table
+from pinjoint.components.tags import Selected
+from pinjoint.components.view import THESIS, View
+from pinjoint.documents.shapes import DRAWN_SHARE
+from pinjoint.force_method import PARTS
+from pinjoint.force_method.copies import base_structure, exact_forces, loaded, still
+from pinjoint.force_method.tables import Tables
+from pinjoint.systems.edit.arrows import extent
+from pinjoint.systems.run.real_time import RealTimeRunner
+from pinjoint.systems.run.simulation import Simulation
+from pinjoint.systems.schedule import Schedule
+from pinjoint.systems.statics.counting import counted
+from pinjoint.systems.statics.equations import largest
+from pinjoint.systems.statics.force_method import Solution, solve
+from pinjoint.systems.statics.released import SetState
+from pinjoint.systems.statics.settle import settle
+from pinjoint.systems.statics.unknowns import ForceMethodError, Unknown, is_turned
 
 DIAGRAM_HEIGHT = 34.0  # px of the largest force diagram
 SWING = 3.0  # s in which a mechanism is shown to move there and back

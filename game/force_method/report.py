@@ -10,22 +10,22 @@ from pathlib import Path
 import numpy as np
 from reportlab.platypus import Flowable
 
-from components import written
-from components.bent import AXIAL, MOMENT, SHEAR, is_frame
-from components.camera import Camera, Viewport
-from components.language import listed, tr
-from components.model import Model
-from components.rod import rigid_joints
-from components.round_numbers import round_down
-from components.tags import DiagramShown
-from components.view import THESIS, Cut, View
-from game.documents import models
-from game.force_method import thesis, words
-from game.force_method.copies import base_structure, loaded, still, unloaded
-from game.force_method.tables import PRODUCTS, Table, Tables
-from game.force_method.words import EXACT, index
-from systems.render.diagrams import largest_force
-from systems.render.paper import (
+from pinjoint.components import written
+from pinjoint.components.bent import AXIAL, MOMENT, SHEAR, is_frame
+from pinjoint.components.camera import Camera, Viewport
+from pinjoint.components.language import listed, tr
+from pinjoint.components.model import Model
+from pinjoint.components.rod import rigid_joints
+from pinjoint.components.round_numbers import round_down
+from pinjoint.components.tags import DiagramShown
+from pinjoint.components.view import THESIS, Cut, View
+from pinjoint.documents import models
+from pinjoint.force_method import thesis, words
+from pinjoint.force_method.copies import base_structure, loaded, still, unloaded
+from pinjoint.force_method.tables import PRODUCTS, Table, Tables
+from pinjoint.force_method.words import EXACT, index
+from pinjoint.systems.render.diagrams import largest_force
+from pinjoint.systems.render.paper import (
     GUTTER,
     LAYOUTS,
     PIXEL,
@@ -38,13 +38,13 @@ from systems.render.paper import (
     in_rows,
     together,
 )
-from systems.render.picture import compose
-from systems.render.theme import load_theme
-from systems.statics.counting import counted
-from systems.statics.equations import largest
-from systems.statics.external import external_forces
-from systems.statics.released import SetState
-from systems.statics.unknowns import Unknown
+from pinjoint.systems.render.picture import compose
+from pinjoint.systems.render.theme import load_theme
+from pinjoint.systems.statics.counting import counted
+from pinjoint.systems.statics.equations import largest
+from pinjoint.systems.statics.external import external_forces
+from pinjoint.systems.statics.released import SetState
+from pinjoint.systems.statics.unknowns import Unknown
 
 _BESIDE_IT, _ABOVE, _BELOW = 56.0, 46.0, 62.0  # pixels around a structure, for supports, loads and diagrams
 _MOMENTS = 12.0  # pixels more beside it, for the values of moments

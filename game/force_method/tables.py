@@ -9,14 +9,14 @@ from typing import overload
 
 import numpy as np
 
-from components import written
-from components.field import CM, ENDS
-from components.language import decimals, joined, tr
-from components.model import Model
-from systems.statics.equations import Array, Rows, largest
-from systems.statics.force_method import Solution
-from systems.statics.unknowns import AXES, Unknown
-from systems.statics.virtual_work import Work, virtual_work
+from pinjoint.components import written
+from pinjoint.components.field import CM, ENDS
+from pinjoint.components.language import decimals, joined, tr
+from pinjoint.components.model import Model
+from pinjoint.systems.statics.equations import Array, Rows, largest
+from pinjoint.systems.statics.force_method import Solution
+from pinjoint.systems.statics.unknowns import AXES, Unknown
+from pinjoint.systems.statics.virtual_work import Work, virtual_work
 
 _SMALL = 1e-2  # smaller numbers are written as multiples of a power of 1000
 _FINER = 5  # significant digits of forces that are added

@@ -7,15 +7,15 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from components import written
-from components.field import CM
-from components.language import listed, tr
-from game.force_method import PARTS
+from pinjoint.components import written
+from pinjoint.components.field import CM
+from pinjoint.components.language import listed, tr
+from pinjoint.force_method import PARTS
 
 if TYPE_CHECKING:  # they import scipy
-    from game.force_method.guide import Guide
-    from systems.statics.force_method import Solution
-    from systems.statics.unknowns import Unknown
+    from pinjoint.force_method.guide import Guide
+    from pinjoint.systems.statics.force_method import Solution
+    from pinjoint.systems.statics.unknowns import Unknown
 
 
 def message(guide: Guide) -> str:
@@ -116,7 +116,7 @@ def _equations(solution: Solution) -> tuple[str, ...]:
 
 def table(guide: Guide) -> Sequence[tuple[str, ...]]:
     """Axial forces (kN) of set 1 = set 2 + set 3 for every rod (part 7)."""
-    from game.force_method.tables import Column, Table  # it imports scipy
+    from pinjoint.force_method.tables import Column, Table  # it imports scipy
 
     solution = guide.solution
     if solution is None or guide.part < PARTS:

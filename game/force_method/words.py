@@ -5,16 +5,16 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
-from components import written
-from components.bent import AXIAL
-from components.language import listed, marked, plural, tr
-from components.view import BETWEEN
-from game.force_method import PARTS, thesis
+from pinjoint.components import written
+from pinjoint.components.bent import AXIAL
+from pinjoint.components.language import listed, marked, plural, tr
+from pinjoint.components.view import BETWEEN
+from pinjoint.force_method import PARTS, thesis
 
 if TYPE_CHECKING:  # they import scipy
-    from game.force_method.guide import Guide
-    from systems.statics.force_method import Solution
-    from systems.statics.unknowns import Unknown
+    from pinjoint.force_method.guide import Guide
+    from pinjoint.systems.statics.force_method import Solution
+    from pinjoint.systems.statics.unknowns import Unknown
 
 Caption = tuple[str, ...]
 
@@ -117,7 +117,7 @@ def captions(guide: Guide) -> list[Caption]:
 
 def index(*numbers: int) -> str:
     """Indices as they stand below: "₁₀"; apart from each other if one has two digits."""
-    from game.force_method.tables import index as below  # it imports scipy
+    from pinjoint.force_method.tables import index as below  # it imports scipy
 
     return below(*numbers)
 

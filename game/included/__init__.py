@@ -1,8 +1,8 @@
 """Parts of Pinjoint that are written as mods: they only register through `plugin(app)`."""
 
-from components.language import marked
-from game.included import collisions, histories, probes, walls
-from game.mods import include
+from pinjoint.components.language import marked
+from pinjoint.included import collisions, histories, probes, walls
+from pinjoint.mods import include
 
 include(histories, marked("Loads that vary: sine, pulse, table, and base acceleration from a record"))
 include(probes, marked("Plots of any quantity while time passes (key O), CSV and PNG"))

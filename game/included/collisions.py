@@ -8,11 +8,11 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import NDArray
 
-from components import Model, Plot, Readout, Vector, written
-from components.language import marked, tr
-from components.rod import nodes
-from game.editor.context import Context
-from game.mods import App
+from pinjoint.components import Model, Plot, Readout, Vector, written
+from pinjoint.components.language import marked, tr
+from pinjoint.components.rod import nodes
+from pinjoint.editor.context import Context
+from pinjoint.mods import App
 
 MANY = 100  # particles without rods from which on their speeds are shown by default
 BINS = 16

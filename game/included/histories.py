@@ -16,11 +16,11 @@ from typing import TextIO
 
 import numpy as np
 
-from components import FieldError, HistoryKind, Load, Model, Vector
-from components.language import marked, tr
-from components.load import History
-from components.wording import quoted
-from game.mods import App
+from pinjoint.components import FieldError, HistoryKind, Load, Model, Vector
+from pinjoint.components.language import marked, tr
+from pinjoint.components.load import History
+from pinjoint.components.wording import quoted
+from pinjoint.mods import App
 
 STANDARD_GRAVITY = 9.80665  # m/s²
 DIRECTIONS = {"x": (1.0, 0.0), "y": (0.0, 1.0)}
@@ -58,7 +58,7 @@ def check_points(history: History, where: str) -> None:
         )
 
 
-KERNELS = "systems.loads.kernels"
+KERNELS = "pinjoint.systems.loads.kernels"
 SINE = HistoryKind(
     "sine",
     {"frequency": 1.0, "phase": 0.0},
@@ -152,9 +152,9 @@ def shake(model: Model, record: History | dict[str, list[float] | str], directio
 
 def run(words: list[str]) -> int:
     """`pinjoint shake MODEL RECORD.csv --output FILE`."""
-    from game.commands.arguments import Parser, UsageError
-    from game.commands.output import writable
-    from game.documents import models
+    from pinjoint.commands.arguments import Parser, UsageError
+    from pinjoint.commands.output import writable
+    from pinjoint.documents import models
 
     parser = Parser(
         prog="pinjoint shake", description=tr("Shake the supports of a model by a recorded acceleration.")

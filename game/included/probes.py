@@ -11,17 +11,17 @@ from typing import Any
 
 import numpy as np
 
-from components import Model, Particle, Plot, Readout, Rod, Vector, written
-from components.field import ENDS
-from components.language import english, joined, listed, marked, tr
-from game.documents.models import replace
-from game.editor.context import Context
-from game.mods import App
-from game.paths import TIME, Quantity, quantity
-from systems.base import Phase, System
-from systems.edit import Refusal
-from systems.render.picture import panel_at
-from systems.render.theme import load_theme
+from pinjoint.components import Model, Particle, Plot, Readout, Rod, Vector, written
+from pinjoint.components.field import ENDS
+from pinjoint.components.language import english, joined, listed, marked, tr
+from pinjoint.documents.models import replace
+from pinjoint.editor.context import Context
+from pinjoint.mods import App
+from pinjoint.paths import TIME, Quantity, quantity
+from pinjoint.systems.base import Phase, System
+from pinjoint.systems.edit import Refusal
+from pinjoint.systems.render.picture import panel_at
+from pinjoint.systems.render.theme import load_theme
 
 MOST = 20_000  # samples; beyond, every second one is dropped
 FEW = 3  # plots at a time
@@ -222,7 +222,7 @@ def write_csv(probe: Probe, path: Path) -> None:
 
 def write_png(probe: Probe, path: Path, theme: str = "light") -> None:
     """Write the whole plot as a picture."""
-    from game.pictures import plot_png  # pygame is there when it is needed
+    from pinjoint.pictures import plot_png  # pygame is there when it is needed
 
     plot_png(probe.plot(1.0), path, theme)
 
@@ -256,9 +256,9 @@ def _heading(probe: Probe) -> str:
 
 def run(words: list[str]) -> int:
     """`pinjoint plot MODEL --of QUANTITY --until T --output FILE`."""
-    from game.commands.arguments import Parser, UsageError, count, positive
-    from game.commands.options import add_model, session_of
-    from game.commands.output import writable, writing
+    from pinjoint.commands.arguments import Parser, UsageError, count, positive
+    from pinjoint.commands.options import add_model, session_of
+    from pinjoint.commands.output import writable, writing
 
     parser = Parser(
         prog="pinjoint plot",

@@ -8,17 +8,17 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from components import CM, Field, FieldError, Handle, Pieces, Selected, Table, Vector
-from components.language import marked, tr
-from components.tags import Hovered
-from game.mods import App
-from systems.render.clip import bounds, clip_segments
-from systems.render.labels import Label, half_size
-from systems.render.marks import Discs, Mark, Points, Strokes
-from systems.render.occupancy import STRONG
-from systems.render.sheet import Rows, Sheet
-from systems.render.structure import HALO_OPACITY
-from systems.render.theme import Colour, faded
+from pinjoint.components import CM, Field, FieldError, Handle, Pieces, Selected, Table, Vector
+from pinjoint.components.language import marked, tr
+from pinjoint.components.tags import Hovered
+from pinjoint.mods import App
+from pinjoint.systems.render.clip import bounds, clip_segments
+from pinjoint.systems.render.labels import Label, half_size
+from pinjoint.systems.render.marks import Discs, Mark, Points, Strokes
+from pinjoint.systems.render.occupancy import STRONG
+from pinjoint.systems.render.sheet import Rows, Sheet
+from pinjoint.systems.render.structure import HALO_OPACITY
+from pinjoint.systems.render.theme import Colour, faded
 
 WIDTH = 4.0  # points, of the line that is drawn
 

@@ -4,17 +4,17 @@ from __future__ import annotations
 
 from typing import Any
 
-from components.field import Vector
-from components.language import tr
-from game.editor.context import action
-from game.lessons.course import Course
-from game.lessons.shelf import after
-from game.scripts.script import Script, ScriptError
-from systems.edit import Refusal
+from pinjoint.components.field import Vector
+from pinjoint.components.language import tr
+from pinjoint.editor.context import action
+from pinjoint.lessons.course import Course
+from pinjoint.lessons.shelf import after
+from pinjoint.scripts.script import Script, ScriptError
+from pinjoint.systems.edit import Refusal
 
 MOST_ANSWERS = 9  # choices, so that each has a key
 
-Session = Any  # game.session.Session, which holds the lesson
+Session = Any  # pinjoint.session.Session, which holds the lesson
 
 
 def _course(session: Session) -> Course:

@@ -5,13 +5,13 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator
 from typing import Any
 
-from components.language import tr
-from game.lessons import progress
-from game.lessons.course import Course
-from game.lessons.judging import filled, is_filled
-from game.lessons.tasks import CHOICES, UNTIL, Lesson
-from game.scripts.lines import Failure
-from game.scripts.script import Script
+from pinjoint.components.language import tr
+from pinjoint.lessons import progress
+from pinjoint.lessons.course import Course
+from pinjoint.lessons.judging import filled, is_filled
+from pinjoint.lessons.tasks import CHOICES, UNTIL, Lesson
+from pinjoint.scripts.lines import Failure
+from pinjoint.scripts.script import Script
 
 
 def check_lesson(script: Script, open_session: Callable[[], Any]) -> list[Failure]:

@@ -6,17 +6,17 @@ import math
 from collections.abc import Sequence
 from typing import Any
 
-from components.card import Card, CardButton
-from components.language import decimals, marked, tr
-from components.view import Shape
-from game.documents.document import document
-from game.documents.models import ModelError, load
-from game.documents.open_documents import ModelFile
-from game.lessons import progress
-from game.lessons.judging import Answer, Document, Verdict, filled, judge, unit_of
-from game.lessons.tasks import CHOICES, NUMBER, SELECT, UNTIL, Lesson, Line, Task
-from game.scripts.lines import play_line
-from game.scripts.script import ScriptError
+from pinjoint.components.card import Card, CardButton
+from pinjoint.components.language import decimals, marked, tr
+from pinjoint.components.view import Shape
+from pinjoint.documents.document import document
+from pinjoint.documents.models import ModelError, load
+from pinjoint.documents.open_documents import ModelFile
+from pinjoint.lessons import progress
+from pinjoint.lessons.judging import Answer, Document, Verdict, filled, judge, unit_of
+from pinjoint.lessons.tasks import CHOICES, NUMBER, SELECT, UNTIL, Lesson, Line, Task
+from pinjoint.scripts.lines import play_line
+from pinjoint.scripts.script import ScriptError
 
 RIGHT, WRONG, HINT = "right", "wrong", "hint"  # moods of what is said
 IN_NUMBERS = frozenset("0123456789.,-−+")  # not e, which is a key

@@ -9,16 +9,16 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from components import written
-from components.handle import Handle
-from components.language import begun, decimals, joined, listed, marked, tr
-from game.documents.document import document
-from game.lessons.tasks import CHOICES, NUMBER, SELECT, UNTIL, Line, Task
-from game.paths import PathError, locate, quantity, readable
-from game.scripts.expectation import OVER_ALL, check, compared, each, parts_of, read
-from game.scripts.lines import Failure, perform
+from pinjoint.components import written
+from pinjoint.components.handle import Handle
+from pinjoint.components.language import begun, decimals, joined, listed, marked, tr
+from pinjoint.documents.document import document
+from pinjoint.lessons.tasks import CHOICES, NUMBER, SELECT, UNTIL, Line, Task
+from pinjoint.paths import PathError, locate, quantity, readable
+from pinjoint.scripts.expectation import OVER_ALL, check, compared, each, parts_of, read
+from pinjoint.scripts.lines import Failure, perform
 
-Session = Any  # game.session.Session, which holds the lesson
+Session = Any  # pinjoint.session.Session, which holds the lesson
 Document = Mapping[str, Any]
 Answer = str | float | tuple[str, ...] | None  # text of a choice; number; names of elements; not given yet
 

@@ -7,8 +7,8 @@ from contextlib import contextmanager
 from pathlib import Path
 from typing import NamedTuple
 
-from game.documents import choices
-from game.documents.preferences import settings_path
+from pinjoint.documents import choices
+from pinjoint.documents.preferences import settings_path
 
 FILE = "lessons.json"
 

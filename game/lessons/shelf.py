@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from game.documents.library import data_folder
-from game.lessons import progress
-from game.scripts.script import Script, ScriptError, lessons_with_tasks
+from pinjoint.documents.library import data_folder
+from pinjoint.lessons import progress
+from pinjoint.scripts.script import Script, ScriptError, lessons_with_tasks
 
 
 def own_lessons() -> list[Path]:

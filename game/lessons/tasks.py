@@ -7,11 +7,11 @@ from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any, NoReturn
 
-from components.language import tr
-from components.suggestions import remedy
-from components.wording import as_json, cut
-from game.scripts.expectation import OVER_ALL
-from game.scripts.script import Script, ScriptError
+from pinjoint.components.language import tr
+from pinjoint.components.suggestions import remedy
+from pinjoint.components.wording import as_json, cut
+from pinjoint.scripts.expectation import OVER_ALL
+from pinjoint.scripts.script import Script, ScriptError
 
 Line = tuple[int, Mapping[str, Any]]  # of a script: its number, and what it says
 

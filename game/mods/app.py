@@ -8,24 +8,30 @@ from functools import partial
 from pathlib import Path
 from typing import Any, TypeVar
 
-from components.component import Component, add_component
-from components.handle import Handle
-from components.kind import add_kind
-from components.language import add_catalogues, joined, remove_catalogues, tr
-from components.load import HISTORIES, HistoryKind, register_history
-from components.model import ADDED
-from components.obstacles import SHAPES, Shape
-from components.table import fields_of
-from game.commands import COMMANDS, Command
-from game.documents import models
-from game.documents.mod_data import UPGRADES, VERSIONS, Upgrade
-from game.editor.actions import ACTIONS, WHILE_DRAWING, Action, action
-from game.editor.context import PANELS
-from game.editor.gestures.drawing import TOOL_HINTS, TOOLS, drawing_of
-from game.editor.scenes import SCENES, Scene, all_scenes
-from game.mods.declared import checks_arguments
-from game.mods.guard import guard_checkers, guarded_history, guarded_integrator, guarded_maker, guarded_shape
-from game.mods.interface import (
+from pinjoint.commands import COMMANDS, Command
+from pinjoint.components.component import Component, add_component
+from pinjoint.components.handle import Handle
+from pinjoint.components.kind import add_kind
+from pinjoint.components.language import add_catalogues, joined, remove_catalogues, tr
+from pinjoint.components.load import HISTORIES, HistoryKind, register_history
+from pinjoint.components.model import ADDED
+from pinjoint.components.obstacles import SHAPES, Shape
+from pinjoint.components.table import fields_of
+from pinjoint.documents import models
+from pinjoint.documents.mod_data import UPGRADES, VERSIONS, Upgrade
+from pinjoint.editor.actions import ACTIONS, WHILE_DRAWING, Action, action
+from pinjoint.editor.context import PANELS
+from pinjoint.editor.gestures.drawing import TOOL_HINTS, TOOLS, drawing_of
+from pinjoint.editor.scenes import SCENES, Scene, all_scenes
+from pinjoint.mods.declared import checks_arguments
+from pinjoint.mods.guard import (
+    guard_checkers,
+    guarded_history,
+    guarded_integrator,
+    guarded_maker,
+    guarded_shape,
+)
+from pinjoint.mods.interface import (
     Panel,
     guarded_action,
     guarded_command,
@@ -33,10 +39,10 @@ from game.mods.interface import (
     guarded_panel,
     guarded_scene,
 )
-from game.mods.mod import INCLUDED, Mod, ModError
-from systems.base import Integrator, System
-from systems.catalogue import SYSTEMS
-from systems.input.bindings import (
+from pinjoint.mods.mod import INCLUDED, Mod, ModError
+from pinjoint.systems.base import Integrator, System
+from pinjoint.systems.catalogue import SYSTEMS
+from pinjoint.systems.input.bindings import (
     LIVE,
     Binding,
     add_binding,
@@ -47,10 +53,10 @@ from systems.input.bindings import (
     remove_button,
     remove_tool,
 )
-from systems.physics.integrators import INTEGRATORS, register_integrator, remove_integrator
-from systems.render.icons import ADDED as ADDED_ICONS
-from systems.render.icons import Part, check_icon
-from systems.render.sheet import ABOVE, BELOW, Layer
+from pinjoint.systems.physics.integrators import INTEGRATORS, register_integrator, remove_integrator
+from pinjoint.systems.render.icons import ADDED as ADDED_ICONS
+from pinjoint.systems.render.icons import Part, check_icon
+from pinjoint.systems.render.sheet import ABOVE, BELOW, Layer
 
 T = TypeVar("T")
 

@@ -20,8 +20,8 @@ from typing import Any, Literal, TypeVar, Union, get_args, get_origin, get_type_
 
 import numpy as np
 
-from components.language import Said, in_both, marked, tr
-from components.wording import quoted
+from pinjoint.components.language import Said, in_both, marked, tr
+from pinjoint.components.wording import quoted
 
 C = TypeVar("C")
 Made = Callable[[Any, str], Any]  # the plain value of a value that is called so; raises TypeError, ValueError

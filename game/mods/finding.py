@@ -8,9 +8,9 @@ from collections.abc import Iterable, Iterator, Sequence
 from graphlib import CycleError, TopologicalSorter
 from pathlib import Path
 
-from components.language import tr
-from game.documents.library import data_folder
-from game.mods.mod import MANIFEST, Mod, read_manifest
+from pinjoint.components.language import tr
+from pinjoint.documents.library import data_folder
+from pinjoint.mods.mod import MANIFEST, Mod, read_manifest
 
 GROUP = "pinjoint.mods"  # entry points of installed packages
 PROGRAM = "pinjoint"  # what a mod calls the program that it requires

@@ -16,21 +16,21 @@ from typing import Any, ClassVar, get_args, get_origin, get_type_hints
 import numpy as np
 from numpy.typing import NDArray
 
-from components.field import Column, Field, FieldError, Role
-from components.handle import Handle
-from components.language import tr
-from components.load import HistoryKind
-from components.model import Model
-from components.obstacles import Pieces, Shape, check_pieces
-from components.snapshot import Snapshot
-from components.table import Table
-from components.view import View
-from game.editor.context import Context
-from game.mods.declared import as_declared, check_fields
-from game.mods.mod import INCLUDED, Mod, ModError
-from game.mods.watchdog import stop_after
-from systems.base import Commit, Event, Integrator, Law, StepSystem, System
-from systems.physics.integrators import VelocityVerlet
+from pinjoint.components.field import Column, Field, FieldError, Role
+from pinjoint.components.handle import Handle
+from pinjoint.components.language import tr
+from pinjoint.components.load import HistoryKind
+from pinjoint.components.model import Model
+from pinjoint.components.obstacles import Pieces, Shape, check_pieces
+from pinjoint.components.snapshot import Snapshot
+from pinjoint.components.table import Table
+from pinjoint.components.view import View
+from pinjoint.editor.context import Context
+from pinjoint.mods.declared import as_declared, check_fields
+from pinjoint.mods.mod import INCLUDED, Mod, ModError
+from pinjoint.mods.watchdog import stop_after
+from pinjoint.systems.base import Commit, Event, Integrator, Law, StepSystem, System
+from pinjoint.systems.physics.integrators import VelocityVerlet
 
 PATIENCE = 2.0  # s that a frame system may take; a longer one is interrupted
 
@@ -56,7 +56,10 @@ def check_declarations(system: Any) -> System:
     role = next((role for role in _ROLES if isinstance(system, role)), None)
     if role is None:
         raise ModError(
-            tr("{name} is not a System; derive it from a class in systems.base.", name=type(system).__name__)
+            tr(
+                "{name} is not a System; derive it from a class in pinjoint.systems.base.",
+                name=type(system).__name__,
+            )
         )
     for name, hint in get_type_hints(role).items():
         if get_origin(hint) is ClassVar:

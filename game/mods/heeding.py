@@ -6,11 +6,11 @@ import sys
 from collections.abc import Iterator
 from contextlib import contextmanager
 
-from components import written
-from components.language import joined, tr
-from game.mods.loading import MODS
-from game.mods.mod import Mod, ModError
-from systems.run.simulation import Simulation
+from pinjoint.components import written
+from pinjoint.components.language import joined, tr
+from pinjoint.mods.loading import MODS
+from pinjoint.mods.mod import Mod, ModError
+from pinjoint.systems.run.simulation import Simulation
 
 
 def switched_off() -> list[Mod]:

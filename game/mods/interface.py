@@ -8,22 +8,22 @@ from dataclasses import replace
 from inspect import getattr_static
 from typing import Any
 
-from components.field import FieldError, Vector
-from components.language import english, in_both, tr
-from components.view import Plot, Readout, View
-from components.wording import printable
-from game.commands.arguments import BAD_INPUT, UsageError
-from game.documents import models
-from game.editor.actions import Action
-from game.editor.context import ACTIONS, Context, Scene
-from game.mods.declared import as_declared, result_of
-from game.mods.guard import check_view, interruptible, view_kept
-from game.mods.mod import INCLUDED, PATIENCE, Mod
-from game.paths import PathError
-from systems.edit import Refusal
-from systems.render.framing import framed
-from systems.render.marks import Mark
-from systems.render.sheet import Layer, Sheet
+from pinjoint.commands.arguments import BAD_INPUT, UsageError
+from pinjoint.components.field import FieldError, Vector
+from pinjoint.components.language import english, in_both, tr
+from pinjoint.components.view import Plot, Readout, View
+from pinjoint.components.wording import printable
+from pinjoint.documents import models
+from pinjoint.editor.actions import Action
+from pinjoint.editor.context import ACTIONS, Context, Scene
+from pinjoint.mods.declared import as_declared, result_of
+from pinjoint.mods.guard import check_view, interruptible, view_kept
+from pinjoint.mods.mod import INCLUDED, PATIENCE, Mod
+from pinjoint.paths import PathError
+from pinjoint.systems.edit import Refusal
+from pinjoint.systems.render.framing import framed
+from pinjoint.systems.render.marks import Mark
+from pinjoint.systems.render.sheet import Layer, Sheet
 
 Panel = Callable[[Context], Readout | Sequence[Readout] | None]
 

@@ -9,20 +9,20 @@ from collections.abc import Iterable, Sequence
 from pathlib import Path
 from types import ModuleType
 
-from components.language import tr
-from game.documents.preferences import preferred_keys
-from game.editor.context import FAULTS
-from game.interrupts import is_persons, mark_interrupts
-from game.mods import finding
-from game.mods.app import App, check_plugin
-from game.mods.declared import as_declared
-from game.mods.finding import in_order, required
-from game.mods.mod import MANIFEST, Mod, ModError
-from game.mods.surroundings import Surroundings
-from game.version import __version__
-from systems.catalogue import all_systems
-from systems.input.bindings import prefer
-from systems.schedule import Schedule
+from pinjoint.components.language import tr
+from pinjoint.documents.preferences import preferred_keys
+from pinjoint.editor.context import FAULTS
+from pinjoint.interrupts import is_persons, mark_interrupts
+from pinjoint.mods import finding
+from pinjoint.mods.app import App, check_plugin
+from pinjoint.mods.declared import as_declared
+from pinjoint.mods.finding import in_order, required
+from pinjoint.mods.mod import MANIFEST, Mod, ModError
+from pinjoint.mods.surroundings import Surroundings
+from pinjoint.systems.catalogue import all_systems
+from pinjoint.systems.input.bindings import prefer
+from pinjoint.systems.schedule import Schedule
+from pinjoint.version import __version__
 
 PATIENCE = 30.0  # s that loading one mod may take
 
@@ -110,7 +110,7 @@ def _load(mod: Mod) -> None:
         mod.problem = mod.describe(error)
         if isinstance(error, ModuleNotFoundError) and error.name == "numba":
             mod.problem = tr(
-                "It imports numba, which is not installed ({place}); mark kernels with @compiled from game.api instead,"
+                "It imports numba, which is not installed ({place}); mark kernels with @compiled from pinjoint.api instead,"
                 " which works without numba.",
                 place=mod.place_of(error),
             )

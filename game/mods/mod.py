@@ -11,13 +11,13 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any, TypeVar
 
-from components.language import english, tr
-from components.mistake import Mistake
-from components.wording import is_identifier, printable, quoted
-from game.editor.context import FAULTS
-from game.interrupts import is_persons
-from game.mods.declared import as_declared
-from game.mods.watchdog import is_running, within
+from pinjoint.components.language import english, tr
+from pinjoint.components.mistake import Mistake
+from pinjoint.components.wording import is_identifier, printable, quoted
+from pinjoint.editor.context import FAULTS
+from pinjoint.interrupts import is_persons
+from pinjoint.mods.declared import as_declared
+from pinjoint.mods.watchdog import is_running, within
 
 T = TypeVar("T")
 
@@ -27,7 +27,6 @@ INCLUDED = "Pinjoint"  # the source of the mods that come with the program
 MANIFEST = "mod.toml"
 LONGEST_MESSAGE = 500  # characters of what an error says
 PATIENCE = 10.0  # s that whatever a mod is asked may take, the compilation of functions of its own included
-OURS = tuple(f"{Path(__file__).parents[2] / part}{os.sep}" for part in ("components", "systems", "game"))
 
 _KEYS = ("name", "version", "description", "requires")  # of a manifest
 
@@ -150,7 +149,7 @@ class Mod:
         """The result of a function; after `patience` TooLong is raised in the mod's code, or in a library that it calls."""
         if not math.isfinite(patience) or self.folder is None:
             return function()
-        return within(patience, is_running(f"{self.folder}{os.sep}", others=OURS), function)
+        return within(patience, is_running(f"{self.folder}{os.sep}"), function)
 
 
 def _short(path: str) -> str:

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from components.language import tr
-from game.mods.finding import origin_of_module
-from game.mods.mod import MANIFEST, ModError, check_name
+from pinjoint.components.language import tr
+from pinjoint.mods.finding import origin_of_module
+from pinjoint.mods.mod import MANIFEST, ModError, check_name
 
 _MANIFEST = """\
 name = "{name}"
@@ -18,7 +18,7 @@ requires = ["pinjoint>={version}"]
 _CODE = '''\
 """A steady wind on all particles: a law, the fact that it needs, and what a person sees of it."""
 
-from game.api import Component, Environment, Field, Law, Readout, compiled
+from pinjoint.api import Component, Environment, Field, Law, Readout, compiled
 
 
 class Air(Component):
@@ -53,7 +53,7 @@ _TEST = '''\
 
 from pathlib import Path
 
-from game.api import Session
+from pinjoint.api import Session
 
 HERE = Path(__file__).parent
 

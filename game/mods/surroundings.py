@@ -9,8 +9,8 @@ import threading
 
 import numpy as np
 
-from components.language import tr
-from game.mods.mod import ModError
+from pinjoint.components.language import tr
+from pinjoint.mods.mod import ModError
 
 _STREAMS = ("stdin", "stdout", "stderr")
 _LIBRARIES = (math, np)  # by which everything computes

@@ -7,28 +7,28 @@ from contextlib import contextmanager, suppress
 from pathlib import Path
 from typing import Any
 
-from components.field import MADE, Field, FieldError
-from components.language import joined, marked, tr
-from components.load import HISTORIES
-from components.model import ADDED, Model
-from components.suggestions import missing
-from game.checks import EVERYTHING, FRAME, STEPS, run_frames
-from game.documents import models
-from game.documents.library import data_apart
-from game.editor.context import FAULTS
-from game.editor.frame import Frame
-from game.editor.scenes import all_scenes
-from game.interrupts import is_persons
-from game.mods.mod import LOG, Mod
-from game.session import Session
-from systems.base import Commit, Event, Integrator, Law, StepSystem, System
-from systems.catalogue import all_systems
-from systems.input.bindings import BINDINGS, PAUSE, SIMULATION
-from systems.physics.integrators import INTEGRATORS
-from systems.program.binding import KERNELS, ProgramError, bind
-from systems.program.endless import Patience
-from systems.program.faults import problem_of
-from systems.program.writer import read_sources
+from pinjoint.checks import EVERYTHING, FRAME, STEPS, run_frames
+from pinjoint.components.field import MADE, Field, FieldError
+from pinjoint.components.language import joined, marked, tr
+from pinjoint.components.load import HISTORIES
+from pinjoint.components.model import ADDED, Model
+from pinjoint.components.suggestions import missing
+from pinjoint.documents import models
+from pinjoint.documents.library import data_apart
+from pinjoint.editor.context import FAULTS
+from pinjoint.editor.frame import Frame
+from pinjoint.editor.scenes import all_scenes
+from pinjoint.interrupts import is_persons
+from pinjoint.mods.mod import LOG, Mod
+from pinjoint.session import Session
+from pinjoint.systems.base import Commit, Event, Integrator, Law, StepSystem, System
+from pinjoint.systems.catalogue import all_systems
+from pinjoint.systems.input.bindings import BINDINGS, PAUSE, SIMULATION
+from pinjoint.systems.physics.integrators import INTEGRATORS
+from pinjoint.systems.program.binding import KERNELS, ProgramError, bind
+from pinjoint.systems.program.endless import Patience
+from pinjoint.systems.program.faults import problem_of
+from pinjoint.systems.program.writer import read_sources
 
 SIZES = ((640, 480, 1.0), (160, 120, 2.0))  # pixels, and pixels to a point, of the pictures
 SCALES = (1.0, 1e4, 1e-4)  # by which a person may zoom
@@ -250,7 +250,7 @@ def _fill(field: Field[Any], element: Any) -> None:
 
 
 def _draw(session: Session, size: tuple[int, int, float]) -> None:
-    from systems.render.pygame_render import draw_unseen  # imports pygame
+    from pinjoint.systems.render.pygame_render import draw_unseen  # imports pygame
 
     session.update_view()
     draw_unseen(Frame(session, FRAME), size[:2])

@@ -9,7 +9,8 @@ import time
 from collections.abc import Callable
 from typing import TypeVar
 
-from components.language import tr
+from pinjoint.components.language import tr
+from pinjoint.systems import is_ours
 
 T = TypeVar("T")
 
@@ -122,10 +123,10 @@ def within(seconds: float, may: Callable[[], bool], function: Callable[[], T]) -
             _watchdog.stop()
 
 
-def is_running(folder: str, *, others: tuple[str, ...]) -> Callable[[], bool]:
+def is_running(folder: str) -> Callable[[], bool]:
     """A question for `within`: whether the calling thread runs code from a folder, or code called by that.
 
-    others: folders of code that is not interrupted although code of that folder called it.
+    Pinjoint's own is not interrupted although code of that folder called it.
     """
     thread = threading.get_ident()
 
@@ -134,7 +135,7 @@ def is_running(folder: str, *, others: tuple[str, ...]) -> Callable[[], bool]:
         while frame is not None:
             if frame.f_code.co_filename.startswith(folder):
                 return True
-            if frame.f_code.co_filename.startswith(others):
+            if is_ours(frame.f_globals.get("__name__")):
                 return False
             frame = frame.f_back
         return False

@@ -8,12 +8,12 @@ import re
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from typing import Any, Protocol
 
-from components.handle import Handle
-from components.language import english, listed, marked, tr
-from components.suggestions import missing
-from components.view import View
-from components.wording import cut, quoted
-from game.paths import PathError, Readable, locate, locate_one, readable
+from pinjoint.components.handle import Handle
+from pinjoint.components.language import english, listed, marked, tr
+from pinjoint.components.suggestions import missing
+from pinjoint.components.view import View
+from pinjoint.components.wording import cut, quoted
+from pinjoint.paths import PathError, Readable, locate, locate_one, readable
 
 _OF_SESSION = ("scene", "time", "message")
 _SECTIONS = ("energy", "force_method", "count", "statics", "view")
@@ -179,7 +179,7 @@ OVER_ALL: dict[str, Callable[[Sequence[float]], float]] = {  # of what a path wi
 
 def _frequency(session: Any) -> float:
     """The lowest natural frequency (Hz); NaN if nothing can vibrate."""
-    from systems.statics.vibration import vibrations  # scipy
+    from pinjoint.systems.statics.vibration import vibrations  # scipy
 
     hertz = vibrations(session.model).hertz
     return float(hertz[0]) if len(hertz) else math.nan

@@ -8,15 +8,15 @@ from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass
 from typing import Any
 
-from components.language import tr
-from components.wording import as_json, cut
-from game.editor.context import FAULTS
-from game.mods.mod import ModError
-from game.paths import apply_override
-from game.scripts.expectation import check
-from game.scripts.script import Script
+from pinjoint.components.language import tr
+from pinjoint.components.wording import as_json, cut
+from pinjoint.editor.context import FAULTS
+from pinjoint.mods.mod import ModError
+from pinjoint.paths import apply_override
+from pinjoint.scripts.expectation import check
+from pinjoint.scripts.script import Script
 
-Session = Any  # game.session.Session, which plays lessons by these lines
+Session = Any  # pinjoint.session.Session, which plays lessons by these lines
 
 
 @dataclass(frozen=True)

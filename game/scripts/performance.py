@@ -7,16 +7,16 @@ import time
 from collections.abc import Mapping
 from typing import Any, Protocol
 
-from components.field import Vector
-from components.language import marked, spoken, tr
-from components.view import Page, Status, View
-from game.documents import library
-from game.documents.open_documents import ModelFile
-from game.editor.frame import Frame
-from game.scripts.lines import Failure, play_line
-from game.scripts.script import Script
-from game.session import Session
-from systems.base import REVIEW_INTERVAL
+from pinjoint.components.field import Vector
+from pinjoint.components.language import marked, spoken, tr
+from pinjoint.components.view import Page, Status, View
+from pinjoint.documents import library
+from pinjoint.documents.open_documents import ModelFile
+from pinjoint.editor.frame import Frame
+from pinjoint.scripts.lines import Failure, play_line
+from pinjoint.scripts.script import Script
+from pinjoint.session import Session
+from pinjoint.systems.base import REVIEW_INTERVAL
 
 FOOTER = 112.0  # points, height of the strip for the words of a script below the picture
 LARGER = 1.25  # factor of the type in that strip

@@ -8,15 +8,15 @@ from collections.abc import Mapping
 from contextlib import suppress
 from typing import Any, TextIO
 
-from components.field import Vector
-from components.language import ENGLISH, joined, language, spoken, tr
-from components.wording import is_broken
-from game.documents.format import ModelError
-from game.mods.loading import MODS
-from game.mods.mod import INCLUDED
-from game.scripts.lines import Failure, play_line
-from game.scripts.script import HEADER, Script, ScriptError
-from game.session import Session
+from pinjoint.components.field import Vector
+from pinjoint.components.language import ENGLISH, joined, language, spoken, tr
+from pinjoint.components.wording import is_broken
+from pinjoint.documents.format import ModelError
+from pinjoint.mods.loading import MODS
+from pinjoint.mods.mod import INCLUDED
+from pinjoint.scripts.lines import Failure, play_line
+from pinjoint.scripts.script import HEADER, Script, ScriptError
+from pinjoint.session import Session
 
 LOG = logging.getLogger("pinjoint.recording")
 

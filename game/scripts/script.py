@@ -38,10 +38,10 @@ from importlib.resources.abc import Traversable
 from pathlib import Path
 from typing import Any
 
-from components.language import ENGLISH, LANGUAGES, tr
-from components.mistake import Mistake
-from components.suggestions import remedy
-from components.wording import as_json, cut
+from pinjoint.components.language import ENGLISH, LANGUAGES, tr
+from pinjoint.components.mistake import Mistake
+from pinjoint.components.suggestions import remedy
+from pinjoint.components.wording import as_json, cut
 
 HEADER = {"format": "pinjoint session", "version": 1}
 _HEADER_KEYS = (*HEADER, "model", "title", "description", "mods", "language")
@@ -63,7 +63,7 @@ def lessons_with_tasks() -> list[str]:
 
 
 def _names_in(folder: str) -> list[str]:
-    names = sorted(entry.name for entry in files("assets").joinpath(folder).iterdir())
+    names = sorted(entry.name for entry in files("pinjoint.assets").joinpath(folder).iterdir())
     return [name.removesuffix(".jsonl") for name in names if name.endswith(".jsonl")]
 
 
@@ -75,7 +75,7 @@ def _found(source: str | Path) -> Path | Traversable:
     """The lesson of that name, or else a file."""
     for folder, names in (("lessons", lessons), ("lessons/tasks", lessons_with_tasks)):
         if isinstance(source, str) and source in names():
-            return files("assets").joinpath(folder, f"{source}.jsonl")
+            return files("pinjoint.assets").joinpath(folder, f"{source}.jsonl")
     return Path(source)
 
 

@@ -1,6 +1,6 @@
 """Sweeps: many variants of one model, computed on all cores or a cluster."""
 
-from game.sweeps.run import sweep
-from game.sweeps.variation import SweepError
+from pinjoint.sweeps.run import sweep
+from pinjoint.sweeps.variation import SweepError
 
 __all__ = ["SweepError", "sweep"]

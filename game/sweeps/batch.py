@@ -13,19 +13,19 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from components.field import Column
-from components.load import load_breaks, loads_end
-from game.sweeps.batch_program import BatchProgram
-from game.sweeps.batched_model import BatchedModel
-from systems.base import REVIEW_INTERVAL, StopReason
-from systems.entries import ACCOUNT, CONTROL, Measure
-from systems.islands import IMMOVABLE, islands
-from systems.physics.kernels import conserved
-from systems.physics.rest import RestMeasure
-from systems.physics.spectrum import spectra
-from systems.program.program import COLUMNS_OBSERVED
-from systems.run.energy import ENTRIES, Energy, energy_of, opened
-from systems.run.policy import (
+from pinjoint.components.field import Column
+from pinjoint.components.load import load_breaks, loads_end
+from pinjoint.sweeps.batch_program import BatchProgram
+from pinjoint.sweeps.batched_model import BatchedModel
+from pinjoint.systems.base import REVIEW_INTERVAL, StopReason
+from pinjoint.systems.entries import ACCOUNT, CONTROL, Measure
+from pinjoint.systems.islands import IMMOVABLE, islands
+from pinjoint.systems.physics.kernels import conserved
+from pinjoint.systems.physics.rest import RestMeasure
+from pinjoint.systems.physics.spectrum import spectra
+from pinjoint.systems.program.program import COLUMNS_OBSERVED
+from pinjoint.systems.run.energy import ENTRIES, Energy, energy_of, opened
+from pinjoint.systems.run.policy import (
     ENDING,
     ERROR_CONTROL,
     GOING_ON,

@@ -10,11 +10,11 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from components.field import Column
-from game.sweeps.batched_model import BatchedModel
-from systems.program.binding import bind
-from systems.program.compiler import generated
-from systems.program.program import Program
+from pinjoint.components.field import Column
+from pinjoint.sweeps.batched_model import BatchedModel
+from pinjoint.systems.program.binding import bind
+from pinjoint.systems.program.compiler import generated
+from pinjoint.systems.program.program import Program
 
 # One for all variants, besides what is written anew for each.
 _SHARED = "fresh", "breaks", "until", "landing", "loads_end"
@@ -59,7 +59,7 @@ class BatchProgram:
         lines = [
             '"""A step program for variants. Generated; safe to delete."""',
             "",
-            "from systems.kernels import kept",
+            "from pinjoint.systems.kernels import kept",
             "",
         ]
         for name, parameters in self._parameters.items():

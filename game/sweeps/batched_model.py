@@ -8,11 +8,11 @@ from typing import Any, cast
 import numpy as np
 from numpy.typing import NDArray
 
-from components.derived import DERIVATIONS
-from components.field import Column, Field, Role
-from components.model import Model
-from components.numeric_range import is_computed_with, is_extreme
-from components.world import World
+from pinjoint.components.derived import DERIVATIONS
+from pinjoint.components.field import Column, Field, Role
+from pinjoint.components.model import Model
+from pinjoint.components.numeric_range import is_computed_with, is_extreme
+from pinjoint.components.world import World
 
 _TABLES = ("particles", "rods", "loads", "environment", "settings", "clock")
 

@@ -9,22 +9,23 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from components.field import Column, FieldError
-from components.rod import bends
-from components.settings import AUTOMATIC
-from game.commands.reports.results import reported
-from game.documents.format import ModelError
-from game.paths import ENERGIES, EVERY, PathError, Target, locate, settable
-from game.sweeps.batch import Batch
-from game.sweeps.batch_program import BatchProgram
-from game.sweeps.batched_model import BatchedModel
-from game.sweeps.measure import Measure
-from game.sweeps.plan import Plan, Record
-from game.sweeps.variant_runner import VariantRunner
-from game.sweeps.variation import Random, Value
-from systems.physics.automatic import SMALL, stiffnesses, suited_to
-from systems.program.binding import ProgramError
-from systems.run.policy import at_rest_since, energy_is_off
+from pinjoint.commands.reports.results import reported
+from pinjoint.components.field import Column, FieldError
+from pinjoint.components.rod import bends
+from pinjoint.components.settings import AUTOMATIC
+from pinjoint.documents.format import ModelError
+from pinjoint.paths import ENERGIES, EVERY, PathError, Target, locate, settable
+from pinjoint.sweeps.batch import Batch
+from pinjoint.sweeps.batch_program import BatchProgram
+from pinjoint.sweeps.batched_model import BatchedModel
+from pinjoint.sweeps.measure import Measure
+from pinjoint.sweeps.plan import Plan, Record
+from pinjoint.sweeps.variant_runner import VariantRunner
+from pinjoint.sweeps.variation import Random, Value
+from pinjoint.systems import is_ours
+from pinjoint.systems.physics.automatic import SMALL, stiffnesses, suited_to
+from pinjoint.systems.program.binding import ProgramError
+from pinjoint.systems.run.policy import at_rest_since, energy_is_off
 
 MOST_NUMBERS = 2_000_000  # in the largest array of a batch: of stiffness, rods × directions of particles
 # What makes another model of it, or lets its parts rest by themselves.
@@ -68,7 +69,7 @@ class Batches:
             and bool(np.isnan(model.rods.second_moment).all())
             and model.clock.step_size == 0.0  # it has not begun
             and len(placed) <= 1  # two could meet on the way, which is refused
-            and all(type(system).__module__.startswith("systems.") for system in self._runner.step_systems)
+            and all(is_ours(type(system).__module__) for system in self._runner.step_systems)
             and all(self._is_number(target) for target in self._targets)
         )
 

@@ -10,12 +10,12 @@ from contextlib import contextmanager
 from dataclasses import dataclass, field
 from typing import Any
 
-from components.language import ENGLISH, spoken, tr
-from game.sweeps.batches import Batches
-from game.sweeps.plan import Outcome, Plan, Record
-from game.sweeps.variant_runner import VariantRunner
-from game.sweeps.variation import INSTALL, SweepError
-from systems.program.parallel import VARIABLE, cores
+from pinjoint.components.language import ENGLISH, spoken, tr
+from pinjoint.sweeps.batches import Batches
+from pinjoint.sweeps.plan import Outcome, Plan, Record
+from pinjoint.sweeps.variant_runner import VariantRunner
+from pinjoint.sweeps.variation import INSTALL, SweepError
+from pinjoint.systems.program.parallel import VARIABLE, cores
 
 MOST_IN_A_TASK = 64  # variants; what a kill loses at most of each worker
 TASKS_PER_WORKER = 16  # so that no worker waits long for another's last task

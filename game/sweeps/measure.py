@@ -9,13 +9,13 @@ from functools import partial, reduce
 from operator import getitem
 from typing import Any
 
-from components.field import Field
-from components.language import joined, marked, tr
-from components.model import Model
-from components.table import Table
-from game.commands.reports.results import State, reported
-from game.paths import EVERY, PathError, energy_named, locate
-from game.sweeps.variation import SweepError
+from pinjoint.commands.reports.results import State, reported
+from pinjoint.components.field import Field
+from pinjoint.components.language import joined, marked, tr
+from pinjoint.components.model import Model
+from pinjoint.components.table import Table
+from pinjoint.paths import EVERY, PathError, energy_named, locate
+from pinjoint.sweeps.variation import SweepError
 
 _OF_THE_RUN = ("residual", "collisions")
 _ANYWAY = ("time", "load_factor")  # columns that every result has

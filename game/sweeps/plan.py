@@ -12,16 +12,16 @@ from typing import Any
 import msgspec
 import numpy as np
 
-from components.language import english, tr
-from game import __version__
-from game.commands.reports.report import Analysis
-from game.documents import models
-from game.documents.open_documents import file_of
-from game.mods import MODS, load
-from game.mods.mod import INCLUDED
-from game.paths import apply_override
-from game.sweeps.measure import Measure, read_measures
-from game.sweeps.variation import (
+from pinjoint import __version__
+from pinjoint.commands.reports.report import Analysis
+from pinjoint.components.language import english, tr
+from pinjoint.documents import models
+from pinjoint.documents.open_documents import file_of
+from pinjoint.mods import MODS, load
+from pinjoint.mods.mod import INCLUDED
+from pinjoint.paths import apply_override
+from pinjoint.sweeps.measure import Measure, read_measures
+from pinjoint.sweeps.variation import (
     FORMS,
     MOST_VARIANTS,
     Random,

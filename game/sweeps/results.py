@@ -12,12 +12,12 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from components import written
-from components.language import tr
-from game.commands.reports.report import FOUND
-from game.documents.models import replace
-from game.sweeps.plan import RECORDED, Plan
-from game.sweeps.variation import INSTALL, Random, SweepError, Values
+from pinjoint.commands.reports.report import FOUND
+from pinjoint.components import written
+from pinjoint.components.language import tr
+from pinjoint.documents.models import replace
+from pinjoint.sweeps.plan import RECORDED, Plan
+from pinjoint.sweeps.variation import INSTALL, Random, SweepError, Values
 
 SUFFIXES = (".csv", ".parquet")
 _NEEDED = {".parquet": "pyarrow", ".png": "matplotlib"}

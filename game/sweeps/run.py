@@ -12,12 +12,12 @@ from typing import Any, BinaryIO, TextIO
 
 import msgspec
 
-from components.language import tr
-from game.commands.reports.report import Analysis
-from game.sweeps.execution import compute_all
-from game.sweeps.plan import FAILED, Outcome, Plan, plan_of
-from game.sweeps.results import Results, check_output
-from game.sweeps.variation import SweepError, Value
+from pinjoint.commands.reports.report import Analysis
+from pinjoint.components.language import tr
+from pinjoint.sweeps.execution import compute_all
+from pinjoint.sweeps.plan import FAILED, Outcome, Plan, plan_of
+from pinjoint.sweeps.results import Results, check_output
+from pinjoint.sweeps.variation import SweepError, Value
 
 Progress = Callable[[int, int, int], None]  # done, of how many, failed
 

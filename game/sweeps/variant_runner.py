@@ -5,14 +5,14 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator
 from contextlib import contextmanager
 
-from components.snapshot import Snapshot
-from game.documents import models
-from game.paths import apply_override
-from game.sweeps.plan import Plan, Record
-from systems.base import StepSystem
-from systems.catalogue import all_systems
-from systems.run.simulation import Simulation
-from systems.schedule import Schedule
+from pinjoint.components.snapshot import Snapshot
+from pinjoint.documents import models
+from pinjoint.paths import apply_override
+from pinjoint.sweeps.plan import Plan, Record
+from pinjoint.systems.base import StepSystem
+from pinjoint.systems.catalogue import all_systems
+from pinjoint.systems.run.simulation import Simulation
+from pinjoint.systems.schedule import Schedule
 
 
 class VariantRunner:

@@ -11,11 +11,11 @@ from typing import Any
 
 import numpy as np
 
-from components.language import joined, marked, tr
-from components.mistake import Mistake
-from components.model import Model
-from components.wording import cut
-from game.paths import EVERY, PathError, Target, locate, read_value, settable
+from pinjoint.components.language import joined, marked, tr
+from pinjoint.components.mistake import Mistake
+from pinjoint.components.model import Model
+from pinjoint.components.wording import cut
+from pinjoint.paths import EVERY, PathError, Target, locate, read_value, settable
 
 Value = float | bool | str | None
 

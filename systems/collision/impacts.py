@@ -8,11 +8,11 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from components import written
-from components.language import tr
-from components.model import Model
-from components.obstacles import obstacles
-from components.table import read_only
+from pinjoint.components import written
+from pinjoint.components.language import tr
+from pinjoint.components.model import Model
+from pinjoint.components.obstacles import obstacles
+from pinjoint.components.table import read_only
 
 MOST_KEPT = 2**22  # impacts; of longer runs the earliest are forgotten
 _COLUMNS = ("time", "first", "second", "impulse", "energy_lost", "x", "y")

@@ -8,12 +8,12 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from components.language import joined, plural
-from components.model import Model
-from components.obstacles import NO_OBSTACLES, Obstacles, obstacles
-from components.rod import nodes
-from systems.broad_phase import Floats, Rows, near_pairs, nearest
-from systems.program.compiler import LONGEST_WORK, GeneratedModule, entries_to
+from pinjoint.components.language import joined, plural
+from pinjoint.components.model import Model
+from pinjoint.components.obstacles import NO_OBSTACLES, Obstacles, obstacles
+from pinjoint.components.rod import nodes
+from pinjoint.systems.broad_phase import Floats, Rows, near_pairs, nearest
+from pinjoint.systems.program.compiler import LONGEST_WORK, GeneratedModule, entries_to
 
 SLACK = 1e-13  # of the reach of two discs: a smaller overlap is round-off
 AROUND = 1.5  # radii: the neighbours of a disc within it are moved apart at a time
@@ -28,7 +28,7 @@ Among = Callable[[Rows], NDArray[np.bool_]]
 
 
 def _contents() -> tuple[str, dict[str, Callable[..., Any]]]:
-    from systems.collision.kernels import overlap
+    from pinjoint.systems.collision.kernels import overlap
 
     return entries_to({"part": overlap.separate})
 

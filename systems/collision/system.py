@@ -7,12 +7,12 @@ import math
 import numpy as np
 from numpy.typing import NDArray
 
-from components.collision_state import PersistentContacts
-from components.language import marked
-from components.model import Model
-from components.obstacles import any_obstacles, obstacles
-from systems.base import Integrator, StepSystem
-from systems.broad_phase import nearest
+from pinjoint.components.collision_state import PersistentContacts
+from pinjoint.components.language import marked
+from pinjoint.components.model import Model
+from pinjoint.components.obstacles import any_obstacles, obstacles
+from pinjoint.systems.base import Integrator, StepSystem
+from pinjoint.systems.broad_phase import nearest
 
 REST_HEIGHT = 1e-9  # of the smaller radius; bounces that would rise less end in contact
 
@@ -29,7 +29,7 @@ class Collision(StepSystem):
     reads = ("particles.radius", "particles.mobility", "settings.restitution")
     writes = ("particles.velocity", "clock.collisions", "clock.dissipated_impact")
     impulsive = True
-    between = "systems.collision.driven.compiled:BETWEEN"
+    between = "pinjoint.systems.collision.driven.compiled:BETWEEN"
 
     def needs(self, model: Model) -> bool:
         return model.settings.collisions and can_touch(model)

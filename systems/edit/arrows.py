@@ -4,11 +4,11 @@ from __future__ import annotations
 
 import numpy as np
 
-from components.field import Vector
-from components.model import Model
-from components.round_numbers import round_down
-from components.view import View
-from systems.edit.placing import SNAP_REACH
+from pinjoint.components.field import Vector
+from pinjoint.components.model import Model
+from pinjoint.components.round_numbers import round_down
+from pinjoint.components.view import View
+from pinjoint.systems.edit.placing import SNAP_REACH
 
 COMFORTABLE = 100.0  # points, length of an arrow of usual size
 USUAL_STRAIN = 1e-3  # of a loaded structure, where no force is known yet

@@ -10,16 +10,16 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from components.bent import deflected
-from components.derived import chord_rotation
-from components.field import SAVED
-from components.language import begun, marked, plural, tr
-from components.model import Model
-from components.particle import Particle
-from components.rod import Rod
-from components.slider import SetSliders
-from components.wording import quoted
-from systems.edit import Refusal
+from pinjoint.components.bent import deflected
+from pinjoint.components.derived import chord_rotation
+from pinjoint.components.field import SAVED
+from pinjoint.components.language import begun, marked, plural, tr
+from pinjoint.components.model import Model
+from pinjoint.components.particle import Particle
+from pinjoint.components.rod import Rod
+from pinjoint.components.slider import SetSliders
+from pinjoint.components.wording import quoted
+from pinjoint.systems.edit import Refusal
 
 MOST_PARTS = 1000
 DIVISIONS = {

@@ -6,15 +6,15 @@ from collections.abc import Callable
 from dataclasses import replace
 from typing import Any
 
-from components.field import Vector
-from components.handle import Handle
-from components.kind import outlines
-from components.language import marked
-from components.model import Model
-from components.tags import Hovered
-from components.view import View
-from systems.base import Phase, System
-from systems.edit.picking import pick
+from pinjoint.components.field import Vector
+from pinjoint.components.handle import Handle
+from pinjoint.components.kind import outlines
+from pinjoint.components.language import marked
+from pinjoint.components.model import Model
+from pinjoint.components.tags import Hovered
+from pinjoint.components.view import View
+from pinjoint.systems.base import Phase, System
+from pinjoint.systems.edit.picking import pick
 
 Picked = Callable[[Model, View, Vector], Handle | None]  # what lies under a pixel
 

@@ -1,6 +1,6 @@
 """Kernels of editing: the pull of a person's hand."""
 
-from systems.kernels import compiled
+from pinjoint.systems.kernels import compiled
 
 
 @compiled

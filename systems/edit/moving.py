@@ -7,11 +7,11 @@ from collections.abc import Iterable, Mapping, Sequence
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from components.field import Vector
-from components.handle import Handle
-from components.model import Model
-from components.view import View
-from systems.edit.placing import resolution
+from pinjoint.components.field import Vector
+from pinjoint.components.handle import Handle
+from pinjoint.components.model import Model
+from pinjoint.components.view import View
+from pinjoint.systems.edit.placing import resolution
 
 Points = NDArray[np.float64]
 

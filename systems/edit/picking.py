@@ -7,15 +7,15 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from components.bent import FLAT, curved_lines
-from components.field import Vector
-from components.grid import Grid
-from components.handle import Handle
-from components.kind import outlines
-from components.model import Model
-from components.particle import Particle
-from components.rod import Rod
-from components.view import View, drawn_positions
+from pinjoint.components.bent import FLAT, curved_lines
+from pinjoint.components.field import Vector
+from pinjoint.components.grid import Grid
+from pinjoint.components.handle import Handle
+from pinjoint.components.kind import outlines
+from pinjoint.components.model import Model
+from pinjoint.components.particle import Particle
+from pinjoint.components.rod import Rod
+from pinjoint.components.view import View, drawn_positions
 
 Numbers = NDArray[np.float64]
 

@@ -6,14 +6,14 @@ import math
 
 import numpy as np
 
-from components.field import Vector
-from components.handle import Handle
-from components.language import begun, tr
-from components.model import Model
-from components.particle import Particle
-from components.view import View, drawn_positions
-from systems.edit import Refusal
-from systems.edit.picking import PARTICLE_REACH, pick_point
+from pinjoint.components.field import Vector
+from pinjoint.components.handle import Handle
+from pinjoint.components.language import begun, tr
+from pinjoint.components.model import Model
+from pinjoint.components.particle import Particle
+from pinjoint.components.view import View, drawn_positions
+from pinjoint.systems.edit import Refusal
+from pinjoint.systems.edit.picking import PARTICLE_REACH, pick_point
 
 SNAP_REACH = 5.0  # points from a grid line
 

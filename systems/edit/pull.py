@@ -10,14 +10,14 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from components.clock import is_error_controlled
-from components.field import Vector
-from components.language import marked
-from components.model import Model
-from components.particle import Particle
-from components.view import View
-from systems.base import Law
-from systems.edit.arrows import COMFORTABLE, usual_force
+from pinjoint.components.clock import is_error_controlled
+from pinjoint.components.field import Vector
+from pinjoint.components.language import marked
+from pinjoint.components.model import Model
+from pinjoint.components.particle import Particle
+from pinjoint.components.view import View
+from pinjoint.systems.base import Law
+from pinjoint.systems.edit.arrows import COMFORTABLE, usual_force
 
 FOLLOWS_WITHIN = 0.5  # s shown, the period of a free particle on the spring
 FOLLOWED_CLOSELY = 8  # particles without rods, among which the hand's force is followed within a step
@@ -44,7 +44,7 @@ class Pull(Law):
     name = "edit.pull"
     unneeded = marked("no hand pulls a particle")
     each = "particles"
-    kernel = "systems.edit.kernels:pull"
+    kernel = "pinjoint.systems.edit.kernels:pull"
     reads = ("particles.displacement", "particles.velocity")
     adds = ("particles.force",)
     account = "work"

@@ -9,17 +9,17 @@ from typing import Any
 
 import numpy as np
 
-from components.field import Vector
-from components.handle import Handle
-from components.language import begun, tr
-from components.model import Model
-from components.particle import Particle
-from components.rod import Rod, spawn_rods
-from components.section import USUAL_SECTION
-from components.table import flags
-from components.view import drawn_positions
-from systems.edit import Refusal
-from systems.edit.moving import rows_of
+from pinjoint.components.field import Vector
+from pinjoint.components.handle import Handle
+from pinjoint.components.language import begun, tr
+from pinjoint.components.model import Model
+from pinjoint.components.particle import Particle
+from pinjoint.components.rod import Rod, spawn_rods
+from pinjoint.components.section import USUAL_SECTION
+from pinjoint.components.table import flags
+from pinjoint.components.view import drawn_positions
+from pinjoint.systems.edit import Refusal
+from pinjoint.systems.edit.moving import rows_of
 
 # What members have of their section and material.
 MADE_OF = (

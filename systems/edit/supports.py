@@ -5,11 +5,11 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 
-from components.field import Vector
-from components.language import marked, tr
-from components.model import Model
-from components.particle import Particle
-from components.rod import rigid_joints
+from pinjoint.components.field import Vector
+from pinjoint.components.language import marked, tr
+from pinjoint.components.model import Model
+from pinjoint.components.particle import Particle
+from pinjoint.components.rod import rigid_joints
 
 Held = tuple[bool, bool, bool]  # in x, in y, and the rotation
 

@@ -6,10 +6,10 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from components.language import begun, plural, tr
-from components.model import Model
-from components.rod import Rod
-from systems.edit import Refusal
+from pinjoint.components.language import begun, plural, tr
+from pinjoint.components.model import Model
+from pinjoint.components.rod import Rod
+from pinjoint.systems.edit import Refusal
 
 GRAVITY = (0.0, -9.81)  # m/s², where the environment has no acceleration
 

@@ -7,15 +7,15 @@ from collections.abc import Sequence
 from decimal import Decimal, DecimalException
 from typing import Any
 
-from components.box import Box, number_and_unit
-from components.field import LENGTHS, Field, FieldError
-from components.form import Form
-from components.handle import Handle
-from components.language import tr
-from components.load import HISTORIES
-from components.model import Model
-from systems.forms.properties import KIND
-from systems.forms.typing import YES_NO
+from pinjoint.components.box import Box, number_and_unit
+from pinjoint.components.field import LENGTHS, Field, FieldError
+from pinjoint.components.form import Form
+from pinjoint.components.handle import Handle
+from pinjoint.components.language import tr
+from pinjoint.components.load import HISTORIES
+from pinjoint.components.model import Model
+from pinjoint.systems.forms.properties import KIND
+from pinjoint.systems.forms.typing import YES_NO
 
 
 def problem(model: Model, box: Box) -> str:

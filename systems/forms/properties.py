@@ -11,18 +11,18 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from components.bent import is_frame
-from components.box import NAME, NUMBER, TEXT, WORD, Box
-from components.field import SAVED, Field
-from components.form import Form
-from components.handle import Handle
-from components.language import joined, marked, plural, tr
-from components.load import HISTORIES, Load
-from components.model import Model
-from components.particle import Particle
-from components.rod import Rod, rigid_joints
-from components.settings import Settings
-from systems.forms.typing import YES_NO, select
+from pinjoint.components.bent import is_frame
+from pinjoint.components.box import NAME, NUMBER, TEXT, WORD, Box
+from pinjoint.components.field import SAVED, Field
+from pinjoint.components.form import Form
+from pinjoint.components.handle import Handle
+from pinjoint.components.language import joined, marked, plural, tr
+from pinjoint.components.load import HISTORIES, Load
+from pinjoint.components.model import Model
+from pinjoint.components.particle import Particle
+from pinjoint.components.rod import Rod, rigid_joints
+from pinjoint.components.settings import Settings
+from pinjoint.systems.forms.typing import YES_NO, select
 
 MIXED = marked("mixed")
 KIND = "kind"  # the part of a history that is its kind

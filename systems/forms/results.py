@@ -9,15 +9,15 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from components import written
-from components.field import CM, Field, Role
-from components.form import Form, Reading
-from components.handle import Handle
-from components.language import marked, tr, tr_in
-from components.load import CONSTANT, Load, factor_at
-from components.model import Model
-from components.particle import Particle
-from components.rod import Rod, rigid_joints, utilisation
+from pinjoint.components import written
+from pinjoint.components.field import CM, Field, Role
+from pinjoint.components.form import Form, Reading
+from pinjoint.components.handle import Handle
+from pinjoint.components.language import marked, tr, tr_in
+from pinjoint.components.load import CONSTANT, Load, factor_at
+from pinjoint.components.model import Model
+from pinjoint.components.particle import Particle
+from pinjoint.components.rod import Rod, rigid_joints, utilisation
 
 SECTION = marked("Results")
 RESIDUAL = 1e-12  # of a length (m), force (kN) or speed (m/s): nothing, where all of them are as small

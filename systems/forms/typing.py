@@ -5,12 +5,12 @@ from __future__ import annotations
 import re
 from collections.abc import Sequence
 
-from components.box import FILE_NAME, NAME, NUMBER, TEXT, Box, fits_file_names
-from components.field import LENGTHS
-from components.form import Form
-from components.language import joined, marked, tr
-from components.tags import Selected
-from components.wording import cut
+from pinjoint.components.box import FILE_NAME, NAME, NUMBER, TEXT, Box, fits_file_names
+from pinjoint.components.field import LENGTHS
+from pinjoint.components.form import Form
+from pinjoint.components.language import joined, marked, tr
+from pinjoint.components.tags import Selected
+from pinjoint.components.wording import cut
 
 YES_NO = (marked("no"), marked("yes"))
 MOST_CHARACTERS = 200  # in one box

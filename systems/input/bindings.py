@@ -5,8 +5,8 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 from functools import cache
 
-from components.language import marked, tr
-from components.suggestions import missing
+from pinjoint.components.language import marked, tr
+from pinjoint.components.suggestions import missing
 
 SIMULATION, PAUSE = "simulation", "pause"
 PROPERTIES, SAVE, LOAD, FORCE_METHOD = "properties", "save", "load", "force method"

@@ -2,7 +2,7 @@
 
 import math
 
-from systems.kernels import compiled
+from pinjoint.systems.kernels import compiled
 
 
 @compiled

@@ -8,11 +8,11 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from components.language import marked
-from components.load import CONSTANT, HISTORIES, HistoryKind, flattened
-from components.model import Model
-from components.rod import bends
-from systems.base import Law
+from pinjoint.components.language import marked
+from pinjoint.components.load import CONSTANT, HISTORIES, HistoryKind, flattened
+from pinjoint.components.model import Model
+from pinjoint.components.rod import bends
+from pinjoint.systems.base import Law
 
 
 class VaryingLoads(Law):

@@ -6,13 +6,13 @@ import math
 
 import numpy as np
 
-from components.load import loads_end
-from components.model import Model
-from components.numeric_range import incomputable
-from components.rod import bends
-from systems.physics.bending import deformations, free_coordinates
-from systems.physics.pace import loaded_mode
-from systems.physics.spectrum import Array, FrameOperator, RodOperator
+from pinjoint.components.load import loads_end
+from pinjoint.components.model import Model
+from pinjoint.components.numeric_range import incomputable
+from pinjoint.components.rod import bends
+from pinjoint.systems.physics.bending import deformations, free_coordinates
+from pinjoint.systems.physics.pace import loaded_mode
+from pinjoint.systems.physics.spectrum import Array, FrameOperator, RodOperator
 
 SMALL = 200  # rods up to which the modes of a model are found in no time, and steps cost next to nothing
 AFFORDABLE = 5000  # rods up to which error control keeps up with a person's eye

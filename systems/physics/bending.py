@@ -5,10 +5,10 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from components.derived import chord_rotation
-from components.diagrams import rigid_slopes
-from components.model import Model
-from components.rod import bends
+from pinjoint.components.derived import chord_rotation
+from pinjoint.components.diagrams import rigid_slopes
+from pinjoint.components.model import Model
+from pinjoint.components.rod import bends
 
 Array = NDArray[np.float64]
 

@@ -8,13 +8,13 @@ from __future__ import annotations
 import math
 from typing import Any, ClassVar
 
-from components import settings
-from systems.base import Integrator
-from systems.physics.tableaus import CLASSICAL, DORMAND_PRINCE_8, KENNEDY_CARPENTER_4, Tableau
+from pinjoint.components import settings
+from pinjoint.systems.base import Integrator
+from pinjoint.systems.physics.tableaus import CLASSICAL, DORMAND_PRINCE_8, KENNEDY_CARPENTER_4, Tableau
 
-_RUNGE_KUTTA = "systems.program.templates.runge_kutta"
-_IMPLICIT = "systems.program.templates.implicit"
-_FIXED_STEPS = "systems.program.templates.fixed_steps"
+_RUNGE_KUTTA = "pinjoint.systems.program.templates.runge_kutta"
+_IMPLICIT = "pinjoint.systems.program.templates.implicit"
+_FIXED_STEPS = "pinjoint.systems.program.templates.fixed_steps"
 
 _CHECKS = (f"{_FIXED_STEPS}:is_check_due", f"{_FIXED_STEPS}:steps_to_check")
 _PLAIN = (*_CHECKS, f"{_FIXED_STEPS}:push")
@@ -177,7 +177,9 @@ class ImplicitRungeKutta4(RungeKutta4):
         return math.inf
 
 
-INTEGRATORS: dict[str, Integrator] = {}  # by the name that models use; components.settings describes them
+INTEGRATORS: dict[
+    str, Integrator
+] = {}  # by the name that models use; pinjoint.components.settings describes them
 
 
 def register_integrator(integrator: Integrator) -> None:

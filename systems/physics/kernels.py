@@ -2,9 +2,9 @@
 
 import math
 
-from systems.base import StopReason
-from systems.entries import SMALLEST_ENERGY, Account, Measure
-from systems.kernels import compiled, part
+from pinjoint.systems.base import StopReason
+from pinjoint.systems.entries import SMALLEST_ENERGY, Account, Measure
+from pinjoint.systems.kernels import compiled, part
 
 REST_RESIDUAL = 2e-9  # of the largest force, so that sums of residuals are within 1e-8; larger: rests sooner
 SMALL_SHARE = 1e-3  # of the largest force ever, taken as scale where all forces die out

@@ -7,12 +7,12 @@ import math
 import numpy as np
 from numpy.typing import NDArray
 
-from components.load import loads_end
-from components.model import Model
-from components.numeric_range import incomputable
-from components.rod import bends
-from components.round_numbers import round_near
-from systems.physics.bending import deformations, free_coordinates
+from pinjoint.components.load import loads_end
+from pinjoint.components.model import Model
+from pinjoint.components.numeric_range import incomputable
+from pinjoint.components.rod import bends
+from pinjoint.components.round_numbers import round_near
+from pinjoint.systems.physics.bending import deformations, free_coordinates
 
 Array = NDArray[np.float64]
 

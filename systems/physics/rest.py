@@ -7,11 +7,11 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from components.model import Model
-from components.rod import bends
-from systems.entries import MEASURED, Measure
-from systems.islands import Rows
-from systems.physics.bending import bending_energy, bowing_work, levers
+from pinjoint.components.model import Model
+from pinjoint.components.rod import bends
+from pinjoint.systems.entries import MEASURED, Measure
+from pinjoint.systems.islands import Rows
+from pinjoint.systems.physics.bending import bending_energy, bowing_work, levers
 
 Array = NDArray[np.float64]
 Mask = NDArray[np.bool_]
@@ -88,7 +88,10 @@ class RestMeasure:
         of_particle, of_rod: the island of each. force_scale (kN), energy_scale (J): of the clock, one for all islands
         or one for each.
         """
-        from systems.physics.kernels import REST_RESIDUAL, SMALL_SHARE  # imports numba, with the first program
+        from pinjoint.systems.physics.kernels import (  # imports numba, with the first program
+            REST_RESIDUAL,
+            SMALL_SHARE,
+        )
 
         count = int(of_particle.max(initial=0)) + 1
         largest = _largest(count, (of_particle, self.load), (of_rod, self.pull))
@@ -126,7 +129,7 @@ def rests_unseen(measures: Array, lost: float, damped: float, energy_scale: floa
 
     measures: as of Program. lost: by the steps (J). damped: taken by dampers and drag (J).
     """
-    from systems.physics.kernels import LOST_UNSEEN
+    from pinjoint.systems.physics.kernels import LOST_UNSEEN
 
     residual, largest = measures[Measure.RESIDUAL], measures[Measure.LARGEST_FORCE]
     is_still = residual <= UNSEEN * largest and measures[Measure.KINETIC] <= UNSEEN**2 * energy_scale

@@ -9,9 +9,9 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from components.model import Model
-from components.rod import bends
-from systems.physics.bending import slopes
+from pinjoint.components.model import Model
+from pinjoint.components.rod import bends
+from pinjoint.systems.physics.bending import slopes
 
 Array = NDArray[np.float64]
 

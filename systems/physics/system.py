@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-from components.language import marked
-from components.model import Model
-from components.rod import bends, has_cables, has_plastic_strain, is_curved
-from systems.base import Law
+from pinjoint.components.language import marked
+from pinjoint.components.model import Model
+from pinjoint.components.rod import bends, has_cables, has_plastic_strain, is_curved
+from pinjoint.systems.base import Law
 
 
 class Elasticity(Law):
@@ -14,7 +14,7 @@ class Elasticity(Law):
     name = "physics.elasticity"
     unneeded = marked("the model has no rods, or some have yielded or can (physics.elasticity_after_yielding)")
     elastic = True
-    kernel = "systems.physics.kernels:elastic"
+    kernel = "pinjoint.systems.physics.kernels:elastic"
     reads = ("rods.stiffness", "rods.rest_length")
     adds = ("rods.axial_force",)
 
@@ -28,7 +28,7 @@ class ElasticityAfterYielding(Law):
     name = "physics.elasticity_after_yielding"
     unneeded = marked("no rod has yielded or can")
     elastic = True
-    kernel = "systems.physics.kernels:elastic_after_yielding"
+    kernel = "pinjoint.systems.physics.kernels:elastic_after_yielding"
     reads = ("rods.stiffness", "rods.rest_length", "rods.plastic_strain")
     adds = ("rods.axial_force",)
 
@@ -41,7 +41,7 @@ class AxialDamping(Law):
 
     name = "physics.axial_damping"
     unneeded = marked("no rod has a damper, or there are cables (physics.axial_damping_of_cables)")
-    kernel = "systems.physics.kernels:axial_damper"
+    kernel = "pinjoint.systems.physics.kernels:axial_damper"
     reads = ("rods.damping",)
     adds = ("rods.axial_force",)
     account = "dissipated_damping"
@@ -56,9 +56,9 @@ class Slackness(Law):
     name = "physics.slackness"
     elastic = True
     unneeded = marked("the model has no cables")
-    kernel = "systems.physics.kernels:taut"
-    branch = "systems.physics.kernels:slack_branch"
-    margin = "systems.physics.kernels:slack_margin"
+    kernel = "pinjoint.systems.physics.kernels:taut"
+    branch = "pinjoint.systems.physics.kernels:slack_branch"
+    margin = "pinjoint.systems.physics.kernels:slack_margin"
     after = ("physics.elasticity", "physics.elasticity_after_yielding")
     reads = ("rods.tension_only", "rods.rest_length", "rods.plastic_strain")
     adds = ("rods.axial_force",)
@@ -72,7 +72,7 @@ class AxialDampingOfCables(Law):
 
     name = "physics.axial_damping_of_cables"
     unneeded = marked("the model has no cables with dampers")
-    kernel = "systems.physics.kernels:taut_damper"
+    kernel = "pinjoint.systems.physics.kernels:taut_damper"
     reads = ("rods.damping", "rods.tension_only")
     adds = ("rods.axial_force",)
     account = "dissipated_damping"
@@ -87,8 +87,8 @@ class Bending(Law):
     name = "physics.bending"
     unneeded = marked("no rod bends, or some are warmer on one side (physics.bending_of_warped)")
     each = "ends"
-    kernel = "systems.physics.kernels:bending"
-    potential = "systems.physics.kernels:bending_energy"
+    kernel = "pinjoint.systems.physics.kernels:bending"
+    potential = "pinjoint.systems.physics.kernels:bending_energy"
     reads = ("rods.end_stiffness",)
     adds = ("rods.end_moment",)
 
@@ -102,8 +102,8 @@ class BendingOfWarped(Law):
     name = "physics.bending_of_warped"
     unneeded = marked("no rod that bends is warmer on one side")
     each = "ends"
-    kernel = "systems.physics.kernels:warped"
-    potential = "systems.physics.kernels:warped_energy"
+    kernel = "pinjoint.systems.physics.kernels:warped"
+    potential = "pinjoint.systems.physics.kernels:warped_energy"
     reads = ("rods.end_stiffness", "rods.initial_slopes")
     adds = ("rods.end_moment",)
 
@@ -117,7 +117,7 @@ class BendingDamping(Law):
     name = "physics.bending_damping"
     unneeded = marked("no rod that bends has a damper")
     each = "ends"
-    kernel = "systems.physics.kernels:bending_damper"
+    kernel = "pinjoint.systems.physics.kernels:bending_damper"
     reads = ("rods.end_damping",)
     adds = ("rods.end_moment",)
     account = "dissipated_damping"
@@ -132,7 +132,7 @@ class TurningDrag(Law):
     name = "physics.turning_drag"
     unneeded = marked("the drag of the environment is 0, or no rod bends")
     each = "rotations"
-    kernel = "systems.physics.kernels:turning_drag"
+    kernel = "pinjoint.systems.physics.kernels:turning_drag"
     reads = ("particles.inertia", "particles.angular_velocity", "environment.drag")
     adds = ("particles.applied_moment",)
     account = "dissipated_damping"
@@ -147,7 +147,7 @@ class Drag(Law):
     name = "physics.drag"
     unneeded = marked("the drag of the environment is 0")
     each = "particles"
-    kernel = "systems.physics.kernels:drag"
+    kernel = "pinjoint.systems.physics.kernels:drag"
     reads = ("particles.mass", "particles.velocity", "environment.drag")
     adds = ("particles.force",)
     account = "dissipated_damping"

@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-from components.language import marked
-from components.model import Model
-from components.rod import can_yield
-from systems.base import Commit, Law
+from pinjoint.components.language import marked
+from pinjoint.components.model import Model
+from pinjoint.components.rod import can_yield
+from pinjoint.systems.base import Commit, Law
 
 
 class Strength(Law):
@@ -14,7 +14,7 @@ class Strength(Law):
     name = "plasticity.strength"
     elastic = True
     unneeded = marked("no rod can yield: strengths are unlimited, or settings.plasticity is off")
-    kernel = "systems.plasticity.kernels:limited"
+    kernel = "pinjoint.systems.plasticity.kernels:limited"
     after = ("physics.elasticity_after_yielding",)
     reads = ("rods.tension_limit", "rods.compression_limit")
     adds = ("rods.axial_force",)
@@ -28,9 +28,9 @@ class Yielding(Commit):
 
     name = "plasticity.yielding"
     unneeded = marked("no rod can yield: strengths are unlimited, or settings.plasticity is off")
-    kernel = "systems.plasticity.kernels:yielded"
-    branch = "systems.plasticity.kernels:branch"
-    margin = "systems.plasticity.kernels:margin"
+    kernel = "pinjoint.systems.plasticity.kernels:yielded"
+    branch = "pinjoint.systems.plasticity.kernels:branch"
+    margin = "pinjoint.systems.plasticity.kernels:margin"
     reads = ("rods.stiffness", "rods.rest_length", "rods.tension_limit", "rods.compression_limit")
     writes = ("rods.plastic_strain",)
 
@@ -43,7 +43,7 @@ class FirstYield(Commit):
 
     name = "plasticity.first_yield"
     unneeded = Yielding.unneeded
-    kernel = "systems.plasticity.kernels:first_yield"
+    kernel = "pinjoint.systems.plasticity.kernels:first_yield"
     notes = True
     reads = ("rods.tension_limit", "rods.compression_limit")
     writes = ("rods.yielded_at",)

@@ -6,11 +6,11 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from typing import Any
 
-from components.field import Column
-from components.model import Model
-from systems.interpreter import in_lists
-from systems.kernels import Kernel
-from systems.program.compiler import GeneratedModule
+from pinjoint.components.field import Column
+from pinjoint.components.model import Model
+from pinjoint.systems.interpreter import in_lists
+from pinjoint.systems.kernels import Kernel
+from pinjoint.systems.program.compiler import GeneratedModule
 
 
 @dataclass(frozen=True)
@@ -29,7 +29,7 @@ class Between:
     def functions(self, *, compiled: bool) -> list[Any]:
         """The kernels in one of their forms, to hand to a program in the same."""
         if compiled:
-            from systems.machine_code import addressed
+            from pinjoint.systems.machine_code import addressed
 
             form = self.module.form if self.module.is_loaded else self.module.load()
             return [addressed(getattr(form, kernel.py_func.__name__)) for kernel in self.kernels]

@@ -13,14 +13,15 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from components.field import Role
-from components.language import marked, tr
-from components.model import Model
-from components.wording import is_identifier
-from systems.base import Commit, Event, Law, StepSystem
-from systems.entries import ACCOUNTS
-from systems.interpreter import plain_function
-from systems.program.chance import source_of_chance
+from pinjoint.components.field import Role
+from pinjoint.components.language import marked, tr
+from pinjoint.components.model import Model
+from pinjoint.components.wording import is_identifier
+from pinjoint.systems import is_ours
+from pinjoint.systems.base import Commit, Event, Law, StepSystem
+from pinjoint.systems.entries import ACCOUNTS
+from pinjoint.systems.interpreter import plain_function
+from pinjoint.systems.program.chance import source_of_chance
 
 _TO_COMMITS = ("elongation", "axial_force", "time", "dt")
 PROVIDED_TO: Mapping[str, tuple[str, ...]] = {  # by what the kernel is called for
@@ -105,7 +106,7 @@ class Bound:
     @property
     def is_ours(self) -> bool:
         """True if its kernel is Pinjoint's own."""
-        return str(plain_function(self.function).__module__).startswith("systems.")
+        return is_ours(plain_function(self.function).__module__)
 
     @property
     def prefix(self) -> str:
@@ -225,7 +226,7 @@ def _bound(system: StepSystem, model: Model, kernel: str) -> Bound:
     if plain is None:
         raise ProgramError(
             tr(
-                "The kernel of {system} is not compiled; put `@compiled` of game.api above it.",
+                "The kernel of {system} is not compiled; put `@compiled` of pinjoint.api above it.",
                 system=system.name,
             )
         )

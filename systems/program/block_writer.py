@@ -7,12 +7,12 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
 
-from systems.entries import ACCOUNTS
-from systems.program.binding import Bound, StepRole
-from systems.program.loops import RodLoop
-from systems.program.names import PREDICTED, RESISTED, TRIAL_STATE
-from systems.program.pasting import indented
-from systems.program.writer import Writer, accounts_of
+from pinjoint.systems.entries import ACCOUNTS
+from pinjoint.systems.program.binding import Bound, StepRole
+from pinjoint.systems.program.loops import RodLoop
+from pinjoint.systems.program.names import PREDICTED, RESISTED, TRIAL_STATE
+from pinjoint.systems.program.pasting import indented
+from pinjoint.systems.program.writer import Writer, accounts_of
 
 _RODS = "block_rods[block], block_rods[block + 1]"
 _PARTICLES = "first, last"
@@ -20,7 +20,7 @@ _LIMITS = ("first = np.uint64(block_particles[block])", "last = np.uint64(block_
 _COMPLETED = f"{TRIAL_STATE}, *foreseen"
 _MOVED = f"{_COMPLETED}, ending"
 _PARALLEL = """\
-from systems.kernels import prange, shared
+from pinjoint.systems.kernels import prange, shared
 parallel = shared()
 """
 

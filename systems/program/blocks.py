@@ -15,7 +15,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from components.model import Model
+from pinjoint.components.model import Model
 
 BLOCK = 8192  # rods in a block at most, about: their particles stay in the cache of one core
 SHARES = 8  # the number of blocks is a multiple of this: 2, 4 or 8 cores get equal shares

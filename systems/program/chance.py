@@ -9,7 +9,7 @@ from collections.abc import Callable
 from types import ModuleType
 from typing import Any
 
-from systems.interpreter import plain_function
+from pinjoint.systems.interpreter import plain_function
 
 _MODULES = ("random", "numpy.random")
 

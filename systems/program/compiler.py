@@ -24,14 +24,14 @@ from pathlib import Path
 from types import MappingProxyType, ModuleType, SimpleNamespace
 from typing import Any
 
-from components.language import begun, tr
-from components.mistake import Mistake
-from systems import cache
-from systems.interpreter import FORMS, NoPlainForm, Rewriting, plain_function, rewrite
-from systems.kernels import Kernel, Use
-from systems.kinds import Kind, typed
-from systems.program.endless import ending, others_of
-from systems.program.identity import key_of, reached_from
+from pinjoint.components.language import begun, tr
+from pinjoint.components.mistake import Mistake
+from pinjoint.systems import cache
+from pinjoint.systems.interpreter import FORMS, NoPlainForm, Rewriting, plain_function, rewrite
+from pinjoint.systems.kernels import Kernel, Use
+from pinjoint.systems.kinds import Kind, typed
+from pinjoint.systems.program.endless import ending, others_of
+from pinjoint.systems.program.identity import key_of, reached_from
 
 Kinds = tuple[Kind, ...]
 
@@ -313,7 +313,7 @@ class GeneratedModule:
                 with contextlib.suppress(OSError):
                     _note_of(self.key).unlink()
                 return False
-            from systems.machine_code import compile_for
+            from pinjoint.systems.machine_code import compile_for
 
             for name, function in (machine := self._machine()).items():
                 compile_for(function, kept, name)
@@ -327,14 +327,14 @@ class GeneratedModule:
 
     def _machine(self) -> dict[str, Callable[..., Any]]:
         """The functions, to be compiled when they are called."""
-        from systems.machine_code import adopt, machine_code
+        from pinjoint.systems.machine_code import adopt, machine_code
 
         adopt(self.module, self.key, reached_from(self._source_and_kernels[1].values()))
         return {name: machine_code(f) for name, f in self.functions.items()}
 
     def _compile(self) -> None:
         """Compile by calling everything, and keep that."""
-        from systems.machine_code import types_of
+        from pinjoint.systems.machine_code import types_of
 
         before, began, machine = self._form, time.thread_time(), self._machine()
         self._form, self._compiled = self._form_of(machine), True
@@ -385,7 +385,7 @@ def entries_to(kernels: Mapping[str, Callable[..., Any]]) -> tuple[str, dict[str
     """Source of a module with an entry to each kernel, under the given names, and the kernels as the source calls them."""
     lines = [
         '"""Entries to kernels. Generated; safe to delete."""',
-        "from systems.kernels import kept",
+        "from pinjoint.systems.kernels import kept",
         "entry = kept(_nrt=False)",
     ]
     for name, kernel in kernels.items():

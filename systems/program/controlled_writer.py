@@ -5,15 +5,15 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from typing import Any
 
-from components.model import Model
-from systems.base import Integrator, StepSystem
-from systems.entries import Mark
-from systems.program.binding import Bound, StepRole, bind
-from systems.program.loops import RodLoop
-from systems.program.names import NO_POWER, POWER_RETURNED, TRIAL_STATE
-from systems.program.pasting import fragment, pasted
-from systems.program.templates import driven, events, forces, implicit, rods
-from systems.program.writer import Writer, sides_of
+from pinjoint.components.model import Model
+from pinjoint.systems.base import Integrator, StepSystem
+from pinjoint.systems.entries import Mark
+from pinjoint.systems.program.binding import Bound, StepRole, bind
+from pinjoint.systems.program.loops import RodLoop
+from pinjoint.systems.program.names import NO_POWER, POWER_RETURNED, TRIAL_STATE
+from pinjoint.systems.program.pasting import fragment, pasted
+from pinjoint.systems.program.templates import driven, events, forces, implicit, rods
+from pinjoint.systems.program.writer import Writer, sides_of
 
 _AHEAD = 1e-3  # of a step, over which the slope of a margin is taken
 _STEADY = 1e-8  # a margin that changes less in a step is not watched
@@ -26,7 +26,9 @@ class ControlledWriter(Writer):
     """Writes step programs whose integrator needs powers at every stage, events and tangents."""
 
     def __init__(self, model: Model, systems: Sequence[StepSystem], integrator: Integrator, form: str) -> None:
-        from systems.physics.kernels import lowest  # imports numba, when a program is built, not before
+        from pinjoint.systems.physics.kernels import (
+            lowest,  # imports numba, when a program is built, not before
+        )
 
         super().__init__(model, systems, integrator, form)
         self.branches = [(bind(s, model, "branch"), bind(s, model, "margin")) for s in self.branching]

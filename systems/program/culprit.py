@@ -6,16 +6,16 @@ from collections.abc import Mapping
 
 import numpy as np
 
-from components.field import Column
-from components.language import listed, tr
-from components.model import Model
-from components.snapshot import Snapshot
-from systems.base import REVIEW_INTERVAL, Mod, StepSystem
-from systems.interpreter import plain_function
-from systems.program.binding import ROWS_OF, ProgramError, bind
-from systems.program.near_pairs import pairs_within
-from systems.program.program import MOTION, TURNING, Program
-from systems.program.reference_laws import in_turn
+from pinjoint.components.field import Column
+from pinjoint.components.language import listed, tr
+from pinjoint.components.model import Model
+from pinjoint.components.snapshot import Snapshot
+from pinjoint.systems.base import REVIEW_INTERVAL, Mod, StepSystem
+from pinjoint.systems.interpreter import plain_function
+from pinjoint.systems.program.binding import ROWS_OF, ProgramError, bind
+from pinjoint.systems.program.near_pairs import pairs_within
+from pinjoint.systems.program.program import MOTION, TURNING, Program
+from pinjoint.systems.program.reference_laws import in_turn
 
 
 def blame_mod(error: ProgramError) -> bool:

@@ -11,8 +11,9 @@ import threading
 from collections.abc import Callable, Iterable
 from typing import Any
 
-from components.language import tr
-from systems.interpreter import plain_function
+from pinjoint.components.language import tr
+from pinjoint.systems import is_ours
+from pinjoint.systems.interpreter import plain_function
 
 STATUS = 1  # of the process
 
@@ -25,7 +26,7 @@ class Patience:
 
 def others_of(kernels: Iterable[Any]) -> list[Callable[..., Any]]:
     """Those kernels that are not ours."""
-    return [k for k in kernels if callable(k) and not str(k.__module__).startswith("systems.")]
+    return [k for k in kernels if callable(k) and not is_ours(k.__module__)]
 
 
 def ending(function: Callable[..., Any], kernels: Iterable[Callable[..., Any]]) -> Callable[..., Any]:

@@ -6,13 +6,13 @@ import traceback
 from collections.abc import Callable, Iterable
 from typing import Any
 
-from components.language import marked, plural, tr
-from components.model import Model
-from systems.base import Integrator
-from systems.interpreter import NoPlainForm, plain_function
-from systems.kinds import Array, Kind, kind_of_dtype, typed
-from systems.program.binding import PROVIDED, Bound, ProgramError, shape_given
-from systems.program.compiler import Choice, Compile
+from pinjoint.components.language import marked, plural, tr
+from pinjoint.components.model import Model
+from pinjoint.systems.base import Integrator
+from pinjoint.systems.interpreter import NoPlainForm, plain_function
+from pinjoint.systems.kinds import Array, Kind, kind_of_dtype, typed
+from pinjoint.systems.program.binding import PROVIDED, Bound, ProgramError, shape_given
+from pinjoint.systems.program.compiler import Choice, Compile
 
 _RESULTS = {
     "rods": marked("one number, the axial force (kN)"),
@@ -147,7 +147,7 @@ def form_of(b: Bound, model: Model) -> Callable[..., Any]:
             return b.function
         if Choice.compile is Compile.NEVER:
             raise
-        from systems.machine_code import machine_code
+        from pinjoint.systems.machine_code import machine_code
 
         compiled: Callable[..., Any] = machine_code(b.function)
         return compiled
@@ -182,7 +182,7 @@ def _result_type(b: Bound, model: Model) -> Any:
     from numba import types
     from numba.np.numpy_support import from_dtype
 
-    from systems.machine_code import machine_code
+    from pinjoint.systems.machine_code import machine_code
 
     def type_of(parameter: str) -> Any:
         dtype = _dtype_of(b, parameter, model)

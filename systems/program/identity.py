@@ -16,10 +16,10 @@ from typing import Any
 
 import numpy as np
 
-from systems.interpreter import plain_function
-from systems.kernels import PLAIN
+from pinjoint.systems.interpreter import plain_function
+from pinjoint.systems.kernels import PLAIN
 
-_LAYOUT = 6  # of what is kept on disk: raise it where former files are of no use any more
+_LAYOUT = 7  # of what is kept on disk: raise it where former files are of no use any more
 
 
 def meaning_of(functions: Iterable[Callable[..., Any]]) -> str:

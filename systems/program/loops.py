@@ -11,7 +11,7 @@ import re
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 
-from systems.program.pasting import indented
+from pinjoint.systems.program.pasting import indented
 
 CHUNK = 64  # rods in a chunk: their values stay in the nearest cache
 # Columns read directly: LLVM checks at run time that they do not overlap scratch; with more it gives up.

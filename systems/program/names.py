@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from systems.base import StopReason
-from systems.collision.driven.columns import Order, Real, Whole
-from systems.entries import ACCOUNTS, Account, Control, Mark, Measure, Search, Side
+from pinjoint.systems.base import StopReason
+from pinjoint.systems.collision.driven.columns import Order, Real, Whole
+from pinjoint.systems.entries import ACCOUNTS, Account, Control, Mark, Measure, Search, Side
 
 ALWAYS = (
     "particles_mobility",

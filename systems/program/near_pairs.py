@@ -7,9 +7,9 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from components.field import Column
-from components.model import Model
-from systems.broad_phase import ALL_PAIRS_DISCS, Rows, near_pairs
+from pinjoint.components.field import Column
+from pinjoint.components.model import Model
+from pinjoint.systems.broad_phase import ALL_PAIRS_DISCS, Rows, near_pairs
 
 MARGIN = 0.3  # of the largest cutoff, within which pairs are listed beyond it; wider: longer lists, renewed less often
 ROOM = 1.5  # times the pairs that are near, for those that come near later

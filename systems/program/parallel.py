@@ -10,13 +10,13 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from components.field import Column
-from components.model import Model
-from systems.base import Integrator, StepSystem
-from systems.program.blocks import Layout
-from systems.program.program import Program
-from systems.program.reordered import ReorderedProgram
-from systems.program.writer import VERY_MANY, form_of
+from pinjoint.components.field import Column
+from pinjoint.components.model import Model
+from pinjoint.systems.base import Integrator, StepSystem
+from pinjoint.systems.program.blocks import Layout
+from pinjoint.systems.program.program import Program
+from pinjoint.systems.program.reordered import ReorderedProgram
+from pinjoint.systems.program.writer import VERY_MANY, form_of
 
 VARIABLE = "PINJOINT_CORES"  # of the environment
 

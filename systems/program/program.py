@@ -13,25 +13,25 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from components.field import Column, Role
-from components.handle import Handle
-from components.language import marked
-from components.load import load_breaks, loads_end
-from components.model import Model
-from systems.base import Event, Integrator, StepSystem, StopReason
-from systems.collision.driven.columns import Phase, Real, Whole
-from systems.entries import ACCOUNT, ACCOUNTS, CONTROL, Mark, Measure, Search, Side
-from systems.physics.bending import levers
-from systems.physics.kernels import conserved
-from systems.program.between import Between
-from systems.program.binding import Bound, ProgramError, bind, find
-from systems.program.block_writer import BlockWriter
-from systems.program.compiler import Choice, Compile, GeneratedModule, generated
-from systems.program.controlled_writer import ControlledWriter
-from systems.program.faults import check_results, explain, failure_of, kinds_of
-from systems.program.near_pairs import NearPairs
-from systems.program.reference_laws import in_turn
-from systems.program.writer import VERY_MANY, Writer, sides_of
+from pinjoint.components.field import Column, Role
+from pinjoint.components.handle import Handle
+from pinjoint.components.language import marked
+from pinjoint.components.load import load_breaks, loads_end
+from pinjoint.components.model import Model
+from pinjoint.systems.base import Event, Integrator, StepSystem, StopReason
+from pinjoint.systems.collision.driven.columns import Phase, Real, Whole
+from pinjoint.systems.entries import ACCOUNT, ACCOUNTS, CONTROL, Mark, Measure, Search, Side
+from pinjoint.systems.physics.bending import levers
+from pinjoint.systems.physics.kernels import conserved
+from pinjoint.systems.program.between import Between
+from pinjoint.systems.program.binding import Bound, ProgramError, bind, find
+from pinjoint.systems.program.block_writer import BlockWriter
+from pinjoint.systems.program.compiler import Choice, Compile, GeneratedModule, generated
+from pinjoint.systems.program.controlled_writer import ControlledWriter
+from pinjoint.systems.program.faults import check_results, explain, failure_of, kinds_of
+from pinjoint.systems.program.near_pairs import NearPairs
+from pinjoint.systems.program.reference_laws import in_turn
+from pinjoint.systems.program.writer import VERY_MANY, Writer, sides_of
 
 _ORIGIN = ("origin", "step_limit")
 _COUNTS = ("steps", "origin_steps")

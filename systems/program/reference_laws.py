@@ -13,19 +13,19 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from components.field import Vector
-from components.language import marked
-from components.model import Model
-from components.rod import bends
-from systems.base import StepSystem
-from systems.program.binding import Bound, ProgramError, StepRole, bind, by_role, written_row
-from systems.program.compiler import Choice, Compile, generated
-from systems.program.faults import failure_of, form_of
-from systems.program.loops import RodLoop
-from systems.program.names import DRIFT, SHIFT, SPUN, TURNED
-from systems.program.near_pairs import pairs_within
-from systems.program.pasting import fragment
-from systems.program.templates import rods
+from pinjoint.components.field import Vector
+from pinjoint.components.language import marked
+from pinjoint.components.model import Model
+from pinjoint.components.rod import bends
+from pinjoint.systems.base import StepSystem
+from pinjoint.systems.program.binding import Bound, ProgramError, StepRole, bind, by_role, written_row
+from pinjoint.systems.program.compiler import Choice, Compile, generated
+from pinjoint.systems.program.faults import failure_of, form_of
+from pinjoint.systems.program.loops import RodLoop
+from pinjoint.systems.program.names import DRIFT, SHIFT, SPUN, TURNED
+from pinjoint.systems.program.near_pairs import pairs_within
+from pinjoint.systems.program.pasting import fragment
+from pinjoint.systems.program.templates import rods
 
 Numbers = NDArray[np.float64]
 
@@ -138,7 +138,7 @@ def _compiled_loop(bound: Bound, columns: Sequence[NDArray[Any]]) -> Callable[..
         arguments = ["c0[i]", "c2", "c1[i]"]
     pair = bound.each in ("particles", "pairs", "ends", "")
     lines = [
-        "from systems.kernels import kept",
+        "from pinjoint.systems.kernels import kept",
         "@kept()",
         f"def loop({', '.join(names)}):",
         "    total = 0.0",

@@ -9,13 +9,13 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from components.field import Column, Role
-from components.model import Model
-from systems.base import Integrator, StepSystem, StopReason
-from systems.program.binding import bind, read_only
-from systems.program.blocks import Layout, Numbers
-from systems.program.names import PUSHED
-from systems.program.program import OBSERVED, Program
+from pinjoint.components.field import Column, Role
+from pinjoint.components.model import Model
+from pinjoint.systems.base import Integrator, StepSystem, StopReason
+from pinjoint.systems.program.binding import bind, read_only
+from pinjoint.systems.program.blocks import Layout, Numbers
+from pinjoint.systems.program.names import PUSHED
+from pinjoint.systems.program.program import OBSERVED, Program
 
 
 class ReorderedProgram(Program):

@@ -13,14 +13,15 @@ from typing import Any
 
 import numpy as np
 
-from components.model import Model
-from components.rod import bears_between, bends, is_warm
-from systems.base import REVIEW_INTERVAL, Event, Integrator, StepSystem
-from systems.entries import ACCOUNTS
-from systems.interpreter import plain_function
-from systems.physics.automatic import SMALL
-from systems.physics.kernels import conserved, judge
-from systems.program.binding import (
+from pinjoint.components.model import Model
+from pinjoint.components.rod import bears_between, bends, is_warm
+from pinjoint.systems import is_ours
+from pinjoint.systems.base import REVIEW_INTERVAL, Event, Integrator, StepSystem
+from pinjoint.systems.entries import ACCOUNTS
+from pinjoint.systems.interpreter import plain_function
+from pinjoint.systems.physics.automatic import SMALL
+from pinjoint.systems.physics.kernels import conserved, judge
+from pinjoint.systems.program.binding import (
     HISTORIES,
     PROVIDED,
     TRIAL,
@@ -33,8 +34,8 @@ from systems.program.binding import (
     find,
     written_row,
 )
-from systems.program.loops import RodLoop
-from systems.program.names import (
+from pinjoint.systems.program.loops import RodLoop
+from pinjoint.systems.program.names import (
     ALWAYS,
     BENT_STATE,
     BOTH_BLOCKS,
@@ -68,9 +69,18 @@ from systems.program.names import (
     TURNED_STATE,
     TURNING_OBSERVED,
 )
-from systems.program.near_pairs import ARRAYS
-from systems.program.pasting import expanded, fragment, indented, pasted, projected, source_of
-from systems.program.templates import driven, events, fixed_steps, forces, observing, pairs, rods, turning
+from pinjoint.systems.program.near_pairs import ARRAYS
+from pinjoint.systems.program.pasting import expanded, fragment, indented, pasted, projected, source_of
+from pinjoint.systems.program.templates import (
+    driven,
+    events,
+    fixed_steps,
+    forces,
+    observing,
+    pairs,
+    rods,
+    turning,
+)
 
 ROUND_OFF = 2.220446049250313e-16  # of forces, relative to stiffness × displacement
 
@@ -97,7 +107,7 @@ import math
 
 import numpy as np
 
-from systems.kernels import entry, part
+from pinjoint.systems.kernels import entry, part
 
 compiled = part()
 inlined = part(forceinline=True)
@@ -354,7 +364,7 @@ class Writer:
     @property
     def _may_allocate(self) -> bool:
         """True if it may ask for memory, as stages do and kernels of mods may; a call is 2 µs slower then."""
-        own = all(str(named.__module__).startswith("systems.") for named in self.names.values())
+        own = all(is_ours(named.__module__) for named in self.names.values())
         return self.form != FEW or not own
 
     def _pasted(self, where: str, decorator: str) -> str:

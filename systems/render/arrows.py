@@ -8,15 +8,15 @@ from collections.abc import Iterator, Sequence
 import numpy as np
 from numpy.typing import NDArray
 
-from components.model import Model
-from components.rod import nodes
-from components.tags import DiagramShown
-from systems.render.clip import bounds, clip_segments
-from systems.render.marks import Fills, Mark, Owner, Owners, Points, Strokes
-from systems.render.occupancy import STRONG
-from systems.render.sheet import DIRECTIONS, Rows, Sheet
-from systems.render.supports import crowding
-from systems.render.theme import Colour
+from pinjoint.components.model import Model
+from pinjoint.components.rod import nodes
+from pinjoint.components.tags import DiagramShown
+from pinjoint.systems.render.clip import bounds, clip_segments
+from pinjoint.systems.render.marks import Fills, Mark, Owner, Owners, Points, Strokes
+from pinjoint.systems.render.occupancy import STRONG
+from pinjoint.systems.render.sheet import DIRECTIONS, Rows, Sheet
+from pinjoint.systems.render.supports import crowding
+from pinjoint.systems.render.theme import Colour
 
 MOST = 100  # particles, above which arrows would hide one another
 LONGEST, SHORTEST = 46.0, 13.0  # points: of the largest of its kind, and of any that is drawn

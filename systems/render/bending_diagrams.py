@@ -7,8 +7,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from components import written
-from components.bent import (
+from pinjoint.components import written
+from pinjoint.components.bent import (
     AXIAL,
     MOMENT,
     SHEAR,
@@ -19,12 +19,12 @@ from components.bent import (
     values,
     zeros,
 )
-from components.language import marked, tr
-from components.tags import DiagramShown, Selected
-from components.view import MARGIN
-from systems.render.arrows import steady
-from systems.render.clip import bounds
-from systems.render.diagrams import (
+from pinjoint.components.language import marked, tr
+from pinjoint.components.tags import DiagramShown, Selected
+from pinjoint.components.view import MARGIN
+from pinjoint.systems.render.arrows import steady
+from pinjoint.systems.render.clip import bounds
+from pinjoint.systems.render.diagrams import (
     FEW_VALUES,
     GAP,
     SHORTEST_WITH_DIAGRAM,
@@ -36,13 +36,13 @@ from systems.render.diagrams import (
     room_for,
     worth_of,
 )
-from systems.render.labels import half_size
-from systems.render.marks import Discs, Fills, Points, Strokes
-from systems.render.nearness import ranges
-from systems.render.occupancy import FAINT
-from systems.render.overlays import heading_height
-from systems.render.sheet import Rows, Sheet, typical_length
-from systems.render.theme import Colour, faded
+from pinjoint.systems.render.labels import half_size
+from pinjoint.systems.render.marks import Discs, Fills, Points, Strokes
+from pinjoint.systems.render.nearness import ranges
+from pinjoint.systems.render.occupancy import FAINT
+from pinjoint.systems.render.overlays import heading_height
+from pinjoint.systems.render.sheet import Rows, Sheet, typical_length
+from pinjoint.systems.render.theme import Colour, faded
 
 NAMES = {
     AXIAL: marked("axial force N"),

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from components.camera import Viewport
+from pinjoint.components.camera import Viewport
 
 Points = NDArray[np.float64]
 

@@ -4,14 +4,14 @@ from __future__ import annotations
 
 import numpy as np
 
-from components.view import Cut
-from systems.render.arrows import arrows
-from systems.render.labels import Label, half_size
-from systems.render.marks import Points, Strokes
-from systems.render.members import arc_marks
-from systems.render.occupancy import STRONG
-from systems.render.sheet import Rows, Sheet
-from systems.render.theme import faded
+from pinjoint.components.view import Cut
+from pinjoint.systems.render.arrows import arrows
+from pinjoint.systems.render.labels import Label, half_size
+from pinjoint.systems.render.marks import Points, Strokes
+from pinjoint.systems.render.members import arc_marks
+from pinjoint.systems.render.occupancy import STRONG
+from pinjoint.systems.render.sheet import Rows, Sheet
+from pinjoint.systems.render.theme import faded
 
 _DASH, _BETWEEN = 5.0, 3.5  # points, of the lines that are left of a rod
 _OPEN, _PAIR = 5.0, 17.0  # points, half of a cut: without and with arrows in it

@@ -9,23 +9,23 @@ from typing import Literal
 import numpy as np
 from numpy.typing import NDArray
 
-from components import written
-from components.bent import distributed_shares
-from components.language import tr
-from components.load import CONSTANT
-from components.model import Model
-from components.tags import DiagramShown, Selected
-from components.view import View
-from systems.render.arrows import FORCES, arrows, full_load, head_length, lengths, whose
-from systems.render.clip import bounds, clip_segments
-from systems.render.labels import Key, Label, half_size
-from systems.render.leaders import ANCHORS
-from systems.render.marks import Bars, Owner, Points, Strokes
-from systems.render.occupancy import FAINT
-from systems.render.sheet import DIRECTIONS, Rows, Sheet, typical_length
-from systems.render.supports import NO_SUPPORT, crowding
-from systems.render.symbols import SUPPORT_DEPTH
-from systems.render.theme import Colour, faded
+from pinjoint.components import written
+from pinjoint.components.bent import distributed_shares
+from pinjoint.components.language import tr
+from pinjoint.components.load import CONSTANT
+from pinjoint.components.model import Model
+from pinjoint.components.tags import DiagramShown, Selected
+from pinjoint.components.view import View
+from pinjoint.systems.render.arrows import FORCES, arrows, full_load, head_length, lengths, whose
+from pinjoint.systems.render.clip import bounds, clip_segments
+from pinjoint.systems.render.labels import Key, Label, half_size
+from pinjoint.systems.render.leaders import ANCHORS
+from pinjoint.systems.render.marks import Bars, Owner, Points, Strokes
+from pinjoint.systems.render.occupancy import FAINT
+from pinjoint.systems.render.sheet import DIRECTIONS, Rows, Sheet, typical_length
+from pinjoint.systems.render.supports import NO_SUPPORT, crowding
+from pinjoint.systems.render.symbols import SUPPORT_DEPTH
+from pinjoint.systems.render.theme import Colour, faded
 
 SMALLEST_FORCE = 1e-4  # kN; smaller forces are drawn as none
 FEW_VALUES = 24  # up to which each carries its unit and keeps clear of rods

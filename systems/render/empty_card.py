@@ -4,18 +4,18 @@ from __future__ import annotations
 
 import numpy as np
 
-from components.camera import Rectangle
-from components.field import Vector
-from components.language import tr
-from components.model import Model
-from components.toolbar import Button, Tool
-from components.view import View
-from systems.render.help import written_key
-from systems.render.marks import Mark, Panel, Stamps, Strokes, Text
-from systems.render.menu import titled
-from systems.render.overlays import BAR
-from systems.render.theme import Theme, faded
-from systems.render.typography import font_size, shortened, text_width
+from pinjoint.components.camera import Rectangle
+from pinjoint.components.field import Vector
+from pinjoint.components.language import tr
+from pinjoint.components.model import Model
+from pinjoint.components.toolbar import Button, Tool
+from pinjoint.components.view import View
+from pinjoint.systems.render.help import written_key
+from pinjoint.systems.render.marks import Mark, Panel, Stamps, Strokes, Text
+from pinjoint.systems.render.menu import titled
+from pinjoint.systems.render.overlays import BAR
+from pinjoint.systems.render.theme import Theme, faded
+from pinjoint.systems.render.typography import font_size, shortened, text_width
 
 _FIRST = (
     "place",

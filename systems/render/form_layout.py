@@ -8,12 +8,12 @@ from dataclasses import dataclass, field, replace
 from functools import lru_cache
 from itertools import groupby
 
-from components.box import Box
-from components.camera import Rectangle, Viewport
-from components.field import Vector
-from components.form import Form, Reading, Tile
-from components.language import marked, tr, tr_in
-from systems.render.typography import font_size, in_rows, text_width, wrapped
+from pinjoint.components.box import Box
+from pinjoint.components.camera import Rectangle, Viewport
+from pinjoint.components.field import Vector
+from pinjoint.components.form import Form, Reading, Tile
+from pinjoint.components.language import marked, tr, tr_in
+from pinjoint.systems.render.typography import font_size, in_rows, text_width, wrapped
 
 WIDEST = 1500.0  # points that tiles spread over
 EDGE, CLOSE_EDGE, SLIM = 16.0, 10.0, 325.0  # points around all; in a viewport less wide than the last, less

@@ -8,12 +8,12 @@ from typing import Any
 
 import numpy as np
 
-from components.camera import Viewport
-from components.language import listed, tr
-from components.wording import printable
-from systems.render.clip import bounds, clip_segments
-from systems.render.icons import icons
-from systems.render.marks import (
+from pinjoint.components.camera import Viewport
+from pinjoint.components.language import listed, tr
+from pinjoint.components.wording import printable
+from pinjoint.systems.render.clip import bounds, clip_segments
+from pinjoint.systems.render.icons import icons
+from pinjoint.systems.render.marks import (
     Bars,
     Discs,
     Fills,
@@ -27,9 +27,9 @@ from systems.render.marks import (
     Text,
     owners,
 )
-from systems.render.symbols import LARGEST_STAMP, SUPPORT_DEPTH, SYMBOLS, circle, turned_parts
-from systems.render.theme import Colour
-from systems.render.typography import WEIGHTS
+from pinjoint.systems.render.symbols import LARGEST_STAMP, SUPPORT_DEPTH, SYMBOLS, circle, turned_parts
+from pinjoint.systems.render.theme import Colour
+from pinjoint.systems.render.typography import WEIGHTS
 
 _MARGIN = 4.0  # pixels around the viewport within which cuts are not seen
 _FAR = 1e7  # pixels; what is larger looks the same

@@ -7,18 +7,18 @@ import math
 import numpy as np
 from numpy.typing import NDArray
 
-from components import written
-from components.bent import axes
-from components.free_body import Apart, Force, apart, on_joint
-from components.language import tr
-from systems.render.arrows import FORCES, GAP, arrows, lengths
-from systems.render.diagrams import SMALLEST_FORCE
-from systems.render.labels import Label, half_size
-from systems.render.marks import Owner, Points, Strokes
-from systems.render.members import arc_marks, gaps, label_moment
-from systems.render.occupancy import STRONG
-from systems.render.sheet import Sheet
-from systems.render.theme import Colour, faded
+from pinjoint.components import written
+from pinjoint.components.bent import axes
+from pinjoint.components.free_body import Apart, Force, apart, on_joint
+from pinjoint.components.language import tr
+from pinjoint.systems.render.arrows import FORCES, GAP, arrows, lengths
+from pinjoint.systems.render.diagrams import SMALLEST_FORCE
+from pinjoint.systems.render.labels import Label, half_size
+from pinjoint.systems.render.marks import Owner, Points, Strokes
+from pinjoint.systems.render.members import arc_marks, gaps, label_moment
+from pinjoint.systems.render.occupancy import STRONG
+from pinjoint.systems.render.sheet import Sheet
+from pinjoint.systems.render.theme import Colour, faded
 
 MOST = 150  # rods that are taken apart: of more, arrows would hide one another
 SHORTEST = 74.0  # points: shorter rods stay whole, since there is no room for arrows

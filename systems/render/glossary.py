@@ -8,7 +8,7 @@ from functools import cache
 from importlib.resources import files
 from typing import NamedTuple
 
-from components.language import tr
+from pinjoint.components.language import tr
 
 
 class Term(NamedTuple):
@@ -22,7 +22,7 @@ class Term(NamedTuple):
 @cache
 def terms() -> list[Term]:
     """All terms, as the file has them."""
-    held = json.loads((files("assets") / "glossary.json").read_text(encoding="utf-8"))
+    held = json.loads((files("pinjoint.assets") / "glossary.json").read_text(encoding="utf-8"))
     return [Term(**entry) for entry in held]
 
 

@@ -9,14 +9,14 @@ from itertools import zip_longest
 
 import numpy as np
 
-from components.camera import Rectangle, Viewport
-from components.field import Vector
-from components.language import language, tr, tr_in
-from components.view import View
-from systems.render.glossary import glossary
-from systems.render.marks import Fills, Mark, Panel, Text, boxes, cross
-from systems.render.theme import Theme, faded
-from systems.render.typography import font_size, line_height, shortened, text_width, wrapped
+from pinjoint.components.camera import Rectangle, Viewport
+from pinjoint.components.field import Vector
+from pinjoint.components.language import language, tr, tr_in
+from pinjoint.components.view import View
+from pinjoint.systems.render.glossary import glossary
+from pinjoint.systems.render.marks import Fills, Mark, Panel, Text, boxes, cross
+from pinjoint.systems.render.theme import Theme, faded
+from pinjoint.systems.render.typography import font_size, line_height, shortened, text_width, wrapped
 
 _PAD, _GAP = 22.0, 26.0  # points: inside the card, between columns
 _CLOSE = 22.0  # points, side of the button that closes it

@@ -12,7 +12,7 @@ from collections.abc import Sequence
 from functools import cache
 from importlib.resources import files
 
-from components.language import tr
+from pinjoint.components.language import tr
 
 Part = tuple[str, tuple[float, ...]]
 
@@ -52,5 +52,5 @@ def icon(name: str) -> tuple[Part, ...]:
 @cache
 def icons() -> dict[str, tuple[Part, ...]]:
     """The parts of the icons that the program brings, by name."""
-    drawn = json.loads((files("assets") / "icons" / "toolbar.json").read_text(encoding="utf-8"))
+    drawn = json.loads((files("pinjoint.assets") / "icons" / "toolbar.json").read_text(encoding="utf-8"))
     return {name: tuple((kind, tuple(at)) for kind, *at in parts) for name, parts in drawn.items()}

@@ -10,8 +10,8 @@ import math
 
 import numpy as np
 
-from systems.kernels import compiled
-from systems.render.coverage import BLOCK
+from pinjoint.systems.kernels import compiled
+from pinjoint.systems.render.coverage import BLOCK
 
 _EVEN = np.uint32(0x00FF00FF)  # every second channel of a pixel
 _ODD = np.uint32(0xFF00FF00)

@@ -10,13 +10,13 @@ from typing import Literal, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from systems.render.clip import bounds
-from systems.render.leaders import TRIED, lead
-from systems.render.marks import Discs, Mark, Owner, Panel, Points, Strokes, Text
-from systems.render.nearness import NOBODY, Boxes, Codes
-from systems.render.occupancy import FAINT, STRONG, Occupancy
-from systems.render.theme import Colour, faded
-from systems.render.typography import line_height, text_width
+from pinjoint.systems.render.clip import bounds
+from pinjoint.systems.render.leaders import TRIED, lead
+from pinjoint.systems.render.marks import Discs, Mark, Owner, Panel, Points, Strokes, Text
+from pinjoint.systems.render.nearness import NOBODY, Boxes, Codes
+from pinjoint.systems.render.occupancy import FAINT, STRONG, Occupancy
+from pinjoint.systems.render.theme import Colour, faded
+from pinjoint.systems.render.typography import line_height, text_width
 
 _LED = 1000  # from which on numbers of places mean those with a line
 LEADER_OPACITY, _DOT = 0.75, 1.75  # of these lines, and points, radius of the dot at their end

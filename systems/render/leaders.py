@@ -8,10 +8,10 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from systems.render.clip import bounds
-from systems.render.marks import Points
-from systems.render.nearness import NOBODY, Boxes, Codes, ranges
-from systems.render.occupancy import FAINT, Occupancy
+from pinjoint.systems.render.clip import bounds
+from pinjoint.systems.render.marks import Points
+from pinjoint.systems.render.nearness import NOBODY, Boxes, Codes, ranges
+from pinjoint.systems.render.occupancy import FAINT, Occupancy
 
 ANCHORS = np.array([0.5, 0.35, 0.65, 0.2, 0.8])  # shares of a line where one that leads to it may end
 TRIED = 32  # values of a picture

@@ -6,13 +6,13 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from components.camera import Rectangle
-from components.card import CardButton
-from components.field import Vector
-from components.view import View
-from systems.render.marks import Fills, Mark, Panel, Points, Stamps, Strokes, Text, boxes
-from systems.render.theme import Colour, Theme, faded
-from systems.render.typography import font_size, line_height, shortened, text_width, wrapped
+from pinjoint.components.camera import Rectangle
+from pinjoint.components.card import CardButton
+from pinjoint.components.field import Vector
+from pinjoint.components.view import View
+from pinjoint.systems.render.marks import Fills, Mark, Panel, Points, Stamps, Strokes, Text, boxes
+from pinjoint.systems.render.theme import Colour, Theme, faded
+from pinjoint.systems.render.typography import font_size, line_height, shortened, text_width, wrapped
 
 _EDGE, _GAP, _PAD = 14.0, 8.0, 8.0  # points: around all, between parts, inside a box
 _TITLE, _TEXT, _SMALL, _LEAST = 15.0, 14.0, 12.0, 12.0  # points, sizes of type

@@ -12,8 +12,8 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from components.camera import Rectangle, Viewport
-from systems.render.theme import Colour
+from pinjoint.components.camera import Rectangle, Viewport
+from pinjoint.systems.render.theme import Colour
 
 Points = NDArray[np.float64]
 Owner = tuple[str, int]  # the table and row of an element

@@ -5,18 +5,18 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from components import written
-from components.bent import axes
-from components.model import Model
-from components.rod import rigid_joints
-from components.tags import DiagramShown
-from systems.render.arrows import MOST, arrows, head_length
-from systems.render.labels import Label, half_size
-from systems.render.marks import Discs, Fills, Mark, Owners, Points, Strokes
-from systems.render.occupancy import STRONG
-from systems.render.sheet import Rows, Sheet
-from systems.render.symbols import RIM
-from systems.render.theme import Colour, faded
+from pinjoint.components import written
+from pinjoint.components.bent import axes
+from pinjoint.components.model import Model
+from pinjoint.components.rod import rigid_joints
+from pinjoint.components.tags import DiagramShown
+from pinjoint.systems.render.arrows import MOST, arrows, head_length
+from pinjoint.systems.render.labels import Label, half_size
+from pinjoint.systems.render.marks import Discs, Fills, Mark, Owners, Points, Strokes
+from pinjoint.systems.render.occupancy import STRONG
+from pinjoint.systems.render.sheet import Rows, Sheet
+from pinjoint.systems.render.symbols import RIM
+from pinjoint.systems.render.theme import Colour, faded
 
 _HINGE = 3.5  # points, radius of a hinge beside a joint
 _SHORTEST = 5.0  # times its radius: the shortest rod at which a hinge is drawn

@@ -4,16 +4,16 @@ from __future__ import annotations
 
 import numpy as np
 
-from components.camera import Rectangle, Viewport
-from components.field import Vector
-from components.language import begun, tr
-from components.menu import Menu
-from components.toolbar import Tool
-from components.view import View
-from systems.render.help import written_key
-from systems.render.marks import Mark, Panel, Strokes, Text, boxes
-from systems.render.theme import Theme, faded
-from systems.render.typography import font_size, shortened, text_width
+from pinjoint.components.camera import Rectangle, Viewport
+from pinjoint.components.field import Vector
+from pinjoint.components.language import begun, tr
+from pinjoint.components.menu import Menu
+from pinjoint.components.toolbar import Tool
+from pinjoint.components.view import View
+from pinjoint.systems.render.help import written_key
+from pinjoint.systems.render.marks import Mark, Panel, Strokes, Text, boxes
+from pinjoint.systems.render.theme import Theme, faded
+from pinjoint.systems.render.typography import font_size, shortened, text_width
 
 _SIZES = ((12.5, 22.0), (11.5, 19.0), (10.0, 16.0), (9.0, 13.0))  # points: type, and from entry to entry
 _PAD, _CHECK, _GAP = 10.0, 16.0, 20.0  # points: at the sides, for the check mark, between title and key

@@ -9,9 +9,9 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from components.camera import Viewport
-from systems.render.clip import bounds
-from systems.render.marks import Owner, Owners, Points
+from pinjoint.components.camera import Viewport
+from pinjoint.systems.render.clip import bounds
+from pinjoint.systems.render.marks import Owner, Owners, Points
 
 LINE, DIAGRAM, SYMBOL = range(3)  # kinds of parts
 NOBODY = -1  # code of what is not there

@@ -5,9 +5,9 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from components.camera import Viewport
-from systems.render.marks import Owners, Points
-from systems.render.nearness import NOBODY, Codes, Parts, within
+from pinjoint.components.camera import Viewport
+from pinjoint.systems.render.marks import Owners, Points
+from pinjoint.systems.render.nearness import NOBODY, Codes, Parts, within
 
 FAINT, STRONG = 1, 2  # lines that names never cover; lines that values cover only in need
 _FAR = 1e6  # pixels

@@ -8,18 +8,18 @@ from typing import NamedTuple
 
 import numpy as np
 
-from components import written
-from components.camera import Viewport
-from components.language import begun, marked, plural, tr
-from components.round_numbers import round_down
-from components.view import BETWEEN
-from systems.render.marks import Mark, Panel, Stamps, Strokes, Text, boxes
-from systems.render.sheet import Sheet
-from systems.render.structure import HALO_OPACITY
-from systems.render.symbols import dashed
-from systems.render.theme import Colour, faded
-from systems.render.typography import at_most, font_size, line_height, shortened, text_width, wrapped
-from systems.render.utilisation import scale_bar
+from pinjoint.components import written
+from pinjoint.components.camera import Viewport
+from pinjoint.components.language import begun, marked, plural, tr
+from pinjoint.components.round_numbers import round_down
+from pinjoint.components.view import BETWEEN
+from pinjoint.systems.render.marks import Mark, Panel, Stamps, Strokes, Text, boxes
+from pinjoint.systems.render.sheet import Sheet
+from pinjoint.systems.render.structure import HALO_OPACITY
+from pinjoint.systems.render.symbols import dashed
+from pinjoint.systems.render.theme import Colour, faded
+from pinjoint.systems.render.typography import at_most, font_size, line_height, shortened, text_width, wrapped
+from pinjoint.systems.render.utilisation import scale_bar
 
 _EDGE = 14.0  # points between overlays and the edges of the viewport
 _HEADING = 20.0  # points, size of its type

@@ -4,11 +4,11 @@ from __future__ import annotations
 
 import math
 
-from components.view import Page
-from systems.render.marks import Mark, Text, boxes
-from systems.render.overlays import BAR, draw_notice, draw_overlays
-from systems.render.sheet import Sheet
-from systems.render.typography import font_size, line_height, text_width, wrapped
+from pinjoint.components.view import Page
+from pinjoint.systems.render.marks import Mark, Text, boxes
+from pinjoint.systems.render.overlays import BAR, draw_notice, draw_overlays
+from pinjoint.systems.render.sheet import Sheet
+from pinjoint.systems.render.typography import font_size, line_height, text_width, wrapped
 
 _EDGE, _BLOCKS = 14.0, 34.0  # points: to the edges, between blocks of a table
 _SIZE = 12.0  # points

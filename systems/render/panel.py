@@ -4,12 +4,12 @@ from __future__ import annotations
 
 import numpy as np
 
-from components.box import NAME, NUMBER, WORD, Box, number_and_unit
-from components.camera import Rectangle, Viewport
-from components.form import Form, Reading, Tile
-from components.language import begun, tr
-from components.view import BETWEEN, View
-from systems.render.form_layout import (
+from pinjoint.components.box import NAME, NUMBER, WORD, Box, number_and_unit
+from pinjoint.components.camera import Rectangle, Viewport
+from pinjoint.components.form import Form, Reading, Tile
+from pinjoint.components.language import begun, tr
+from pinjoint.components.view import BETWEEN, View
+from pinjoint.systems.render.form_layout import (
     BOX_TITLE,
     CAPTION,
     HINT,
@@ -25,11 +25,11 @@ from systems.render.form_layout import (
     problem_lines,
     short_note,
 )
-from systems.render.help import draw_help
-from systems.render.marks import Fills, Mark, Panel, Picture, Stamps, Text, boxes, cross
-from systems.render.theme import Colour, Theme, faded
-from systems.render.thumbnails import thumbnail
-from systems.render.typography import at_most, fitting, font_size, shortened, text_width, wrapped
+from pinjoint.systems.render.help import draw_help
+from pinjoint.systems.render.marks import Fills, Mark, Panel, Picture, Stamps, Text, boxes, cross
+from pinjoint.systems.render.theme import Colour, Theme, faded
+from pinjoint.systems.render.thumbnails import thumbnail
+from pinjoint.systems.render.typography import at_most, fitting, font_size, shortened, text_width, wrapped
 
 _TEXT = 13.0  # points, size of type in a box
 _HEADING = (19.0, 16.0, 14.0)  # points, the largest that fits

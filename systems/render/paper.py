@@ -17,9 +17,9 @@ from reportlab.lib.units import mm
 from reportlab.pdfbase.pdfmetrics import stringWidth
 from reportlab.platypus import Flowable, KeepTogether, Paragraph, SimpleDocTemplate, Table
 
-from components.wording import UNPRINTABLE
-from systems.render.marks import Picture
-from systems.render.pdf import draw_picture, embed_fonts
+from pinjoint.components.wording import UNPRINTABLE
+from pinjoint.systems.render.marks import Picture
+from pinjoint.systems.render.pdf import draw_picture, embed_fonts
 
 embed_fonts()  # widths of texts are wanted before there is a page
 

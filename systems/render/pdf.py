@@ -8,11 +8,11 @@ from functools import cache
 from importlib.resources import files
 from typing import Any
 
-from components.wording import UNPRINTABLE
-from systems.render.marks import Panel, Picture, Text
-from systems.render.shapes import Circle, Line, Polygon, Shape, shapes
-from systems.render.theme import Colour
-from systems.render.typography import capital_height
+from pinjoint.components.wording import UNPRINTABLE
+from pinjoint.systems.render.marks import Panel, Picture, Text
+from pinjoint.systems.render.shapes import Circle, Line, Polygon, Shape, shapes
+from pinjoint.systems.render.theme import Colour
+from pinjoint.systems.render.typography import capital_height
 
 POINTS = 0.75  # of a page for each pixel, as browsers print
 # With quadratic outlines, as libraries embed them; what pygame draws has cubic ones.
@@ -61,7 +61,9 @@ def embed_fonts() -> None:
     from reportlab.pdfbase.ttfonts import TTFont
 
     for weight, name in _FONTS.items():
-        registerFont(TTFont(f"Inter {weight}", io.BytesIO((files("assets") / "fonts" / name).read_bytes())))
+        registerFont(
+            TTFont(f"Inter {weight}", io.BytesIO((files("pinjoint.assets") / "fonts" / name).read_bytes()))
+        )
 
 
 def _draw(page: Any, shape: Shape, height: float) -> None:

@@ -5,29 +5,29 @@ from __future__ import annotations
 import re
 from collections.abc import Callable, Sequence
 
-from components.field import Vector
-from components.form import Form
-from components.model import Model
-from components.toolbar import Toolbar
-from components.view import View
-from systems.render.arrows import draw_loads, draw_velocities
-from systems.render.bending_diagrams import draw_diagrams
-from systems.render.cuts import draw_cuts
-from systems.render.diagrams import draw_particle_diagrams
-from systems.render.empty_card import draw_card, shows_card
-from systems.render.free_bodies import draw_free_bodies
-from systems.render.labels import Placed, place_labels
-from systems.render.lesson_card import draw_lesson
-from systems.render.marks import Picture
-from systems.render.members import draw_distributed_forces, draw_hinges, draw_moments
-from systems.render.overlays import BAR, draw_notice, draw_overlays, draw_scale, place_scale
-from systems.render.page import draw_page
-from systems.render.panel import compose_form
-from systems.render.pointed import draw_pointed
-from systems.render.readouts import ShownPanel, draw_readouts
-from systems.render.sheet import ABOVE, BELOW, Sheet, measure
-from systems.render.sliders import draw_sliders
-from systems.render.structure import (
+from pinjoint.components.field import Vector
+from pinjoint.components.form import Form
+from pinjoint.components.model import Model
+from pinjoint.components.toolbar import Toolbar
+from pinjoint.components.view import View
+from pinjoint.systems.render.arrows import draw_loads, draw_velocities
+from pinjoint.systems.render.bending_diagrams import draw_diagrams
+from pinjoint.systems.render.cuts import draw_cuts
+from pinjoint.systems.render.diagrams import draw_particle_diagrams
+from pinjoint.systems.render.empty_card import draw_card, shows_card
+from pinjoint.systems.render.free_bodies import draw_free_bodies
+from pinjoint.systems.render.labels import Placed, place_labels
+from pinjoint.systems.render.lesson_card import draw_lesson
+from pinjoint.systems.render.marks import Picture
+from pinjoint.systems.render.members import draw_distributed_forces, draw_hinges, draw_moments
+from pinjoint.systems.render.overlays import BAR, draw_notice, draw_overlays, draw_scale, place_scale
+from pinjoint.systems.render.page import draw_page
+from pinjoint.systems.render.panel import compose_form
+from pinjoint.systems.render.pointed import draw_pointed
+from pinjoint.systems.render.readouts import ShownPanel, draw_readouts
+from pinjoint.systems.render.sheet import ABOVE, BELOW, Sheet, measure
+from pinjoint.systems.render.sliders import draw_sliders
+from pinjoint.systems.render.structure import (
     draw_ghost,
     draw_grid,
     draw_halos,
@@ -36,11 +36,11 @@ from systems.render.structure import (
     draw_shape,
     label_names,
 )
-from systems.render.supports import draw_supports, support_sides
-from systems.render.theme import Theme
-from systems.render.toolbar import compose_toolbar
-from systems.render.tools import draw_flashes, draw_preview
-from systems.render.utilisation import shade_rods
+from pinjoint.systems.render.supports import draw_supports, support_sides
+from pinjoint.systems.render.theme import Theme
+from pinjoint.systems.render.toolbar import compose_toolbar
+from pinjoint.systems.render.tools import draw_flashes, draw_preview
+from pinjoint.systems.render.utilisation import shade_rods
 
 Stage = tuple[Model | Form | Toolbar, View]  # what is shown, and how
 

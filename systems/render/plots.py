@@ -8,14 +8,14 @@ import math
 import numpy as np
 from numpy.typing import NDArray
 
-from components import written
-from components.field import Vector
-from components.language import several
-from components.round_numbers import round_up
-from components.view import Plot
-from systems.render.marks import Mark, Panel, Points, Stamps, Strokes, Text
-from systems.render.theme import Colour, Theme
-from systems.render.typography import font_size, text_width
+from pinjoint.components import written
+from pinjoint.components.field import Vector
+from pinjoint.components.language import several
+from pinjoint.components.round_numbers import round_up
+from pinjoint.components.view import Plot
+from pinjoint.systems.render.marks import Mark, Panel, Points, Stamps, Strokes, Text
+from pinjoint.systems.render.theme import Colour, Theme
+from pinjoint.systems.render.typography import font_size, text_width
 
 _TEXT = 10.0  # points
 _REACH = 30.0  # points from a curve, within which the pointer reads it

@@ -4,17 +4,17 @@ from __future__ import annotations
 
 import numpy as np
 
-from components.handle import Handle
-from components.particle import Particle
-from components.rod import Rod
-from components.tags import Hovered
-from systems.render.clip import bounds, clip_segments
-from systems.render.marks import Mark, Panel, Points, Text
-from systems.render.occupancy import STRONG
-from systems.render.sheet import Sheet
-from systems.render.symbols import SUPPORT_DEPTH
-from systems.render.theme import faded
-from systems.render.typography import line_height, text_width
+from pinjoint.components.handle import Handle
+from pinjoint.components.particle import Particle
+from pinjoint.components.rod import Rod
+from pinjoint.components.tags import Hovered
+from pinjoint.systems.render.clip import bounds, clip_segments
+from pinjoint.systems.render.marks import Mark, Panel, Points, Text
+from pinjoint.systems.render.occupancy import STRONG
+from pinjoint.systems.render.sheet import Sheet
+from pinjoint.systems.render.symbols import SUPPORT_DEPTH
+from pinjoint.systems.render.theme import faded
+from pinjoint.systems.render.typography import line_height, text_width
 
 _PAD, _GAP, _NEAR = 8.0, 14.0, 16.0  # points: inside the box, between columns, to the pointer
 _ROWS = (8, 2, 1)  # how many are told, where that many find room

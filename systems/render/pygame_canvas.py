@@ -14,14 +14,14 @@ import pygame
 import pygame.gfxdraw
 from numpy.typing import NDArray
 
-from components.wording import UNPRINTABLE
-from systems.program.compiler import Choice, Compile
-from systems.render.coverage import stroke_coverage, stroke_pixels_estimate
-from systems.render.marks import Bars, Discs, Fills, Panel, Picture, Rectangles, Stamps, Strokes, Text
-from systems.render.raster import Clip, Pixels, Raster
-from systems.render.symbols import RIM, turned_parts
-from systems.render.theme import Colour
-from systems.render.typography import WEIGHTS, capital_height
+from pinjoint.components.wording import UNPRINTABLE
+from pinjoint.systems.program.compiler import Choice, Compile
+from pinjoint.systems.render.coverage import stroke_coverage, stroke_pixels_estimate
+from pinjoint.systems.render.marks import Bars, Discs, Fills, Panel, Picture, Rectangles, Stamps, Strokes, Text
+from pinjoint.systems.render.raster import Clip, Pixels, Raster
+from pinjoint.systems.render.symbols import RIM, turned_parts
+from pinjoint.systems.render.theme import Colour
+from pinjoint.systems.render.typography import WEIGHTS, capital_height
 
 _FINE = 8  # symbols and corners are drawn this much larger, then reduced
 _PHASES = 4  # positions of a symbol within a pixel, each way
@@ -48,7 +48,7 @@ class Canvas:
         # The cache before: entries used again move to the new one, the others are dropped when that is full.
         self._former: dict[Any, Any] = {}
         self._files = {
-            weight: (files("assets") / "fonts" / name).read_bytes() for weight, name in WEIGHTS.items()
+            weight: (files("pinjoint.assets") / "fonts" / name).read_bytes() for weight, name in WEIGHTS.items()
         }
 
     def draw(self, surface: pygame.Surface, picture: Picture) -> None:

@@ -9,10 +9,10 @@ import numpy as np
 import pygame
 from numpy.typing import NDArray
 
-from components.camera import Viewport
-from systems.render.marks import Picture
-from systems.render.pygame_canvas import Canvas
-from systems.render.raster import load_raster
+from pinjoint.components.camera import Viewport
+from pinjoint.systems.render.marks import Picture
+from pinjoint.systems.render.pygame_canvas import Canvas
+from pinjoint.systems.render.raster import load_raster
 
 Size = tuple[int, int]
 Colours = NDArray[np.uint8]

@@ -8,17 +8,17 @@ from typing import Any
 
 import pygame
 
-from components.form import Form
-from components.language import language
-from components.model import Model
-from components.toolbar import Toolbar
-from components.view import View
-from systems.base import Phase, System
-from systems.render.labels import Placed
-from systems.render.picture import compose_all
-from systems.render.pygame_canvas import Canvas
-from systems.render.raster import Raster
-from systems.render.theme import load_theme
+from pinjoint.components.form import Form
+from pinjoint.components.language import language
+from pinjoint.components.model import Model
+from pinjoint.components.toolbar import Toolbar
+from pinjoint.components.view import View
+from pinjoint.systems.base import Phase, System
+from pinjoint.systems.render.labels import Placed
+from pinjoint.systems.render.picture import compose_all
+from pinjoint.systems.render.pygame_canvas import Canvas
+from pinjoint.systems.render.raster import Raster
+from pinjoint.systems.render.theme import load_theme
 
 
 class PygameRender(System):

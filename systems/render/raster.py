@@ -10,10 +10,10 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from systems.program.compiler import GeneratedModule
-from systems.render import kernels
-from systems.render.coverage import BLOCK
-from systems.render.marks import Bars, Discs, Strokes
+from pinjoint.systems.program.compiler import GeneratedModule
+from pinjoint.systems.render import kernels
+from pinjoint.systems.render.coverage import BLOCK
+from pinjoint.systems.render.marks import Bars, Discs, Strokes
 
 Pixels = NDArray[np.uint32]
 Clip = tuple[int, int, int, int]
@@ -90,7 +90,7 @@ def load_raster() -> Raster:
 
 
 def _contents() -> tuple[str, dict[str, Callable[..., Any]]]:
-    lines = ["from systems.kernels import kept", ""]
+    lines = ["from pinjoint.systems.kernels import kept", ""]
     for name, signature in SIGNATURES.items():
         parameters = ", ".join(inspect.signature(getattr(kernels, name)).parameters)
         lines += [

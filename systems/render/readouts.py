@@ -5,15 +5,15 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
-from components.camera import Rectangle
-from components.field import Vector
-from components.language import english, tr
-from components.view import Readout
-from systems.render.marks import Mark, Panel, Text, cross
-from systems.render.plots import Box, draw_plot
-from systems.render.sheet import Sheet
-from systems.render.theme import faded
-from systems.render.typography import line_height, shortened, text_width, wrapped
+from pinjoint.components.camera import Rectangle
+from pinjoint.components.field import Vector
+from pinjoint.components.language import english, tr
+from pinjoint.components.view import Readout
+from pinjoint.systems.render.marks import Mark, Panel, Text, cross
+from pinjoint.systems.render.plots import Box, draw_plot
+from pinjoint.systems.render.sheet import Sheet
+from pinjoint.systems.render.theme import faded
+from pinjoint.systems.render.typography import line_height, shortened, text_width, wrapped
 
 _EDGE, _PAD, _GAP = 10.0, 9.0, 16.0  # points: to the edges, inside a panel, between name and value
 _BETWEEN, _CLOSE = 6.0, 20.0  # points between panels, and the side of the button that closes one

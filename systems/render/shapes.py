@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator
 from typing import NamedTuple
 
-from systems.render.marks import (
+from pinjoint.systems.render.marks import (
     Bars,
     Discs,
     Fills,
@@ -20,8 +20,8 @@ from systems.render.marks import (
     Strokes,
     Text,
 )
-from systems.render.symbols import RIM, turned_parts
-from systems.render.theme import Colour
+from pinjoint.systems.render.symbols import RIM, turned_parts
+from pinjoint.systems.render.theme import Colour
 
 
 class Line(NamedTuple):

@@ -10,18 +10,18 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
-from components.bent import FLAT, Lines, curved_lines, is_frame, largest_sag
-from components.camera import Viewport
-from components.model import Model
-from components.rod import rigid_joints
-from components.tags import Hovered
-from components.view import View, drawn_positions
-from systems.render.clip import bounds, clip_rods, clip_segments
-from systems.render.labels import Label, Placed
-from systems.render.marks import Mark, Points
-from systems.render.occupancy import Occupancy
-from systems.render.theme import Colour, Theme
-from systems.render.typography import font_size
+from pinjoint.components.bent import FLAT, Lines, curved_lines, is_frame, largest_sag
+from pinjoint.components.camera import Viewport
+from pinjoint.components.model import Model
+from pinjoint.components.rod import rigid_joints
+from pinjoint.components.tags import Hovered
+from pinjoint.components.view import View, drawn_positions
+from pinjoint.systems.render.clip import bounds, clip_rods, clip_segments
+from pinjoint.systems.render.labels import Label, Placed
+from pinjoint.systems.render.marks import Mark, Points
+from pinjoint.systems.render.occupancy import Occupancy
+from pinjoint.systems.render.theme import Colour, Theme
+from pinjoint.systems.render.typography import font_size
 
 Rows = NDArray[np.intp]
 

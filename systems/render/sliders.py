@@ -4,12 +4,12 @@ from __future__ import annotations
 
 import numpy as np
 
-from components.language import tr
-from components.slider import PAD, Place, under
-from systems.render.marks import Mark, Panel, Stamps, Text, boxes
-from systems.render.sheet import Sheet
-from systems.render.theme import faded
-from systems.render.typography import shortened, text_width
+from pinjoint.components.language import tr
+from pinjoint.components.slider import PAD, Place, under
+from pinjoint.systems.render.marks import Mark, Panel, Stamps, Text, boxes
+from pinjoint.systems.render.sheet import Sheet
+from pinjoint.systems.render.theme import faded
+from pinjoint.systems.render.typography import shortened, text_width
 
 _SIZES = (11.0, 10.0, 9.0)  # points of its type, the largest in which the title stands whole beside the value
 _KNOB = 5.0  # points, its radius

@@ -7,18 +7,18 @@ import math
 import numpy as np
 from numpy.typing import NDArray
 
-from components.bent import FLAT, moved_axes, pieces
-from components.rod import rigid_joints
-from components.round_numbers import round_up
-from components.tags import Hovered, Selected
-from components.view import Shape
-from systems.render.clip import bounds, clip_segments
-from systems.render.labels import Label, half_size
-from systems.render.marks import Discs, Fills, Points, Rectangles, Strokes
-from systems.render.occupancy import FAINT, STRONG
-from systems.render.sheet import FEW, MANY, Rows, Sheet
-from systems.render.symbols import LARGEST_STAMP, RIM, arcs, circle, dashed
-from systems.render.theme import Colour, faded
+from pinjoint.components.bent import FLAT, moved_axes, pieces
+from pinjoint.components.rod import rigid_joints
+from pinjoint.components.round_numbers import round_up
+from pinjoint.components.tags import Hovered, Selected
+from pinjoint.components.view import Shape
+from pinjoint.systems.render.clip import bounds, clip_segments
+from pinjoint.systems.render.labels import Label, half_size
+from pinjoint.systems.render.marks import Discs, Fills, Points, Rectangles, Strokes
+from pinjoint.systems.render.occupancy import FAINT, STRONG
+from pinjoint.systems.render.sheet import FEW, MANY, Rows, Sheet
+from pinjoint.systems.render.symbols import LARGEST_STAMP, RIM, arcs, circle, dashed
+from pinjoint.systems.render.theme import Colour, faded
 
 _CLOSEST_LINES = 8.0  # points between grid lines
 _CLOSE = 8  # places of a name that touch its particle

@@ -5,11 +5,11 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from components.model import Model
-from components.rod import rigid_joints
-from systems.render.marks import Points, Stamps
-from systems.render.sheet import DIRECTIONS, MANY, Rows, Sheet
-from systems.render.symbols import SUPPORT_DEPTH
+from pinjoint.components.model import Model
+from pinjoint.components.rod import rigid_joints
+from pinjoint.systems.render.marks import Points, Stamps
+from pinjoint.systems.render.sheet import DIRECTIONS, MANY, Rows, Sheet
+from pinjoint.systems.render.symbols import SUPPORT_DEPTH
 
 RIGHT, DOWN, LEFT, UP = range(4)
 NO_SUPPORT = -1

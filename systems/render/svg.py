@@ -13,11 +13,11 @@ from collections.abc import Sequence
 from itertools import groupby
 from urllib.parse import quote
 
-from components.wording import UNPRINTABLE
-from systems.render.marks import Panel, Picture, Text
-from systems.render.shapes import Circle, Line, Name, Polygon, Shape, grouped
-from systems.render.theme import Colour
-from systems.render.typography import capital_height
+from pinjoint.components.wording import UNPRINTABLE
+from pinjoint.systems.render.marks import Panel, Picture, Text
+from pinjoint.systems.render.shapes import Circle, Line, Name, Polygon, Shape, grouped
+from pinjoint.systems.render.theme import Colour
+from pinjoint.systems.render.typography import capital_height
 
 FONTS = "Inter, sans-serif"
 _WEIGHTS = {"regular": "400", "semibold": "600"}

@@ -6,19 +6,19 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from components.field import Vector
-from components.model import Model
-from components.particle import Particle
-from components.rod import Rod
-from components.view import View
-from systems.render.arrows import draw_loads, draw_velocities
-from systems.render.diagrams import draw_particle_diagrams
-from systems.render.free_bodies import draw_free_bodies
-from systems.render.marks import Fills, Mark, Owners, Points, Stamps, Strokes
-from systems.render.members import draw_distributed_forces, draw_moments
-from systems.render.sheet import DIRECTIONS, MANY, Sheet, measure
-from systems.render.supports import draw_supports, support_sides
-from systems.render.theme import load_theme
+from pinjoint.components.field import Vector
+from pinjoint.components.model import Model
+from pinjoint.components.particle import Particle
+from pinjoint.components.rod import Rod
+from pinjoint.components.view import View
+from pinjoint.systems.render.arrows import draw_loads, draw_velocities
+from pinjoint.systems.render.diagrams import draw_particle_diagrams
+from pinjoint.systems.render.free_bodies import draw_free_bodies
+from pinjoint.systems.render.marks import Fills, Mark, Owners, Points, Stamps, Strokes
+from pinjoint.systems.render.members import draw_distributed_forces, draw_moments
+from pinjoint.systems.render.sheet import DIRECTIONS, MANY, Sheet, measure
+from pinjoint.systems.render.supports import draw_supports, support_sides
+from pinjoint.systems.render.theme import load_theme
 
 REACH = 6.0  # points from the lines of an arrow
 

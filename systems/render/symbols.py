@@ -12,8 +12,8 @@ from functools import cache
 import numpy as np
 from numpy.typing import NDArray
 
-from systems.render.icons import STROKE, icon
-from systems.render.marks import Points, Stamps
+from pinjoint.systems.render.icons import STROKE, icon
+from pinjoint.systems.render.marks import Points, Stamps
 
 Parts = list[tuple[str, Points]]  # ("ink" or "hollow", corners (k, 2)), in painter's order
 

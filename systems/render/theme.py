@@ -8,7 +8,7 @@ from dataclasses import dataclass, fields
 from functools import cache
 from importlib.resources import files
 
-from components.language import tr
+from pinjoint.components.language import tr
 
 Colour = tuple[int, int, int, int]  # red, green, blue, opacity, each 0 to 255
 
@@ -69,7 +69,7 @@ class Theme:
 
 def theme_names() -> list[str]:
     """Names of the themes that come with the program, in alphabetical order."""
-    folder = files("assets") / "themes"
+    folder = files("pinjoint.assets") / "themes"
     return sorted(
         entry.name.removesuffix(".json") for entry in folder.iterdir() if entry.name.endswith(".json")
     )
@@ -81,7 +81,7 @@ def load_theme(name: str = "light") -> Theme:
     if name not in theme_names():
         known = ", ".join(theme_names())
         raise ValueError(tr("There is no theme '{name}'; choose one of {known}.", name=name, known=known))
-    text = (files("assets") / "themes" / f"{name}.json").read_text(encoding="utf-8")
+    text = (files("pinjoint.assets") / "themes" / f"{name}.json").read_text(encoding="utf-8")
     return theme_from(json.loads(text), f"theme {name}")
 
 

@@ -8,19 +8,19 @@ from functools import lru_cache
 
 import numpy as np
 
-from components.bent import MOMENT
-from components.camera import Camera, Viewport
-from components.model import Model
-from components.view import View, drawn_places
-from systems.render.arrows import draw_loads, draw_velocities
-from systems.render.bending_diagrams import draw_diagrams
-from systems.render.marks import Bars, Discs, Fills, Mark, Points, Rectangles, Stamps, Strokes
-from systems.render.members import draw_distributed_forces, draw_hinges, draw_moments
-from systems.render.sheet import BELOW, measure
-from systems.render.structure import draw_particles, draw_rods
-from systems.render.supports import draw_supports, support_sides
-from systems.render.symbols import turned_parts
-from systems.render.theme import Colour, Theme, faded
+from pinjoint.components.bent import MOMENT
+from pinjoint.components.camera import Camera, Viewport
+from pinjoint.components.model import Model
+from pinjoint.components.view import View, drawn_places
+from pinjoint.systems.render.arrows import draw_loads, draw_velocities
+from pinjoint.systems.render.bending_diagrams import draw_diagrams
+from pinjoint.systems.render.marks import Bars, Discs, Fills, Mark, Points, Rectangles, Stamps, Strokes
+from pinjoint.systems.render.members import draw_distributed_forces, draw_hinges, draw_moments
+from pinjoint.systems.render.sheet import BELOW, measure
+from pinjoint.systems.render.structure import draw_particles, draw_rods
+from pinjoint.systems.render.supports import draw_supports, support_sides
+from pinjoint.systems.render.symbols import turned_parts
+from pinjoint.systems.render.theme import Colour, Theme, faded
 
 _SMALLER, _USUAL = 0.6, 84.0  # symbols, compared with those in a model; in less high ones (points) smaller yet
 _EDGE = 4.0  # points that stay free within the card

@@ -6,13 +6,13 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from components.toolbar import Button, Toolbar
-from components.view import View
-from systems.render.help import draw_help, written_key
-from systems.render.marks import Mark, Panel, Picture, Stamps, Text, boxes
-from systems.render.menu import draw_menu, titled
-from systems.render.theme import Theme, faded
-from systems.render.typography import font_size, line_height, text_width
+from pinjoint.components.toolbar import Button, Toolbar
+from pinjoint.components.view import View
+from pinjoint.systems.render.help import draw_help, written_key
+from pinjoint.systems.render.marks import Mark, Panel, Picture, Stamps, Text, boxes
+from pinjoint.systems.render.menu import draw_menu, titled
+from pinjoint.systems.render.theme import Theme, faded
+from pinjoint.systems.render.typography import font_size, line_height, text_width
 
 _ICON = 0.85  # points for each of the 20 units of an icon's square
 _RADIUS = 5.0  # points, of a button's corners

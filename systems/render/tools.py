@@ -8,13 +8,13 @@ from functools import partial
 import numpy as np
 from numpy.typing import NDArray
 
-from components.view import Preview
-from systems.render.clip import bounds, clip_segments
-from systems.render.marks import Fills, Mark, Panel, Points, Stamps, Strokes, Text
-from systems.render.sheet import DIRECTIONS, Sheet
-from systems.render.symbols import SUPPORT_DEPTH
-from systems.render.theme import Colour, faded
-from systems.render.typography import line_height, text_width
+from pinjoint.components.view import Preview
+from pinjoint.systems.render.clip import bounds, clip_segments
+from pinjoint.systems.render.marks import Fills, Mark, Panel, Points, Stamps, Strokes, Text
+from pinjoint.systems.render.sheet import DIRECTIONS, Sheet
+from pinjoint.systems.render.symbols import SUPPORT_DEPTH
+from pinjoint.systems.render.theme import Colour, faded
+from pinjoint.systems.render.typography import line_height, text_width
 
 _WIDTH = 2.5  # points, of lines
 _APART, _MOST_ARROWS = 26.0, 40  # points between arrows along a rod, and how many there are at most

@@ -7,16 +7,16 @@ from itertools import pairwise
 import numpy as np
 from numpy.typing import NDArray
 
-from components import written
-from components.language import tr
-from components.model import Model
-from components.rod import has_strength, utilisation
-from systems.render.labels import Label, half_size
-from systems.render.leaders import ANCHORS
-from systems.render.marks import Mark, Strokes, boxes
-from systems.render.sheet import FEW, Sheet
-from systems.render.structure import HALO_OPACITY, beside_rod
-from systems.render.theme import Colour, Theme, faded
+from pinjoint.components import written
+from pinjoint.components.language import tr
+from pinjoint.components.model import Model
+from pinjoint.components.rod import has_strength, utilisation
+from pinjoint.systems.render.labels import Label, half_size
+from pinjoint.systems.render.leaders import ANCHORS
+from pinjoint.systems.render.marks import Mark, Strokes, boxes
+from pinjoint.systems.render.sheet import FEW, Sheet
+from pinjoint.systems.render.structure import HALO_OPACITY, beside_rod
+from pinjoint.systems.render.theme import Colour, Theme, faded
 
 LEVELS = 10  # colours of the scale
 _HALO = 13.0  # points

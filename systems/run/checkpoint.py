@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from components.field import Column
-from components.snapshot import Snapshot
+from pinjoint.components.field import Column
+from pinjoint.components.snapshot import Snapshot
 
 
 @dataclass(frozen=True, slots=True)

@@ -6,9 +6,9 @@ from collections.abc import Callable
 from dataclasses import asdict, dataclass
 from typing import Any
 
-from components.field import Column
-from components.model import Model
-from systems.entries import Measure
+from pinjoint.components.field import Column
+from pinjoint.components.model import Model
+from pinjoint.systems.entries import Measure
 
 ENERGIES = (Measure.KINETIC, Measure.ELASTIC, Measure.POTENTIAL)  # the measures that enter the account
 DISSIPATED = ("dissipated_damping", "dissipated_plastic", "dissipated_impact")

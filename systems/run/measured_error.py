@@ -7,13 +7,13 @@ from dataclasses import asdict, dataclass, fields
 
 import numpy as np
 
-from components.field import Column
-from components.rod import bends
-from components.snapshot import Snapshot
-from systems.base import REVIEW_INTERVAL
-from systems.entries import SMALLEST_ENERGY
-from systems.program.program import Program
-from systems.run.simulation import STUCK, Simulation
+from pinjoint.components.field import Column
+from pinjoint.components.rod import bends
+from pinjoint.components.snapshot import Snapshot
+from pinjoint.systems.base import REVIEW_INTERVAL
+from pinjoint.systems.entries import SMALLEST_ENERGY
+from pinjoint.systems.program.program import Program
+from pinjoint.systems.run.simulation import STUCK, Simulation
 
 FINER_TOLERANCE = 1e-2  # of the run's, by which it is taken again where the error is controlled
 FINEST_TOLERANCE = 1e-13

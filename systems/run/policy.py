@@ -12,12 +12,12 @@ from typing import Any
 
 import numpy as np
 
-from components import written
-from components.field import Column
-from components.language import tr
-from systems.base import Integrator, StopReason
-from systems.entries import SMALLEST_ENERGY, Measure
-from systems.physics.automatic import SMALL
+from pinjoint.components import written
+from pinjoint.components.field import Column
+from pinjoint.components.language import tr
+from pinjoint.systems.base import Integrator, StopReason
+from pinjoint.systems.entries import SMALLEST_ENERGY, Measure
+from pinjoint.systems.physics.automatic import SMALL
 
 GOING_ON = (StopReason.DONE, StopReason.REVIEW)  # stop reasons after which a run simply goes on
 ENDING = (StopReason.EVENT, StopReason.DIVERGED, StopReason.UNRESOLVED)  # reasons that end a step early

@@ -4,13 +4,13 @@ from __future__ import annotations
 
 import math
 
-from components.model import Model
-from systems.base import REVIEW_INTERVAL, StopReason
-from systems.program.program import Program
-from systems.run.policy import ENDING
-from systems.run.programs import Programs
-from systems.run.sleep import Sleep
-from systems.run.step_size import StepSize
+from pinjoint.components.model import Model
+from pinjoint.systems.base import REVIEW_INTERVAL, StopReason
+from pinjoint.systems.program.program import Program
+from pinjoint.systems.run.policy import ENDING
+from pinjoint.systems.run.programs import Programs
+from pinjoint.systems.run.sleep import Sleep
+from pinjoint.systems.run.step_size import StepSize
 
 
 class ProgramSteps:

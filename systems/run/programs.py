@@ -5,25 +5,25 @@ from __future__ import annotations
 from collections.abc import Iterator
 from contextlib import contextmanager
 
-from components.language import tr
-from components.model import Model
-from components.rod import bears_between, is_warm
-from components.settings import AUTOMATIC
-from components.snapshot import Snapshot
-from systems.base import Integrator, Phase, StepSystem
-from systems.collision.free.discs import Discs
-from systems.collision.free.flight import Flight
-from systems.collision.impacts import Impacts
-from systems.collision.system import FreeFlight
-from systems.edit.pull import Pull
-from systems.physics.automatic import choose
-from systems.physics.integrators import INTEGRATORS
-from systems.program.binding import ProgramError
-from systems.program.culprit import blame_mod
-from systems.program.parallel import make_program
-from systems.program.program import Program
-from systems.program.writer import form_of
-from systems.schedule import Plan, Schedule
+from pinjoint.components.language import tr
+from pinjoint.components.model import Model
+from pinjoint.components.rod import bears_between, is_warm
+from pinjoint.components.settings import AUTOMATIC
+from pinjoint.components.snapshot import Snapshot
+from pinjoint.systems.base import Integrator, Phase, StepSystem
+from pinjoint.systems.collision.free.discs import Discs
+from pinjoint.systems.collision.free.flight import Flight
+from pinjoint.systems.collision.impacts import Impacts
+from pinjoint.systems.collision.system import FreeFlight
+from pinjoint.systems.edit.pull import Pull
+from pinjoint.systems.physics.automatic import choose
+from pinjoint.systems.physics.integrators import INTEGRATORS
+from pinjoint.systems.program.binding import ProgramError
+from pinjoint.systems.program.culprit import blame_mod
+from pinjoint.systems.program.parallel import make_program
+from pinjoint.systems.program.program import Program
+from pinjoint.systems.program.writer import form_of
+from pinjoint.systems.schedule import Plan, Schedule
 
 FREE_FLIGHT = FreeFlight()
 

@@ -7,9 +7,9 @@ import time
 from collections.abc import Iterator
 from contextlib import contextmanager
 
-from systems.physics.pace import natural_pace
-from systems.program.compiler import Choice, Unfinished
-from systems.run.simulation import Simulation
+from pinjoint.systems.physics.pace import natural_pace
+from pinjoint.systems.program.compiler import Choice, Unfinished
+from pinjoint.systems.run.simulation import Simulation
 
 LONGEST_FRAME = 0.1  # s of real time that one frame may catch up
 BUDGET = 0.012  # s of a frame that steps may take

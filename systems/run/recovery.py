@@ -2,17 +2,17 @@
 
 from __future__ import annotations
 
-from components import written
-from components.field import same
-from components.language import joined, tr
-from components.model import Model
-from components.snapshot import Snapshot
-from systems.base import REVIEW_INTERVAL
-from systems.program.culprit import find_culprit
-from systems.program.program import MOTION, TURNING
-from systems.run.programs import Programs
-from systems.run.sleep import Sleep
-from systems.run.step_size import StepSize
+from pinjoint.components import written
+from pinjoint.components.field import same
+from pinjoint.components.language import joined, tr
+from pinjoint.components.model import Model
+from pinjoint.components.snapshot import Snapshot
+from pinjoint.systems.base import REVIEW_INTERVAL
+from pinjoint.systems.program.culprit import find_culprit
+from pinjoint.systems.program.program import MOTION, TURNING
+from pinjoint.systems.run.programs import Programs
+from pinjoint.systems.run.sleep import Sleep
+from pinjoint.systems.run.step_size import StepSize
 
 MOST_HALVINGS = 6  # of an automatic step before a run is given up
 

@@ -10,25 +10,25 @@ from contextlib import contextmanager
 from dataclasses import dataclass, replace
 from typing import Any
 
-from components.departure import Departure
-from components.field import Column, Role
-from components.language import joined, marked, tr
-from components.model import ADDED, Model
-from components.numeric_range import incomputable
-from components.rod import idle_moment
-from components.snapshot import Snapshot
-from components.world import Derivation
-from systems.base import REVIEW_INTERVAL, Integrator, StepSystem, StopReason
-from systems.collision.driven.stepper import DrivenCollisions
-from systems.collision.free.flight import Flight
-from systems.collision.impacts import Impacts
-from systems.collision.overlaps import PARTING, part_overlaps, work_ahead
-from systems.physics.rest import may_rest, rests_unseen
-from systems.program.compiler import Choice, Unfinished
-from systems.program.program import OBSERVED
-from systems.run.checkpoint import Checkpoint
-from systems.run.energy import Account, Energy
-from systems.run.policy import (
+from pinjoint.components.departure import Departure
+from pinjoint.components.field import Column, Role
+from pinjoint.components.language import joined, marked, tr
+from pinjoint.components.model import ADDED, Model
+from pinjoint.components.numeric_range import incomputable
+from pinjoint.components.rod import idle_moment
+from pinjoint.components.snapshot import Snapshot
+from pinjoint.components.world import Derivation
+from pinjoint.systems.base import REVIEW_INTERVAL, Integrator, StepSystem, StopReason
+from pinjoint.systems.collision.driven.stepper import DrivenCollisions
+from pinjoint.systems.collision.free.flight import Flight
+from pinjoint.systems.collision.impacts import Impacts
+from pinjoint.systems.collision.overlaps import PARTING, part_overlaps, work_ahead
+from pinjoint.systems.physics.rest import may_rest, rests_unseen
+from pinjoint.systems.program.compiler import Choice, Unfinished
+from pinjoint.systems.program.program import OBSERVED
+from pinjoint.systems.run.checkpoint import Checkpoint
+from pinjoint.systems.run.energy import Account, Energy
+from pinjoint.systems.run.policy import (
     at_rest_since,
     begin_steps,
     energy_warning,
@@ -36,12 +36,12 @@ from systems.run.policy import (
     overlap_warning,
     residual,
 )
-from systems.run.program_steps import ProgramSteps
-from systems.run.programs import Dynamics, Programs
-from systems.run.recovery import Recovery
-from systems.run.sleep import Sleep
-from systems.run.step_size import StepSize
-from systems.schedule import Plan, Schedule
+from pinjoint.systems.run.program_steps import ProgramSteps
+from pinjoint.systems.run.programs import Dynamics, Programs
+from pinjoint.systems.run.recovery import Recovery
+from pinjoint.systems.run.sleep import Sleep
+from pinjoint.systems.run.step_size import StepSize
+from pinjoint.systems.schedule import Plan, Schedule
 
 # Of the clock, as a run begins.
 CHOSEN = ("step_size", "guard_energy", "largest_imbalance", "initial_energy", "potential_reference")

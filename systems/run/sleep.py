@@ -12,18 +12,18 @@ import sys
 
 import numpy as np
 
-from components.field import Role
-from components.load import load_ends
-from components.model import Model
-from systems.collision.system import persistent_contacts
-from systems.entries import ASLEEP
-from systems.islands import IMMOVABLE, Rows, islands
-from systems.physics.rest import Array, Mask, RestMeasure
-from systems.program.parallel import make_program
-from systems.program.program import Program
-from systems.program.reordered import ReorderedProgram
-from systems.run.policy import steps_to_sleep_review
-from systems.run.programs import Dynamics
+from pinjoint.components.field import Role
+from pinjoint.components.load import load_ends
+from pinjoint.components.model import Model
+from pinjoint.systems.collision.system import persistent_contacts
+from pinjoint.systems.entries import ASLEEP
+from pinjoint.systems.islands import IMMOVABLE, Rows, islands
+from pinjoint.systems.physics.rest import Array, Mask, RestMeasure
+from pinjoint.systems.program.parallel import make_program
+from pinjoint.systems.program.program import Program
+from pinjoint.systems.program.reordered import ReorderedProgram
+from pinjoint.systems.run.policy import steps_to_sleep_review
+from pinjoint.systems.run.programs import Dynamics
 
 
 class Sleep:

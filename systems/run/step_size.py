@@ -7,15 +7,22 @@ import math
 import numpy as np
 from numpy.typing import NDArray
 
-from components.field import Role
-from components.language import joined, tr
-from components.model import Model
-from systems.physics.integrators import INTEGRATORS
-from systems.physics.pace import natural_pace
-from systems.physics.spectrum import spectrum
-from systems.run.policy import ERROR_CONTROL, Limits, StepPolicy, begin_steps, is_unstable, rounded_down
-from systems.run.programs import Programs
-from systems.run.sleep import Sleep
+from pinjoint.components.field import Role
+from pinjoint.components.language import joined, tr
+from pinjoint.components.model import Model
+from pinjoint.systems.physics.integrators import INTEGRATORS
+from pinjoint.systems.physics.pace import natural_pace
+from pinjoint.systems.physics.spectrum import spectrum
+from pinjoint.systems.run.policy import (
+    ERROR_CONTROL,
+    Limits,
+    StepPolicy,
+    begin_steps,
+    is_unstable,
+    rounded_down,
+)
+from pinjoint.systems.run.programs import Programs
+from pinjoint.systems.run.sleep import Sleep
 
 OBSERVED = 1.0 / 120.0  # s shown, at the natural pace, between two looks at exact flight or at what touches
 PASSED = 1e-4  # share of the time so far between two looks at exact flight, so that any time is reached in some steps

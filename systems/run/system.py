@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Any
 
-from systems.base import Phase, System
+from pinjoint.systems.base import Phase, System
 
 
 class Time(System):

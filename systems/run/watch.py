@@ -6,8 +6,8 @@ import time
 from collections.abc import Iterator
 from contextlib import contextmanager
 
-from systems.run.checkpoint import Checkpoint
-from systems.run.simulation import Simulation
+from pinjoint.systems.run.checkpoint import Checkpoint
+from pinjoint.systems.run.simulation import Simulation
 
 KEPT_EVERY = 0.5  # s; as much of a run an interrupt loses
 WORK_AT_ONCE = 2**22  # steps × elements, after which a run looks up

@@ -12,8 +12,8 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
-from components.derived import FULL_TURN
-from components.model import Model
+from pinjoint.components.derived import FULL_TURN
+from pinjoint.components.model import Model
 
 Array = NDArray[np.float64]
 

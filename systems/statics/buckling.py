@@ -10,14 +10,14 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from components.language import marked, plural, tr
-from components.model import Model
-from systems.statics.assembly import Matrix
-from systems.statics.bending import needed_parts
-from systems.statics.equations import Array, Rows, Structure, normalised, upright
-from systems.statics.events import NoEquilibrium
-from systems.statics.explain import describe_motion, divide_named, rod_names
-from systems.statics.factor import (
+from pinjoint.components.language import marked, plural, tr
+from pinjoint.components.model import Model
+from pinjoint.systems.statics.assembly import Matrix
+from pinjoint.systems.statics.bending import needed_parts
+from pinjoint.systems.statics.equations import Array, Rows, Structure, normalised, upright
+from pinjoint.systems.statics.events import NoEquilibrium
+from pinjoint.systems.statics.explain import describe_motion, divide_named, rod_names
+from pinjoint.systems.statics.factor import (
     NO_STIFFNESS,
     SOFT,
     Factor,
@@ -27,8 +27,8 @@ from systems.statics.factor import (
     soft_modes,
     unresisted,
 )
-from systems.statics.state import Start
-from systems.statics.theory import linear
+from pinjoint.systems.statics.state import Start
+from pinjoint.systems.statics.theory import linear
 
 FULL = 150  # unknowns up to which all eigenvalues are computed
 RESTARTS = 100

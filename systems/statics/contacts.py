@@ -11,13 +11,13 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from components.model import Model
-from components.obstacles import Obstacles, obstacles
-from systems.broad_phase import near_pairs, nearest
-from systems.statics.equations import Array, Flags, Rows, Structure, largest
-from systems.statics.factor import is_stable
-from systems.statics.follow import Path, Point
-from systems.statics.relax import BALANCED, creep, has_run_away
+from pinjoint.components.model import Model
+from pinjoint.components.obstacles import Obstacles, obstacles
+from pinjoint.systems.broad_phase import near_pairs, nearest
+from pinjoint.systems.statics.equations import Array, Flags, Rows, Structure, largest
+from pinjoint.systems.statics.factor import is_stable
+from pinjoint.systems.statics.follow import Path, Point
+from pinjoint.systems.statics.relax import BALANCED, creep, has_run_away
 
 CONTACT_STRAIN = 1e-3  # of a contact under the largest load, before it is lengthened
 SHORTEST_MOVE = 0.25  # of its radius: the travel of a disc in a step, whatever is near

@@ -9,10 +9,10 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from components.language import joined, plural, tr
-from components.model import Model
-from components.rod import bends, nodes
-from components.table import flags
+from pinjoint.components.language import joined, plural, tr
+from pinjoint.components.model import Model
+from pinjoint.components.rod import bends, nodes
+from pinjoint.components.table import flags
 
 
 @dataclass(frozen=True)

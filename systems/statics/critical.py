@@ -7,13 +7,13 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from components.language import marked, tr
-from components.model import Model
-from systems.statics.equations import Array, normalised, upright
-from systems.statics.events import Event
-from systems.statics.explain import describe_motion
-from systems.statics.factor import nearest_mode, regular
-from systems.statics.follow import HALF, Path, Point, Step, Tangent
+from pinjoint.components.language import marked, tr
+from pinjoint.components.model import Model
+from pinjoint.systems.statics.equations import Array, normalised, upright
+from pinjoint.systems.statics.events import Event
+from pinjoint.systems.statics.explain import describe_motion
+from pinjoint.systems.statics.factor import nearest_mode, regular
+from pinjoint.systems.statics.follow import HALF, Path, Point, Step, Tangent
 
 LIMIT_POINT, BIFURCATION = marked("limit point"), marked("bifurcation")
 SHARPNESS = 1e-10  # of an increment, to which a critical point is found in it

@@ -16,15 +16,15 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
-from components.derived import with_full_turns
-from components.language import tr
-from components.model import Model
-from components.rod import bends
-from components.table import flags
-from systems.islands import lowest_joined
-from systems.statics.assembly import DENSE, Assembly, Matrix, sparse_order, spread_by_ends
-from systems.statics.bending import Bending, Bent
-from systems.statics.response import Branches, Response
+from pinjoint.components.derived import with_full_turns
+from pinjoint.components.language import tr
+from pinjoint.components.model import Model
+from pinjoint.components.rod import bends
+from pinjoint.components.table import flags
+from pinjoint.systems.islands import lowest_joined
+from pinjoint.systems.statics.assembly import DENSE, Assembly, Matrix, sparse_order, spread_by_ends
+from pinjoint.systems.statics.bending import Bending, Bent
+from pinjoint.systems.statics.response import Branches, Response
 
 if TYPE_CHECKING:  # only large structures need it
     from scipy.sparse import csc_matrix

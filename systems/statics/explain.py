@@ -6,11 +6,11 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from components import language, written
-from components.language import begun, joined, plural, tr
-from components.model import Model
-from components.wording import cut
-from systems.statics.equations import TURNS_ONLY, Array, Flags, Rows, largest
+from pinjoint.components import language, written
+from pinjoint.components.language import begun, joined, plural, tr
+from pinjoint.components.model import Model
+from pinjoint.components.wording import cut
+from pinjoint.systems.statics.equations import TURNS_ONLY, Array, Flags, Rows, largest
 
 NAMED = 5  # at most so many by name, then "and 7 more"
 DIRECTIONS = 3  # at most so many, then "and 7 more"

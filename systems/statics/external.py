@@ -6,15 +6,15 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from components import written
-from components.language import plural, tr
-from components.load import static_factor
-from components.model import Model
-from components.rod import bends
-from components.table import flags
-from systems.statics.equations import Array, Rows, Structure
-from systems.statics.events import Event
-from systems.statics.explain import listed
+from pinjoint.components import written
+from pinjoint.components.language import plural, tr
+from pinjoint.components.load import static_factor
+from pinjoint.components.model import Model
+from pinjoint.components.rod import bends
+from pinjoint.components.table import flags
+from pinjoint.systems.statics.equations import Array, Rows, Structure
+from pinjoint.systems.statics.events import Event
+from pinjoint.systems.statics.explain import listed
 
 NO_NET_FORCE = 1e-12  # of the sum of a body's forces: a smaller net force is round-off
 

@@ -7,10 +7,10 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from systems.statics.assembly import SYMMETRIC, Matrix
-from systems.statics.equations import ROUND_OFF, Array, Flags, Structure
-from systems.statics.lapack import lapack
-from systems.statics.response import Response
+from pinjoint.systems.statics.assembly import SYMMETRIC, Matrix
+from pinjoint.systems.statics.equations import ROUND_OFF, Array, Flags, Structure
+from pinjoint.systems.statics.lapack import lapack
+from pinjoint.systems.statics.response import Response
 
 if TYPE_CHECKING:  # only large structures need it
     from scipy.sparse import csc_matrix

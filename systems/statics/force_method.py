@@ -12,14 +12,14 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from components.language import tr
-from components.model import Model
-from components.numeric_range import incomputable
-from systems.statics.equations import Array
-from systems.statics.explain import cables_named
-from systems.statics.external import external_forces
-from systems.statics.released import Released, SetState
-from systems.statics.unknowns import ForceMethodError, Unknown, refuse_unsuited
+from pinjoint.components.language import tr
+from pinjoint.components.model import Model
+from pinjoint.components.numeric_range import incomputable
+from pinjoint.systems.statics.equations import Array
+from pinjoint.systems.statics.explain import cables_named
+from pinjoint.systems.statics.external import external_forces
+from pinjoint.systems.statics.released import Released, SetState
+from pinjoint.systems.statics.unknowns import ForceMethodError, Unknown, refuse_unsuited
 
 _ROUNDING = 1e-12  # of the geometric mean of their diagonal: smaller flexibilities are 0
 

@@ -6,15 +6,15 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from components import written
-from components.language import begun, joined, marked, plural, tr
-from components.model import Model
-from systems.statics.equations import Array, Flags, largest, normalised
-from systems.statics.events import Event, NoEquilibrium
-from systems.statics.explain import describe_motion, moved, rod_names, slack_named
-from systems.statics.factor import SOFT, is_stable, regular, soft_modes, softest, unresisted
-from systems.statics.follow import HALF, Path, Point, Tangent
-from systems.statics.relax import RUNAWAY, STEPS, relax
+from pinjoint.components import written
+from pinjoint.components.language import begun, joined, marked, plural, tr
+from pinjoint.components.model import Model
+from pinjoint.systems.statics.equations import Array, Flags, largest, normalised
+from pinjoint.systems.statics.events import Event, NoEquilibrium
+from pinjoint.systems.statics.explain import describe_motion, moved, rod_names, slack_named
+from pinjoint.systems.statics.factor import SOFT, is_stable, regular, soft_modes, softest, unresisted
+from pinjoint.systems.statics.follow import HALF, Path, Point, Tangent
+from pinjoint.systems.statics.relax import RUNAWAY, STEPS, relax
 
 BEYOND = 1e-6  # of the change of load, by which a jump begins beyond a loss of stability
 FIRST_LOAD = 1 / 64  # of the change of load, under which a first-order mechanism takes its shape

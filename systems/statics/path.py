@@ -8,17 +8,17 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from components.language import joined, marked, tr
-from components.model import Model
-from components.suggestions import missing
-from components.wording import cut
-from systems.statics.critical import BIFURCATION, branch_off, passed
-from systems.statics.equations import Array, Structure
-from systems.statics.events import Event
-from systems.statics.external import External, external_forces
-from systems.statics.follow import Path, Point, Step, Tangent
-from systems.statics.settle import settle
-from systems.statics.state import StaticState
+from pinjoint.components.language import joined, marked, tr
+from pinjoint.components.model import Model
+from pinjoint.components.suggestions import missing
+from pinjoint.components.wording import cut
+from pinjoint.systems.statics.critical import BIFURCATION, branch_off, passed
+from pinjoint.systems.statics.equations import Array, Structure
+from pinjoint.systems.statics.events import Event
+from pinjoint.systems.statics.external import External, external_forces
+from pinjoint.systems.statics.follow import Path, Point, Step, Tangent
+from pinjoint.systems.statics.settle import settle
+from pinjoint.systems.statics.state import StaticState
 
 DETAIL = 0.02  # of a rod's length between points; smaller: a smoother curve
 FIRST = 1e-3  # of the same, for the first increment

@@ -12,9 +12,9 @@ from functools import partial
 
 import numpy as np
 
-from systems.statics.equations import Array, Structure, largest
-from systems.statics.factor import is_stable, regular, softest
-from systems.statics.follow import LARGEST_MOVE, SMALLEST_SHARE, Path, Point
+from pinjoint.systems.statics.equations import Array, Structure, largest
+from pinjoint.systems.statics.factor import is_stable, regular, softest
+from pinjoint.systems.statics.follow import LARGEST_MOVE, SMALLEST_SHARE, Path, Point
 
 STEPS = 4000  # at most
 NEWTON_ITERATIONS = 20  # within a step

@@ -13,15 +13,15 @@ from functools import cached_property
 import numpy as np
 from scipy.sparse import csc_matrix, diags
 
-from components.language import tr
-from components.model import Model
-from components.rod import bends
-from systems.statics.assembly import Matrix
-from systems.statics.equations import ROUND_OFF, Array, Structure, largest, normalised
-from systems.statics.explain import describe_motion
-from systems.statics.factor import Factor, soft_count, soft_modes, unresisted
-from systems.statics.theory import REFINEMENTS_OF_BENDING
-from systems.statics.unknowns import ForceMethodError, Unknown
+from pinjoint.components.language import tr
+from pinjoint.components.model import Model
+from pinjoint.components.rod import bends
+from pinjoint.systems.statics.assembly import Matrix
+from pinjoint.systems.statics.equations import ROUND_OFF, Array, Structure, largest, normalised
+from pinjoint.systems.statics.explain import describe_motion
+from pinjoint.systems.statics.factor import Factor, soft_count, soft_modes, unresisted
+from pinjoint.systems.statics.theory import REFINEMENTS_OF_BENDING
+from pinjoint.systems.statics.unknowns import ForceMethodError, Unknown
 
 _NONE = np.zeros(0)
 

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from systems.statics.bending import Bent
+from pinjoint.systems.statics.bending import Bent
 
 Array = NDArray[np.float64]
 Flags = NDArray[np.bool_]

@@ -12,21 +12,21 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from components.field import LARGEST, FieldError
-from components.language import joined, plural, tr
-from components.model import Model
-from components.numeric_range import incomputable
-from components.wording import quoted
-from systems.statics.bending import needed_parts
-from systems.statics.contacts import Discs, Sinking
-from systems.statics.equations import ROUND_OFF, Array, Structure, largest, normalised
-from systems.statics.events import Event, NoEquilibrium
-from systems.statics.explain import describe_motion, divide_named, nothing_stops, slack_named
-from systems.statics.external import external_forces, loose_bodies, loose_event
-from systems.statics.factor import SOFT, soft_modes, softest
-from systems.statics.follow import Path, Point
-from systems.statics.loading import Loading, first_order_mechanism
-from systems.statics.state import NEUTRAL, STABLE, UNSTABLE, Start, StaticState, state_of
+from pinjoint.components.field import LARGEST, FieldError
+from pinjoint.components.language import joined, plural, tr
+from pinjoint.components.model import Model
+from pinjoint.components.numeric_range import incomputable
+from pinjoint.components.wording import quoted
+from pinjoint.systems.statics.bending import needed_parts
+from pinjoint.systems.statics.contacts import Discs, Sinking
+from pinjoint.systems.statics.equations import ROUND_OFF, Array, Structure, largest, normalised
+from pinjoint.systems.statics.events import Event, NoEquilibrium
+from pinjoint.systems.statics.explain import describe_motion, divide_named, nothing_stops, slack_named
+from pinjoint.systems.statics.external import external_forces, loose_bodies, loose_event
+from pinjoint.systems.statics.factor import SOFT, soft_modes, softest
+from pinjoint.systems.statics.follow import Path, Point
+from pinjoint.systems.statics.loading import Loading, first_order_mechanism
+from pinjoint.systems.statics.state import NEUTRAL, STABLE, UNSTABLE, Start, StaticState, state_of
 
 LARGEST_GROWTH, SMALLEST_GROWTH = (
     1 / 16,

@@ -6,8 +6,8 @@ from dataclasses import replace
 
 import numpy as np
 
-from components.model import Model
-from systems.statics.equations import Structure
+from pinjoint.components.model import Model
+from pinjoint.systems.statics.equations import Structure
 
 RESISTED = 1e-9  # of the largest stiffness: a motion that is resisted less counts as not resisted
 RESISTED_BY_BENDING = 1e-12  # the same where members bend, which long ones do a million times more easily

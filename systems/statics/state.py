@@ -8,13 +8,13 @@ from typing import Any
 
 import numpy as np
 
-from components.diagrams import diagrams
-from components.language import marked
-from components.model import Model
-from components.rod import bends
-from systems.statics.equations import Array, Flags, Rows, Structure
-from systems.statics.events import Event
-from systems.statics.response import Response
+from pinjoint.components.diagrams import diagrams
+from pinjoint.components.language import marked
+from pinjoint.components.model import Model
+from pinjoint.components.rod import bends
+from pinjoint.systems.statics.equations import Array, Flags, Rows, Structure
+from pinjoint.systems.statics.events import Event
+from pinjoint.systems.statics.response import Response
 
 STABLE, NEUTRAL, UNSTABLE = EQUILIBRIA = (
     marked("equilibrium"),

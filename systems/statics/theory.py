@@ -7,15 +7,15 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from components.language import tr
-from components.model import Model
-from systems.statics.equations import ROUND_OFF, Array, Structure, largest, normalised
-from systems.statics.events import NoEquilibrium
-from systems.statics.explain import cables_named, describe_motion
-from systems.statics.external import external_forces, loose_bodies, loose_event
-from systems.statics.factor import SOFT, pseudo_random, regular, soft_count, soft_modes, unresisted
-from systems.statics.response import Response
-from systems.statics.state import STABLE, Start, StaticState, state_of
+from pinjoint.components.language import tr
+from pinjoint.components.model import Model
+from pinjoint.systems.statics.equations import ROUND_OFF, Array, Structure, largest, normalised
+from pinjoint.systems.statics.events import NoEquilibrium
+from pinjoint.systems.statics.explain import cables_named, describe_motion
+from pinjoint.systems.statics.external import external_forces, loose_bodies, loose_event
+from pinjoint.systems.statics.factor import SOFT, pseudo_random, regular, soft_count, soft_modes, unresisted
+from pinjoint.systems.statics.response import Response
+from pinjoint.systems.statics.state import STABLE, Start, StaticState, state_of
 
 REFINEMENTS = 4  # of a linear solution
 REFINEMENTS_OF_BENDING = 40  # at most; few unless hundreds of rods divide a long member

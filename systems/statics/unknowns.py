@@ -8,14 +8,14 @@ from dataclasses import dataclass, replace
 import numpy as np
 from scipy.linalg import qr
 
-from components.field import ENDS
-from components.language import marked, tr
-from components.model import Model
-from components.particle import Particle
-from components.rod import Rod, bends
-from components.suggestions import missing
-from systems.statics.assembly import compatibility
-from systems.statics.equations import Array, Structure
+from pinjoint.components.field import ENDS
+from pinjoint.components.language import marked, tr
+from pinjoint.components.model import Model
+from pinjoint.components.particle import Particle
+from pinjoint.components.rod import Rod, bends
+from pinjoint.components.suggestions import missing
+from pinjoint.systems.statics.assembly import compatibility
+from pinjoint.systems.statics.equations import Array, Structure
 
 AXES = ("x", "y", "rotation")
 _KEPT = 1e6  # weight of supports against rods when redundants are chosen: rods are released first

@@ -8,20 +8,20 @@ from functools import cached_property
 
 import numpy as np
 
-from components import written
-from components.diagrams import NAMES
-from components.field import ENDS
-from components.language import begun, joined, marked, tr
-from components.model import Model
-from components.suggestions import missing
-from components.table import flags
-from components.world import called
-from systems.statics.equations import ROUND_OFF, Array, Flags, largest
-from systems.statics.events import Event, NoEquilibrium
-from systems.statics.explain import rod_names
-from systems.statics.settle import Settlement, settle
-from systems.statics.state import Start, StaticState
-from systems.statics.theory import linear
+from pinjoint.components import written
+from pinjoint.components.diagrams import NAMES
+from pinjoint.components.field import ENDS
+from pinjoint.components.language import begun, joined, marked, tr
+from pinjoint.components.model import Model
+from pinjoint.components.suggestions import missing
+from pinjoint.components.table import flags
+from pinjoint.components.world import called
+from pinjoint.systems.statics.equations import ROUND_OFF, Array, Flags, largest
+from pinjoint.systems.statics.events import Event, NoEquilibrium
+from pinjoint.systems.statics.explain import rod_names
+from pinjoint.systems.statics.settle import Settlement, settle
+from pinjoint.systems.statics.state import Start, StaticState
+from pinjoint.systems.statics.theory import linear
 
 QUANTITIES = {
     "axial_force": ("rods", "kN"),

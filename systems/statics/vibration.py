@@ -9,13 +9,13 @@ from scipy.linalg import eigh
 from scipy.sparse import csc_matrix, diags
 from scipy.sparse.linalg import LinearOperator, eigsh
 
-from components.model import Model
-from systems.statics.equations import ROUND_OFF, Array, Structure, largest, normalised
-from systems.statics.explain import divide_named
-from systems.statics.external import external_forces
-from systems.statics.factor import Factor, pseudo_random
-from systems.statics.response import Response
-from systems.statics.state import Start, StaticState
+from pinjoint.components.model import Model
+from pinjoint.systems.statics.equations import ROUND_OFF, Array, Structure, largest, normalised
+from pinjoint.systems.statics.explain import divide_named
+from pinjoint.systems.statics.external import external_forces
+from pinjoint.systems.statics.factor import Factor, pseudo_random
+from pinjoint.systems.statics.response import Response
+from pinjoint.systems.statics.state import Start, StaticState
 
 FULL = 600  # unknowns up to which all modes are computed
 LOWEST = 10  # modes of larger structures, unless more are asked for

@@ -13,10 +13,10 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from components.model import Model
-from systems.statics.equations import Array, Rows
-from systems.statics.force_method import Solution
-from systems.statics.released import SetState
+from pinjoint.components.model import Model
+from pinjoint.systems.statics.equations import Array, Rows
+from pinjoint.systems.statics.force_method import Solution
+from pinjoint.systems.statics.released import SetState
 
 
 @dataclass(frozen=True)

@@ -7,15 +7,15 @@ from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
-import game  # noqa: F401 (adds walls)
-from components.clock import Clock
-from components.field import Field, Role
-from components.handle import Handle
-from components.load import HISTORIES
-from components.model import ADDED, KINDS
-from components.table import fields_of
-from game.mods.mod import INCLUDED
-from systems.program.binding import find
+import pinjoint.included  # noqa: F401 (adds walls)
+from pinjoint.components.clock import Clock
+from pinjoint.components.field import Field, Role
+from pinjoint.components.handle import Handle
+from pinjoint.components.load import HISTORIES
+from pinjoint.components.model import ADDED, KINDS
+from pinjoint.components.table import fields_of
+from pinjoint.mods.mod import INCLUDED
+from pinjoint.systems.program.binding import find
 
 PAGE = Path(__file__).parents[2] / "components" / "README.md"
 HEAD = """\
@@ -56,7 +56,7 @@ def page() -> str:
     """What the page is to say."""
     kinds = [kind for kind in KINDS if kind is not Clock]
     sections = [section(kind, kind.table) for kind in kinds]
-    ours = [(name, kind) for name, kind in ADDED.items() if kind.__module__.startswith("game.included")]
+    ours = [(name, kind) for name, kind in ADDED.items() if kind.__module__.startswith("pinjoint.included")]
     sections += [section(kind, kind.table, f" (in files `components` / `{name}`)") for name, kind in ours]
     return "\n".join([HEAD, *sections, histories()]) + SLIDERS
 

@@ -15,18 +15,24 @@ from pathlib import Path
 
 import pytest
 
+from pinjoint.systems import is_ours
+
 ROOT = Path(__file__).parents[2]
 LAYERS = ("components", "systems", "game", "tests")  # each may import itself and those before it
 RESOURCES = "assets"
+NAMES = {top: f"pinjoint.{top}" for top in ("components", "systems", RESOURCES)} | {
+    "game": "pinjoint"
+}  # of folders
 WINDOW = ("systems/render/pygame_*.py", "systems/input/pygame_*.py", "game/app.py")
 COMPILER = ("systems/machine_code.py", "systems/translation.py")  # numba is imported as soon as it is
 COMPILED = (*COMPILER, "systems/program/*.py")
 FORMS = ("interpreter", "kernels", "machine_code", "translation")
-SHARED = ("base", "broad_phase", "cache", "entries", "islands", *FORMS, "program")  # by all systems
+SHARED = ("is_ours", "base", "broad_phase", "cache", "entries", "islands", *FORMS, "program")  # by all systems
 COMPOSED = ("program", "run", "catalogue.py")  # of what other folders of systems hold
 MODULES_OF = {"pygame-ce": "pygame", "pillow": "PIL"}  # distributions whose module has another name
 
-PROJECT = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))["project"]
+PYPROJECT = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))
+PROJECT, SETUPTOOLS = PYPROJECT["project"], PYPROJECT["tool"]["setuptools"]
 
 
 def distributions(requirements: list[str]) -> set[str]:
@@ -41,7 +47,8 @@ DECLARED = set[str]().union(*map(distributions, REQUIREMENTS))
 
 def imported(source: str, path: str) -> Iterator[tuple[int, str]]:
     """Line and full name of every module or name that a file imports, at whatever depth it does."""
-    package = path.removesuffix(".py").split("/")[:-1]
+    package = module_name(path).split(".")
+    package = package if path.endswith("__init__.py") else package[:-1]
     for node in ast.walk(ast.parse(source, path)):
         if isinstance(node, ast.Import):
             for alias in node.names:
@@ -59,9 +66,11 @@ def within(path: str, patterns: tuple[str, ...]) -> bool:
 
 def broken_rule(path: str, name: str) -> str | None:
     """The rule that a file breaks by importing a full name, or None."""
-    layer, top = path.split("/")[0], name.split(".")[0]
-    if top in LAYERS:
+    layer, top = path.split("/")[0], folder_of(name)
+    if top in LAYERS and name.split(".")[0] not in NAMES:
         return broken_order(path, layer, top, name)
+    if name.split(".")[0] in NAMES:
+        return "it is imported as a part of pinjoint, for a second copy of a module has registers of its own"
     if top == RESOURCES:
         return None if layer in ("game", "tests") else "only game imports assets; read them as resources"
     if top in sys.stdlib_module_names or layer == "tests":
@@ -81,7 +90,7 @@ def broken_order(path: str, layer: str, top: str, name: str) -> str | None:
     if LAYERS.index(top) > LAYERS.index(layer):
         return f"{layer} must not import {top}"
     if layer == top == "systems":
-        own, other, *rest = path.split("/")[1], name.split(".")[1], *name.split(".")[2:]
+        own, (other, *rest) = path.split("/")[1], name.split(".")[2:]
         shared = other in SHARED or rest[:1] == ["kernels"] or own in COMPOSED
         if own.removesuffix(".py") != other and not shared:
             return f"systems meet in columns and events; they import only {', '.join(SHARED)} and kernels of each other"
@@ -112,7 +121,16 @@ def imports_of(sources: Mapping[str, str]) -> dict[str, set[str]]:
 
 
 def module_name(path: str) -> str:
-    return path.removesuffix(".py").removesuffix("/__init__").replace("/", ".")
+    """The name that the module in a file is imported by."""
+    top, *rest = path.removesuffix(".py").removesuffix("/__init__").split("/")
+    return ".".join([NAMES.get(top, top), *rest])
+
+
+def folder_of(name: str) -> str:
+    """The folder at the top in which a module lies, or the package that it belongs to if that is not ours."""
+    package, _, rest = name.partition(".")
+    part = rest.partition(".")[0]
+    return package if package != "pinjoint" else part if part in NAMES else "game"
 
 
 def circle(graph: Mapping[str, set[str]]) -> list[str]:
@@ -157,12 +175,12 @@ def modules(layer: str) -> list[str]:
 @pytest.mark.parametrize(
     ("names", "unwanted"),
     [
-        (["game"], ["pygame", "numba", "scipy", "matplotlib"]),
+        (["pinjoint"], ["pygame", "numba", "scipy", "matplotlib", "numpy", "pinjoint.components"]),
         (modules("components"), ["pygame", "numba", "scipy", "msgspec"]),
         (modules("systems"), ["pygame", "numba"]),
         (modules("game"), ["pygame", "numba"]),
     ],
-    ids=["import game", "components", "systems", "game"],
+    ids=["import pinjoint", "components", "systems", "game"],
 )
 def test_importing_loads_neither_a_window_nor_a_compiler(names: list[str], unwanted: list[str]) -> None:
     code = f"import sys, importlib\nfor name in {names}: importlib.import_module(name)\n"
@@ -172,26 +190,73 @@ def test_importing_loads_neither_a_window_nor_a_compiler(names: list[str], unwan
     assert done.stdout.split() == []
 
 
+SECOND_COPY = re.compile(
+    r"""(?:\bimport|\bfrom|-m"?,?|files\("?)[ "]?(?:game|systems|components|assets)(?:\.[a-z_]|[ "'\\`);,]|$)""",
+    re.M,
+)
+
+
+def test_nothing_is_imported_by_the_name_of_its_folder() -> None:
+    """In a checkout that works, and gives a second copy of every register; elsewhere it is somebody else's package."""
+    tracked = subprocess.run(
+        ["git", "ls-files"], cwd=ROOT, capture_output=True, text=True, check=True
+    ).stdout.split()
+    texts = [
+        path
+        for path in tracked
+        if path.endswith((".py", ".md", ".toml", ".po", ".jsonl")) and path != "CHANGELOG.md"
+    ]
+    here = Path(__file__).relative_to(ROOT).as_posix()
+    found = {
+        path: SECOND_COPY.findall((ROOT / path).read_text(encoding="utf-8")) for path in texts if path != here
+    }
+    assert not {path: lines for path, lines in found.items() if lines}
+    assert not set(NAMES) & set(sys.modules)
+
+
+def test_the_packages_that_are_installed_are_the_folders() -> None:
+    there = {
+        module_name(path) for path in files() if path.endswith("__init__.py") and not path.startswith("tests/")
+    }
+    assert set(SETUPTOOLS["packages"]) == there | {"pinjoint.assets"}
+    assert SETUPTOOLS["package-dir"] == {name: top for top, name in NAMES.items()}
+
+
+@pytest.mark.parametrize(
+    ("module", "ours"),
+    [
+        ("pinjoint.systems.physics.kernels", True),
+        ("pinjoint.included.walls", True),
+        ("wind", False),
+        ("pinjoint_wind", False),
+    ],
+)
+def test_ours_are_told_from_others_by_name(module: str, ours: bool) -> None:
+    assert is_ours(module) is ours
+
+
 # --- the rules themselves ----------------------------------------------------------------------------------
 
 
 @pytest.mark.parametrize(
     ("path", "line"),
     [
-        ("components/rod.py", "import systems"),
-        ("components/rod.py", "from game.session import Session"),
+        ("components/rod.py", "import pinjoint.systems"),
+        ("components/rod.py", "from pinjoint.session import Session"),
         ("components/rod.py", "def f():\n    import scipy"),
-        ("components/rod.py", "if TYPE_CHECKING:\n    from systems.base import System"),
+        ("components/rod.py", "if TYPE_CHECKING:\n    from pinjoint.systems.base import System"),
         ("components/rod.py", "import requests"),
-        ("systems/physics/system.py", "from game import Session"),
-        ("systems/physics/system.py", "from systems.plasticity.system import Yielding"),
-        ("systems/physics/system.py", "from systems import plasticity"),
+        ("systems/physics/system.py", "from pinjoint import Session"),
+        ("systems/physics/system.py", "from pinjoint.systems.plasticity.system import Yielding"),
+        ("systems/physics/system.py", "from pinjoint.systems import plasticity"),
         ("systems/physics/system.py", "from ..plasticity import system"),
         ("systems/physics/system.py", "import numba"),
         ("systems/physics/system.py", "import pygame.gfxdraw"),
         ("systems/render/scene.py", "import pygame"),
-        ("systems/base.py", "from systems.physics.system import Elasticity"),
-        ("systems/render/theme.py", "import assets"),
+        ("systems/base.py", "from pinjoint.systems.physics.system import Elasticity"),
+        ("systems/render/theme.py", "import pinjoint.assets"),
+        ("game/session.py", "import systems.base"),
+        ("tests/unit/test_rod.py", "from game import Session"),
         ("game/session.py", "from tests.reference import models"),
         ("game/session.py", "import pygame"),
         ("game/session.py", "from numba import njit"),
@@ -206,17 +271,23 @@ def test_a_forbidden_import_is_found(path: str, line: str) -> None:
 @pytest.mark.parametrize(
     ("path", "line"),
     [
-        ("components/rod.py", "import math, numpy as np\nfrom components.field import Field\nimport esper"),
+        (
+            "components/rod.py",
+            "import math, numpy as np\nfrom pinjoint.components.field import Field\nimport esper",
+        ),
         ("components/rod.py", "from .field import Field"),
-        ("systems/physics/system.py", "from systems.base import Law\nfrom systems.physics.kernels import drag"),
-        ("systems/physics/system.py", "from systems.plasticity.kernels import limited"),
-        ("systems/physics/system.py", "from systems.plasticity import kernels\nfrom . import kernels"),
-        ("systems/physics/kernels.py", "from systems.kernels import compiled"),
+        (
+            "systems/physics/system.py",
+            "from pinjoint.systems.base import Law\nfrom pinjoint.systems.physics.kernels import drag",
+        ),
+        ("systems/physics/system.py", "from pinjoint.systems.plasticity.kernels import limited"),
+        ("systems/physics/system.py", "from pinjoint.systems.plasticity import kernels\nfrom . import kernels"),
+        ("systems/physics/kernels.py", "from pinjoint.systems.kernels import compiled"),
         ("systems/render/pygame_canvas.py", "import pygame.gfxdraw"),
-        ("game/app.py", "import pygame\nfrom systems.physics.system import Elasticity"),
+        ("game/app.py", "import pygame\nfrom pinjoint.systems.physics.system import Elasticity"),
         ("systems/program/compiler.py", "import numba"),
-        ("game/documents/models.py", "import msgspec, assets"),
-        ("tests/unit/test_rod.py", "import game, systems.base, components, hypothesis"),
+        ("game/documents/models.py", "import msgspec, pinjoint.assets"),
+        ("tests/unit/test_rod.py", "import pinjoint.systems.base, hypothesis"),
     ],
 )
 def test_an_allowed_import_is_allowed(path: str, line: str) -> None:
@@ -226,22 +297,25 @@ def test_an_allowed_import_is_allowed(path: str, line: str) -> None:
 @pytest.mark.parametrize(
     ("sources", "expected"),
     [
-        ({"game/a.py": "import game.b", "game/b.py": "from game import a"}, ["game.a", "game.b"]),
         (
-            {"game/a.py": "from game.b import x", "game/b.py": "def f():\n    from game.a import y"},
-            ["game.a", "game.b"],
+            {"game/a.py": "import pinjoint.b", "game/b.py": "from pinjoint import a"},
+            ["pinjoint.a", "pinjoint.b"],
         ),
         (
-            {"game/a.py": "import game.b", "game/b.py": "if TYPE_CHECKING:\n    from game.a import A"},
-            ["game.a", "game.b"],
+            {"game/a.py": "from pinjoint.b import x", "game/b.py": "def f():\n    from pinjoint.a import y"},
+            ["pinjoint.a", "pinjoint.b"],
+        ),
+        (
+            {"game/a.py": "import pinjoint.b", "game/b.py": "if TYPE_CHECKING:\n    from pinjoint.a import A"},
+            ["pinjoint.a", "pinjoint.b"],
         ),
         (
             {"game/a.py": "from .b import x", "game/b.py": "from .c import y", "game/c.py": "from .a import z"},
-            ["game.a", "game.b", "game.c"],
+            ["pinjoint.a", "pinjoint.b", "pinjoint.c"],
         ),
         (  # a package is run before its modules
-            {"game/a.py": "import game.b.c", "game/b/__init__.py": "import game.a", "game/b/c.py": ""},
-            ["game.a", "game.b"],
+            {"game/a.py": "import pinjoint.b.c", "game/b/__init__.py": "import pinjoint.a", "game/b/c.py": ""},
+            ["pinjoint.a", "pinjoint.b"],
         ),
     ],
     ids=["at the top", "in a function", "for types", "three", "a package"],
@@ -256,8 +330,8 @@ def test_a_circle_is_found(sources: dict[str, str], expected: list[str]) -> None
 
 def test_a_package_may_import_its_modules() -> None:
     sources = {
-        "game/b/__init__.py": "from game.b.c import x",
-        "game/b/c.py": "from game.b import d",
+        "game/b/__init__.py": "from pinjoint.b.c import x",
+        "game/b/c.py": "from pinjoint.b import d",
         "game/b/d.py": "",
     }
     assert circle(imports_of(sources)) == []

@@ -13,10 +13,10 @@ from pathlib import Path
 
 import pytest
 
-from game.commands import COMMANDS
-from game.commands.command_line import main
-from game.documents import models
-from systems.input.bindings import BINDINGS
+from pinjoint.commands import COMMANDS
+from pinjoint.commands.command_line import main
+from pinjoint.documents import models
+from pinjoint.systems.input.bindings import BINDINGS
 
 ROOT = Path(__file__).parents[2]
 README = ROOT / "README.md"

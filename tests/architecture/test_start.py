@@ -10,13 +10,13 @@ import pytest
 
 ROOT = Path(__file__).parents[2]
 REST_OF_SCIPY = ("scipy.linalg.blas", "scipy.sparse", "scipy.spatial")  # that takes 0.15 s
-WINDOW = ("pygame", "game.app", "game.preparation")
+WINDOW = ("pygame", "pinjoint.app", "pinjoint.preparation")
 OTHER_COMMANDS = (
-    "game.sweeps",
-    "game.scripts.playing",
-    "game.commands.play",
-    "game.commands.mods",
-    "game.checks",
+    "pinjoint.sweeps",
+    "pinjoint.scripts.playing",
+    "pinjoint.commands.play",
+    "pinjoint.commands.mods",
+    "pinjoint.checks",
 )
 
 
@@ -35,7 +35,9 @@ def loaded_by(code: str) -> set[str]:
 
 def loaded_by_command(words: str) -> set[str]:
     """The modules that are there after a command."""
-    code = f"sys.argv = ['pinjoint', *'{words}'.split()]\nfrom game.__main__ import main\nassert main() == 0"
+    code = (
+        f"sys.argv = ['pinjoint', *'{words}'.split()]\nfrom pinjoint.__main__ import main\nassert main() == 0"
+    )
     return loaded_by(code)
 
 
@@ -53,33 +55,44 @@ def test_small_structures_settle_without_the_rest_of_scipy(model: str) -> None:
 
 def test_collisions_are_computed_without_statics() -> None:
     loaded = loaded_by_command("run collision_iii --at 0.2 --format json")
-    assert not loaded & {*WINDOW, *OTHER_COMMANDS, "scipy.sparse", "systems.statics.equations"}
+    assert not loaded & {*WINDOW, *OTHER_COMMANDS, "scipy.sparse", "pinjoint.systems.statics.equations"}
 
 
 def test_a_command_loads_no_other() -> None:
     loaded = loaded_by_command("mods list")
-    assert "game.commands.mods" in loaded
-    assert not loaded & {*WINDOW, "game.sweeps", "game.commands.run", "game.commands.play", "scipy"}
+    assert "pinjoint.commands.mods" in loaded
+    assert not loaded & {*WINDOW, "pinjoint.sweeps", "pinjoint.commands.run", "pinjoint.commands.play", "scipy"}
 
 
 def test_a_session_is_open_without_a_window_a_compiler_or_scipy() -> None:
-    loaded = loaded_by("from game import Session\nSession.open('hyperstatic')")
+    loaded = loaded_by("from pinjoint import Session\nSession.open('hyperstatic')")
     assert not loaded & {*WINDOW, *OTHER_COMMANDS, "numba", "scipy", "numpy.random"}
 
 
-@pytest.mark.parametrize("module", ["game.documents.models", "game.paths", "game.session", "game"])
-def test_models_can_hold_all_whatever_a_script_begins_with(module: str) -> None:
+@pytest.mark.parametrize(
+    "start",
+    [
+        "from pinjoint import Context; model = Model()",
+        "from pinjoint.api import Model; model = Model()",
+        "from pinjoint.documents import models; model = models.load('isostatic')",
+        "from pinjoint.session import Session; model = Session.open('isostatic').model",
+    ],
+)
+def test_models_can_hold_all_whatever_a_script_begins_with(start: str) -> None:
     loaded_by(
-        f"import {module}\n"
-        "from components import Model\n"
-        "from components.load import HISTORIES\n"
-        "assert 'sine' in HISTORIES and 'walls' in Model().tables"
+        f"from pinjoint.components import Model\n{start}\n"
+        "from pinjoint.components.load import HISTORIES\n"
+        "assert 'sine' in HISTORIES and 'walls' in model.tables"
     )
+
+
+def test_the_package_imports_nothing_until_asked() -> None:
+    assert {name for name in loaded_by("import pinjoint") if name.startswith("pinjoint")} == {"pinjoint"}
 
 
 def test_the_command_line_keeps_to_one_thread_of_linear_algebra_unless_a_person_chose() -> None:
     """Idle threads of OpenBLAS take 0.1 s of a command to start and to end."""
-    told = "import os, game.__main__\nsys.argv = ['pinjoint', 'mods', 'list']\ngame.__main__.main()\n"
+    told = "import os, pinjoint.__main__\nsys.argv = ['pinjoint', 'mods', 'list']\npinjoint.__main__.main()\n"
     loaded_by(told + "assert os.environ['OPENBLAS_NUM_THREADS'] == '1'")
     loaded_by(
         "import os\nos.environ['OPENBLAS_NUM_THREADS'] = '2'\n"

@@ -2,7 +2,7 @@
 
 from pathlib import Path
 
-from game import Session
+from pinjoint import Session
 
 ROOT = Path(__file__).parents[2]
 

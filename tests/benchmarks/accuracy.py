@@ -10,8 +10,8 @@ from typing import Any
 
 import numpy as np
 
-from game import Session
-from game.documents import models
+from pinjoint import Session
+from pinjoint.documents import models
 from tests.benchmarks.motion import equations
 from tests.benchmarks.problems import Array, Problem, problems
 

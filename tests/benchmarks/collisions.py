@@ -12,7 +12,7 @@ from typing import Any
 import numpy as np
 import pymunk  # here, so that a missing peer is told before anything is measured
 
-from systems.collision.free.discs import EVENTS, HORIZONS, PILES, Discs
+from pinjoint.systems.collision.free.discs import EVENTS, HORIZONS, PILES, Discs
 from tests.benchmarks.structures_and_discs import driven
 from tests.reference.scenes_of_discs import GRAVITY, Scene, gas, lattice, packed, stacked
 
@@ -198,7 +198,7 @@ def _unaccounted(discs: Discs, scene: Scene, seconds: float) -> float:
 
 def _sunk(place: np.ndarray, scene: Scene) -> float:
     """The deepest overlap, in the smallest radius."""
-    from systems.broad_phase import near_pairs
+    from pinjoint.systems.broad_phase import near_pairs
 
     pairs = near_pairs(place, scene["radius"])
     pairs = pairs[(scene["inverse_mass"][pairs] > 0).any(axis=(1, 2))]

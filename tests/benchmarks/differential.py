@@ -16,11 +16,11 @@ from typing import Any
 
 import numpy as np
 
-from game import Session
-from game.documents import models
-from systems.statics.path import Goal, load_path
-from systems.statics.settle import Settlement, settle
-from systems.statics.state import StaticState
+from pinjoint import Session
+from pinjoint.documents import models
+from pinjoint.systems.statics.path import Goal, load_path
+from pinjoint.systems.statics.settle import Settlement, settle
+from pinjoint.systems.statics.state import StaticState
 from tests.reference import statics, transients
 from tests.reference.elements import Document
 from tests.reference.random_models import KINDS, Case, case

@@ -11,15 +11,15 @@ os.environ.setdefault("SDL_VIDEODRIVER", "dummy")
 import numpy as np
 import pygame
 
-from components.camera import Viewport
-from components.model import Model
-from components.view import View
-from game.app import App
-from systems.render.labels import Placed
-from systems.render.picture import compose
-from systems.render.pygame_canvas import Canvas
-from systems.render.raster import load_raster
-from systems.render.theme import load_theme
+from pinjoint.app import App
+from pinjoint.components.camera import Viewport
+from pinjoint.components.model import Model
+from pinjoint.components.view import View
+from pinjoint.systems.render.labels import Placed
+from pinjoint.systems.render.picture import compose
+from pinjoint.systems.render.pygame_canvas import Canvas
+from pinjoint.systems.render.raster import load_raster
+from pinjoint.systems.render.theme import load_theme
 from tests.benchmarks.models import mesh
 
 SIZE = 1280, 800  # px

@@ -15,10 +15,10 @@ os.environ.setdefault("SDL_VIDEODRIVER", "dummy")
 
 import pygame
 
-from components.field import Vector
-from game.app import SELDOM, App
-from game.documents import library
-from game.preparation import Preparation
+from pinjoint.app import SELDOM, App
+from pinjoint.components.field import Vector
+from pinjoint.documents import library
+from pinjoint.preparation import Preparation
 from tests.benchmarks.models import lattice
 
 FRAME = 1.0 / 60.0

@@ -8,9 +8,9 @@ from typing import Any
 
 import numpy as np
 
-from components.model import Model
-from components.particle import Particle
-from components.rod import spawn_rods
+from pinjoint.components.model import Model
+from pinjoint.components.particle import Particle
+from pinjoint.components.rod import spawn_rods
 
 
 def truss(**rods: Any) -> Model:

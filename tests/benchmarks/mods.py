@@ -11,19 +11,19 @@ from typing import Any
 
 from numba import njit
 
-from components.model import Model
-from game import Session
-from game.documents.document import document
-from game.editor.context import PANELS
-from game.mods import Mod
-from game.mods.guard import guarded_system
-from systems.base import StepSystem, System
-from systems.catalogue import SYSTEMS, step_systems
-from systems.physics.integrators import INTEGRATORS
-from systems.physics.system import Drag
-from systems.program.parallel import make_program
-from systems.program.program import Program
-from systems.schedule import Schedule
+from pinjoint import Session
+from pinjoint.components.model import Model
+from pinjoint.documents.document import document
+from pinjoint.editor.context import PANELS
+from pinjoint.mods import Mod
+from pinjoint.mods.guard import guarded_system
+from pinjoint.systems.base import StepSystem, System
+from pinjoint.systems.catalogue import SYSTEMS, step_systems
+from pinjoint.systems.physics.integrators import INTEGRATORS
+from pinjoint.systems.physics.system import Drag
+from pinjoint.systems.program.parallel import make_program
+from pinjoint.systems.program.program import Program
+from pinjoint.systems.schedule import Schedule
 from tests.benchmarks.models import lattice
 
 STEP = 1e-6  # s
@@ -33,7 +33,7 @@ Row = dict[str, Any]
 
 @njit(error_model="numpy")
 def drag(particles_mass, particles_velocity, environment_drag):
-    """The same as systems.physics.kernels.drag."""
+    """The same as pinjoint.systems.physics.kernels.drag."""
     factor = -0.001 * environment_drag * particles_mass
     return factor * particles_velocity[0], factor * particles_velocity[1]
 
@@ -82,7 +82,9 @@ def _seconds(work: Callable[[], Any]) -> float:
 
 def machinery() -> list[Row]:
     """ms that importing and running the machinery takes at the start without mods, the least of several."""
-    code = "import game, time; from game.mods import load; t = time.perf_counter(); load(installed=True)\n"
+    code = (
+        "import pinjoint, time; from pinjoint.mods import load; t = time.perf_counter(); load(installed=True)\n"
+    )
     code += "print(time.perf_counter() - t)"
     environment = os.environ | {"PINJOINT_DATA": os.devnull}
     imports, loads = [], []
@@ -91,7 +93,9 @@ def machinery() -> list[Row]:
         done = subprocess.run(command, capture_output=True, text=True, check=True, env=environment)
         lines = [line.split("|") for line in done.stderr.splitlines() if line.count("|") == 2]
         own = [
-            line for line in lines if line[2].strip().startswith(("game.mods", "game.included", "packaging"))
+            line
+            for line in lines
+            if line[2].strip().startswith(("pinjoint.mods", "pinjoint.included", "packaging"))
         ]
         imports.append(sum(int(line[0].split(":")[1]) for line in own) / 1000.0)
         loads.append(1000.0 * float(done.stdout))

@@ -9,7 +9,7 @@ import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
-from components.model import Model
+from pinjoint.components.model import Model
 
 Array = NDArray[np.float64]
 

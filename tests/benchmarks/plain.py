@@ -7,7 +7,7 @@ import math
 import numpy as np
 from numba import njit
 
-from components.model import Model
+from pinjoint.components.model import Model
 
 
 @njit(error_model="numpy")

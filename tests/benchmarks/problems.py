@@ -9,8 +9,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from game.documents import models
-from game.documents.document import document
+from pinjoint.documents import models
+from pinjoint.documents.document import document
 from tests.benchmarks.models import lattice
 from tests.benchmarks.motion import equations
 from tests.reference.closed_forms import elastic_plastic_step, free_vibration

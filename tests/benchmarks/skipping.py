@@ -6,10 +6,10 @@ import os
 from collections.abc import Callable
 from typing import Any
 
-from components.load import Load
-from components.model import Model
-from components.particle import Particle
-from game import Session
+from pinjoint import Session
+from pinjoint.components.load import Load
+from pinjoint.components.model import Model
+from pinjoint.components.particle import Particle
 from tests.benchmarks.models import islands, lattice, mesh
 from tests.benchmarks.timing import best_of_each, program_runner
 
@@ -108,7 +108,7 @@ def _pictures() -> Row:
 
 def _window(pan: float) -> Callable[[], None]:
     os.environ.setdefault("SDL_VIDEODRIVER", "dummy")
-    from game.app import App
+    from pinjoint.app import App
 
     app = App(mesh(RODS, damping=1.0))
 

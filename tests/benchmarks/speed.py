@@ -20,12 +20,12 @@ from typing import Any
 import numpy as np
 import pymunk  # here, so that a missing peer is told before anything is measured
 
-from components.model import Model
-from game import Session
-from game.documents import models
-from game.documents.document import document
-from systems.program.parallel import cores
-from systems.program.writer import MANY, VERY_MANY
+from pinjoint import Session
+from pinjoint.components.model import Model
+from pinjoint.documents import models
+from pinjoint.documents.document import document
+from pinjoint.systems.program.parallel import cores
+from pinjoint.systems.program.writer import MANY, VERY_MANY
 from tests.benchmarks import skipping
 from tests.benchmarks.ceiling import BYTES_PER_PARTICLE, BYTES_PER_ROD, bandwidth, seconds_per_rod
 from tests.benchmarks.models import lattice, truss
@@ -216,7 +216,7 @@ def start_up() -> list[Row]:
     """Seconds that a fresh process takes, with a warm cache: imports, and the first frame of the window."""
     return [
         {"what": "import numpy, esper", "seconds": _fresh("import numpy, esper")},
-        {"what": "import game", "seconds": _fresh("import numpy, esper, game")},
+        {"what": "import pinjoint", "seconds": _fresh("import numpy, esper, pinjoint")},
         {"what": "first frame of the window, paused", "seconds": _fresh(_FIRST_FRAME.format(frames=1))},
         {"what": "first step in the window", "seconds": _fresh(_FIRST_FRAME.format(frames=3))},
     ]
@@ -224,8 +224,8 @@ def start_up() -> list[Row]:
 
 _FIRST_FRAME = """
 import os; os.environ["SDL_VIDEODRIVER"] = "dummy"
-from game.documents import models
-from game.app import App
+from pinjoint.documents import models
+from pinjoint.app import App
 app = App(models.load("isostatic"))
 if {frames} > 1: app.session.press("space")
 for _ in range({frames}): app.frame(1 / 60)

@@ -5,9 +5,9 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import Any
 
-from components.settings import AUTOMATIC, INTEGRATORS
-from game import Session
-from game.documents.document import document
+from pinjoint import Session
+from pinjoint.components.settings import AUTOMATIC, INTEGRATORS
+from pinjoint.documents.document import document
 from tests.benchmarks.models import lattice
 from tests.reference.elements import Model
 from tests.reference.models import oscillator

@@ -34,17 +34,19 @@ ROOT = Path(__file__).parents[
 ]  # from which the processes import the benchmarks, wherever this one was started
 ASSETS = ROOT / "assets"
 MODELS, MODS = ASSETS / "models", ASSETS / "mods"
-SCRIPT = "from game import Session; s = Session.open('hyperstatic'); assert s.run(until='rest') == 'at rest'"
+SCRIPT = (
+    "from pinjoint import Session; s = Session.open('hyperstatic'); assert s.run(until='rest') == 'at rest'"
+)
 LAW = (
-    "from game import Session; s = Session.open('isostatic', mods=['{}']);"
+    "from pinjoint import Session; s = Session.open('isostatic', mods=['{}']);"
     " s.rods['AB'].stiffening_cubic = 9.0; s.run(time=0.01)"
 )
 COMMANDS = {
-    "import game": ["-c", "import game"],
-    "pinjoint --help": ["-m", "game", "--help"],
-    "pinjoint run isostatic": ["-m", "game", "run", "isostatic"],
-    "pinjoint run isostatic --static": ["-m", "game", "run", "isostatic", "--static"],
-    "pinjoint run collision_iii --at 0.2": ["-m", "game", "run", "collision_iii", "--at", "0.2"],
+    "import pinjoint": ["-c", "import pinjoint"],
+    "pinjoint --help": ["-m", "pinjoint", "--help"],
+    "pinjoint run isostatic": ["-m", "pinjoint", "run", "isostatic"],
+    "pinjoint run isostatic --static": ["-m", "pinjoint", "run", "isostatic", "--static"],
+    "pinjoint run collision_iii --at 0.2": ["-m", "pinjoint", "run", "collision_iii", "--at", "0.2"],
     "a script: hyperstatic to rest": ["-c", SCRIPT],
     "a script with a mod's law": ["-c", LAW.format(MODS / "stiffening")],
 }
@@ -128,9 +130,9 @@ class Watched:
     """
 
     def __init__(self, model: str) -> None:
-        from game.app import App
-        from game.documents import models
-        from game.preparation import Preparation
+        from pinjoint.app import App
+        from pinjoint.documents import models
+        from pinjoint.preparation import Preparation
 
         made = CROWDS[model]() if model in CROWDS else models.load(model)
         self.app = App(made, preparation=Preparation())
@@ -190,8 +192,8 @@ def _main(model: str, edit: str) -> None:
 
 def _add_a_rod(session: Any) -> None:
     """From the apex of the triangle to a particle that is held above it."""
-    from components.particle import Particle
-    from components.rod import spawn_rods
+    from pinjoint.components.particle import Particle
+    from pinjoint.components.rod import spawn_rods
 
     with session.model.transaction("rod"):
         session.model.create(Particle, 1, position=[(1.0, 2.0)], fixed=[(True, True)])

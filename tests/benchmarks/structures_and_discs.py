@@ -9,9 +9,9 @@ from typing import Any
 
 import numpy as np
 
-from components.model import Model
-from components.particle import Particle
-from game import Session
+from pinjoint import Session
+from pinjoint.components.model import Model
+from pinjoint.components.particle import Particle
 from tests.benchmarks.models import lattice
 from tests.reference.forms import load_all
 
@@ -82,7 +82,7 @@ def large(balls: int) -> Model:
 
 def _bundled(name: str) -> dict[str, Any]:
     document: dict[str, Any] = json.loads(
-        (files("assets") / "models" / f"{name}.json").read_text(encoding="utf-8")
+        (files("pinjoint.assets") / "models" / f"{name}.json").read_text(encoding="utf-8")
     )
     return document
 

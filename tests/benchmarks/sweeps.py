@@ -7,13 +7,13 @@ import time
 from collections.abc import Callable
 from typing import Any
 
-from game.commands.reports.report import Analysis
-from game.session import Session
-from game.sweeps.execution import Worker, compute_all
-from game.sweeps.plan import Plan, plan_of
-from game.sweeps.run import sweep
-from game.sweeps.variant_runner import VariantRunner
-from systems.program.parallel import cores
+from pinjoint.commands.reports.report import Analysis
+from pinjoint.session import Session
+from pinjoint.sweeps.execution import Worker, compute_all
+from pinjoint.sweeps.plan import Plan, plan_of
+from pinjoint.sweeps.run import sweep
+from pinjoint.sweeps.variant_runner import VariantRunner
+from pinjoint.systems.program.parallel import cores
 from tests.benchmarks.models import lattice
 
 ANALYSES = {"settled": Analysis(load_factors=(1.0,)), "run to rest": Analysis()}

@@ -9,10 +9,10 @@ from pathlib import Path
 
 import pytest
 
-from components.settings import INTEGRATORS
-from game.commands import bench
-from game.commands.arguments import UsageError
-from game.commands.output import FORMATS, Format
+from pinjoint.commands import bench
+from pinjoint.commands.arguments import UsageError
+from pinjoint.commands.output import FORMATS, Format
+from pinjoint.components.settings import INTEGRATORS
 from tests.benchmarks import collisions, drawing, ratios, speed, stability, start
 from tests.benchmarks.ceiling import bandwidth, seconds_per_rod
 from tests.benchmarks.models import lattice, mesh

@@ -7,7 +7,7 @@ from pathlib import Path
 
 import pytest
 
-from game.documents import library
+from pinjoint.documents import library
 from tests.benchmarks import editing
 from tests.benchmarks.editing import ANNOUNCED, SESSION, Hand
 

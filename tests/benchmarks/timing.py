@@ -9,11 +9,11 @@ from contextlib import contextmanager
 
 import numpy as np
 
-from components.model import Model
-from systems.catalogue import step_systems
-from systems.physics.integrators import INTEGRATORS
-from systems.program.parallel import VARIABLE, make_program
-from systems.schedule import Schedule
+from pinjoint.components.model import Model
+from pinjoint.systems.catalogue import step_systems
+from pinjoint.systems.physics.integrators import INTEGRATORS
+from pinjoint.systems.program.parallel import VARIABLE, make_program
+from pinjoint.systems.schedule import Schedule
 
 STEP = 1e-6  # s, stable in all models of benchmarks
 

@@ -5,8 +5,8 @@ from types import SimpleNamespace
 
 import pytest
 
-from systems.collision.free import discs, flight
-from systems.run import real_time, simulation
+from pinjoint.systems.collision.free import discs, flight
+from pinjoint.systems.run import real_time, simulation
 
 READING = 1e-4  # s that pass from one reading of the clock to the next
 

@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from components.model import Model
-from game.documents import models
+from pinjoint.components.model import Model
+from pinjoint.documents import models
 from tests.systems.render.frame_models import CLAMPED, PINNED, ROLLER, frame
 
 

@@ -15,14 +15,14 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from components.model import Model
-from components.particle import Particle
-from components.rod import spawn_rods
-from game import Session
-from game.documents import library, models
-from game.documents.autosave import Autosave, recovered_name
-from game.documents.open_documents import ModelFile
-from game.editor.scenes.files import FileScene
+from pinjoint import Session
+from pinjoint.components.model import Model
+from pinjoint.components.particle import Particle
+from pinjoint.components.rod import spawn_rods
+from pinjoint.documents import library, models
+from pinjoint.documents.autosave import Autosave, recovered_name
+from pinjoint.documents.open_documents import ModelFile
+from pinjoint.editor.scenes.files import FileScene
 from tests.reference.lines import lines_run
 from tests.reference.models import triangle
 
@@ -32,10 +32,10 @@ INTERVAL = 0.2  # s between recovery files in these tests
 # A window (without a display) in which somebody never stops editing; it tells each value once it is set.
 WINDOW = """
 import sys, time
-from game.documents import models
-from game.app import App
-from game.documents.open_documents import ModelFile
-from game.documents.autosave import Autosave
+from pinjoint.documents import models
+from pinjoint.app import App
+from pinjoint.documents.open_documents import ModelFile
+from pinjoint.documents.autosave import Autosave
 app = App(models.load(sys.argv[1]), ModelFile(None, "work"), Autosave(interval=float(sys.argv[2])))
 value = 1000.0
 while not app.input.closed:
@@ -161,7 +161,7 @@ def test_closing_the_window_keeps_what_nobody_saved(
 ) -> None:
     monkeypatch.setenv("SDL_VIDEODRIVER", "dummy")
     pygame = pytest.importorskip("pygame")
-    from game.app import App
+    from pinjoint.app import App
 
     keeper = Autosave(interval=0.0)
     app = App(models.load(model_file), ModelFile(None, "work"), keeper)
@@ -288,7 +288,7 @@ def test_a_model_that_no_file_can_hold_is_told_of_and_keeps_the_others_from_noth
 SAVING = """
 import os, sys
 from pathlib import Path
-from game.documents import models
+from pinjoint.documents import models
 if len(sys.argv) > 2:
     sync = os.fsync
     def pause(handle):

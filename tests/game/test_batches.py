@@ -8,16 +8,16 @@ from typing import Any
 import numpy as np
 import pytest
 
-from game.commands.command_line import main
-from game.commands.reports.report import Analysis
-from game.sweeps import sweep
-from game.sweeps.batched_model import BatchedModel
-from game.sweeps.batches import Batches
-from game.sweeps.execution import Worker
-from game.sweeps.plan import Plan, Record, plan_of
-from game.sweeps.variant_runner import VariantRunner
-from systems.physics.automatic import choose, stiffnesses, suited_to
-from systems.physics.spectrum import spectra, spectrum
+from pinjoint.commands.command_line import main
+from pinjoint.commands.reports.report import Analysis
+from pinjoint.sweeps import sweep
+from pinjoint.sweeps.batched_model import BatchedModel
+from pinjoint.sweeps.batches import Batches
+from pinjoint.sweeps.execution import Worker
+from pinjoint.sweeps.plan import Plan, Record, plan_of
+from pinjoint.sweeps.variant_runner import VariantRunner
+from pinjoint.systems.physics.automatic import choose, stiffnesses, suited_to
+from pinjoint.systems.physics.spectrum import spectra, spectrum
 from tests.reference.models import oscillator, square, triangle
 
 TRIANGLE = triangle(damping=100, density=6.15, tensile_strength=215, compressive_strength=215)

@@ -9,19 +9,19 @@ from typing import Any
 import numpy as np
 import pytest
 
-from game import boundary
-from game.boundary import FAULTS
-from game.documents import library, models
-from game.documents.autosave import Autosave
-from game.documents.open_documents import ModelFile
-from game.editor.context import ACTIONS
-from systems.input.bindings import FILES
-from systems.render.pygame_canvas import Canvas
+from pinjoint import boundary
+from pinjoint.boundary import FAULTS
+from pinjoint.documents import library, models
+from pinjoint.documents.autosave import Autosave
+from pinjoint.documents.open_documents import ModelFile
+from pinjoint.editor.context import ACTIONS
+from pinjoint.systems.input.bindings import FILES
+from pinjoint.systems.render.pygame_canvas import Canvas
 from tests.reference.models import triangle
 
 pygame = pytest.importorskip("pygame")
 
-from game.app import App  # noqa: E402 (it imports pygame)
+from pinjoint.app import App  # noqa: E402 (it imports pygame)
 
 ERRORS = (np.linalg.LinAlgError("singular"), MemoryError(), RecursionError("too deep"), OSError(28, "no room"))
 

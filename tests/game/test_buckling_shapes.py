@@ -7,14 +7,14 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from game import Session
-from game.commands.command_line import main
-from game.documents import models
-from game.documents.shapes import DRAWN_SHARE, PERIOD, NoShape, buckling_shapes, mode_shapes
-from systems.edit.arrows import extent
-from systems.render.marks import Text
-from systems.render.picture import compose
-from systems.render.theme import load_theme
+from pinjoint import Session
+from pinjoint.commands.command_line import main
+from pinjoint.documents import models
+from pinjoint.documents.shapes import DRAWN_SHARE, PERIOD, NoShape, buckling_shapes, mode_shapes
+from pinjoint.systems.edit.arrows import extent
+from pinjoint.systems.render.marks import Text
+from pinjoint.systems.render.picture import compose
+from pinjoint.systems.render.theme import load_theme
 from tests.game.test_shapes import session_of, shown
 from tests.verification.test_buckling import CLAMPED, HEADS, column
 

@@ -7,19 +7,19 @@ from pathlib import Path
 
 import pytest
 
-from components.menu import Menu
-from components.tags import DiagramShown
-from game import Session
-from game.documents import library, models
-from game.editor.scenes.form import FormScene
-from game.editor.scenes.properties import Properties
-from game.scripts.playing import Recorder, play, session_of
-from game.scripts.script import Script
-from systems.input.bindings import ADDED_TOOLS, TOOLBAR, offers
-from systems.render.marks import Text
-from systems.render.menu import MenuLayout, menu_of
-from systems.render.picture import compose
-from systems.render.theme import load_theme
+from pinjoint import Session
+from pinjoint.components.menu import Menu
+from pinjoint.components.tags import DiagramShown
+from pinjoint.documents import library, models
+from pinjoint.editor.scenes.form import FormScene
+from pinjoint.editor.scenes.properties import Properties
+from pinjoint.scripts.playing import Recorder, play, session_of
+from pinjoint.scripts.script import Script
+from pinjoint.systems.input.bindings import ADDED_TOOLS, TOOLBAR, offers
+from pinjoint.systems.render.marks import Text
+from pinjoint.systems.render.menu import MenuLayout, menu_of
+from pinjoint.systems.render.picture import compose
+from pinjoint.systems.render.theme import load_theme
 from tests.reference import bits
 from tests.reference.boxes import overlapping, text_boxes
 

@@ -8,12 +8,12 @@ from pathlib import Path
 
 import pytest
 
-from components.view import drawn_positions
-from game.documents.chronicle import TOLD
-from game.scripts.lines import perform
-from game.scripts.playing import Recorder
-from game.session import Session
-from systems.statics.stability import is_held
+from pinjoint.components.view import drawn_positions
+from pinjoint.documents.chronicle import TOLD
+from pinjoint.scripts.lines import perform
+from pinjoint.scripts.playing import Recorder
+from pinjoint.session import Session
+from pinjoint.systems.statics.stability import is_held
 
 
 def watched(name: str, seconds: float, start: str = "space") -> Session:

@@ -8,10 +8,10 @@ from typing import Any
 import numpy as np
 import pytest
 
-from components.view import drawn_positions
-from game.documents import models
-from game.documents.exaggeration import DRAWN, Exaggeration
-from game.session import Session
+from pinjoint.components.view import drawn_positions
+from pinjoint.documents import models
+from pinjoint.documents.exaggeration import DRAWN, Exaggeration
+from pinjoint.session import Session
 
 STIFF = [
     "isostatic",
@@ -172,7 +172,7 @@ def test_neighbours_that_would_seem_to_touch_are_drawn_apart() -> None:
 
 
 def test_a_large_structure_is_looked_at_and_not_computed(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("game.documents.exaggeration.LARGEST", 2)
+    monkeypatch.setattr("pinjoint.documents.exaggeration.LARGEST", 2)
     session = reviewed(truss())
     assert session.settings.displacement_scale == 1.0
     session.settle()

@@ -8,16 +8,16 @@ from typing import Any
 
 import pytest
 
-from components.language import spoken
-from components.view import TEXTBOOK, THESIS
-from game.commands.command_line import main
-from game.documents import models
-from game.force_method.report import contents, report
-from game.force_method.tables import Column, Tables
-from systems.render.paper import LAYOUTS, WIDTH, Layout
-from systems.statics.force_method import solve
-from systems.statics.theory import linear
-from systems.statics.unknowns import find_unknown, redundants
+from pinjoint.commands.command_line import main
+from pinjoint.components.language import spoken
+from pinjoint.components.view import TEXTBOOK, THESIS
+from pinjoint.documents import models
+from pinjoint.force_method.report import contents, report
+from pinjoint.force_method.tables import Column, Tables
+from pinjoint.systems.render.paper import LAYOUTS, WIDTH, Layout
+from pinjoint.systems.statics.force_method import solve
+from pinjoint.systems.statics.theory import linear
+from pinjoint.systems.statics.unknowns import find_unknown, redundants
 from tests.benchmarks.models import lattice
 from tests.game.force_method_models import panels, propped, two_span
 

@@ -7,21 +7,21 @@ from typing import Any
 import numpy as np
 import pytest
 
-from components.model import Model
-from components.particle import Particle
-from game import Session
-from game.documents import models
-from game.editor.scenes.force_method import ForceMethod
-from game.force_method import PARTS, words
-from game.force_method.copies import elastic_copy
-from game.force_method.guide import Guide
-from systems.render.marks import Text
-from systems.render.overlays import MEANINGS, meanings_of
-from systems.render.page import draw_page
-from systems.render.picture import compose_all
-from systems.render.sheet import measure
-from systems.render.theme import load_theme
-from systems.statics.theory import linear
+from pinjoint import Session
+from pinjoint.components.model import Model
+from pinjoint.components.particle import Particle
+from pinjoint.documents import models
+from pinjoint.editor.scenes.force_method import ForceMethod
+from pinjoint.force_method import PARTS, words
+from pinjoint.force_method.copies import elastic_copy
+from pinjoint.force_method.guide import Guide
+from pinjoint.systems.render.marks import Text
+from pinjoint.systems.render.overlays import MEANINGS, meanings_of
+from pinjoint.systems.render.page import draw_page
+from pinjoint.systems.render.picture import compose_all
+from pinjoint.systems.render.sheet import measure
+from pinjoint.systems.render.theme import load_theme
+from pinjoint.systems.statics.theory import linear
 from tests.benchmarks.models import lattice
 from tests.reference.models import model
 
@@ -112,7 +112,7 @@ def test_escape_leaves_at_once() -> None:
 
 @pytest.mark.parametrize("size", [(640, 480), (1280, 800), (500, 900)])
 def test_every_part_is_drawn_at_any_size(size: tuple[int, int]) -> None:
-    from components.camera import Viewport
+    from pinjoint.components.camera import Viewport
 
     session = Session.open("hyperstatic")
     session.view.camera.viewport = Viewport(0, 0, *size)

@@ -7,11 +7,11 @@ import json
 import numpy as np
 import pytest
 
-from game import Session
-from game.documents.document import document
-from game.documents.format import ModelError
-from game.documents.models import load, save
-from game.editor.clipboard import as_text, part_in, paste, selected_rows
+from pinjoint import Session
+from pinjoint.documents.document import document
+from pinjoint.documents.format import ModelError
+from pinjoint.documents.models import load, save
+from pinjoint.editor.clipboard import as_text, part_in, paste, selected_rows
 from tests.reference.models import model, particle, rod
 
 MEMBER = {

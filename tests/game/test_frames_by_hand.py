@@ -4,13 +4,13 @@ from pathlib import Path
 
 import pytest
 
-from components.free_body import apart, on_joint, on_rod
-from components.tags import DiagramShown
-from game import Session
-from game.commands.command_line import main
-from systems.forms.results import told
-from systems.render.picture import compose
-from systems.render.theme import load_theme
+from pinjoint import Session
+from pinjoint.commands.command_line import main
+from pinjoint.components.free_body import apart, on_joint, on_rod
+from pinjoint.components.tags import DiagramShown
+from pinjoint.systems.forms.results import told
+from pinjoint.systems.render.picture import compose
+from pinjoint.systems.render.theme import load_theme
 from tests.systems.render.frame_models import FRAMES, PINNED, ROLLER, frame, portal, portal_at_rest
 
 

@@ -5,14 +5,14 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from components.camera import Viewport
-from components.view import drawn_positions
-from game import Session
-from game.documents.document import document
-from systems.edit.picking import RING
-from systems.render.menu import menu_of
-from systems.render.picture import compose
-from systems.render.theme import load_theme
+from pinjoint import Session
+from pinjoint.components.camera import Viewport
+from pinjoint.components.view import drawn_positions
+from pinjoint.documents.document import document
+from pinjoint.systems.edit.picking import RING
+from pinjoint.systems.render.menu import menu_of
+from pinjoint.systems.render.picture import compose
+from pinjoint.systems.render.theme import load_theme
 from tests.reference.models import model, particle, rod, triangle
 from tests.systems.render.test_toolbar import push, tool
 

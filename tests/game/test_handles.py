@@ -6,14 +6,14 @@ from collections.abc import Iterator
 
 import pytest
 
-from components.camera import Rectangle
-from components.field import Vector
-from components.model import Model
-from game import Session
-from game.documents.library import data_apart
-from game.editor.scenes.form import FormScene
-from systems.render.picture import shown_panels
-from systems.render.theme import load_theme
+from pinjoint import Session
+from pinjoint.components.camera import Rectangle
+from pinjoint.components.field import Vector
+from pinjoint.components.model import Model
+from pinjoint.documents.library import data_apart
+from pinjoint.editor.scenes.form import FormScene
+from pinjoint.systems.render.picture import shown_panels
+from pinjoint.systems.render.theme import load_theme
 from tests.golden.scenes import SCENES, Scene, Window, opened, pressed
 from tests.golden.states import STATES
 

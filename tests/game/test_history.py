@@ -7,10 +7,10 @@ from typing import Any
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from components.field import FieldError
-from components.particle import Particle
-from components.rod import Rod
-from game import Session
+from pinjoint import Session
+from pinjoint.components.field import FieldError
+from pinjoint.components.particle import Particle
+from pinjoint.components.rod import Rod
 from tests.properties.soundness import contents
 from tests.reference import bits
 from tests.reference.elements import Model

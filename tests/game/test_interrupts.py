@@ -12,12 +12,12 @@ from pathlib import Path
 
 import pytest
 
-import game
-from game.documents.library import DATA_VARIABLE
-from game.interrupts import CLOSING, closed_by_signals, quietly_interrupted
+import pinjoint
+from pinjoint.documents.library import DATA_VARIABLE
+from pinjoint.interrupts import CLOSING, closed_by_signals, quietly_interrupted
 
-ROOT = Path(game.__file__).parents[1]
-PROGRAM = ["/usr/bin/pinjoint", "-m", str(Path(game.__file__).parent / "__main__.py")]
+ROOT = Path(pinjoint.__file__).parents[1]
+PROGRAM = ["/usr/bin/pinjoint", "-m", str(Path(pinjoint.__file__).parent / "__main__.py")]
 
 
 @pytest.fixture(autouse=True)
@@ -69,7 +69,7 @@ def test_signals_close_a_window(number: signal.Signals) -> None:
 
 ENDLESS = """
 import signal
-from game import interrupts
+from pinjoint import interrupts
 
 interrupts.PATIENCE = 0.2
 with interrupts.closed_by_signals(lambda: None):
@@ -87,7 +87,7 @@ def test_a_window_that_hangs_is_ended() -> None:
 
 SWALLOWS = """
 import signal, time
-from game import interrupts
+from pinjoint import interrupts
 
 signal.signal(signal.SIGINT, signal.default_int_handler)
 interrupts.PATIENCE = 0.2
@@ -107,7 +107,7 @@ def test_a_program_that_does_not_heed_a_signal_is_ended() -> None:
 
 
 def test_what_compiles_ends_with_the_window() -> None:
-    code = "import os; from game.prepare import _end_after; _end_after(os.getppid() + 1)"
+    code = "import os; from pinjoint.prepare import _end_after; _end_after(os.getppid() + 1)"
     assert subprocess.run([sys.executable, "-c", code], cwd=ROOT, timeout=60).returncode == 1
 
 
@@ -129,7 +129,7 @@ def test_anything_ends_when_it_is_told_to(command: str, number: signal.Signals, 
     words = [str(ROOT / "assets" / "mods" / word) if word == "stiffening" else word for word in command.split()]
     with (tmp_path / "said").open("w+") as said:
         program = subprocess.Popen(
-            [sys.executable, "-m", "game", *words],
+            [sys.executable, "-m", "pinjoint", *words],
             env=os.environ | folders | {"SDL_VIDEODRIVER": "dummy", DATA_VARIABLE: str(tmp_path)},
             cwd=tmp_path,
             stdout=said,
@@ -150,7 +150,7 @@ def test_a_window_ends_cleanly_when_it_is_told_to(tmp_path: Path) -> None:
     record, said = tmp_path / "record.jsonl", tmp_path / "said"
     with said.open("w") as file:
         window = subprocess.Popen(
-            [sys.executable, "-m", "game", "isostatic", "--record", str(record)],
+            [sys.executable, "-m", "pinjoint", "isostatic", "--record", str(record)],
             env=os.environ | folders | {DATA_VARIABLE: str(tmp_path)},
             cwd=ROOT,
             stdout=file,

@@ -4,12 +4,12 @@ from __future__ import annotations
 
 import pytest
 
-from components.language import language, spoken
-from game.documents.preferences import CONFIG_VARIABLE, preferred_language
-from game.editor.scenes.form import FormScene
-from game.session import Session
-from systems.render.picture import compose_all
-from systems.render.theme import load_theme
+from pinjoint.components.language import language, spoken
+from pinjoint.documents.preferences import CONFIG_VARIABLE, preferred_language
+from pinjoint.editor.scenes.form import FormScene
+from pinjoint.session import Session
+from pinjoint.systems.render.picture import compose_all
+from pinjoint.systems.render.theme import load_theme
 
 
 def test_f2_goes_from_language_to_language_and_begins_again():
@@ -44,8 +44,8 @@ def test_what_was_typed_into_a_form_stays(scene):
 
 
 def test_a_window_remembers_the_choice(monkeypatch, tmp_path):
-    from game.app import App
-    from game.documents import models
+    from pinjoint.app import App
+    from pinjoint.documents import models
 
     monkeypatch.setenv("SDL_VIDEODRIVER", "dummy")
     monkeypatch.setenv(CONFIG_VARIABLE, str(tmp_path))

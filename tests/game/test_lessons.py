@@ -10,21 +10,21 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from components.language import spoken
-from components.model import Model
-from game import Session
-from game.documents import preferences
-from game.documents.library import DATA_VARIABLE
-from game.lessons import progress
-from game.lessons.checking import check_lesson
-from game.lessons.course import Course
-from game.scripts.lines import perform
-from game.scripts.script import Script, ScriptError, lessons_with_tasks
-from systems.render.lesson_card import CardLayout
-from systems.render.marks import Text
-from systems.render.picture import compose_all
-from systems.render.theme import load_theme
-from systems.render.typography import text_width
+from pinjoint import Session
+from pinjoint.components.language import spoken
+from pinjoint.components.model import Model
+from pinjoint.documents import preferences
+from pinjoint.documents.library import DATA_VARIABLE
+from pinjoint.lessons import progress
+from pinjoint.lessons.checking import check_lesson
+from pinjoint.lessons.course import Course
+from pinjoint.scripts.lines import perform
+from pinjoint.scripts.script import Script, ScriptError, lessons_with_tasks
+from pinjoint.systems.render.lesson_card import CardLayout
+from pinjoint.systems.render.marks import Text
+from pinjoint.systems.render.picture import compose_all
+from pinjoint.systems.render.theme import load_theme
+from pinjoint.systems.render.typography import text_width
 
 
 @pytest.fixture(autouse=True)

@@ -14,14 +14,14 @@ import msgspec
 import numpy as np
 import pytest
 
-from components.field import Column, FieldError, Role, same
-from components.load import Load
-from components.model import Model
-from game.commands.command_line import main
-from game.documents import document as documents
-from game.documents import models
-from game.documents.facts import gathered
-from game.documents.models import ModelError
+from pinjoint.commands.command_line import main
+from pinjoint.components.field import Column, FieldError, Role, same
+from pinjoint.components.load import Load
+from pinjoint.components.model import Model
+from pinjoint.documents import document as documents
+from pinjoint.documents import models
+from pinjoint.documents.facts import gathered
+from pinjoint.documents.models import ModelError
 from tests.benchmarks.models import mesh
 from tests.reference.lines import lines_run
 from tests.reference.models import model, particle, rod, square, triangle

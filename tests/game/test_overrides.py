@@ -4,10 +4,10 @@ from __future__ import annotations
 
 import pytest
 
-from components.commands import Command
-from components.model import Model
-from game.documents import models
-from game.paths import PathError, apply_override
+from pinjoint.components.commands import Command
+from pinjoint.components.model import Model
+from pinjoint.documents import models
+from pinjoint.paths import PathError, apply_override
 from tests.reference.models import model, particle, rod, triangle
 
 

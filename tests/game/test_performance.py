@@ -11,15 +11,15 @@ os.environ.setdefault("SDL_VIDEODRIVER", "dummy")
 import pygame
 import pytest
 
-from components.model import Model
-from game import Session
-from game.app import App
-from game.documents import library, models, preferences
-from game.documents.open_documents import ModelFile
-from game.editor.scenes.load import LESSONS
-from game.scripts.performance import FOOTER, Performance
-from game.scripts.playing import play, session_of
-from game.scripts.script import Script, lessons
+from pinjoint import Session
+from pinjoint.app import App
+from pinjoint.components.model import Model
+from pinjoint.documents import library, models, preferences
+from pinjoint.documents.open_documents import ModelFile
+from pinjoint.editor.scenes.load import LESSONS
+from pinjoint.scripts.performance import FOOTER, Performance
+from pinjoint.scripts.playing import play, session_of
+from pinjoint.scripts.script import Script, lessons
 from tests.reference.bits import columns, different
 
 

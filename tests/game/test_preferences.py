@@ -7,12 +7,12 @@ from pathlib import Path
 
 import pytest
 
-from components.view import magnified
-from game import Session
-from game.app import FRAME, place_on
-from game.documents import preferences
-from game.editor.actions.view import THEMES
-from systems.render.theme import theme_names
+from pinjoint import Session
+from pinjoint.app import FRAME, place_on
+from pinjoint.components.view import magnified
+from pinjoint.documents import preferences
+from pinjoint.editor.actions.view import THEMES
+from pinjoint.systems.render.theme import theme_names
 
 
 @pytest.fixture(autouse=True)

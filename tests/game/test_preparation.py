@@ -16,23 +16,23 @@ os.environ.setdefault("SDL_VIDEODRIVER", "dummy")
 import pygame
 import pytest
 
-from components.field import Role
-from components.language import spoken
-from components.model import Model
-from game import elsewhere, mods, preparation
-from game.app import App
-from game.documents import models
-from game.editor.view_model import COMPILING
-from game.preparation import Preparation, _job, _jobs_of, is_live
-from game.prepare import UNITS, Job, described, parts_of, problem_of
-from game.session import Session
-from systems import cache
-from systems.input import pygame_input
-from systems.program import compiler as programs
-from systems.program.compiler import Choice, Compile, GeneratedModule, forget_unused
-from systems.program.program import module_of
-from systems.program.writer import FEW
-from systems.render.raster import RASTER
+from pinjoint import elsewhere, mods, preparation
+from pinjoint.app import App
+from pinjoint.components.field import Role
+from pinjoint.components.language import spoken
+from pinjoint.components.model import Model
+from pinjoint.documents import models
+from pinjoint.editor.view_model import COMPILING
+from pinjoint.preparation import Preparation, _job, _jobs_of, is_live
+from pinjoint.prepare import UNITS, Job, described, parts_of, problem_of
+from pinjoint.session import Session
+from pinjoint.systems import cache
+from pinjoint.systems.input import pygame_input
+from pinjoint.systems.program import compiler as programs
+from pinjoint.systems.program.compiler import Choice, Compile, GeneratedModule, forget_unused
+from pinjoint.systems.program.program import module_of
+from pinjoint.systems.program.writer import FEW
+from pinjoint.systems.render.raster import RASTER
 from tests.benchmarks.models import lattice, mesh, overlapping, touching
 
 RAW_LOAD = GeneratedModule.load_kept
@@ -490,7 +490,7 @@ BENT = {
 }
 CHECK = """
 import json, sys
-from game import Session
+from pinjoint import Session
 session = Session.open(json.loads(sys.argv[1]))
 session.simulation.program
 module = session.simulation.programs.compiled.module
@@ -517,7 +517,17 @@ def test_another_process_compiles_what_this_one_loads(
         monkeypatch.setenv(variable, value)
     planted = tmp_path / "models"
     planted.mkdir()
-    for module in ("msgspec", "random", "game", "json", "numpy", "numba", "sitecustomize", "components"):
+    for module in (
+        "msgspec",
+        "random",
+        "pinjoint",
+        "game",
+        "json",
+        "numpy",
+        "numba",
+        "sitecustomize",
+        "components",
+    ):
         (planted / f"{module}.py").write_text(PLANTED, encoding="utf-8")
     monkeypatch.chdir(planted)
     monkeypatch.setattr(sys, "path", ["", str(planted), *sys.path])
@@ -532,7 +542,7 @@ def test_another_process_compiles_what_this_one_loads(
     assert not (tmp_path / "planted").exists()
     made: Any = preparation._module_of(job, simulation)
     assert list(tmp_path.rglob(f"{made.key}.done"))
-    monkeypatch.chdir(tmp_path)
+    monkeypatch.chdir(ASSETS)
     done = subprocess.run(
         [sys.executable, "-c", CHECK, json.dumps(document)], check=True, capture_output=True, text=True
     )
@@ -603,7 +613,7 @@ def test_experience_of_compiling_is_of_what_was_compiled_and_of_no_other_process
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr(cache, "folder", lambda: tmp_path)
-    source = "from systems.kernels import kept\n\n@kept()\ndef half(x):\n    return 0.5 * x\n"
+    source = "from pinjoint.systems.kernels import kept\n\n@kept()\ndef half(x):\n    return 0.5 * x\n"
 
     def call() -> None:
         time.sleep(0.5)  # as if others took the processor
@@ -620,7 +630,7 @@ def test_experience_of_compiling_is_of_what_was_compiled_and_of_no_other_process
 
 
 def test_without_numba_all_jobs_have_the_same_problem(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setitem(sys.modules, "systems.machine_code", None)
+    monkeypatch.setitem(sys.modules, "pinjoint.systems.machine_code", None)
     problems = {problem_of(job, b"") for job in [("raster",), ("dop853", FEW, "physics.elasticity")]}
     assert len(problems) == 1
     assert "numba cannot be imported" in problems.pop()
@@ -628,9 +638,9 @@ def test_without_numba_all_jobs_have_the_same_problem(monkeypatch: pytest.Monkey
 
 SMALL = """
 from numba import njit
-from systems.program.compiler import generated
+from pinjoint.systems.program.compiler import generated
 double = njit(lambda x: 2.0 * x)
-source = "from systems.kernels import kept\\n\\n@kept()\\ndef answer(x):\\n    return kernel(x)\\n"
+source = "from pinjoint.systems.kernels import kept\\n\\n@kept()\\ndef answer(x):\\n    return kernel(x)\\n"
 print(generated("test", source, {"kernel": double}).load().answer(21.0))
 """
 

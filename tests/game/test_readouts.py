@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from game import Session
+from pinjoint import Session
 from tests.benchmarks.models import lattice
 
 

@@ -7,11 +7,11 @@ import re
 
 import pytest
 
-from components import language
-from components.language import english
-from game.session import Session
-from systems.render.picture import compose_all
-from systems.render.theme import load_theme
+from pinjoint.components import language
+from pinjoint.components.language import english
+from pinjoint.session import Session
+from pinjoint.systems.render.picture import compose_all
+from pinjoint.systems.render.theme import load_theme
 
 WORD = re.compile("[A-Za-z]{3,}")
 

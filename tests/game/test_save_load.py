@@ -13,19 +13,19 @@ from pathlib import Path
 
 import pytest
 
-from components.box import Box
-from components.camera import Viewport
-from components.field import same
-from components.form import Tile
-from game import Session
-from game.documents import library, models
-from game.editor.scenes import files
-from game.editor.scenes.files import FileScene
-from game.editor.scenes.load import NEW, Load
-from game.scripts.script import Script, lessons, lessons_with_tasks
-from systems.render.marks import Text
-from systems.render.picture import compose
-from systems.render.theme import load_theme
+from pinjoint import Session
+from pinjoint.components.box import Box
+from pinjoint.components.camera import Viewport
+from pinjoint.components.field import same
+from pinjoint.components.form import Tile
+from pinjoint.documents import library, models
+from pinjoint.editor.scenes import files
+from pinjoint.editor.scenes.files import FileScene
+from pinjoint.editor.scenes.load import NEW, Load
+from pinjoint.scripts.script import Script, lessons, lessons_with_tasks
+from pinjoint.systems.render.marks import Text
+from pinjoint.systems.render.picture import compose
+from pinjoint.systems.render.theme import load_theme
 from tests.reference.boxes import overlapping, text_boxes
 from tests.reference.models import triangle
 from tests.systems.forms.test_properties import SIZES

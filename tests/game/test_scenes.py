@@ -4,14 +4,14 @@ from pathlib import Path
 
 import pytest
 
-from components.particle import Particle
-from components.rod import Rod
-from components.tags import DiagramShown
-from game import Session
-from game.editor.scenes import SceneError, all_scenes
-from systems.render.marks import Text
-from systems.render.picture import compose
-from systems.render.theme import load_theme
+from pinjoint import Session
+from pinjoint.components.particle import Particle
+from pinjoint.components.rod import Rod
+from pinjoint.components.tags import DiagramShown
+from pinjoint.editor.scenes import SceneError, all_scenes
+from pinjoint.systems.render.marks import Text
+from pinjoint.systems.render.picture import compose
+from pinjoint.systems.render.theme import load_theme
 from tests.reference import bits
 
 SCENES = ["pause", "simulation", "properties", "save", "load", "force method"]

@@ -8,14 +8,14 @@ from pathlib import Path
 
 import pytest
 
-from components.language import language, spoken
-from components.model import Model
-from game.commands.command_line import main
-from game.documents import library
-from game.lessons.checking import check_lesson
-from game.scripts.playing import Recorder, play, session_of
-from game.scripts.script import Script, ScriptError, lessons, lessons_with_tasks
-from game.session import Session
+from pinjoint.commands.command_line import main
+from pinjoint.components.language import language, spoken
+from pinjoint.components.model import Model
+from pinjoint.documents import library
+from pinjoint.lessons.checking import check_lesson
+from pinjoint.scripts.playing import Recorder, play, session_of
+from pinjoint.scripts.script import Script, ScriptError, lessons, lessons_with_tasks
+from pinjoint.session import Session
 from tests.pseudo import pseudo
 
 SCRIPTED = sorted((Path(__file__).parents[1] / "scripted").glob("*.jsonl"))
@@ -119,7 +119,7 @@ def test_a_language_that_there_is_not_is_refused(tmp_path):
 
 
 def test_the_command_plays_in_english_unless_another_language_is_asked_for(monkeypatch):
-    from game.scripts import playing
+    from pinjoint.scripts import playing
 
     heard = []
     monkeypatch.setattr(playing, "play", lambda script, session: heard.append(language()) or [])

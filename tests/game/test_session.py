@@ -10,8 +10,8 @@ from typing import Any
 import numpy as np
 import pytest
 
-from components import FieldError
-from game import Session
+from pinjoint import Session
+from pinjoint.components import FieldError
 
 
 @pytest.fixture

@@ -10,15 +10,15 @@ from typing import Any
 import numpy as np
 import pytest
 
-from components.camera import Viewport
-from components.model import Model
-from game import Session
-from game.commands.command_line import main
-from game.documents import models
-from game.documents.shapes import DRAWN_SHARE, NoShape, mechanism_shapes, mode_shapes, numbered
-from systems.render.marks import Discs
-from systems.render.picture import compose
-from systems.render.theme import load_theme
+from pinjoint import Session
+from pinjoint.commands.command_line import main
+from pinjoint.components.camera import Viewport
+from pinjoint.components.model import Model
+from pinjoint.documents import models
+from pinjoint.documents.shapes import DRAWN_SHARE, NoShape, mechanism_shapes, mode_shapes, numbered
+from pinjoint.systems.render.marks import Discs
+from pinjoint.systems.render.picture import compose
+from pinjoint.systems.render.theme import load_theme
 from tests.reference.models import pendulum
 
 GOLDEN = (1.0 + math.sqrt(5.0)) / 2.0

@@ -2,9 +2,9 @@
 
 import pytest
 
-from game import Session
-from game.editor.actions import time as actions
-from systems.collision.free import flight
+from pinjoint import Session
+from pinjoint.editor.actions import time as actions
+from pinjoint.systems.collision.free import flight
 
 BOX = [[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]]
 FAST = {

@@ -6,14 +6,14 @@ from typing import Any
 
 import pytest
 
-from components.camera import Viewport
-from components.slider import Place, Slider
-from game.documents import models
-from game.documents.facts import gathered
-from game.editor.sliders import add_slider
-from game.session import Session
-from systems.edit import Refusal
-from systems.edit.picking import pick
+from pinjoint.components.camera import Viewport
+from pinjoint.components.slider import Place, Slider
+from pinjoint.documents import models
+from pinjoint.documents.facts import gathered
+from pinjoint.editor.sliders import add_slider
+from pinjoint.session import Session
+from pinjoint.systems.edit import Refusal
+from pinjoint.systems.edit.picking import pick
 
 FORCE = {"of": "particles.B.force.x", "from": 0, "to": 240}
 STIFFNESS = {"of": "rods.*.stiffness", "from": 1e4, "to": 1e6, "logarithmic": True, "title": "EA"}

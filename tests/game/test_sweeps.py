@@ -12,16 +12,16 @@ from typing import Any
 import numpy as np
 import pytest
 
-from game import Session
-from game.commands.command_line import main
-from game.commands.reports.report import Analysis
-from game.documents import models
-from game.paths import apply_override
-from game.sweeps import SweepError, sweep
-from game.sweeps.execution import compute, compute_all
-from game.sweeps.plan import plan_of
-from game.sweeps.results import Results
-from game.sweeps.variant_runner import VariantRunner
+from pinjoint import Session
+from pinjoint.commands.command_line import main
+from pinjoint.commands.reports.report import Analysis
+from pinjoint.documents import models
+from pinjoint.paths import apply_override
+from pinjoint.sweeps import SweepError, sweep
+from pinjoint.sweeps.execution import compute, compute_all
+from pinjoint.sweeps.plan import plan_of
+from pinjoint.sweeps.results import Results
+from pinjoint.sweeps.variant_runner import VariantRunner
 from tests.reference.models import square, triangle
 
 MODEL = triangle(damping=100, density=6.15, tensile_strength=215, compressive_strength=215)
@@ -190,7 +190,7 @@ def test_workers_compute_the_same_bits(tmp_path: Path, recwarn: pytest.WarningsR
 PLANTED = """
 import sys
 sys.path.remove("")
-from game.sweeps.run import sweep
+from pinjoint.sweeps.run import sweep
 
 if __name__ == "__main__":
     sweep("isostatic", {"rods.AB.stiffness": [1e5, 2e5]}, ["rods.AB.axial_force"], workers=2, output="out.csv")

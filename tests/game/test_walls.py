@@ -8,17 +8,17 @@ from typing import Any
 import numpy as np
 import pytest
 
-from components import FieldError, Handle
-from components.camera import Viewport
-from components.view import Preview
-from game import Session
-from game.documents import models
-from game.documents.format import ModelError
-from systems.collision.system import normals
-from systems.render.marks import Strokes
-from systems.render.picture import compose
-from systems.render.theme import load_theme
-from systems.render.thumbnails import thumbnail
+from pinjoint import Session
+from pinjoint.components import FieldError, Handle
+from pinjoint.components.camera import Viewport
+from pinjoint.components.view import Preview
+from pinjoint.documents import models
+from pinjoint.documents.format import ModelError
+from pinjoint.systems.collision.system import normals
+from pinjoint.systems.render.marks import Strokes
+from pinjoint.systems.render.picture import compose
+from pinjoint.systems.render.theme import load_theme
+from pinjoint.systems.render.thumbnails import thumbnail
 
 FRAME = 1.0 / 60.0
 
@@ -255,7 +255,7 @@ def test_mistakes_in_files_are_explained(components: Any, problem: str) -> None:
 
 
 def test_scripts_and_the_command_line_set_it_by_its_name() -> None:
-    from game.paths import apply_override
+    from pinjoint.paths import apply_override
 
     session = room(FLOOR)
     apply_override(session.model, "walls.floor.restitution=0.75")

@@ -15,15 +15,15 @@ from typing import Any
 
 import pytest
 
-from components.box import Box
-from components.camera import Viewport
-from components.field import Vector
-from game import Session
-from game.app import FIRST_SIZE
-from game.documents import models
-from game.documents.library import DATA_VARIABLE
-from game.documents.preferences import CONFIG_VARIABLE
-from game.editor.scenes.form import FormScene
+from pinjoint import Session
+from pinjoint.app import FIRST_SIZE
+from pinjoint.components.box import Box
+from pinjoint.components.camera import Viewport
+from pinjoint.components.field import Vector
+from pinjoint.documents import models
+from pinjoint.documents.library import DATA_VARIABLE
+from pinjoint.documents.preferences import CONFIG_VARIABLE
+from pinjoint.editor.scenes.form import FormScene
 
 MISSING = [name for name in ("Xvfb", "xdotool") if shutil.which(name) is None]
 pytestmark = pytest.mark.skipif(bool(MISSING), reason=f"{' and '.join(MISSING)} not installed")
@@ -121,7 +121,7 @@ class Person:
         }
         self._log = open(folder / "log.txt", "w+", encoding="utf-8")  # noqa: SIM115 (closed in leave)
         self.program = subprocess.Popen(
-            [sys.executable, "-m", "game", "--record", str(self._record)],
+            [sys.executable, "-m", "pinjoint", "--record", str(self._record)],
             cwd=ROOT,
             env=self._environment,
             stdout=self._log,

@@ -22,9 +22,9 @@ class Nowhere:
 
 sys.meta_path.insert(0, Nowhere())
 """
-MAIN = f"{WITHOUT}\nfrom game.__main__ import main\nsys.exit(main())"
+MAIN = f"{WITHOUT}\nfrom pinjoint.__main__ import main\nsys.exit(main())"
 MOD = """
-from game.api import Law
+from pinjoint.api import Law
 from numba import njit
 
 
@@ -72,8 +72,8 @@ def test_commands_need_no_compiler(words: str, tmp_path: Path) -> None:
 
 
 WINDOW = f"""{WITHOUT}
-from game.app import App
-from game.documents import models
+from pinjoint.app import App
+from pinjoint.documents import models
 
 for name in ("hyperstatic_yield", "pile"):
     app = App(models.load(name))
@@ -105,12 +105,12 @@ def test_a_mod_that_imports_it_is_named(tmp_path: Path) -> None:
         "The mod 'old' cannot be used: It imports numba, which is not installed (old/__init__.py, line 3)"
         in done.stderr
     )
-    assert "@compiled from game.api" in done.stderr
+    assert "@compiled from pinjoint.api" in done.stderr
 
 
 @pytest.mark.parametrize("words", ["run isostatic", "mods list"])
 def test_other_values_are_refused(words: str, tmp_path: Path) -> None:
-    done = run(tmp_path, "-m", "game", *words.split(), compile="sometimes")
+    done = run(tmp_path, "-m", "pinjoint", *words.split(), compile="sometimes")
     assert done.returncode == 2
     assert done.stderr.splitlines() == [
         "pinjoint: PINJOINT_COMPILE is 'sometimes'; set it to never or always, or leave it out."

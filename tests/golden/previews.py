@@ -11,9 +11,9 @@ from typing import Any
 
 import numpy as np
 
-from components.rod import bends
-from game import Session
-from game.documents import models
+from pinjoint import Session
+from pinjoint.components.rod import bends
+from pinjoint.documents import models
 
 FILE = Path(__file__).parents[2] / "assets" / "previews.json"
 DIGITS = 5  # significant; pictures are small

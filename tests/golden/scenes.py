@@ -14,14 +14,14 @@ os.environ.setdefault("SDL_VIDEODRIVER", "dummy")
 
 import pygame
 
-from components.tags import Hovered
-from components.view import drawn_positions, magnified
-from game import Session
-from game.documents.library import data_in
-from systems.render.marks import Picture
-from systems.render.picture import compose_all
-from systems.render.pygame_canvas import Canvas
-from systems.render.theme import load_theme
+from pinjoint import Session
+from pinjoint.components.tags import Hovered
+from pinjoint.components.view import drawn_positions, magnified
+from pinjoint.documents.library import data_in
+from pinjoint.systems.render.marks import Picture
+from pinjoint.systems.render.picture import compose_all
+from pinjoint.systems.render.pygame_canvas import Canvas
+from pinjoint.systems.render.theme import load_theme
 from tests.systems.render.frame_models import all_supports, portal_at_rest
 
 FOLDER = Path(__file__).parent

@@ -5,14 +5,14 @@ from __future__ import annotations
 import tempfile
 from pathlib import Path
 
-from components.view import Page, Status, View
-from game import Session
-from game.documents import models
-from game.documents.autosave import Autosave, unkept
-from game.documents.library import data_apart, data_folder, models_folder
-from game.editor.scenes.load import Load
-from game.editor.view_model import COMPILING
-from systems.render.marks import Picture
+from pinjoint import Session
+from pinjoint.components.view import Page, Status, View
+from pinjoint.documents import models
+from pinjoint.documents.autosave import Autosave, unkept
+from pinjoint.documents.library import data_apart, data_folder, models_folder
+from pinjoint.editor.scenes.load import Load
+from pinjoint.editor.view_model import COMPILING
+from pinjoint.systems.render.marks import Picture
 from tests.golden.scenes import EMPTY, SCENES, Scene, Window, composed, opened, pictures, pressed
 
 LONG_NAME = "a footbridge of the second term, with its handrail"

@@ -12,12 +12,12 @@ from contextlib import AbstractContextManager
 
 import pytest
 
-from components.language import spoken
-from components.model import Model
-from game.documents.models import bundled
-from game.session import Session
-from systems.input.bindings import BINDINGS
-from systems.render.marks import Picture, Text
+from pinjoint.components.language import spoken
+from pinjoint.components.model import Model
+from pinjoint.documents.models import bundled
+from pinjoint.session import Session
+from pinjoint.systems.input.bindings import BINDINGS
+from pinjoint.systems.render.marks import Picture, Text
 from tests.golden.scenes import SCENES, Window, composed, opened
 from tests.golden.states import LONG_NAME, STATES, seen
 from tests.golden.test_layout import problems

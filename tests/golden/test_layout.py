@@ -7,10 +7,10 @@ from itertools import combinations
 
 import pytest
 
-from game import Session
-from systems.input.bindings import help_lines
-from systems.render.marks import Panel, Picture, Text
-from systems.render.typography import capital_height
+from pinjoint import Session
+from pinjoint.systems.input.bindings import help_lines
+from pinjoint.systems.render.marks import Panel, Picture, Text
+from pinjoint.systems.render.typography import capital_height
 from tests.golden.scenes import SCENES, WINDOWS, Window, composed
 from tests.golden.states import STATES, seen
 from tests.reference.boxes import Box, overlap, text_box

@@ -7,16 +7,16 @@ from collections.abc import Callable, Iterator
 import numpy as np
 import pytest
 
-from components.bent import FLAT, QUANTITIES, distributed_shares
-from components.model import Model
-from components.rod import bends
-from components.written import DIGITS, given, number
-from game import Session
-from game.documents import models
-from systems.render.labels import LEADER_OPACITY
-from systems.render.marks import Picture, Points, Strokes, Text
-from systems.render.picture import compose
-from systems.render.theme import faded, load_theme
+from pinjoint import Session
+from pinjoint.components.bent import FLAT, QUANTITIES, distributed_shares
+from pinjoint.components.model import Model
+from pinjoint.components.rod import bends
+from pinjoint.components.written import DIGITS, given, number
+from pinjoint.documents import models
+from pinjoint.systems.render.labels import LEADER_OPACITY
+from pinjoint.systems.render.marks import Picture, Points, Strokes, Text
+from pinjoint.systems.render.picture import compose
+from pinjoint.systems.render.theme import faded, load_theme
 from tests.reference.boxes import Box, text_box
 from tests.reference.nearness import Part, distance, near, parts_of
 from tests.systems.render.frame_models import FRAMES

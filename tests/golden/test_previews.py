@@ -7,7 +7,7 @@ import json
 import numpy as np
 import pytest
 
-from game.documents import models
+from pinjoint.documents import models
 from tests.golden.previews import FILE, preview_of
 
 QUICK = ("isostatic", "warren_bridge", "staircase", "pendulum")  # the others take as long again as all these

@@ -8,8 +8,8 @@ from pathlib import Path
 
 import pytest
 
-from game import mods
-from systems.input.bindings import BINDINGS
+from pinjoint import mods
+from pinjoint.systems.input.bindings import BINDINGS
 
 Write = Callable[..., Path]
 

@@ -99,12 +99,12 @@ def history(arguments: str) -> str:
 HEAD = """
 import math, os, random, sys, threading, time
 import numpy as np
-from components import *
-from components.view import Page, Plot, Preview
-from game.editor.scenes import Scene
+from pinjoint.components import *
+from pinjoint.components.view import Page, Plot, Preview
+from pinjoint.editor.scenes import Scene
 from numba import njit
-from systems.base import *
-from systems.render.marks import *
+from pinjoint.systems.base import *
+from pinjoint.systems.render.marks import *
 
 class Mean(Exception):
     def __str__(self):

@@ -10,16 +10,16 @@ from typing import Any, TypeVar
 import numpy as np
 import pytest
 
-from components import Environment, World
-from components.camera import Viewport
-from components.commands import Command
-from game import Session, mods
-from game.commands.command_line import main
-from game.documents import models
-from game.mods.declared import as_declared
-from systems.render.marks import Text
-from systems.render.picture import compose
-from systems.render.theme import load_theme
+from pinjoint import Session, mods
+from pinjoint.commands.command_line import main
+from pinjoint.components import Environment, World
+from pinjoint.components.camera import Viewport
+from pinjoint.components.commands import Command
+from pinjoint.documents import models
+from pinjoint.mods.declared import as_declared
+from pinjoint.systems.render.marks import Text
+from pinjoint.systems.render.picture import compose
+from pinjoint.systems.render.theme import load_theme
 from tests.mods.conftest import Write
 from tests.mods.test_isolation import TRUSS
 
@@ -31,7 +31,7 @@ def opened(write_mod: Write, body: str, head: str = "") -> Session:
 
 def test_layers_are_drawn_below_and_above_the_model(write_mod: Write) -> None:
     head = """
-from systems.render.marks import Text
+from pinjoint.systems.render.marks import Text
 def says(text):
     def draw(sheet):
         x, y = sheet.view.camera.to_pixels((0.5, 0.5)).tolist()
@@ -65,7 +65,7 @@ def test_a_command_gets_its_words_and_a_failing_one_ends_with_a_reason(
 
 def test_an_integrator_can_be_chosen(write_mod: Write) -> None:
     head = """
-from systems.physics.integrators import VelocityVerlet
+from pinjoint.systems.physics.integrators import VelocityVerlet
 def begins(i, dt, displacement, velocity, force, resisting, predicted, *columns):
     for d in range(2):
         a = (force[i, d] + resisting[i, d] if RATES else force[i, d]) * particles_mobility[i, d]
@@ -143,7 +143,7 @@ def test_facts_of_the_environment_and_of_all_rods_are_set_from_the_command_line(
     write_mod: Write, tmp_path: Path
 ) -> None:
     head = """
-from components import Component, Environment, Field, Rod
+from pinjoint.components import Component, Environment, Field, Rod
 class Air(Component):
     of = Environment
     heat: Field[float] = Field("K", title="temperature", doc="Of the air.", default=293.0)
@@ -166,7 +166,7 @@ class Paint(Component):
 
 GATE = """
 import numpy as np
-from components import Field, Handle, Pieces, Role
+from pinjoint.components import Field, Handle, Pieces, Role
 class Gate(Handle):
     table, noun, points = "gates", "gate", ("foot", "top")
     name: Field[str] = Field(title="name", doc=".", default="", dtype=str)
@@ -255,7 +255,7 @@ def test_a_shape_that_fails_switches_the_mod_off(write_mod: Write, shape: str, s
     ],
 )
 def test_a_kind_that_cannot_be_is_refused(write_mod: Write, change: tuple[str, str], said: str) -> None:
-    from game.mods import ModError
+    from pinjoint.mods import ModError
 
     with pytest.raises(ModError, match=said):
         opened(write_mod, "app.kind(Gate)", GATE.replace(*change))
@@ -309,7 +309,7 @@ def test_an_action_with_an_icon_has_a_button_whatever_became_of_its_key(
 
 @pytest.mark.parametrize("icon", ["[('circle', (0, 0, 1))]", "[('line', (0, 0, 1))]", "[('disc', (0, 0))]"])
 def test_an_icon_that_cannot_be_drawn_is_refused(write_mod: Write, icon: str) -> None:
-    from game.mods import ModError
+    from pinjoint.mods import ModError
 
     with pytest.raises(ModError, match=r"The icon of 'apple\.toggle': .* is not a part of an icon; write"):
         opened(write_mod, TOGGLED.format(key="y", icon=icon))

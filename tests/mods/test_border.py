@@ -15,12 +15,12 @@ from typing import Any
 import numpy as np
 import pytest
 
-from components.field import FieldError
-from game import Session, mods
-from game.commands.command_line import main
-from game.interrupts import Interrupt, is_persons, mark_interrupts
-from game.scripts.playing import play
-from game.scripts.script import Script
+from pinjoint import Session, mods
+from pinjoint.commands.command_line import main
+from pinjoint.components.field import FieldError
+from pinjoint.interrupts import Interrupt, is_persons, mark_interrupts
+from pinjoint.scripts.playing import play
+from pinjoint.scripts.script import Script
 from tests.conftest import ROOT
 from tests.mods.conftest import Write
 from tests.mods.test_isolation import SYSTEM, TRUSS
@@ -43,7 +43,7 @@ def pinjoint(tmp_path: Path) -> Pinjoint:
     def run(*words: str) -> subprocess.CompletedProcess[str]:
         folders = {"PINJOINT_DATA": str(tmp_path / "data"), "PINJOINT_CONFIG": str(tmp_path / "config")}
         return subprocess.run(
-            [sys.executable, "-m", "game", *words],
+            [sys.executable, "-m", "pinjoint", *words],
             env={**os.environ, **folders, "PYTHONPATH": str(ROOT)},
             capture_output=True,
             text=True,
@@ -158,7 +158,7 @@ def test_mods_of_a_person_that_end_the_program_do_not_end_it(
 def test_a_mod_that_is_called_like_a_module_leaves_that_alone(
     write_mod: Write, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    for name in ("numpy", "json", "game"):
+    for name in ("numpy", "json", "pinjoint"):
         module = sys.modules[name]
         (found,) = mods.load([write_mod(name)])
         assert f"There is a Python module '{name}' already; give the mod another name." in found.problem
@@ -199,7 +199,7 @@ def heard() -> Iterator[None]:
 def test_ctrl_c_ends_the_program_whatever_a_mod_does(write_mod: Write, truss: str, heard: None) -> None:
     code = "def plugin(app):\n    print('here', flush=True)\n    while True:\n        pass"
     running = subprocess.Popen(
-        [sys.executable, "-m", "game", "run", truss, "--mods", str(write_mod("apple", code))],
+        [sys.executable, "-m", "pinjoint", "run", truss, "--mods", str(write_mod("apple", code))],
         env={**os.environ, "PYTHONPATH": str(ROOT)},
         stdout=subprocess.PIPE,
         stderr=subprocess.PIPE,
@@ -237,7 +237,7 @@ def test_ctrl_c_is_told_from_an_exception_of_a_mod() -> None:
 # --- what Fields and frames are given -----------------------------------------------------------------------------
 
 CHECKER = """
-from components import Component, Field, Particle
+from pinjoint.components import Component, Field, Particle
 
 def check(value, where):
     return 1 / value
@@ -264,7 +264,7 @@ def test_a_checker_that_fails_refuses_the_value(write_mod: Write) -> None:
 
 
 KIND = """
-from components import Field, Handle
+from pinjoint.components import Field, Handle
 
 class Sail(Handle):
     table, noun = "sails", "sail"

@@ -13,23 +13,23 @@ import pygame
 import pytest
 from numpy.typing import NDArray
 
-from components import Model
-from game import Session, SystemCheckError, check_system
-from game.checks import BODIES, ELASTIC, EVERYTHING
-from game.documents.autosave import Autosave
-from game.documents.document import document
-from game.included.probes import Sampling
-from game.mods import ModError
-from game.preparation import Preparation
-from systems.base import Law, Phase, StepSystem, System
-from systems.catalogue import SYSTEMS, step_systems
-from systems.collision.system import Collision
-from systems.edit.hover import Hover
-from systems.edit.pull import Hand, Pull
-from systems.input.pygame_input import PygameInput
-from systems.kernels import compiled
-from systems.physics.integrators import INTEGRATORS, VelocityVerlet
-from systems.render.pygame_render import PygameRender
+from pinjoint import Session, SystemCheckError, check_system
+from pinjoint.checks import BODIES, ELASTIC, EVERYTHING
+from pinjoint.components import Model
+from pinjoint.documents.autosave import Autosave
+from pinjoint.documents.document import document
+from pinjoint.included.probes import Sampling
+from pinjoint.mods import ModError
+from pinjoint.preparation import Preparation
+from pinjoint.systems.base import Law, Phase, StepSystem, System
+from pinjoint.systems.catalogue import SYSTEMS, step_systems
+from pinjoint.systems.collision.system import Collision
+from pinjoint.systems.edit.hover import Hover
+from pinjoint.systems.edit.pull import Hand, Pull
+from pinjoint.systems.input.pygame_input import PygameInput
+from pinjoint.systems.kernels import compiled
+from pinjoint.systems.physics.integrators import INTEGRATORS, VelocityVerlet
+from pinjoint.systems.render.pygame_render import PygameRender
 from tests.mods.conftest import Write
 
 CABLES = EVERYTHING | {"rods": [rod | {"tension_only": True} for rod in EVERYTHING["rods"]]}
@@ -125,9 +125,9 @@ def test_an_integrator_is_checked_where_it_takes_the_steps() -> None:
 
 
 AGEING = """
-from components import Component, Field, Rod, Role
+from pinjoint.components import Component, Field, Rod, Role
 from numba import njit
-from systems.base import Commit, Law
+from pinjoint.systems.base import Commit, Law
 
 class Age(Component):
     of = Rod

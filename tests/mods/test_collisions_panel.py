@@ -5,8 +5,8 @@ import math
 import numpy as np
 import pytest
 
-from game import Session
-from game.included.collisions import BINS, free_speeds, histogram, panels, rayleigh
+from pinjoint import Session
+from pinjoint.included.collisions import BINS, free_speeds, histogram, panels, rayleigh
 
 
 def titles(session: Session) -> list[str]:

@@ -12,9 +12,9 @@ from pathlib import Path
 
 import pytest
 
-from game import Session, mods
-from game.interrupts import PATIENCE
-from systems.run import recovery
+from pinjoint import Session, mods
+from pinjoint.interrupts import PATIENCE
+from pinjoint.systems.run import recovery
 from tests.mods.conftest import Write
 from tests.mods.test_isolation import LAW, TRUSS
 
@@ -29,8 +29,8 @@ def bad(particles_position):
 
 RUN = """
 import json, sys
-from game import Session
-from systems.program.endless import Patience
+from pinjoint import Session
+from pinjoint.systems.program.endless import Patience
 Patience.seconds = {seconds}
 print("runs", flush=True)
 Session.open(json.loads(sys.argv[1]), mods=[sys.argv[2]]).run(time=0.1)
@@ -38,7 +38,9 @@ Session.open(json.loads(sys.argv[1]), mods=[sys.argv[2]]).run(time=0.1)
 
 
 def endless(write_mod: Write) -> Path:
-    law = LAW.format(kernel=ENDLESS, more="").replace("from numba import njit", "from game.api import compiled")
+    law = LAW.format(kernel=ENDLESS, more="").replace(
+        "from numba import njit", "from pinjoint.api import compiled"
+    )
     return write_mod("apple", law)
 
 
@@ -59,7 +61,7 @@ def test_a_kernel_that_does_not_end_is_named(write_mod: Write, form: str) -> Non
 
 def test_ctrl_c_is_heard_while_machine_code_does_not_end(write_mod: Write) -> None:
     folder = endless(write_mod)
-    program = [sys.executable, "-m", "game", "run", "isostatic", "--at", "1", "--mods", str(folder)]
+    program = [sys.executable, "-m", "pinjoint", "run", "isostatic", "--at", "1", "--mods", str(folder)]
     with subprocess.Popen(
         program,
         env=os.environ | {"PINJOINT_COMPILE": "always"},

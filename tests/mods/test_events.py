@@ -8,16 +8,16 @@ from pathlib import Path
 
 import pytest
 
-from game import Session, mods
-from game.commands.command_line import main
-from game.scripts.playing import Recorder, play
-from game.scripts.script import Script
+from pinjoint import Session, mods
+from pinjoint.commands.command_line import main
+from pinjoint.scripts.playing import Recorder, play
+from pinjoint.scripts.script import Script
 from tests.reference import bits
 from tests.systems.test_events import pulled
 
 MOD = """
 from numba import njit
-from systems.base import Event
+from pinjoint.systems.base import Event
 
 @njit
 def within(elongation, rods_rest_length):

@@ -7,12 +7,12 @@ from typing import Any
 
 import pytest
 
-from game import Session, check_system, mods
-from game.commands.reports.report import Analysis
-from game.scripts.lines import perform
-from game.sweeps import sweep
-from systems.render.picture import compose
-from systems.render.theme import load_theme
+from pinjoint import Session, check_system, mods
+from pinjoint.commands.reports.report import Analysis
+from pinjoint.scripts.lines import perform
+from pinjoint.sweeps import sweep
+from pinjoint.systems.render.picture import compose
+from pinjoint.systems.render.theme import load_theme
 from tests.mods.conftest import Write
 
 FOLDER = Path(__file__).parents[2] / "assets" / "mods"
@@ -176,7 +176,7 @@ def test_one_can_point_and_click_in_the_scene_of_a_mod(unloaded: None) -> None:
 
 
 TARGETS = """
-from game.editor.scenes import Scene
+from pinjoint.editor.scenes import Scene
 
 class Aim(Scene):
     name = "aim"

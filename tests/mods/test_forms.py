@@ -6,17 +6,17 @@ from typing import Any
 
 import pytest
 
-from game import Session, mods
-from game.sweeps.batch_program import BatchProgram
-from systems.interpreter import NoPlainForm
-from systems.program.compiler import UNCOMPILED, Choice, Compile
+from pinjoint import Session, mods
+from pinjoint.sweeps.batch_program import BatchProgram
+from pinjoint.systems.interpreter import NoPlainForm
+from pinjoint.systems.program.compiler import UNCOMPILED, Choice, Compile
 from tests.mods.conftest import Write
 from tests.mods.test_isolation import TRUSS
 
 LAW = """
 import math
 import numpy as np
-from game.api import Law, compiled
+from pinjoint.api import Law, compiled
 from numba import njit
 
 {kernel}

@@ -12,11 +12,11 @@ from pathlib import Path
 
 import pytest
 
-from game import mods
-from game.commands.command_line import main
-from game.editor.actions import ACTIONS
-from systems.base import ACCOUNTS
-from systems.input.bindings import BINDINGS, FORMS
+from pinjoint import mods
+from pinjoint.commands.command_line import main
+from pinjoint.editor.actions import ACTIONS
+from pinjoint.systems.base import ACCOUNTS
+from pinjoint.systems.input.bindings import BINDINGS, FORMS
 
 GUIDE = Path(__file__).parents[2] / "assets" / "mods" / "README.md"
 BLOCK = re.compile(r"(?:^`([\w./]+)`:\n\n)?^```(\w+)\n(.*?)^```$", re.MULTILINE | re.DOTALL)
@@ -68,7 +68,9 @@ def test_the_guide_names_all_that_can_be_registered_called_and_chosen() -> None:
         assert f'"{account}"' in guide
 
 
-@pytest.mark.parametrize("module", ["components", "systems.base", "game", "game.mods", "game.api"])
+@pytest.mark.parametrize(
+    "module", ["pinjoint.components", "pinjoint.systems.base", "pinjoint", "pinjoint.mods", "pinjoint.api"]
+)
 def test_what_is_public_exists_and_is_documented(module: str) -> None:
     public = importlib.import_module(module)
     for name in public.__all__:
@@ -78,9 +80,17 @@ def test_what_is_public_exists_and_is_documented(module: str) -> None:
 
 @pytest.mark.parametrize(
     "module",
-    ["components", "systems.base", "game.mods", "game.session", "game.checks", "game.mods.app", "game.api"],
+    [
+        "pinjoint.components",
+        "pinjoint.systems.base",
+        "pinjoint.mods",
+        "pinjoint.session",
+        "pinjoint.checks",
+        "pinjoint.mods.app",
+        "pinjoint.api",
+    ],
 )
 def test_the_examples_in_docstrings_are_true(module: str) -> None:
     found = doctest.testmod(importlib.import_module(module))
     assert found.failed == 0
-    assert found.attempted > 0 or module == "game.mods.app"
+    assert found.attempted > 0 or module == "pinjoint.mods.app"

@@ -8,10 +8,10 @@ from typing import Any
 
 import pytest
 
-from game import Session, mods
-from game.commands.command_line import main
-from game.documents import models
-from game.mods import guard, interface, mod
+from pinjoint import Session, mods
+from pinjoint.commands.command_line import main
+from pinjoint.documents import models
+from pinjoint.mods import guard, interface, mod
 from tests.mods.conftest import Write
 from tests.mods.hostile import HOSTILE, KEY, LOAD, RUN, WINDOW, Hostile
 from tests.mods.test_isolation import TRUSS
@@ -41,7 +41,7 @@ def check_named(hostile: Hostile, sentences: list[str]) -> None:
 
 def modelled() -> Any:
     """A truss, with a load of the mod's history if it has one."""
-    from components.load import HISTORIES
+    from pinjoint.components.load import HISTORIES
 
     kind = "bad" if "bad" in HISTORIES else "ramp"
     return {**TRUSS, "loads": [{"on": "C", "force": [0.0, -1.0], "history": {"kind": kind}}]}
@@ -50,7 +50,7 @@ def modelled() -> Any:
 @CASES
 def test_in_a_window(hostile: Hostile, bad: Any, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setenv("SDL_VIDEODRIVER", "dummy")
-    from game.app import App
+    from pinjoint.app import App
 
     mods.load([bad(hostile)])
     app = App(models.parse(modelled()))

@@ -7,10 +7,10 @@ from typing import Any
 
 import pytest
 
-from components.world import World
-from game import Session, mods
-from game.documents.models import document
-from game.mods import guard
+from pinjoint import Session, mods
+from pinjoint.components.world import World
+from pinjoint.documents.models import document
+from pinjoint.mods import guard
 from tests.mods.conftest import Write
 
 TRUSS: dict[str, Any] = {
@@ -28,8 +28,8 @@ TRUSS: dict[str, Any] = {
 SYSTEM = """
 import esper
 import numpy as np
-from components import Particle
-from systems.base import Phase, System
+from pinjoint.components import Particle
+from pinjoint.systems.base import Phase, System
 
 class Bad(System):
     name = "apple.bad"
@@ -45,9 +45,9 @@ def plugin(app):
 """
 
 LAW = """
-from components import HistoryKind
+from pinjoint.components import HistoryKind
 from numba import njit
-from systems.base import Commit, Law
+from pinjoint.systems.base import Commit, Law
 
 {kernel}
 
@@ -224,7 +224,7 @@ def bad(particles_position, particles_velocity, time):
 
 
 HISTORY = """
-from components import HistoryKind
+from pinjoint.components import HistoryKind
 from numba import njit
 
 @njit
@@ -274,8 +274,8 @@ def test_a_panel_that_fails(session: Any) -> None:
 
 
 def test_a_layer_that_fails(session: Any) -> None:
-    from systems.render.picture import compose
-    from systems.render.theme import load_theme
+    from pinjoint.systems.render.picture import compose
+    from pinjoint.systems.render.theme import load_theme
 
     made, before = session(OTHER.format("app.layer(lambda sheet: sheet.nothing)"))
     compose(made.model, made.view, load_theme("light"))
@@ -285,7 +285,7 @@ def test_a_layer_that_fails(session: Any) -> None:
 @pytest.mark.parametrize("method", ["enter", "hint", "busy"])
 def test_a_scene_that_fails_leads_back_to_pause(session: Any, method: str) -> None:
     code = f"""
-from game.editor.scenes import Scene
+from pinjoint.editor.scenes import Scene
 
 class Bad(Scene):
     name = "bad"
@@ -314,7 +314,7 @@ def test_a_world_is_whole_after_its_entities_were_checked() -> None:
 
 
 INTEGRATOR = """
-from systems.physics.integrators import VelocityVerlet
+from pinjoint.systems.physics.integrators import VelocityVerlet
 
 class Mine(VelocityVerlet):
     name = "apple.mine"
@@ -361,7 +361,7 @@ def test_a_kernel_that_returns_no_numbers_is_told_in_one_sentence(session: Any, 
 
 HARDER = """
 from numba import njit
-from systems.base import Law
+from pinjoint.systems.base import Law
 
 class Harder(Law):
     name = "apple.harder"
@@ -432,7 +432,7 @@ def test_where_a_run_diverges_the_laws_of_mods_are_named(write_mod: Write) -> No
 
 PAIRS = """
 from numba import njit
-from systems.base import Law
+from pinjoint.systems.base import Law
 
 class Pull(Law):
     name = "apple.pull"

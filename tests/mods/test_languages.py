@@ -6,9 +6,9 @@ from pathlib import Path
 
 import pytest
 
-from components.language import spoken, tr
-from game import mods
-from game.session import Session
+from pinjoint import mods
+from pinjoint.components.language import spoken, tr
+from pinjoint.session import Session
 from tests.catalogues import MODS
 
 WIND = MODS / "wind"

@@ -9,18 +9,18 @@ from pathlib import Path
 
 import pytest
 
-from components import Particle
-from game import Session, mods
-from game.commands import COMMANDS
-from game.commands.command_line import main
-from game.editor.actions import ACTIONS
-from systems.input.bindings import BINDINGS, action_for
-from systems.physics.integrators import VelocityVerlet
+from pinjoint import Session, mods
+from pinjoint.commands import COMMANDS
+from pinjoint.commands.command_line import main
+from pinjoint.components import Particle
+from pinjoint.editor.actions import ACTIONS
+from pinjoint.systems.input.bindings import BINDINGS, action_for
+from pinjoint.systems.physics.integrators import VelocityVerlet
 from tests.mods.conftest import Write
 
 BALL = {"format": "pinjoint model", "version": 1, "particles": [{"name": "A", "position": [0, 0]}]}
 SAIL = """
-    from components import Component, Field, Particle
+    from pinjoint.components import Component, Field, Particle
 
     class Sail(Component):
         of = Particle
@@ -39,7 +39,7 @@ def load(tmp_path: Path) -> dict[str, mods.Mod]:
 
 
 def test_a_mod_is_loaded_after_those_it_requires_else_by_name(tmp_path: Path, write_mod: Write) -> None:
-    note = "from game.mods import FAULTS\ndef plugin(app): FAULTS.append(app.name)"
+    note = "from pinjoint.mods import FAULTS\ndef plugin(app): FAULTS.append(app.name)"
     write_mod("apple", note, 'requires = ["pear>=1", "pinjoint>=0.1"]')
     for name in ("plum", "pear", "fig"):
         write_mod(name, note)
@@ -113,17 +113,17 @@ def test_what_requires_a_mod_that_fails_is_left_out(tmp_path: Path, write_mod: W
         ("def plugin(app): app.command('run', print)", "command 'run' already"),
         ("def plugin(app): app.models('nowhere')", "no folder of models nowhere"),
         (
-            "from game.editor.scenes import Scene\nclass P(Scene):\n    name = 'pause'\n"
+            "from pinjoint.editor.scenes import Scene\nclass P(Scene):\n    name = 'pause'\n"
             "def plugin(app): app.scene(P)",
             "a scene 'pause' already",
         ),
         (
-            "from systems.base import System\nclass A(System):\n    name = 'apple.a'\n"
+            "from pinjoint.systems.base import System\nclass A(System):\n    name = 'apple.a'\n"
             "def plugin(app):\n    app.system(A)\n    app.system(A)",
             "Two systems are called apple.a",
         ),
         (
-            "from components import Component, Field, Particle\nclass C(Component):\n    of = Particle\n"
+            "from pinjoint.components import Component, Field, Particle\nclass C(Component):\n    of = Particle\n"
             "    x: Field[float] = Field(title='x', doc='')\n"
             "class D(C):\n    pass\ndef plugin(app):\n    app.component(C)\n    app.component(D)",
             "'apple_x' already",
@@ -184,8 +184,8 @@ def test_of_a_plugin_that_raises_nothing_stays(tmp_path: Path, write_mod: Write)
     write_mod(
         "apple",
         """
-        from components import Component, Field, Particle, HistoryKind
-        from game.editor.scenes import Scene
+        from pinjoint.components import Component, Field, Particle, HistoryKind
+        from pinjoint.editor.scenes import Scene
 
         class Sail(Component):
             of = Particle
@@ -197,7 +197,7 @@ def test_of_a_plugin_that_raises_nothing_stays(tmp_path: Path, write_mod: Write)
         def plugin(app):
             app.component(Sail)
             app.scene(Show)
-            app.history(HistoryKind("apple", {}, "systems.loads.kernels:constant", 1.0, lambda h: 0.0))
+            app.history(HistoryKind("apple", {}, "pinjoint.systems.loads.kernels:constant", 1.0, lambda h: 0.0))
             app.action("apple.a", key="ctrl+shift+f12")(lambda session, pixel: None)
             app.command("apple", lambda words: 0)
             raise RuntimeError("at last")
@@ -300,10 +300,10 @@ def test_a_new_mod_works_at_the_first_try(tmp_path: Path, unloaded: None) -> Non
 
 
 KERNEL = """
-from components import HistoryKind
+from pinjoint.components import HistoryKind
 from numba import njit
-from systems.base import Law
-from systems.physics.integrators import VelocityVerlet
+from pinjoint.systems.base import Law
+from pinjoint.systems.physics.integrators import VelocityVerlet
 
 @njit
 def pull({parameter}):
@@ -332,7 +332,7 @@ RIGHT = {
     "parameter": "particles_position",
     "result": "0.0, 0.0",
     "ends": VelocityVerlet.ends,
-    "factor": "systems.loads.kernels:constant",
+    "factor": "pinjoint.systems.loads.kernels:constant",
     "scene": "pause",
 }
 

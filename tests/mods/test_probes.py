@@ -9,15 +9,15 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from components.view import Plot
-from game import Session
-from game.commands.command_line import main
-from game.included.probes import ENERGIES, probes_of, record
-from game.paths import PathError, quantity
-from systems.render.marks import Strokes, Text
-from systems.render.picture import compose
-from systems.render.plots import draw_plot, round_ticks
-from systems.render.theme import load_theme
+from pinjoint import Session
+from pinjoint.commands.command_line import main
+from pinjoint.components.view import Plot
+from pinjoint.included.probes import ENERGIES, probes_of, record
+from pinjoint.paths import PathError, quantity
+from pinjoint.systems.render.marks import Strokes, Text
+from pinjoint.systems.render.picture import compose
+from pinjoint.systems.render.plots import draw_plot, round_ticks
+from pinjoint.systems.render.theme import load_theme
 from tests.systems.render.frame_models import portal_at_rest
 
 LIGHT = load_theme("light")

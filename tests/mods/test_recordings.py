@@ -9,10 +9,10 @@ from typing import Any
 
 import pytest
 
-from game import Session, mods
-from game.commands.command_line import main
-from game.scripts.playing import Recorder, play, session_of
-from game.scripts.script import Script, ScriptError
+from pinjoint import Session, mods
+from pinjoint.commands.command_line import main
+from pinjoint.scripts.playing import Recorder, play, session_of
+from pinjoint.scripts.script import Script, ScriptError
 from tests.mods.conftest import Write
 
 BALL: dict[str, Any] = {
@@ -23,7 +23,7 @@ BALL: dict[str, Any] = {
 }
 BREEZE = """
 from numba import njit
-from systems.base import Law
+from pinjoint.systems.base import Law
 
 class Push(Law):
     name = "breeze.push"

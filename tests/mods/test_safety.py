@@ -10,13 +10,13 @@ from pathlib import Path
 
 import pytest
 
-from game import Session, mods
-from game.commands.with_mods import LEFT_OUT, crashed, in_use, load_as_asked
+from pinjoint import Session, mods
+from pinjoint.commands.with_mods import LEFT_OUT, crashed, in_use, load_as_asked
 from tests.mods.conftest import Write
 
 HOLD = """
-from game.mods import load
-from game.commands.with_mods import in_use
+from pinjoint.mods import load
+from pinjoint.commands.with_mods import in_use
 load(installed=True)
 with in_use():
     print("ready", flush=True)

@@ -7,13 +7,13 @@ from typing import Any
 import numpy as np
 import pytest
 
-from game import Session, mods
+from pinjoint import Session, mods
 from tests.mods.conftest import Write
 from tests.reference.models import oscillator
 
 SPRING = """
 from numba import njit
-from systems.base import Law
+from pinjoint.systems.base import Law
 
 @njit
 def spring(particles_displacement):
@@ -31,7 +31,7 @@ def plugin(app):
 """
 
 ELSEWHERE = """
-from systems.physics.integrators import VelocityVerlet
+from pinjoint.systems.physics.integrators import VelocityVerlet
 
 class Mine(VelocityVerlet):
     name = "apple.mine"

@@ -8,12 +8,12 @@ from typing import Any
 
 import pytest
 
-from game import Session, mods
-from game.documents import models
-from game.documents.models import ModelError
+from pinjoint import Session, mods
+from pinjoint.documents import models
+from pinjoint.documents.models import ModelError
 
 CHARGE = """
-from components import Component, Field, Handle, Particle
+from pinjoint.components import Component, Field, Handle, Particle
 
 class Charge(Component):
     of = Particle

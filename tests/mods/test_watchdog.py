@@ -8,11 +8,11 @@ from contextlib import suppress
 
 import pytest
 
-from game.mods.watchdog import TooLong, within
+from pinjoint.mods.watchdog import TooLong, within
 
 # Tracing, as debuggers and coverage do: an interpreter that still believes an exception is due never returns.
 TRACED = """
-from game.mods.watchdog import TooLong, within
+from pinjoint.mods.watchdog import TooLong, within
 from tests.reference.lines import lines_run
 def endless():
     while True:

@@ -20,13 +20,13 @@ from pathlib import Path
 import msgspec
 from numba import njit
 
-from game import Session
-from game.commands.command_line import main
-from game.documents import library, models, preferences
-from game.documents.autosave import Autosave
-from game.documents.facts import gathered
-from systems import cache
-from systems.program import compiler
+from pinjoint import Session
+from pinjoint.commands.command_line import main
+from pinjoint.documents import library, models, preferences
+from pinjoint.documents.autosave import Autosave
+from pinjoint.documents.facts import gathered
+from pinjoint.systems import cache
+from pinjoint.systems.program import compiler
 from tests.properties.limits import within
 from tests.reference.models import triangle
 
@@ -45,7 +45,7 @@ WORDS = (
     b"\0" * 99,
 )
 SETTINGS = b'{"theme": "dark", "magnification": 1.25, "keys": {"pause": {"w": "undo"}}}'
-SOURCE = "from systems.kernels import kept\n\n@kept()\ndef answer(x):\n    return kernel(x)\n"
+SOURCE = "from pinjoint.systems.kernels import kept\n\n@kept()\ndef answer(x):\n    return kernel(x)\n"
 
 
 @njit
@@ -162,7 +162,7 @@ def journal(folder: Path, chance: random.Random) -> None:
 
 def _kill_sweep(words: list[str]) -> None:
     """Leave the journal that a kill leaves after the last variant."""
-    from game.sweeps import run
+    from pinjoint.sweeps import run
 
     removed, run.Journal.remove = run.Journal.remove, lambda journal: None  # type: ignore[method-assign]
     try:

@@ -22,17 +22,17 @@ from weakref import WeakKeyDictionary
 
 import numpy as np
 
-from components.field import Vector
-from components.view import drawn_positions
-from game import Session
-from game.documents import library, models
-from game.documents.library import data_in
-from game.documents.open_documents import OpenDocument
-from game.scripts.playing import Recorder, play, session_of
-from game.scripts.script import EMPTY, Script
-from systems.input.bindings import BINDINGS, LIVE, TEXT
-from systems.render.picture import compose
-from systems.render.theme import load_theme
+from pinjoint import Session
+from pinjoint.components.field import Vector
+from pinjoint.components.view import drawn_positions
+from pinjoint.documents import library, models
+from pinjoint.documents.library import data_in
+from pinjoint.documents.open_documents import OpenDocument
+from pinjoint.scripts.playing import Recorder, play, session_of
+from pinjoint.scripts.script import EMPTY, Script
+from pinjoint.systems.input.bindings import BINDINGS, LIVE, TEXT
+from pinjoint.systems.render.picture import compose
+from pinjoint.systems.render.theme import load_theme
 from tests.properties.soundness import Print, check_sound, contents
 
 SIZES = ((640, 480), (1000, 720), (320, 240), (1920, 1080), (50, 50), (1200, 300), (1, 1))

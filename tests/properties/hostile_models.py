@@ -24,11 +24,11 @@ from contextlib import contextmanager, redirect_stderr, redirect_stdout
 from pathlib import Path
 from typing import Any
 
-from game import Session
-from game.commands import command_line
-from game.documents import models
-from systems.render.picture import compose
-from systems.render.theme import load_theme
+from pinjoint import Session
+from pinjoint.commands import command_line
+from pinjoint.documents import models
+from pinjoint.systems.render.picture import compose
+from pinjoint.systems.render.theme import load_theme
 from tests.properties.limits import interrupted_after
 
 PATIENCE = 10.0  # s of processor time, then Ctrl+C

@@ -4,7 +4,7 @@ import signal
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 
-from game.interrupts import Interrupt
+from pinjoint.interrupts import Interrupt
 
 
 class Hang(AssertionError):

@@ -6,8 +6,8 @@ from typing import Any
 
 import numpy as np
 
-from components.field import Role
-from components.model import Model
+from pinjoint.components.field import Role
+from pinjoint.components.model import Model
 
 Print = dict[str, Any]
 

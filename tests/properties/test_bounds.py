@@ -6,8 +6,8 @@ from tests.properties.bounds import OUTSIDE, checked
 
 READS = """
 import numpy as np
-from systems.kernels import kept
-from systems.machine_code import addressed, machine_code
+from pinjoint.systems.kernels import kept
+from pinjoint.systems.machine_code import addressed, machine_code
 
 @kept("float64(float64[:], int64)")
 def at(values, row):

@@ -8,9 +8,9 @@ from hypothesis import HealthCheck, settings
 from hypothesis import strategies as st
 from hypothesis.stateful import RuleBasedStateMachine, initialize, invariant, rule
 
-from game import Session
-from systems.input.bindings import BINDINGS, LIVE
-from systems.render.empty_card import card_button_at
+from pinjoint import Session
+from pinjoint.systems.input.bindings import BINDINGS, LIVE
+from pinjoint.systems.render.empty_card import card_button_at
 from tests.properties.soundness import check_sound, contents
 from tests.reference.sessions import put_states_aside
 

@@ -6,7 +6,7 @@ from pathlib import Path
 
 import pytest
 
-from game.documents import library
+from pinjoint.documents import library
 from tests.properties.hostile_models import Hostile, attempt
 
 

@@ -12,10 +12,10 @@ from typing import Any
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from components.field import LARGEST, SMALLEST, Role, same
-from components.model import Model
-from game.documents import models
-from game.documents.models import ModelError
+from pinjoint.components.field import LARGEST, SMALLEST, Role, same
+from pinjoint.components.model import Model
+from pinjoint.documents import models
+from pinjoint.documents.models import ModelError
 
 finite = st.sampled_from([0.0, -0.0]) | st.floats(allow_nan=False, allow_infinity=False)
 made = st.sampled_from([0.0, -0.0]) | st.floats(-LARGEST, LARGEST)

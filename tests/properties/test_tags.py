@@ -6,10 +6,10 @@ import random
 
 import esper
 
-from components.handle import Handle
-from components.model import Model
-from components.particle import Particle
-from components.tags import DiagramShown, Hovered, Selected
+from pinjoint.components.handle import Handle
+from pinjoint.components.model import Model
+from pinjoint.components.particle import Particle
+from pinjoint.components.tags import DiagramShown, Hovered, Selected
 
 
 def test_tags_of_a_model_agree_with_brute_force_through_deletion_and_undo() -> None:

@@ -15,15 +15,15 @@ from hypothesis import assume, settings
 from hypothesis import strategies as st
 from hypothesis.stateful import RuleBasedStateMachine, initialize, invariant, precondition, rule
 
-from components.commands import Command
-from components.field import Field, FieldError, Role
-from components.grid import Grid
-from components.handle import Handle
-from components.load import CONSTANT, Load
-from components.model import Model
-from components.particle import Particle
-from components.rod import Rod, spawn_rods
-from components.table import fields_of
+from pinjoint.components.commands import Command
+from pinjoint.components.field import Field, FieldError, Role
+from pinjoint.components.grid import Grid
+from pinjoint.components.handle import Handle
+from pinjoint.components.load import CONSTANT, Load
+from pinjoint.components.model import Model
+from pinjoint.components.particle import Particle
+from pinjoint.components.rod import Rod, spawn_rods
+from pinjoint.components.table import fields_of
 
 KINDS: dict[str, type[Handle]] = {kind.table: kind for kind in (Particle, Rod, Load, Grid)}
 REFERENCES = {"rods": "between", "loads": "on"}

@@ -17,15 +17,15 @@ from typing import Any
 
 import pygame
 
-from game.app import App
-from game.documents import library, models
-from game.documents.autosave import Autosave
-from game.documents.library import data_in
-from game.documents.open_documents import ModelFile
-from game.documents.preferences import CONFIG_VARIABLE
-from game.scripts.performance import Performance
-from systems.input import pygame_input
-from systems.input.bindings import BINDINGS
+from pinjoint.app import App
+from pinjoint.documents import library, models
+from pinjoint.documents.autosave import Autosave
+from pinjoint.documents.library import data_in
+from pinjoint.documents.open_documents import ModelFile
+from pinjoint.documents.preferences import CONFIG_VARIABLE
+from pinjoint.scripts.performance import Performance
+from pinjoint.systems.input import pygame_input
+from pinjoint.systems.input.bindings import BINDINGS
 from tests.properties.fuzz import OFTEN, TEXTS
 from tests.properties.limits import within
 from tests.properties.soundness import check_sound, contents

@@ -2,8 +2,8 @@
 
 import hashlib
 
-from components.field import Role
-from components.model import Model
+from pinjoint.components.field import Role
+from pinjoint.components.model import Model
 
 
 def columns(model: Model, *roles: Role) -> dict[str, bytes]:

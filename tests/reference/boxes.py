@@ -5,8 +5,8 @@ from __future__ import annotations
 import itertools
 from collections.abc import Iterable
 
-from systems.render.marks import Text
-from systems.render.typography import text_width
+from pinjoint.systems.render.marks import Text
+from pinjoint.systems.render.typography import text_width
 
 Box = tuple[float, float, float, float]
 NamedBox = tuple[str, float, float, float, float]

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from systems.collision.driven.kernels.complementarity import FIRM, MOST_EXCHANGES, PATIENCE, ROUND_OFF
+from pinjoint.systems.collision.driven.kernels.complementarity import FIRM, MOST_EXCHANGES, PATIENCE, ROUND_OFF
 
 Floats = NDArray[np.float64]
 

@@ -5,10 +5,10 @@ from __future__ import annotations
 from collections.abc import Iterator
 from contextlib import contextmanager
 
-from systems.collision.driven.compiled import DRIVEN
-from systems.collision.free.discs import EVENTS, HORIZONS, PILES
-from systems.program import compiler
-from systems.program.compiler import Choice, Compile, GeneratedModule
+from pinjoint.systems.collision.driven.compiled import DRIVEN
+from pinjoint.systems.collision.free.discs import EVENTS, HORIZONS, PILES
+from pinjoint.systems.program import compiler
+from pinjoint.systems.program.compiler import Choice, Compile, GeneratedModule
 
 OF_ANY_MODEL = EVENTS, HORIZONS, PILES, DRIVEN
 _STATE = "_form", "_compiled", "_patience", "spent"

@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 from scipy.optimize import minimize
 
-from components.model import Model
+from pinjoint.components.model import Model
 
 STEP = 1e-30
 

@@ -7,8 +7,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from systems.render.marks import Bars, Discs, Fills, Owner, Picture, Points, Stamps, Strokes
-from systems.render.theme import Colour, Theme
+from pinjoint.systems.render.marks import Bars, Discs, Fills, Owner, Picture, Points, Stamps, Strokes
+from pinjoint.systems.render.theme import Colour, Theme
 from tests.reference.boxes import Box
 
 

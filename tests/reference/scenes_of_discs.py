@@ -1,6 +1,6 @@
 """Scenes of discs that the tests of collisions share: racks, gases, boxes, piles.
 
-Each returns what `systems.collision.free.discs.Discs` takes, as keyword arguments. Units: m, s, kg.
+Each returns what `pinjoint.systems.collision.free.discs.Discs` takes, as keyword arguments. Units: m, s, kg.
 """
 
 import numpy as np

@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from game import Session
-from game.documents.history.history import History
-from game.documents.history.log import Run
+from pinjoint import Session
+from pinjoint.documents.history.history import History
+from pinjoint.documents.history.log import Run
 
 
 def put_states_aside(session: Session, beyond: int) -> None:

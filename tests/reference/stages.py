@@ -14,9 +14,9 @@ from typing import Any
 
 import numpy as np
 
-from components.load import load_breaks
-from components.model import Model
-from systems.base import ACCOUNTS, Commit, Law, StepSystem
+from pinjoint.components.load import load_breaks
+from pinjoint.components.model import Model
+from pinjoint.systems.base import ACCOUNTS, Commit, Law, StepSystem
 
 Pair = tuple[float, float]
 Step = tuple[float, float, float]

@@ -9,12 +9,12 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from components.field import Role
-from game import Session
-from game.commands.command_line import main
-from game.documents.library import DATA_VARIABLE
-from game.scripts.playing import Recorder, play, session_of
-from game.scripts.script import Script, ScriptError, lessons
+from pinjoint import Session
+from pinjoint.commands.command_line import main
+from pinjoint.components.field import Role
+from pinjoint.documents.library import DATA_VARIABLE
+from pinjoint.scripts.playing import Recorder, play, session_of
+from pinjoint.scripts.script import Script, ScriptError, lessons
 
 SCRIPTS = sorted(Path(__file__).parent.glob("*.jsonl"))
 

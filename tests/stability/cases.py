@@ -15,10 +15,10 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.integrate import solve_ivp
 
-from components.field import Role
-from components.settings import AUTOMATIC
-from game import Session
-from systems.physics.integrators import INTEGRATORS
+from pinjoint import Session
+from pinjoint.components.field import Role
+from pinjoint.components.settings import AUTOMATIC
+from pinjoint.systems.physics.integrators import INTEGRATORS
 from tests.reference import closed_forms
 from tests.reference.elements import Model
 from tests.reference.models import model, oscillator, particle, pendulum, rod, von_mises_truss

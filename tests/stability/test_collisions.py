@@ -7,10 +7,10 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from systems.collision.columns import Reason
-from systems.collision.free.discs import Discs
-from systems.collision.kernels.pile import begin_steps
-from systems.collision.overlaps import part
+from pinjoint.systems.collision.columns import Reason
+from pinjoint.systems.collision.free.discs import Discs
+from pinjoint.systems.collision.kernels.pile import begin_steps
+from pinjoint.systems.collision.overlaps import part
 from tests.reference.scenes_of_discs import (
     GRAVITY,
     Scene,

@@ -7,9 +7,9 @@ from typing import Any
 import numpy as np
 import pytest
 
-from components.field import Role
-from game import Session
-from game.documents import models
+from pinjoint import Session
+from pinjoint.components.field import Role
+from pinjoint.documents import models
 from tests.reference import bits
 from tests.reference.elements import Model
 from tests.reference.models import chain, model, oscillator, particle, pendulum, rod, square, triangle

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import pytest
 
-from components.settings import AUTOMATIC, INTEGRATORS
-from game import Session
-from systems.physics import integrators
+from pinjoint import Session
+from pinjoint.components.settings import AUTOMATIC, INTEGRATORS
+from pinjoint.systems.physics import integrators
 from tests.reference.models import model, particle, rod
 from tests.stability.cases import SHARES, Case, cases, follow, stepping
 

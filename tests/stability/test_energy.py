@@ -8,11 +8,11 @@ from typing import Any
 
 import pytest
 
-from components.settings import AUTOMATIC
-from game import Session
-from game.commands.command_line import main
-from game.documents import models
-from systems.physics.integrators import INTEGRATORS
+from pinjoint import Session
+from pinjoint.commands.command_line import main
+from pinjoint.components.settings import AUTOMATIC
+from pinjoint.documents import models
+from pinjoint.systems.physics.integrators import INTEGRATORS
 from tests.reference.elements import Model
 from tests.reference.models import model, oscillator, particle, square, triangle
 

@@ -6,10 +6,10 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
-from components.model import Model
-from game import Session
-from game.documents import models
-from systems.physics.spectrum import spectrum
+from pinjoint import Session
+from pinjoint.components.model import Model
+from pinjoint.documents import models
+from pinjoint.systems.physics.spectrum import spectrum
 from tests.reference.elements import Model as Document
 from tests.reference.models import chain, model, oscillator, particle, rod, square, triangle
 

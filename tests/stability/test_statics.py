@@ -8,8 +8,8 @@ from typing import Any
 import numpy as np
 import pytest
 
-from game.documents import models
-from systems.statics.settle import settle
+from pinjoint.documents import models
+from pinjoint.systems.statics.settle import settle
 from tests.reference import closed_forms
 from tests.reference.elements import Model as Document
 from tests.reference.models import (

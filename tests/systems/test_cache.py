@@ -11,11 +11,11 @@ from typing import Any
 import pytest
 from numba import njit
 
-from systems import cache
-from systems.program import compiler
+from pinjoint.systems import cache
+from pinjoint.systems.program import compiler
 
 SOURCE = """
-from systems.kernels import kept
+from pinjoint.systems.kernels import kept
 
 @kept()
 def answer(x):
@@ -235,9 +235,9 @@ import signal
 signal.signal(signal.SIGXFSZ, signal.SIG_IGN)
 resource.setrlimit(resource.RLIMIT_FSIZE, (0, 0))  # every write to a file fails
 from numba import njit
-from systems.program.compiler import generated
+from pinjoint.systems.program.compiler import generated
 
-source = "from systems.kernels import kept\\n\\n@kept()\\ndef answer(x):\\n    return kernel(x)\\n"
+source = "from pinjoint.systems.kernels import kept\\n\\n@kept()\\ndef answer(x):\\n    return kernel(x)\\n"
 module = generated("test", source, {"kernel": njit(lambda x: 2 * x)}).load()
 print(module.answer(21.0), module.answer(21))
 """

@@ -10,12 +10,12 @@ from typing import Any
 import pytest
 from numba import njit
 
-from components.handle import Handle
-from components.model import Model
-from game import Session
-from game.commands.reports.report import Analysis
-from systems.base import EVENT_INTERVAL, Event, Phase, System
-from systems.program.binding import ProgramError
+from pinjoint import Session
+from pinjoint.commands.reports.report import Analysis
+from pinjoint.components.handle import Handle
+from pinjoint.components.model import Model
+from pinjoint.systems.base import EVENT_INTERVAL, Event, Phase, System
+from pinjoint.systems.program.binding import ProgramError
 from tests.reference import bits
 from tests.reference.models import oscillator
 

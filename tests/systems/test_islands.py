@@ -6,8 +6,8 @@ import numpy as np
 from hypothesis import given
 from hypothesis import strategies as st
 
-from game.documents import models
-from systems.islands import IMMOVABLE, islands
+from pinjoint.documents import models
+from pinjoint.systems.islands import IMMOVABLE, islands
 from tests.reference.models import model, particle, rod
 
 

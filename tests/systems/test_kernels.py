@@ -5,8 +5,8 @@ from collections.abc import Callable
 import numpy as np
 from numba import njit
 
-from systems.kernels import part
-from systems.machine_code import machine_code
+from pinjoint.systems.kernels import part
+from pinjoint.systems.machine_code import machine_code
 
 
 @part()
@@ -44,8 +44,8 @@ def test_a_part_is_interpreted_where_python_calls_it() -> None:
 DIGEST = """
 import hashlib
 
-from game import Session
-from systems.kernels import PLAIN
+from pinjoint import Session
+from pinjoint.systems.kernels import PLAIN
 
 for integrator in ("velocity_verlet", "rk4"):
     session = Session.open("hyperstatic_yield")

@@ -16,16 +16,16 @@ import pytest
 from hypothesis import HealthCheck, given, reject, settings
 from hypothesis import strategies as st
 
-from systems.interpreter import NoPlainForm, in_lists
-from systems.kinds import typed
-from systems.machine_code import machine_code
+from pinjoint.systems.interpreter import NoPlainForm, in_lists
+from pinjoint.systems.kinds import typed
+from pinjoint.systems.machine_code import machine_code
 
 HEAD = """
 import math
 import numpy as np
 from math import sqrt
 from numba import njit
-from systems.kernels import compiled, part
+from pinjoint.systems.kernels import compiled, part
 
 TABLE = np.array([0.5, -1.5, 2.5])
 BYTES = np.zeros(2, dtype=np.uint8)
@@ -310,7 +310,7 @@ def test_a_file_that_was_edited_since_is_not_interpreted(tmp_path: Path) -> None
 
 def test_kernels_of_our_own_have_kinds_too() -> None:
     """All that laws and commits are given are numbers; this is how those of mods would be interpreted."""
-    from systems.physics import kernels
+    from pinjoint.systems.physics import kernels
 
     numbers = {"rods_tension_only": "b", "particles_velocity": ("f", "f")}
     for name in ("elastic", "axial_damper", "taut_damper", "taut", "slack_branch", "slack_margin", "drag"):

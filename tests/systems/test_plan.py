@@ -12,11 +12,11 @@ import numpy as np
 import pytest
 from numba import njit
 
-from game import Session
-from game.commands.command_line import main
-from game.editor.scenes import PHYSICS, SCENES, Scene
-from systems.base import Commit, Law, Phase, System
-from systems.physics.integrators import SemiImplicitEuler, register_integrator, remove_integrator
+from pinjoint import Session
+from pinjoint.commands.command_line import main
+from pinjoint.editor.scenes import PHYSICS, SCENES, Scene
+from pinjoint.systems.base import Commit, Law, Phase, System
+from pinjoint.systems.physics.integrators import SemiImplicitEuler, register_integrator, remove_integrator
 from tests.reference.models import model, particle
 from tests.systems.test_events import Crossing
 

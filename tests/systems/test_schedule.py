@@ -5,12 +5,12 @@ from typing import Any
 
 import pytest
 
-from components.model import Model
-from game import Session
-from game.documents import models
-from systems.base import Phase, System
-from systems.catalogue import step_systems
-from systems.schedule import Schedule, ScheduleError
+from pinjoint import Session
+from pinjoint.components.model import Model
+from pinjoint.documents import models
+from pinjoint.systems.base import Phase, System
+from pinjoint.systems.catalogue import step_systems
+from pinjoint.systems.schedule import Schedule, ScheduleError
 from tests.reference.models import model, oscillator, particle
 
 

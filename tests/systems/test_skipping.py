@@ -9,18 +9,18 @@ from typing import Any
 
 import pytest
 
-from components.environment import Environment
-from components.rod import Rod
-from game import Session
-from game.documents import models
-from systems.base import Phase
+from pinjoint import Session
+from pinjoint.components.environment import Environment
+from pinjoint.components.rod import Rod
+from pinjoint.documents import models
+from pinjoint.systems.base import Phase
 
 STRENGTHS = ("tensile_strength", "compressive_strength")
 
 
 def entries(name: str) -> dict[str, Any]:
     found: dict[str, Any] = json.loads(
-        (files("assets") / "models" / f"{name}.json").read_text(encoding="utf-8")
+        (files("pinjoint.assets") / "models" / f"{name}.json").read_text(encoding="utf-8")
     )
     return found
 

@@ -10,9 +10,9 @@ from typing import Any
 import numpy as np
 import pytest
 
-from systems import cache
-from systems.kernels import compiled, kept
-from systems.machine_code import machine_code
+from pinjoint.systems import cache
+from pinjoint.systems.kernels import compiled, kept
+from pinjoint.systems.machine_code import machine_code
 
 
 class Place(IntEnum):

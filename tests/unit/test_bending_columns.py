@@ -6,12 +6,12 @@ from typing import Any
 import numpy as np
 import pytest
 
-from components.field import FieldError
-from components.model import Model
-from game import Session
-from game.documents.document import document, parse
-from game.documents.format import ModelError
-from game.paths import PathError, apply_override, locate_one
+from pinjoint import Session
+from pinjoint.components.field import FieldError
+from pinjoint.components.model import Model
+from pinjoint.documents.document import document, parse
+from pinjoint.documents.format import ModelError
+from pinjoint.paths import PathError, apply_override, locate_one
 
 EI, EA, LENGTH, DENSITY = 10.0, 2e4, 2.0, 6.15
 

@@ -5,7 +5,8 @@ from typing import Any
 import numpy as np
 import pytest
 
-from components.bent import (
+from pinjoint import Session
+from pinjoint.components.bent import (
     AXIAL,
     FLAT,
     MOMENT,
@@ -19,9 +20,8 @@ from components.bent import (
     values,
     zeros,
 )
-from components.model import Model
-from game import Session
-from game.documents.document import parse
+from pinjoint.components.model import Model
+from pinjoint.documents.document import parse
 from tests.systems.render.frame_models import CLAMPED, EI, FRAMES, PINNED, ROLLER, frame, portal_at_rest
 
 SPAN, LOAD = 4.0, -3.0  # m, kN/m

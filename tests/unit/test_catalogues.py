@@ -10,7 +10,7 @@ from string import Formatter
 
 import pytest
 
-from components.language import DOMAIN, ENGLISH, LANGUAGES
+from pinjoint.components.language import DOMAIN, ENGLISH, LANGUAGES
 from tests.catalogues import ROOT, extracted, folders, is_translated, path_of, texts, translations
 
 KEYWORDS = {"tr": 1, "marked": 1, "plural": 2, "tr_in": 2}  # the number of arguments that are literals

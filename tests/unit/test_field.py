@@ -11,17 +11,17 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-import game  # noqa: F401 (its mods register further histories)
-from components.field import Field, FieldError, Role, same
-from components.handle import Handle
-from components.language import english, spoken
-from components.load import Load
-from components.model import KINDS, Model
-from components.particle import Particle
-from components.rod import Rod, spawn_rods
-from components.settings import Settings
-from components.table import fields_of
-from components.world import World
+import pinjoint.included  # noqa: F401 (its mods register further histories)
+from pinjoint.components.field import Field, FieldError, Role, same
+from pinjoint.components.handle import Handle
+from pinjoint.components.language import english, spoken
+from pinjoint.components.load import Load
+from pinjoint.components.model import KINDS, Model
+from pinjoint.components.particle import Particle
+from pinjoint.components.rod import Rod, spawn_rods
+from pinjoint.components.settings import Settings
+from pinjoint.components.table import fields_of
+from pinjoint.components.world import World
 
 
 def number(**options: Any) -> Field[Any]:

@@ -5,8 +5,8 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from components.free_body import apart, on_joint, on_rod
-from game import Session
+from pinjoint import Session
+from pinjoint.components.free_body import apart, on_joint, on_rod
 
 MODELS = ["isostatic", "hyperstatic", "braced_portal", "warren_bridge", "tower", "pendulum", "hanging_net"]
 

@@ -2,9 +2,9 @@
 
 import pytest
 
-from components import language
-from components.language import Said, begun, english, joined, listed, plural, tr, tr_in
-from components.mistake import Mistake
+from pinjoint.components import language
+from pinjoint.components.language import Said, begun, english, joined, listed, plural, tr, tr_in
+from pinjoint.components.mistake import Mistake
 
 HELD = {
     "{rod} carries {force:.1f} kN.": "A barra {rod} suporta {force:.1f} kN.",

@@ -7,11 +7,11 @@ from pathlib import Path
 
 import pytest
 
-from components.field import FieldError
-from components.numeric_range import incomputable
-from game import Session
-from game.commands.command_line import main
-from game.paths import PathError, apply_override
+from pinjoint import Session
+from pinjoint.commands.command_line import main
+from pinjoint.components.field import FieldError
+from pinjoint.components.numeric_range import incomputable
+from pinjoint.paths import PathError, apply_override
 
 
 def test_usual_models_can_be_computed() -> None:

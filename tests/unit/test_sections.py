@@ -6,15 +6,15 @@ from typing import Any
 import numpy as np
 import pytest
 
-from components.field import FieldError
-from components.particle import Particle
-from components.rod import Rod
-from components.section import MATERIALS, SECTIONS, section_named
-from game import Session
-from game.documents.document import document, parse
-from game.documents.format import ModelError
-from game.documents.models import load
-from game.paths import PathError, apply_override
+from pinjoint import Session
+from pinjoint.components.field import FieldError
+from pinjoint.components.particle import Particle
+from pinjoint.components.rod import Rod
+from pinjoint.components.section import MATERIALS, SECTIONS, section_named
+from pinjoint.documents.document import document, parse
+from pinjoint.documents.format import ModelError
+from pinjoint.documents.models import load
+from pinjoint.paths import PathError, apply_override
 from tests.reference.models import model, particle, rod
 
 # A (cm²), I (cm⁴) and W_pl (cm³) as ArcelorMittal's and Tata's catalogues print them.

@@ -6,8 +6,8 @@ import itertools
 
 import pytest
 
-from components.camera import Viewport
-from components.slider import Control, Slider, SliderStack, under
+from pinjoint.components.camera import Viewport
+from pinjoint.components.slider import Control, Slider, SliderStack, under
 
 LINEAR = Slider((), 0.0, -200.0)
 DECADES = Slider((), 1e3, 1e6, logarithmic=True)

@@ -2,7 +2,7 @@
 
 import pytest
 
-from components.suggestions import missing, nearest
+from pinjoint.components.suggestions import missing, nearest
 
 
 @pytest.mark.parametrize(

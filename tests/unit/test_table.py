@@ -8,13 +8,13 @@ from typing import Any
 import numpy as np
 import pytest
 
-from components.field import Field, Role
-from components.handle import Handle
-from components.model import Model
-from components.particle import Particle
-from components.rod import Rod, spawn_rods
-from components.table import Table, fields_of
-from components.world import World
+from pinjoint.components.field import Field, Role
+from pinjoint.components.handle import Handle
+from pinjoint.components.model import Model
+from pinjoint.components.particle import Particle
+from pinjoint.components.rod import Rod, spawn_rods
+from pinjoint.components.table import Table, fields_of
+from pinjoint.components.world import World
 
 
 class Bead(Handle):

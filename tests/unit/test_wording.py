@@ -6,10 +6,10 @@ from typing import Any
 
 import pytest
 
-from components.field import FieldError
-from components.particle import Particle
-from components.wording import cut, printable, quoted
-from game import Session
+from pinjoint import Session
+from pinjoint.components.field import FieldError
+from pinjoint.components.particle import Particle
+from pinjoint.components.wording import cut, printable, quoted
 
 
 def test_what_does_not_print_is_written_out() -> None:

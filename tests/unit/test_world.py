@@ -11,17 +11,17 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
-from components.commands import Assign, Command, Create, Delete, Group
-from components.derived import DERIVATIONS
-from components.environment import Environment
-from components.field import FieldError, Role
-from components.grid import Grid
-from components.load import Load
-from components.model import KINDS, Model
-from components.particle import DEFAULT_MASS, Particle
-from components.rod import Rod, spawn_rods
-from components.tags import DiagramShown, Selected
-from components.world import Derivation, World
+from pinjoint.components.commands import Assign, Command, Create, Delete, Group
+from pinjoint.components.derived import DERIVATIONS
+from pinjoint.components.environment import Environment
+from pinjoint.components.field import FieldError, Role
+from pinjoint.components.grid import Grid
+from pinjoint.components.load import Load
+from pinjoint.components.model import KINDS, Model
+from pinjoint.components.particle import DEFAULT_MASS, Particle
+from pinjoint.components.rod import Rod, spawn_rods
+from pinjoint.components.tags import DiagramShown, Selected
+from pinjoint.components.world import Derivation, World
 from tests.reference.lines import lines_run
 
 

@@ -11,8 +11,8 @@ from hypothesis import assume, example
 from hypothesis import given as generated
 from hypothesis import strategies as st
 
-from components import written
-from components.language import english, spoken
+from pinjoint.components import written
+from pinjoint.components.language import english, spoken
 
 
 @generated(st.lists(st.one_of(st.text(st.characters(exclude_categories=["Cs"])), st.floats(), st.integers())))

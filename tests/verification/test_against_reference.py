@@ -11,7 +11,7 @@ import pytest
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
-from game import Session
+from pinjoint import Session
 from tests.reference import physics
 from tests.reference.elements import Document
 from tests.reference.models import model, particle

@@ -11,13 +11,13 @@ import pytest
 from scipy.linalg import eigh
 from scipy.optimize import brentq
 
-from components.model import Model
-from game import Session
-from game.commands.command_line import main
-from game.documents.models import parse
-from systems.statics.buckling import buckling
-from systems.statics.events import NoEquilibrium
-from systems.statics.theory import linear
+from pinjoint import Session
+from pinjoint.commands.command_line import main
+from pinjoint.components.model import Model
+from pinjoint.documents.models import parse
+from pinjoint.systems.statics.buckling import buckling
+from pinjoint.systems.statics.events import NoEquilibrium
+from pinjoint.systems.statics.theory import linear
 from tests.reference.models import model
 
 EI, LENGTH = 1000.0, 10.0

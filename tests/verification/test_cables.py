@@ -10,15 +10,15 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from game import Session
-from game.commands.command_line import main
-from game.documents import models
-from systems.statics.events import NoEquilibrium
-from systems.statics.force_method import solve
-from systems.statics.path import Goal, load_path
-from systems.statics.settle import settle
-from systems.statics.theory import linear
-from systems.statics.unknowns import ForceMethodError
+from pinjoint import Session
+from pinjoint.commands.command_line import main
+from pinjoint.documents import models
+from pinjoint.systems.statics.events import NoEquilibrium
+from pinjoint.systems.statics.force_method import solve
+from pinjoint.systems.statics.path import Goal, load_path
+from pinjoint.systems.statics.settle import settle
+from pinjoint.systems.statics.theory import linear
+from pinjoint.systems.statics.unknowns import ForceMethodError
 from tests.reference import closed_forms, statics
 from tests.reference.elements import Model as Document
 from tests.reference.models import model, particle, random_truss, rod

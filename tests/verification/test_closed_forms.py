@@ -5,7 +5,7 @@ import math
 import numpy as np
 import pytest
 
-from game import Session
+from pinjoint import Session
 from tests.reference import closed_forms
 from tests.reference.elements import Model
 from tests.reference.models import chain, model, oscillator, particle, pendulum, square, triangle

@@ -5,13 +5,13 @@ import math
 import numpy as np
 import pytest
 
-from components.obstacles import obstacles
-from game import Session
-from game.documents import models
-from game.included.collisions import panels
-from systems.collision.columns import Reason
-from systems.collision.free.discs import EVENTS, HORIZONS, PILES, Discs
-from systems.program.compiler import SMALL
+from pinjoint import Session
+from pinjoint.components.obstacles import obstacles
+from pinjoint.documents import models
+from pinjoint.included.collisions import panels
+from pinjoint.systems.collision.columns import Reason
+from pinjoint.systems.collision.free.discs import EVENTS, HORIZONS, PILES, Discs
+from pinjoint.systems.program.compiler import SMALL
 from tests.reference import closed_forms
 from tests.reference.scenes_of_discs import deepest
 

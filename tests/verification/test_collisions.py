@@ -8,9 +8,9 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from numba import njit
 
-from systems.collision.columns import Reason
-from systems.collision.free.discs import Discs, ImpactColumns
-from systems.collision.kernels.time_of_impact import INFINITY, first_approach
+from pinjoint.systems.collision.columns import Reason
+from pinjoint.systems.collision.free.discs import Discs, ImpactColumns
+from pinjoint.systems.collision.kernels.time_of_impact import INFINITY, first_approach
 from tests.reference import closed_forms, collisions
 from tests.reference.scenes_of_discs import GRAVITY, Scene, break_shot, gas, line, stacked, with_held
 

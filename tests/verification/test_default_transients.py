@@ -8,10 +8,10 @@ import pytest
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
-from game import Session
-from game.commands.command_line import main
-from game.documents import document as documents
-from systems.physics.spectrum import spectrum
+from pinjoint import Session
+from pinjoint.commands.command_line import main
+from pinjoint.documents import document as documents
+from pinjoint.systems.physics.spectrum import spectrum
 from tests.benchmarks.models import lattice
 from tests.reference.elements import Document
 from tests.reference.transients import Motion, Untraceable, follow
@@ -158,9 +158,9 @@ def test_a_lattice_of_several_hundred_rods_is_exact_in_forces_and_speeds_too(cab
 def test_a_run_too_large_for_error_control_says_so(
     monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    for module in ("systems.physics.automatic", "game.commands.reports.report"):
+    for module in ("pinjoint.systems.physics.automatic", "pinjoint.commands.reports.report"):
         monkeypatch.setattr(f"{module}.AFFORDABLE", 2)
-    monkeypatch.setattr("game.commands.reports.report.IN_A_COMMAND", 0)
+    monkeypatch.setattr("pinjoint.commands.reports.report.IN_A_COMMAND", 0)
     words = ["run", "isostatic", "--at", "0.001", "--format", "json"]
     main(words)
     found = json.loads(capsys.readouterr().out)

@@ -8,9 +8,9 @@ from pathlib import Path
 
 import pytest
 
-from game import Session
-from systems.base import REVIEW_INTERVAL
-from systems.physics.integrators import VelocityVerlet
+from pinjoint import Session
+from pinjoint.systems.base import REVIEW_INTERVAL
+from pinjoint.systems.physics.integrators import VelocityVerlet
 from tests.reference import bits
 from tests.reference.elements import Model
 from tests.reference.models import model, particle, rod, square
@@ -70,7 +70,7 @@ def assert_same(one: Session, other: Session) -> None:
 
 
 HASH = """
-from game import Session
+from pinjoint import Session
 from tests.reference import bits
 from tests.verification.test_determinism import DOCUMENTS, FAR
 for make in DOCUMENTS.values():
@@ -194,7 +194,7 @@ def test_a_saved_time_is_kept(tmp_path: Path) -> None:
 
 SETTLED = """
 import hashlib
-from systems.statics.settle import settle
+from pinjoint.systems.statics.settle import settle
 from tests.benchmarks.models import lattice
 found = hashlib.sha256()
 for rods in (150, 300):

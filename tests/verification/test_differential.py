@@ -7,7 +7,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from game import Session
+from pinjoint import Session
 from tests.benchmarks import differential
 from tests.reference.collisions import Scene, run
 from tests.reference.elements import read

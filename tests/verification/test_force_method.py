@@ -10,15 +10,15 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from components.model import Model
-from components.particle import Particle
-from components.rod import spawn_rods
-from game import Session
-from game.documents import models
-from game.force_method.copies import exact_forces
-from systems.statics.force_method import solve
-from systems.statics.theory import linear
-from systems.statics.unknowns import ForceMethodError, find_unknown, redundants
+from pinjoint import Session
+from pinjoint.components.model import Model
+from pinjoint.components.particle import Particle
+from pinjoint.components.rod import spawn_rods
+from pinjoint.documents import models
+from pinjoint.force_method.copies import exact_forces
+from pinjoint.systems.statics.force_method import solve
+from pinjoint.systems.statics.theory import linear
+from pinjoint.systems.statics.unknowns import ForceMethodError, find_unknown, redundants
 from tests.reference.models import panel_truss
 from tests.reference.statics import direct_stiffness
 

@@ -10,15 +10,15 @@ import pytest
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
-from components.model import Model
-from game.commands import force_method as command
-from game.commands.command_line import main
-from game.documents import models
-from game.documents.models import parse
-from systems.statics.force_method import Solution, solve
-from systems.statics.theory import indeterminacy, linear
-from systems.statics.unknowns import ForceMethodError, Unknown, find_unknown, redundants
-from systems.statics.virtual_work import virtual_work
+from pinjoint.commands import force_method as command
+from pinjoint.commands.command_line import main
+from pinjoint.components.model import Model
+from pinjoint.documents import models
+from pinjoint.documents.models import parse
+from pinjoint.systems.statics.force_method import Solution, solve
+from pinjoint.systems.statics.theory import indeterminacy, linear
+from pinjoint.systems.statics.unknowns import ForceMethodError, Unknown, find_unknown, redundants
+from pinjoint.systems.statics.virtual_work import virtual_work
 from tests.reference.models import model, random_truss
 from tests.verification.test_frame_theory import EA, EI, beam, free, held, random_frame
 

@@ -8,9 +8,9 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from game import Session
-from systems.physics.integrators import INTEGRATORS
-from systems.program.compiler import Compile
+from pinjoint import Session
+from pinjoint.systems.physics.integrators import INTEGRATORS
+from pinjoint.systems.program.compiler import Compile
 from tests.reference import bits
 from tests.reference.elements import Model
 from tests.reference.forms import all_modules, load_all, programs
@@ -79,7 +79,7 @@ def test_machine_code_may_take_over_at_any_step(title: str, turn: int, switch: i
 def test_bits_do_not_depend_on_the_portions_of_interpreted_steps(
     document: Model, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr("systems.program.compiler.LONGEST_CALL", 0.0)
+    monkeypatch.setattr("pinjoint.systems.program.compiler.LONGEST_CALL", 0.0)
     assert state(document, 300, Compile.NEVER) == state(document, 300, Compile.ALWAYS)
 
 
@@ -90,7 +90,7 @@ def test_bits_of_what_may_meet_do_not_depend_on_the_portions(
     """Portions are of one step where calls may take no time, and of 1, 8, 64, … where they may take any."""
     found = set()
     for longest in (0.0, math.inf):
-        monkeypatch.setattr("systems.program.compiler.LONGEST_CALL", longest)
+        monkeypatch.setattr("pinjoint.systems.program.compiler.LONGEST_CALL", longest)
         found.add(state(document, STEPS, Compile.NEVER))
     assert len(found) == 1
 

@@ -9,11 +9,11 @@ import pytest
 from scipy.optimize import brentq
 from scipy.special import ellipe, ellipk
 
-from components.model import Model
-from game.commands.command_line import main
-from game.documents.models import parse
-from systems.statics.buckling import buckling
-from systems.statics.path import Goal, goal_of, load_path
+from pinjoint.commands.command_line import main
+from pinjoint.components.model import Model
+from pinjoint.documents.models import parse
+from pinjoint.systems.statics.buckling import buckling
+from pinjoint.systems.statics.path import Goal, goal_of, load_path
 from tests.reference.closed_forms import von_mises_force
 from tests.reference.models import model, von_mises_truss
 from tests.verification.test_buckling import CLAMPED, EI, HEADS, LENGTH, PINNED, column

@@ -6,14 +6,14 @@ from typing import Any
 import numpy as np
 import pytest
 
-from components.model import Model
-from game import Session
-from game.documents import models
-from game.documents.models import parse
-from systems.statics.buckling import buckling
-from systems.statics.settle import settle
-from systems.statics.state import StaticState
-from systems.statics.theory import linear
+from pinjoint import Session
+from pinjoint.components.model import Model
+from pinjoint.documents import models
+from pinjoint.documents.models import parse
+from pinjoint.systems.statics.buckling import buckling
+from pinjoint.systems.statics.settle import settle
+from pinjoint.systems.statics.state import StaticState
+from pinjoint.systems.statics.theory import linear
 
 
 def document(name: str) -> dict[str, Any]:

@@ -10,13 +10,13 @@ from hypothesis import strategies as st
 from scipy.integrate import solve_ivp
 from scipy.optimize import brentq
 
-from components.model import Model
-from game.documents.models import parse
-from game.session import Session
-from systems.statics.settle import settle
-from systems.statics.stability import is_held
-from systems.statics.state import StaticState, apply
-from systems.statics.theory import indeterminacy, linear
+from pinjoint.components.model import Model
+from pinjoint.documents.models import parse
+from pinjoint.session import Session
+from pinjoint.systems.statics.settle import settle
+from pinjoint.systems.statics.stability import is_held
+from pinjoint.systems.statics.state import StaticState, apply
+from pinjoint.systems.statics.theory import indeterminacy, linear
 from tests.reference import frames
 from tests.reference.models import model
 from tests.verification.test_frame_theory import random_frame

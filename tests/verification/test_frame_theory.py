@@ -8,16 +8,16 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from components.model import Model
-from game.commands.reports.verify import influence
-from game.documents.models import parse
-from systems.statics.counting import counted
-from systems.statics.events import NoEquilibrium
-from systems.statics.settle import settle
-from systems.statics.state import StaticState
-from systems.statics.theory import indeterminacy, linear, mechanisms, self_stress
-from systems.statics.unknowns import ForceMethodError
-from systems.statics.vibration import vibrations
+from pinjoint.commands.reports.verify import influence
+from pinjoint.components.model import Model
+from pinjoint.documents.models import parse
+from pinjoint.systems.statics.counting import counted
+from pinjoint.systems.statics.events import NoEquilibrium
+from pinjoint.systems.statics.settle import settle
+from pinjoint.systems.statics.state import StaticState
+from pinjoint.systems.statics.theory import indeterminacy, linear, mechanisms, self_stress
+from pinjoint.systems.statics.unknowns import ForceMethodError
+from pinjoint.systems.statics.vibration import vibrations
 from tests.reference import frame_theory
 from tests.reference.models import model
 

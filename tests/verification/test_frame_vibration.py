@@ -6,11 +6,11 @@ from typing import Any
 import numpy as np
 import pytest
 
-from components.model import Model
-from game.documents.models import parse
-from systems.physics.automatic import _of_frame
-from systems.statics.settle import settle
-from systems.statics.vibration import vibrations
+from pinjoint.components.model import Model
+from pinjoint.documents.models import parse
+from pinjoint.systems.physics.automatic import _of_frame
+from pinjoint.systems.statics.settle import settle
+from pinjoint.systems.statics.vibration import vibrations
 from tests.reference import frames
 from tests.reference.models import model
 from tests.verification.test_buckling import CLAMPED, PINNED

@@ -6,10 +6,10 @@ from typing import Any
 import numpy as np
 import pytest
 
-from game import Session
-from game.documents.document import parse
-from systems.physics.automatic import _of_frame
-from systems.physics.spectrum import spectrum
+from pinjoint import Session
+from pinjoint.documents.document import parse
+from pinjoint.systems.physics.automatic import _of_frame
+from pinjoint.systems.physics.spectrum import spectrum
 from tests.reference import frames
 
 EI, LENGTH, LOAD = 100.0, 2.0, -1e-4

@@ -9,10 +9,10 @@ from typing import Any
 import numpy as np
 import pytest
 
-from components import FieldError
-from game import Session
-from game.commands.command_line import main
-from game.included.histories import read_record, shake
+from pinjoint import Session
+from pinjoint.commands.command_line import main
+from pinjoint.components import FieldError
+from pinjoint.included.histories import read_record, shake
 
 STIFFNESS, MASS = 100.0, 100.0  # kN/m, kg
 OMEGA = math.sqrt(1000.0 * STIFFNESS / MASS)
@@ -229,7 +229,7 @@ def test_a_history_that_makes_no_sense_is_refused(history: dict[str, Any], said:
 
 
 def test_a_table_is_linear_between_its_points_and_constant_outside() -> None:
-    from systems.loads.kernels import interpolated
+    from pinjoint.systems.loads.kernels import interpolated
 
     values = np.array([9.0, 3.0, 0.0, 1.0, 3.0, 3.0, 5.0, 7.0, -1.0])
     found = [interpolated(t, values, 1) for t in (-1.0, 0.0, 0.25, 1.0, 2.0, 2.5, 3.0, 4.0)]

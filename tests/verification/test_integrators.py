@@ -5,8 +5,8 @@ import math
 import numpy as np
 import pytest
 
-from game import Session
-from systems.physics.integrators import INTEGRATORS
+from pinjoint import Session
+from pinjoint.systems.physics.integrators import INTEGRATORS
 from tests.benchmarks import accuracy, problems
 from tests.reference.closed_forms import free_vibration
 from tests.reference.elements import Model

@@ -10,10 +10,10 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from game import Session
-from game.commands.command_line import main
-from game.documents import models
-from systems.statics.path import Goal, load_path
+from pinjoint import Session
+from pinjoint.commands.command_line import main
+from pinjoint.documents import models
+from pinjoint.systems.statics.path import Goal, load_path
 from tests.reference import closed_forms
 from tests.reference.models import three_bar_truss, von_mises_truss
 from tests.reference.random_models import case

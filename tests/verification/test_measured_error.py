@@ -7,10 +7,10 @@ from typing import Any
 import numpy as np
 import pytest
 
-from game import Session
-from game.commands.command_line import main
-from game.editor.readouts import own_readouts
-from systems.run.measured_error import FINEST_TOLERANCE
+from pinjoint import Session
+from pinjoint.commands.command_line import main
+from pinjoint.editor.readouts import own_readouts
+from pinjoint.systems.run.measured_error import FINEST_TOLERANCE
 from tests.benchmarks.problems import Problem, tightly, transient, under_damped, yielding_step
 from tests.reference import bits
 from tests.reference.elements import Model
@@ -169,7 +169,7 @@ def test_no_frame_waits_for_the_error_of_a_long_run(monkeypatch: pytest.MonkeyPa
     session = Session.open(triangle(stiffness=164640))
     session.run(steps=100)
     evaluations = session.model.clock.steps * 3 * 12  # the stages of dop853
-    monkeypatch.setattr("systems.run.measured_error.IN_A_FRAME", evaluations - 1)
+    monkeypatch.setattr("pinjoint.systems.run.measured_error.IN_A_FRAME", evaluations - 1)
     assert session.document.assessment.error() is None
     assert session.document.assessment.error(evaluations) is not None
 

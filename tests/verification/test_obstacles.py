@@ -9,10 +9,10 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from numba import njit
 
-from components.obstacles import Obstacles
-from systems.collision.columns import Reason
-from systems.collision.free.discs import Discs, ImpactColumns
-from systems.collision.kernels.time_of_impact import INFINITY, first_touch
+from pinjoint.components.obstacles import Obstacles
+from pinjoint.systems.collision.columns import Reason
+from pinjoint.systems.collision.free.discs import Discs, ImpactColumns
+from pinjoint.systems.collision.kernels.time_of_impact import INFINITY, first_touch
 from tests.reference import collisions
 from tests.reference.scenes_of_discs import GRAVITY
 

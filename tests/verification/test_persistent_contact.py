@@ -6,9 +6,9 @@ import numpy as np
 import pytest
 from scipy.integrate import solve_ivp
 
-from components.obstacles import Obstacles
-from game import Session
-from systems.collision.free.discs import Discs
+from pinjoint import Session
+from pinjoint.components.obstacles import Obstacles
+from pinjoint.systems.collision.free.discs import Discs
 from tests.reference import persistent_contact
 from tests.reference.scenes_of_discs import GRAVITY, Scene, stacked
 

@@ -10,13 +10,13 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from components.model import Model
-from game import Session
-from game.commands.command_line import main
-from game.documents import models
-from systems.statics.path import Goal, load_path
-from systems.statics.settle import settle
-from systems.statics.state import StaticState
+from pinjoint import Session
+from pinjoint.commands.command_line import main
+from pinjoint.components.model import Model
+from pinjoint.documents import models
+from pinjoint.systems.statics.path import Goal, load_path
+from pinjoint.systems.statics.settle import settle
+from pinjoint.systems.statics.state import StaticState
 from tests.reference.elements import Model as Document
 from tests.reference.models import model, particle, random_structure, rod
 from tests.reference.straightening import A_CABLE_TRUSS, A_YIELDING_TRUSS, straightening

@@ -10,10 +10,10 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from game import Session
-from game.documents import models
-from systems.statics.contacts import Discs
-from systems.statics.settle import Settlement, settle
+from pinjoint import Session
+from pinjoint.documents import models
+from pinjoint.systems.statics.contacts import Discs
+from pinjoint.systems.statics.settle import Settlement, settle
 from tests.reference.elements import Model as Document
 from tests.reference.models import model, particle, rod, triangle
 

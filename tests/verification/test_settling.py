@@ -13,15 +13,15 @@ from hypothesis import example, given, settings
 from hypothesis import strategies as st
 from scipy.optimize import linprog
 
-from components.model import Model
-from game import Session
-from game.commands.command_line import main
-from game.documents import models
-from systems.statics import loading
-from systems.statics.events import Event
-from systems.statics.follow import Path
-from systems.statics.settle import Settlement, settle
-from systems.statics.state import StaticState, apply
+from pinjoint import Session
+from pinjoint.commands.command_line import main
+from pinjoint.components.model import Model
+from pinjoint.documents import models
+from pinjoint.systems.statics import loading
+from pinjoint.systems.statics.events import Event
+from pinjoint.systems.statics.follow import Path
+from pinjoint.systems.statics.settle import Settlement, settle
+from pinjoint.systems.statics.state import StaticState, apply
 from tests.reference import closed_forms, statics
 from tests.reference import models as trusses
 from tests.reference.elements import Model as Document

@@ -9,12 +9,12 @@ from collections.abc import Callable
 import numpy as np
 import pytest
 
-from components.field import FieldError
-from game import Session
-from game.commands.command_line import main
-from game.documents import models
-from systems.statics.settle import settle
-from systems.statics.theory import linear, self_stress
+from pinjoint import Session
+from pinjoint.commands.command_line import main
+from pinjoint.components.field import FieldError
+from pinjoint.documents import models
+from pinjoint.systems.statics.settle import settle
+from pinjoint.systems.statics.theory import linear, self_stress
 from tests.reference import physics, statics
 from tests.reference.elements import Model as Document
 from tests.reference.models import model, particle, rod, square, triangle

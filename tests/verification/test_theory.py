@@ -13,19 +13,19 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from scipy.linalg import eigh
 
-from components.model import Model
-from components.particle import Particle
-from components.rod import Rod
-from game.commands.command_line import main
-from game.commands.reports import verify as reports
-from game.commands.reports.verify import influence
-from game.documents import models
-from systems.statics.counting import counted
-from systems.statics.events import NoEquilibrium
-from systems.statics.settle import settle
-from systems.statics.theory import indeterminacy, linear, mechanisms, self_stress
-from systems.statics.verify import compare, theories
-from systems.statics.vibration import vibrations
+from pinjoint.commands.command_line import main
+from pinjoint.commands.reports import verify as reports
+from pinjoint.commands.reports.verify import influence
+from pinjoint.components.model import Model
+from pinjoint.components.particle import Particle
+from pinjoint.components.rod import Rod
+from pinjoint.documents import models
+from pinjoint.systems.statics.counting import counted
+from pinjoint.systems.statics.events import NoEquilibrium
+from pinjoint.systems.statics.settle import settle
+from pinjoint.systems.statics.theory import indeterminacy, linear, mechanisms, self_stress
+from pinjoint.systems.statics.verify import compare, theories
+from pinjoint.systems.statics.vibration import vibrations
 from tests.reference import closed_forms, pynite, statics
 from tests.reference import models as trusses
 from tests.reference.elements import Model as Document

@@ -4,7 +4,7 @@ import json
 
 import pytest
 
-from game.commands.command_line import main
+from pinjoint.commands.command_line import main
 
 ROOT = 3.0**0.5  # of offset centres: the line of centres is at 30° to the motion
 

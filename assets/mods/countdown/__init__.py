@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from typing import Any
 
-from game.api import App, Context, Phase, Scene, System
+from pinjoint.api import App, Context, Phase, Scene, System
 
 SECONDS = 3.0
 

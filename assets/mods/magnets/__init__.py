@@ -1,6 +1,6 @@
 """Magnets: poles q that repel each other by k q₁ q₂ (1/r² − 1/c²), or attract if their signs differ, up to c = 1 m."""
 
-from game.api import App, Component, Field, Law, Model, Particle, compiled
+from pinjoint.api import App, Component, Field, Law, Model, Particle, compiled
 
 
 class Magnet(Component):

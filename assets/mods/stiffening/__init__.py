@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from game.api import App, Component, Field, Law, Model, Rod, compiled
+from pinjoint.api import App, Component, Field, Law, Model, Rod, compiled
 
 
 class Material(Component):

@@ -4,7 +4,19 @@ from __future__ import annotations
 
 import math
 
-from game.api import App, Component, Context, Environment, Field, Law, Model, Particle, Readout, compiled, tr
+from pinjoint.api import (
+    App,
+    Component,
+    Context,
+    Environment,
+    Field,
+    Law,
+    Model,
+    Particle,
+    Readout,
+    compiled,
+    tr,
+)
 
 DENSITY = 1.2  # kg/m³, of air
 

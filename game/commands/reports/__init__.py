@@ -1,1 +1,1 @@
-"""What commands compute and print for one model; `game.sweeps` does so for many."""
+"""What commands compute and print for one model; `pinjoint.sweeps` does so for many."""

@@ -10,27 +10,27 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from components.language import joined, marked, tr
-from components.mistake import Mistake
-from components.model import Model
-from components.rod import bends
-from components.settings import AUTOMATIC
-from game.commands.output import ResultError
-from game.commands.reports.results import Run, State, state
-from game.documents.open_documents import without_mods
-from game.mods.heeding import check_mods, heeding_mods
-from game.mods.mod import ModError
-from game.paths import ENERGIES
-from game.session import DEFAULT_LIMIT, Session
-from systems.base import StopReason
-from systems.physics.automatic import AFFORDABLE
-from systems.run.measured_error import IN_A_COMMAND
-from systems.run.simulation import Simulation
-from systems.run.watch import watched
-from systems.statics.events import Event, event_record
+from pinjoint.commands.output import ResultError
+from pinjoint.commands.reports.results import Run, State, state
+from pinjoint.components.language import joined, marked, tr
+from pinjoint.components.mistake import Mistake
+from pinjoint.components.model import Model
+from pinjoint.components.rod import bends
+from pinjoint.components.settings import AUTOMATIC
+from pinjoint.documents.open_documents import without_mods
+from pinjoint.mods.heeding import check_mods, heeding_mods
+from pinjoint.mods.mod import ModError
+from pinjoint.paths import ENERGIES
+from pinjoint.session import DEFAULT_LIMIT, Session
+from pinjoint.systems.base import StopReason
+from pinjoint.systems.physics.automatic import AFFORDABLE
+from pinjoint.systems.run.measured_error import IN_A_COMMAND
+from pinjoint.systems.run.simulation import Simulation
+from pinjoint.systems.run.watch import watched
+from pinjoint.systems.statics.events import Event, event_record
 
 if TYPE_CHECKING:  # it imports scipy
-    from systems.statics.state import StaticState
+    from pinjoint.systems.statics.state import StaticState
 
 INTERRUPTED = marked("interrupted")  # the status of a run that Ctrl+C ended
 MOD_FAILED = marked("mod failed")
@@ -160,7 +160,7 @@ def run_at(simulation: Simulation, name: str, times: Sequence[float], states: li
 
 def run_static(simulation: Simulation, name: str, factors: Sequence[float]) -> Run:
     """Settle at each load factor in turn, with the yielding of those before."""
-    from systems.statics.settle import settle
+    from pinjoint.systems.statics.settle import settle
 
     left_out = simulation.schedule.left_out_of_statics(simulation.model)
     started = time.perf_counter()

@@ -7,15 +7,15 @@ from typing import Any
 
 import numpy as np
 
-from components.field import Column, Field
-from components.handle import Handle
-from components.language import joined, marked, several, tr
-from components.model import Model
-from components.particle import Particle
-from components.rod import Rod, bends
-from components.table import fields_of
-from game.commands.output import ResultError, Row, aligned, as_written, plain
-from game.paths import ENERGIES
+from pinjoint.commands.output import ResultError, Row, aligned, as_written, plain
+from pinjoint.components.field import Column, Field
+from pinjoint.components.handle import Handle
+from pinjoint.components.language import joined, marked, several, tr
+from pinjoint.components.model import Model
+from pinjoint.components.particle import Particle
+from pinjoint.components.rod import Rod, bends
+from pinjoint.components.table import fields_of
+from pinjoint.paths import ENERGIES
 
 State = dict[str, Any]
 Run = Mapping[str, Any]

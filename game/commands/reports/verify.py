@@ -8,19 +8,19 @@ from typing import Any
 
 import numpy as np
 
-from components.field import ENDS
-from components.language import decimals, joined, marked, plural, tr
-from components.model import Model
-from components.rod import Rod
-from game.commands import output
-from game.commands.output import aligned, as_written
-from game.commands.reports.report import static_state
-from game.session import DEFAULT_LIMIT, Session
-from systems.statics.counting import Count, counted
-from systems.statics.equations import Array
-from systems.statics.events import NoEquilibrium, event_record
-from systems.statics.explain import describe_motion
-from systems.statics.theory import (
+from pinjoint.commands import output
+from pinjoint.commands.output import aligned, as_written
+from pinjoint.commands.reports.report import static_state
+from pinjoint.components.field import ENDS
+from pinjoint.components.language import decimals, joined, marked, plural, tr
+from pinjoint.components.model import Model
+from pinjoint.components.rod import Rod
+from pinjoint.session import DEFAULT_LIMIT, Session
+from pinjoint.systems.statics.counting import Count, counted
+from pinjoint.systems.statics.equations import Array
+from pinjoint.systems.statics.events import NoEquilibrium, event_record
+from pinjoint.systems.statics.explain import describe_motion
+from pinjoint.systems.statics.theory import (
     indeterminacy,
     influence_on_displacement,
     influence_on_ends,
@@ -29,8 +29,8 @@ from systems.statics.theory import (
     mechanisms,
     self_stress,
 )
-from systems.statics.unknowns import ForceMethodError, find_unknown
-from systems.statics.verify import (
+from pinjoint.systems.statics.unknowns import ForceMethodError, find_unknown
+from pinjoint.systems.statics.verify import (
     DEPARTURES,
     ELSEWHERE,
     QUANTITIES,
@@ -42,7 +42,7 @@ from systems.statics.verify import (
     observed,
     theories,
 )
-from systems.statics.vibration import vibrations
+from pinjoint.systems.statics.vibration import vibrations
 
 VERIFIED, DIFFERS = marked("verified"), marked("differs from static theory")
 THEORY_ONLY, NOT_VERIFIED = marked("theory only"), marked("not verified")

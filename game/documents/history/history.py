@@ -6,12 +6,12 @@ from collections.abc import Callable, Hashable, Iterator
 from contextlib import contextmanager
 from dataclasses import replace
 
-from components.commands import Assign, Command, Group
-from components.field import Role
-from components.model import Model
-from game.documents.history.log import DiskStore, Edit, Entry, Log, Run
-from systems.run.checkpoint import Checkpoint
-from systems.run.simulation import Simulation
+from pinjoint.components.commands import Assign, Command, Group
+from pinjoint.components.field import Role
+from pinjoint.components.model import Model
+from pinjoint.documents.history.log import DiskStore, Edit, Entry, Log, Run
+from pinjoint.systems.run.checkpoint import Checkpoint
+from pinjoint.systems.run.simulation import Simulation
 
 MEMORY = 256 * 2**20  # bytes that the states before runs may take; older ones go to the disk
 

@@ -9,9 +9,9 @@ from collections.abc import Hashable
 from dataclasses import dataclass, replace
 from typing import IO
 
-from components.commands import Command
-from components.snapshot import Snapshot
-from systems.run.checkpoint import Checkpoint
+from pinjoint.components.commands import Command
+from pinjoint.components.snapshot import Snapshot
+from pinjoint.systems.run.checkpoint import Checkpoint
 
 
 @dataclass(frozen=True, slots=True)

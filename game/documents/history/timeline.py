@@ -5,9 +5,9 @@ from __future__ import annotations
 from collections.abc import Iterator
 from contextlib import contextmanager
 
-from systems.edit.pull import Hand, Pull
-from systems.run.checkpoint import Checkpoint
-from systems.run.simulation import Simulation
+from pinjoint.systems.edit.pull import Hand, Pull
+from pinjoint.systems.run.checkpoint import Checkpoint
+from pinjoint.systems.run.simulation import Simulation
 
 Moment = tuple[int, float | None]  # see Simulation.moment
 MEMORY = 256 * 2**20  # bytes that checkpoints may take; less: going back takes longer

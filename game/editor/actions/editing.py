@@ -6,21 +6,21 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from components import written
-from components.field import Vector
-from components.grid import Grid
-from components.handle import Handle
-from components.language import begun, listed, marked, plural, tr
-from components.particle import Particle
-from game.editor.clipboard import Part, as_text, part_in, part_of, paste, selected_rows
-from game.editor.context import Context, action
-from systems.edit import Refusal
-from systems.edit.moving import Movable, nudged
-from systems.edit.picking import pick_particle
-from systems.edit.placing import place, snapped
-from systems.edit.rods import delete
-from systems.edit.supports import next_support
-from systems.forms.properties import counted, heading
+from pinjoint.components import written
+from pinjoint.components.field import Vector
+from pinjoint.components.grid import Grid
+from pinjoint.components.handle import Handle
+from pinjoint.components.language import begun, listed, marked, plural, tr
+from pinjoint.components.particle import Particle
+from pinjoint.editor.clipboard import Part, as_text, part_in, part_of, paste, selected_rows
+from pinjoint.editor.context import Context, action
+from pinjoint.systems.edit import Refusal
+from pinjoint.systems.edit.moving import Movable, nudged
+from pinjoint.systems.edit.picking import pick_particle
+from pinjoint.systems.edit.placing import place, snapped
+from pinjoint.systems.edit.rods import delete
+from pinjoint.systems.edit.supports import next_support
+from pinjoint.systems.forms.properties import counted, heading
 
 
 @action("place", while_drawing=True)

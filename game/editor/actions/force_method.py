@@ -5,17 +5,17 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import TYPE_CHECKING
 
-from components.field import Vector
-from components.language import tr
-from components.view import CONVENTIONS
-from game.editor.context import Context, action
-from game.editor.scenes.force_method import ForceMethod
-from game.force_method import PARTS
-from systems.edit import Refusal
-from systems.edit.picking import pick
+from pinjoint.components.field import Vector
+from pinjoint.components.language import tr
+from pinjoint.components.view import CONVENTIONS
+from pinjoint.editor.context import Context, action
+from pinjoint.editor.scenes.force_method import ForceMethod
+from pinjoint.force_method import PARTS
+from pinjoint.systems.edit import Refusal
+from pinjoint.systems.edit.picking import pick
 
 if TYPE_CHECKING:  # it imports scipy
-    from game.force_method.guide import Guide
+    from pinjoint.force_method.guide import Guide
 
 
 def _guide(context: Context) -> Guide | None:
@@ -110,7 +110,7 @@ def _report(context: Context, pixel: Vector) -> None:
         raise Refusal(tr("Go through all parts first, with K; then P writes the report."))
     if context.window is None:
         return
-    from game.force_method.report import report  # it imports reportlab
+    from pinjoint.force_method.report import report  # it imports reportlab
 
     try:
         path = context.window.save("pinjoint-force-method.pdf", report(guide.tables, context.view.convention))

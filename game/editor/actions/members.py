@@ -2,18 +2,18 @@
 
 from __future__ import annotations
 
-from components.field import Vector
-from components.language import tr
-from components.rod import Rod
-from game.editor.actions.editing import all_of
-from game.editor.context import Action, Context, action
-from game.editor.gestures.drawing import DrawRod
-from systems.edit import Refusal
-from systems.edit.dividing import DIVISIONS, divide, divide_at
-from systems.edit.picking import End, pick_end, pick_particle, pick_rod
-from systems.edit.placing import snapped
-from systems.edit.rods import is_rigid, join_rigidly, share_at, toggle_hinge, toggle_joint
-from systems.edit.weight import weigh_along
+from pinjoint.components.field import Vector
+from pinjoint.components.language import tr
+from pinjoint.components.rod import Rod
+from pinjoint.editor.actions.editing import all_of
+from pinjoint.editor.context import Action, Context, action
+from pinjoint.editor.gestures.drawing import DrawRod
+from pinjoint.systems.edit import Refusal
+from pinjoint.systems.edit.dividing import DIVISIONS, divide, divide_at
+from pinjoint.systems.edit.picking import End, pick_end, pick_particle, pick_rod
+from pinjoint.systems.edit.placing import snapped
+from pinjoint.systems.edit.rods import is_rigid, join_rigidly, share_at, toggle_hinge, toggle_joint
+from pinjoint.systems.edit.weight import weigh_along
 
 
 @action("rigid", while_drawing=True)

@@ -4,22 +4,22 @@ from __future__ import annotations
 
 from dataclasses import replace
 
-from components.field import Vector
-from components.language import tr
-from components.menu import Menu
-from components.particle import Particle
-from components.rod import Rod
-from game.editor.actions.editing import all_of
-from game.editor.context import ACTIONS, Action, Context, action
-from game.editor.gestures.drawing import Drawing
-from game.editor.menu import menu_at
-from game.editor.scenes.force_method import ForceMethod
-from systems.edit import Refusal
-from systems.edit.picking import pick
-from systems.edit.supports import SUPPORTS, Held, support
-from systems.input.bindings import LIVE
-from systems.render.menu import menu_of
-from systems.render.symbol_at import symbol_at
+from pinjoint.components.field import Vector
+from pinjoint.components.language import tr
+from pinjoint.components.menu import Menu
+from pinjoint.components.particle import Particle
+from pinjoint.components.rod import Rod
+from pinjoint.editor.actions.editing import all_of
+from pinjoint.editor.context import ACTIONS, Action, Context, action
+from pinjoint.editor.gestures.drawing import Drawing
+from pinjoint.editor.menu import menu_at
+from pinjoint.editor.scenes.force_method import ForceMethod
+from pinjoint.systems.edit import Refusal
+from pinjoint.systems.edit.picking import pick
+from pinjoint.systems.edit.supports import SUPPORTS, Held, support
+from pinjoint.systems.input.bindings import LIVE
+from pinjoint.systems.render.menu import menu_of
+from pinjoint.systems.render.symbol_at import symbol_at
 
 
 @action("open menu", while_drawing=True)

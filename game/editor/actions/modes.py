@@ -5,15 +5,15 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import replace
 
-from components.field import Vector
-from components.language import tr
-from game.documents.models import ModelError
-from game.documents.open_documents import stamp_of
-from game.editor.context import Action, Context, SceneError, action
-from game.editor.scenes.form import FormScene
-from game.editor.scenes.properties import Properties
-from systems.edit import Refusal
-from systems.forms import typing
+from pinjoint.components.field import Vector
+from pinjoint.components.language import tr
+from pinjoint.documents.models import ModelError
+from pinjoint.documents.open_documents import stamp_of
+from pinjoint.editor.context import Action, Context, SceneError, action
+from pinjoint.editor.scenes.form import FormScene
+from pinjoint.editor.scenes.properties import Properties
+from pinjoint.systems.edit import Refusal
+from pinjoint.systems.forms import typing
 
 _MOVES: dict[str, Action] = {
     "pause": lambda context, pixel: context.scenes.request("pause"),

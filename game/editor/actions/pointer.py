@@ -2,18 +2,18 @@
 
 from __future__ import annotations
 
-from components.bent import AXIAL, QUANTITIES, is_frame
-from components.field import Vector
-from components.language import begun, plural, tr
-from components.particle import Particle
-from components.rod import Rod
-from components.tags import DiagramShown
-from game.editor.context import ACTIONS, Context, action
-from game.editor.gestures.drawing import TOOLS, Drawing, DrawSupport
-from game.editor.gestures.moving import BoxSelect, Move, MovePoint, PullParticle
-from systems.edit import Refusal
-from systems.edit.picking import everything, pick, pick_grid, pick_line, pick_particle, pick_point
-from systems.render.bending_diagrams import NAMES
+from pinjoint.components.bent import AXIAL, QUANTITIES, is_frame
+from pinjoint.components.field import Vector
+from pinjoint.components.language import begun, plural, tr
+from pinjoint.components.particle import Particle
+from pinjoint.components.rod import Rod
+from pinjoint.components.tags import DiagramShown
+from pinjoint.editor.context import ACTIONS, Context, action
+from pinjoint.editor.gestures.drawing import TOOLS, Drawing, DrawSupport
+from pinjoint.editor.gestures.moving import BoxSelect, Move, MovePoint, PullParticle
+from pinjoint.systems.edit import Refusal
+from pinjoint.systems.edit.picking import everything, pick, pick_grid, pick_line, pick_particle, pick_point
+from pinjoint.systems.render.bending_diagrams import NAMES
 
 
 @action("drag", while_drawing=True)

@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-from components.field import Vector
-from components.language import tr
-from game.editor.context import Action, Context, action
-from game.editor.gestures.sliding import Slide
-from game.editor.scenes.form import FormScene
-from game.editor.sliders import (
+from pinjoint.components.field import Vector
+from pinjoint.components.language import tr
+from pinjoint.editor.context import Action, Context, action
+from pinjoint.editor.gestures.sliding import Slide
+from pinjoint.editor.scenes.form import FormScene
+from pinjoint.editor.sliders import (
     SCALE,
     add_slider_for,
     add_usual_slider,
@@ -16,7 +16,7 @@ from game.editor.sliders import (
     scale_to,
     slider_of,
 )
-from systems.edit import Refusal
+from pinjoint.systems.edit import Refusal
 
 WHEEL = 0.02  # of its length, by which the wheel moves a slider
 

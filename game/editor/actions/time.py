@@ -4,13 +4,13 @@ from __future__ import annotations
 
 import math
 
-from components import written
-from components.field import Vector
-from components.language import joined, plural, tr
-from game.editor.actions.editing import nudge
-from game.editor.context import Action, Context, action
-from systems.collision.impacts import TooManyImpacts
-from systems.edit import Refusal
+from pinjoint.components import written
+from pinjoint.components.field import Vector
+from pinjoint.components.language import joined, plural, tr
+from pinjoint.editor.actions.editing import nudge
+from pinjoint.editor.context import Action, Context, action
+from pinjoint.systems.collision.impacts import TooManyImpacts
+from pinjoint.systems.edit import Refusal
 
 PACE_STEP = 2.0
 FAR = 0.2  # s shown that one press skips

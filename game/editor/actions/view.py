@@ -2,14 +2,14 @@
 
 from __future__ import annotations
 
-from components.field import Vector
-from components.language import LANGUAGES, language, speak, tr
-from components.rod import has_strength
-from game.documents.shapes import NoShape
-from game.editor.context import Action, Context, action
-from game.editor.view_model import pages_of_help
-from systems.edit import Refusal
-from systems.render.theme import load_theme
+from pinjoint.components.field import Vector
+from pinjoint.components.language import LANGUAGES, language, speak, tr
+from pinjoint.components.rod import has_strength
+from pinjoint.documents.shapes import NoShape
+from pinjoint.editor.context import Action, Context, action
+from pinjoint.editor.view_model import pages_of_help
+from pinjoint.systems.edit import Refusal
+from pinjoint.systems.render.theme import load_theme
 
 ZOOM_STEP = 1.2
 THEMES = ("light", "dark", "colour-blind", "colour-blind-dark")  # in the order in which one follows another

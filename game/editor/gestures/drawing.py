@@ -5,17 +5,17 @@ from __future__ import annotations
 import math
 from typing import ClassVar
 
-from components import written
-from components.field import Vector
-from components.handle import Handle
-from components.language import begun, joined, marked, plural, tr
-from components.model import Model
-from components.particle import Particle
-from components.rod import Rod, rigid_joints
-from components.view import BETWEEN, Preview, drawn_positions
-from game.editor.context import Context, Gesture
-from systems.edit import Refusal
-from systems.edit.arrows import (
+from pinjoint.components import written
+from pinjoint.components.field import Vector
+from pinjoint.components.handle import Handle
+from pinjoint.components.language import begun, joined, marked, plural, tr
+from pinjoint.components.model import Model
+from pinjoint.components.particle import Particle
+from pinjoint.components.rod import Rod, rigid_joints
+from pinjoint.components.view import BETWEEN, Preview, drawn_positions
+from pinjoint.editor.context import Context, Gesture
+from pinjoint.systems.edit import Refusal
+from pinjoint.systems.edit.arrows import (
     arrow_end,
     arrow_value,
     usual_distributed_force,
@@ -23,11 +23,11 @@ from systems.edit.arrows import (
     usual_moment,
     usual_speed,
 )
-from systems.edit.picking import PARTICLE_REACH, pick_end, pick_particle, pick_rod, ring_of
-from systems.edit.placing import place, place_at, snapped, snapped_to_points
-from systems.edit.rods import check_ends, distance, is_rigid, join
-from systems.edit.supports import NAMES, Held, next_support, support, support_towards
-from systems.forms.properties import heading
+from pinjoint.systems.edit.picking import PARTICLE_REACH, pick_end, pick_particle, pick_rod, ring_of
+from pinjoint.systems.edit.placing import place, place_at, snapped, snapped_to_points
+from pinjoint.systems.edit.rods import check_ends, distance, is_rigid, join
+from pinjoint.systems.edit.supports import NAMES, Held, next_support, support, support_towards
+from pinjoint.systems.forms.properties import heading
 
 CLAMPED_BEYOND = 60.0  # points from a particle to its ground, which then holds its rotation, too
 HINGES = "hinge"  # the tool by which clicks hinge ends of rods; its action acts at once

@@ -6,18 +6,18 @@ import math
 
 import numpy as np
 
-from components import written
-from components.field import FieldError, Vector
-from components.handle import Handle
-from components.language import marked, tr
-from components.particle import Particle
-from components.view import Preview, drawn_positions
-from game.editor.context import Context, Gesture
-from systems.edit import Refusal
-from systems.edit.moving import Movable
-from systems.edit.picking import Grip, inside
-from systems.edit.placing import check_free, snapped, snapped_to_points
-from systems.edit.pull import hand_on
+from pinjoint.components import written
+from pinjoint.components.field import FieldError, Vector
+from pinjoint.components.handle import Handle
+from pinjoint.components.language import marked, tr
+from pinjoint.components.particle import Particle
+from pinjoint.components.view import Preview, drawn_positions
+from pinjoint.editor.context import Context, Gesture
+from pinjoint.systems.edit import Refusal
+from pinjoint.systems.edit.moving import Movable
+from pinjoint.systems.edit.picking import Grip, inside
+from pinjoint.systems.edit.placing import check_free, snapped, snapped_to_points
+from pinjoint.systems.edit.pull import hand_on
 
 
 class Placing(Gesture):

@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-from components.field import FieldError, Vector
-from components.language import marked
-from components.slider import Place
-from game.editor.context import Context
-from game.editor.gestures.moving import Placing
-from game.editor.sliders import move_to, slider_of
+from pinjoint.components.field import FieldError, Vector
+from pinjoint.components.language import marked
+from pinjoint.components.slider import Place
+from pinjoint.editor.context import Context
+from pinjoint.editor.gestures.moving import Placing
+from pinjoint.editor.sliders import move_to, slider_of
 
 KNOB_REACH = 9.0  # points from the knob's middle within which a drag holds it where it was gripped
 

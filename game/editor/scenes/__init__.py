@@ -2,15 +2,15 @@
 
 from collections.abc import Callable
 
-from game.editor.context import PHYSICS, Scene, SceneError, Scenes
-from game.editor.scenes.files import Pictures
-from game.editor.scenes.force_method import ForceMethod, Sets
-from game.editor.scenes.live import Pause, Simulation
-from game.editor.scenes.load import Load
-from game.editor.scenes.properties import Properties
-from game.editor.scenes.save import Save
-from systems.base import System
-from systems.render.picture import Stage
+from pinjoint.editor.context import PHYSICS, Scene, SceneError, Scenes
+from pinjoint.editor.scenes.files import Pictures
+from pinjoint.editor.scenes.force_method import ForceMethod, Sets
+from pinjoint.editor.scenes.live import Pause, Simulation
+from pinjoint.editor.scenes.load import Load
+from pinjoint.editor.scenes.properties import Properties
+from pinjoint.editor.scenes.save import Save
+from pinjoint.systems.base import System
+from pinjoint.systems.render.picture import Stage
 
 __all__ = ["PHYSICS", "SCENES", "Scene", "SceneError", "Scenes", "Stage", "all_scenes", "scene_systems"]
 

@@ -8,15 +8,15 @@ from contextlib import suppress
 from pathlib import Path
 from typing import Any, NamedTuple
 
-from components.box import FILE_NAME, Box
-from components.form import Form, Tile
-from components.language import joined, marked, tr
-from game.documents import library, models
-from game.documents.previews import LARGEST_SOLVED, has_moved, preview, solved
-from game.editor.context import Context
-from game.editor.scenes.form import FormScene
-from systems.base import Phase, System
-from systems.forms import typing
+from pinjoint.components.box import FILE_NAME, Box
+from pinjoint.components.form import Form, Tile
+from pinjoint.components.language import joined, marked, tr
+from pinjoint.documents import library, models
+from pinjoint.documents.previews import LARGEST_SOLVED, has_moved, preview, solved
+from pinjoint.editor.context import Context
+from pinjoint.editor.scenes.form import FormScene
+from pinjoint.systems.base import Phase, System
+from pinjoint.systems.forms import typing
 
 SAVED = marked("Saved models")
 LARGEST_PICTURED = 4 * 2**20  # bytes; larger files get no picture

@@ -9,23 +9,23 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from components.camera import Camera, Viewport
-from components.field import Vector
-from components.language import joined, tr
-from components.model import Model
-from components.settings import Settings
-from components.slider import SliderStack
-from components.view import BETWEEN, Page, Status, View
-from game.editor.context import Context, Scene
-from game.editor.sliders import scale_control
-from game.force_method import PARTS, words
-from systems.base import Phase, System
-from systems.render.diagrams import largest_force
-from systems.render.overlays import heading_height
-from systems.render.page import page_height
+from pinjoint.components.camera import Camera, Viewport
+from pinjoint.components.field import Vector
+from pinjoint.components.language import joined, tr
+from pinjoint.components.model import Model
+from pinjoint.components.settings import Settings
+from pinjoint.components.slider import SliderStack
+from pinjoint.components.view import BETWEEN, Page, Status, View
+from pinjoint.editor.context import Context, Scene
+from pinjoint.editor.sliders import scale_control
+from pinjoint.force_method import PARTS, words
+from pinjoint.systems.base import Phase, System
+from pinjoint.systems.render.diagrams import largest_force
+from pinjoint.systems.render.overlays import heading_height
+from pinjoint.systems.render.page import page_height
 
 if TYPE_CHECKING:  # it imports scipy
-    from game.force_method.guide import AnySet, Guide, Mechanism
+    from pinjoint.force_method.guide import AnySet, Guide, Mechanism
 
 WIDE = 1.1  # width / height from which the sets stand side by side
 MOST_OF_HEIGHT = 0.45  # of the window that the equations and the table take at most; the rest is scrolled
@@ -85,9 +85,9 @@ class ForceMethod(Scene):
 
     def _begin(self, context: Context, unknown: str) -> None:
         # Here only, since they import scipy.
-        from game.force_method.copies import base_structure
-        from game.force_method.guide import Guide, Mechanism, view_like
-        from systems.statics.unknowns import ForceMethodError
+        from pinjoint.force_method.copies import base_structure
+        from pinjoint.force_method.guide import Guide, Mechanism, view_like
+        from pinjoint.systems.statics.unknowns import ForceMethodError
 
         try:
             self.shown_guide = Guide(context.model, context.schedule, context.view)

@@ -6,17 +6,17 @@ from collections.abc import Sequence
 from dataclasses import replace
 from typing import ClassVar
 
-from components.box import NAME, NUMBER, WORD, Box
-from components.camera import Camera, Viewport
-from components.field import Vector
-from components.form import Form, Tile
-from components.language import decimals, english, joined, marked, tr
-from components.suggestions import missing
-from game.editor.context import Context, Scene
-from systems.forms import typing
-from systems.render.form_layout import FormLayout, lay_out, row_of
-from systems.render.panel import caret_at
-from systems.render.picture import Stage
+from pinjoint.components.box import NAME, NUMBER, WORD, Box
+from pinjoint.components.camera import Camera, Viewport
+from pinjoint.components.field import Vector
+from pinjoint.components.form import Form, Tile
+from pinjoint.components.language import decimals, english, joined, marked, tr
+from pinjoint.components.suggestions import missing
+from pinjoint.editor.context import Context, Scene
+from pinjoint.systems.forms import typing
+from pinjoint.systems.render.form_layout import FormLayout, lay_out, row_of
+from pinjoint.systems.render.panel import caret_at
+from pinjoint.systems.render.picture import Stage
 
 # By titles that boxes once had, and scripts still name them by, those of today.
 FORMER = {f"applied force {axis}": f"load {axis}" for axis in "xy"} | {

@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from components.language import marked, tr
-from components.tags import Selected
-from game.editor.context import Context, Scene
+from pinjoint.components.language import marked, tr
+from pinjoint.components.tags import Selected
+from pinjoint.editor.context import Context, Scene
 
 
 class Pause(Scene):

@@ -4,17 +4,17 @@ from __future__ import annotations
 
 from typing import Any
 
-from components.form import Form, Tile
-from components.language import joined, marked, tr
-from components.view import BETWEEN
-from game.documents import library, models
-from game.documents.autosave import recovered_name
-from game.documents.open_documents import ModelFile
-from game.editor.context import Context
-from game.editor.scenes.files import FileScene, Offer, saved_models
-from game.lessons import progress
-from game.lessons.shelf import count_of, is_done, shelf
-from game.scripts.script import Script, lessons
+from pinjoint.components.form import Form, Tile
+from pinjoint.components.language import joined, marked, tr
+from pinjoint.components.view import BETWEEN
+from pinjoint.documents import library, models
+from pinjoint.documents.autosave import recovered_name
+from pinjoint.documents.open_documents import ModelFile
+from pinjoint.editor.context import Context
+from pinjoint.editor.scenes.files import FileScene, Offer, saved_models
+from pinjoint.lessons import progress
+from pinjoint.lessons.shelf import count_of, is_done, shelf
+from pinjoint.scripts.script import Script, lessons
 
 WELCOME = marked("Welcome to Pinjoint. What would you like to begin with?")
 NEW = marked("New, empty model")

@@ -7,19 +7,19 @@ from dataclasses import replace
 
 import numpy as np
 
-from components.camera import Camera, Viewport
-from components.field import MADE, Vector
-from components.form import Form
-from components.handle import Handle
-from components.language import begun, joined, marked, tr
-from components.model import Model
-from components.view import LEAST_BESIDE, Readout, View, drawn_positions
-from game.editor.context import Context
-from game.editor.scenes.form import FormScene
-from systems.edit.picking import pick
-from systems.forms import answers, properties, results, typing
-from systems.render.form_layout import FormLayout
-from systems.render.picture import Stage
+from pinjoint.components.camera import Camera, Viewport
+from pinjoint.components.field import MADE, Vector
+from pinjoint.components.form import Form
+from pinjoint.components.handle import Handle
+from pinjoint.components.language import begun, joined, marked, tr
+from pinjoint.components.model import Model
+from pinjoint.components.view import LEAST_BESIDE, Readout, View, drawn_positions
+from pinjoint.editor.context import Context
+from pinjoint.editor.scenes.form import FormScene
+from pinjoint.systems.edit.picking import pick
+from pinjoint.systems.forms import answers, properties, results, typing
+from pinjoint.systems.render.form_layout import FormLayout
+from pinjoint.systems.render.picture import Stage
 
 
 class Properties(FormScene):

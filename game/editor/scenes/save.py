@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-from components.form import Form, Tile
-from components.language import marked, tr
-from game.documents import library, models
-from game.editor.context import Context
-from game.editor.scenes.files import FileScene, saved_models
-from systems.forms import typing
+from pinjoint.components.form import Form, Tile
+from pinjoint.components.language import marked, tr
+from pinjoint.documents import library, models
+from pinjoint.editor.context import Context
+from pinjoint.editor.scenes.files import FileScene, saved_models
+from pinjoint.systems.forms import typing
 
 
 class Save(FileScene):

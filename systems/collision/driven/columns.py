@@ -9,8 +9,8 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from systems.collision.columns import NONE, Floats, Grid, Group, Integers, Report
-from systems.entries import Account, Control
+from pinjoint.systems.collision.columns import NONE, Floats, Grid, Group, Integers, Report
+from pinjoint.systems.entries import Account, Control
 
 
 class Order(IntEnum):

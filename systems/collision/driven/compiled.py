@@ -7,21 +7,21 @@ from typing import Any
 
 import numpy as np
 
-from components.field import Column
-from components.model import Model
-from systems.collision.columns import Grid, partners_of
-from systems.collision.driven.columns import Driven, Listing
-from systems.collision.driven.kernels.neighbours import list_pairs
-from systems.collision.driven.kernels.steps import collide
-from systems.collision.system import normals, persistent_contacts, support_forces
-from systems.program.between import Between
-from systems.program.compiler import GeneratedModule, entries_to
+from pinjoint.components.field import Column
+from pinjoint.components.model import Model
+from pinjoint.systems.collision.columns import Grid, partners_of
+from pinjoint.systems.collision.driven.columns import Driven, Listing
+from pinjoint.systems.collision.driven.kernels.neighbours import list_pairs
+from pinjoint.systems.collision.driven.kernels.steps import collide
+from pinjoint.systems.collision.system import normals, persistent_contacts, support_forces
+from pinjoint.systems.program.between import Between
+from pinjoint.systems.program.compiler import GeneratedModule, entries_to
 
 
 def _contents() -> tuple[str, dict[str, Callable[..., Any]]]:
     """The source, and the kernels by the names that it calls them."""
-    from systems.collision.driven.kernels import joint_impacts
-    from systems.collision.kernels import pairs
+    from pinjoint.systems.collision.driven.kernels import joint_impacts
+    from pinjoint.systems.collision.kernels import pairs
 
     source, kernels = entries_to(
         {

@@ -7,16 +7,16 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from components.collision_state import PersistentContacts
-from components.field import Role
-from components.model import Model
-from components.obstacles import obstacles
-from components.rod import nodes
-from systems.collision.columns import NONE, STEP_SHARE, Floats, Grid, Integers, partners_of
-from systems.collision.driven.columns import Driven, Listing, Order, Phase, Real, Whole
-from systems.collision.driven.compiled import kernels
-from systems.collision.system import persistent_contacts
-from systems.entries import Control
+from pinjoint.components.collision_state import PersistentContacts
+from pinjoint.components.field import Role
+from pinjoint.components.model import Model
+from pinjoint.components.obstacles import obstacles
+from pinjoint.components.rod import nodes
+from pinjoint.systems.collision.columns import NONE, STEP_SHARE, Floats, Grid, Integers, partners_of
+from pinjoint.systems.collision.driven.columns import Driven, Listing, Order, Phase, Real, Whole
+from pinjoint.systems.collision.driven.compiled import kernels
+from pinjoint.systems.collision.system import persistent_contacts
+from pinjoint.systems.entries import Control
 
 CONTACTS = 8  # room at first
 MORE, LEAST_ROOM = 1.5, 16  # times the pairs there are, and beyond that: room for those that come near later

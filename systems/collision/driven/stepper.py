@@ -13,17 +13,17 @@ from typing import Protocol
 
 import numpy as np
 
-from components.model import Model
-from components.particle import Particle
-from systems.base import StopReason
-from systems.collision.columns import Detail
-from systems.collision.driven.columns import Need, Real, Whole
-from systems.collision.driven.compiled import DRIVEN, idle, kernels
-from systems.collision.driven.kernels.joint_impacts import SEPARATE
-from systems.collision.driven.neighbours import NeighbourList
-from systems.collision.impacts import Impacts
-from systems.entries import Account, Control
-from systems.program.program import Program
+from pinjoint.components.model import Model
+from pinjoint.components.particle import Particle
+from pinjoint.systems.base import StopReason
+from pinjoint.systems.collision.columns import Detail
+from pinjoint.systems.collision.driven.columns import Need, Real, Whole
+from pinjoint.systems.collision.driven.compiled import DRIVEN, idle, kernels
+from pinjoint.systems.collision.driven.kernels.joint_impacts import SEPARATE
+from pinjoint.systems.collision.driven.neighbours import NeighbourList
+from pinjoint.systems.collision.impacts import Impacts
+from pinjoint.systems.entries import Account, Control
+from pinjoint.systems.program.program import Program
 
 
 class Steps(Protocol):

@@ -11,10 +11,10 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from components.collision_state import FreeFlightState
-from components.obstacles import NO_OBSTACLES, Obstacles
-from systems.broad_phase import nearest
-from systems.collision.columns import (
+from pinjoint.components.collision_state import FreeFlightState
+from pinjoint.components.obstacles import NO_OBSTACLES, Obstacles
+from pinjoint.systems.broad_phase import nearest
+from pinjoint.systems.collision.columns import (
     FLIGHT,
     NONE,
     PILE_COUNTS,
@@ -37,8 +37,8 @@ from systems.collision.columns import (
     Reason,
     Report,
 )
-from systems.collision.system import REST_HEIGHT
-from systems.program.compiler import Choice, GeneratedModule, entries_to
+from pinjoint.systems.collision.system import REST_HEIGHT
+from pinjoint.systems.program.compiler import Choice, GeneratedModule, entries_to
 
 SAME_PLACE = 1e-12  # of the largest coordinate: ends of obstacles nearer than this are one
 REPORTED_AT_ONCE = 512  # impacts; fetched before more are reported
@@ -210,7 +210,7 @@ class Discs:
 
     def _settle(self) -> None:
         """Put the calm pile into its equilibrium if that is near; if not, the pile goes on for a while."""
-        from systems.collision.free.pile_equilibrium import EquilibriumSearch
+        from pinjoint.systems.collision.free.pile_equilibrium import EquilibriumSearch
 
         weight, pull = self._columns(Disc.WX), self._columns(Disc.GX)
         place = self._columns(Disc.OX) + self._columns(Disc.UX)
@@ -390,7 +390,7 @@ def _shared_ends(others: Obstacles) -> Floats:
 
 
 def _contents(name: str) -> tuple[str, dict[str, Callable[..., Any]]]:
-    from systems.collision.kernels import flight, horizon
+    from pinjoint.systems.collision.kernels import flight, horizon
 
     return entries_to({name: horizon.open_horizon if name == "open_horizon" else getattr(flight, name)})
 

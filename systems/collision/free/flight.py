@@ -11,18 +11,18 @@ from typing import Protocol
 import numpy as np
 from numpy.typing import NDArray
 
-from components.collision_state import FreeFlightState
-from components.field import Role
-from components.handle import Handle
-from components.load import loads_end
-from components.model import Model
-from components.obstacles import obstacles
-from systems.base import REVIEW_INTERVAL, Event, StopReason
-from systems.collision.columns import FLIGHT, ONCE, PILE_COUNTS, PILE_NUMBERS, Disc, Number, Reason
-from systems.collision.free.discs import EVENTS, HORIZONS, Discs, ImpactColumns, state_on
-from systems.collision.impacts import MOST_KEPT, Impacts, TooManyImpacts
-from systems.entries import Measure
-from systems.program.compiler import Choice, GeneratedModule, Unfinished
+from pinjoint.components.collision_state import FreeFlightState
+from pinjoint.components.field import Role
+from pinjoint.components.handle import Handle
+from pinjoint.components.load import loads_end
+from pinjoint.components.model import Model
+from pinjoint.components.obstacles import obstacles
+from pinjoint.systems.base import REVIEW_INTERVAL, Event, StopReason
+from pinjoint.systems.collision.columns import FLIGHT, ONCE, PILE_COUNTS, PILE_NUMBERS, Disc, Number, Reason
+from pinjoint.systems.collision.free.discs import EVENTS, HORIZONS, Discs, ImpactColumns, state_on
+from pinjoint.systems.collision.impacts import MOST_KEPT, Impacts, TooManyImpacts
+from pinjoint.systems.entries import Measure
+from pinjoint.systems.program.compiler import Choice, GeneratedModule, Unfinished
 
 EVENTS_AT_ONCE = 2**18  # of which the impacts are gathered
 CHECK_INTERVAL = 128  # steps, at multiples of which a run may end at rest

@@ -21,8 +21,8 @@ from numpy.typing import NDArray
 from scipy.sparse import csr_matrix, diags
 from scipy.sparse.linalg import splu
 
-from components.obstacles import Obstacles
-from systems.broad_phase import Floats, Rows, near_pairs, nearest
+from pinjoint.components.obstacles import Obstacles
+from pinjoint.systems.broad_phase import Floats, Rows, near_pairs, nearest
 
 AROUND = 0.1  # of its radius around each disc, in which its neighbours are listed, and iterates are sought
 FARTHEST = 0.025  # of its radius: an equilibrium to which a disc would go farther is not near

@@ -9,14 +9,24 @@ import math
 
 import numpy as np
 
-from systems.collision.columns import NONE, SPEED_NOISE, Contact, Count, Disc, Entry, Number, Reason, Stage
-from systems.collision.kernels import compiled
-from systems.collision.kernels.grid import neighbours, place_box, sort
-from systems.collision.kernels.heap import drop_first, is_void
-from systems.collision.kernels.horizon import enclose_anew, is_joined, schedule_impact
-from systems.collision.kernels.impact import respond
-from systems.collision.kernels.pair_impact import strike
-from systems.collision.kernels.persistent_contact import (
+from pinjoint.systems.collision.columns import (
+    NONE,
+    SPEED_NOISE,
+    Contact,
+    Count,
+    Disc,
+    Entry,
+    Number,
+    Reason,
+    Stage,
+)
+from pinjoint.systems.collision.kernels import compiled
+from pinjoint.systems.collision.kernels.grid import neighbours, place_box, sort
+from pinjoint.systems.collision.kernels.heap import drop_first, is_void
+from pinjoint.systems.collision.kernels.horizon import enclose_anew, is_joined, schedule_impact
+from pinjoint.systems.collision.kernels.impact import respond
+from pinjoint.systems.collision.kernels.pair_impact import strike
+from pinjoint.systems.collision.kernels.persistent_contact import (
     enter_persistent,
     find_persistent,
     forget_persistent,
@@ -24,10 +34,10 @@ from systems.collision.kernels.persistent_contact import (
     is_held,
     support,
 )
-from systems.collision.kernels.pile import begin_steps, crowded, enter_impact, step
-from systems.collision.kernels.pile_pairs import enter_pushing_pairs
-from systems.collision.kernels.projection import compliance, opening_rate
-from systems.collision.kernels.time_of_impact import (
+from pinjoint.systems.collision.kernels.pile import begin_steps, crowded, enter_impact, step
+from pinjoint.systems.collision.kernels.pile_pairs import enter_pushing_pairs
+from pinjoint.systems.collision.kernels.projection import compliance, opening_rate
+from pinjoint.systems.collision.kernels.time_of_impact import (
     INFINITY,
     are_touching,
     displacement_at,

@@ -13,9 +13,9 @@ fro. The buckets of neighbouring cells differ.
 
 import math
 
-from systems.collision.columns import NONE, Disc
-from systems.collision.kernels import compiled
-from systems.collision.kernels.time_of_impact import extent
+from pinjoint.systems.collision.columns import NONE, Disc
+from pinjoint.systems.collision.kernels import compiled
+from pinjoint.systems.collision.kernels.time_of_impact import extent
 
 CORNERS = 4  # cells of its layer, or of a coarser one, that a box overlaps at most
 FARTHEST_CELL = 2.0**40  # cells from the origin; farther out cells grow, so that they can be told apart

@@ -2,8 +2,8 @@
 
 import numpy as np
 
-from systems.collision.columns import MOST_CHANGES, Disc
-from systems.collision.kernels import compiled
+from pinjoint.systems.collision.columns import MOST_CHANGES, Disc
+from pinjoint.systems.collision.kernels import compiled
 
 
 @compiled

@@ -7,9 +7,9 @@ grid and queue can be discarded and made anew at any time without changing a bit
 
 import math
 
-from systems.collision.columns import NONE, Count, Disc, Number, Reason
-from systems.collision.kernels import compiled
-from systems.collision.kernels.grid import (
+from pinjoint.systems.collision.columns import NONE, Count, Disc, Number, Reason
+from pinjoint.systems.collision.kernels import compiled
+from pinjoint.systems.collision.kernels.grid import (
     cell_size,
     choose_layers,
     enclose,
@@ -20,9 +20,9 @@ from systems.collision.kernels.grid import (
     level_of,
     neighbours,
 )
-from systems.collision.kernels.heap import changes, purge, push
-from systems.collision.kernels.persistent_contact import find_persistent, is_held
-from systems.collision.kernels.time_of_impact import (
+from pinjoint.systems.collision.kernels.heap import changes, purge, push
+from pinjoint.systems.collision.kernels.persistent_contact import find_persistent, is_held
+from pinjoint.systems.collision.kernels.time_of_impact import (
     INFINITY,
     first_approach,
     first_touch,

@@ -7,9 +7,9 @@ Restitution e blends this with the plastic answer, the projection onto all conta
 v = e v_elastic + (1 − e) v_plastic. For a single contact it is Newton's law.
 """
 
-from systems.collision.columns import Contact, Mark
-from systems.collision.kernels import compiled
-from systems.collision.kernels.projection import (
+from pinjoint.systems.collision.columns import Contact, Mark
+from pinjoint.systems.collision.kernels import compiled
+from pinjoint.systems.collision.kernels.projection import (
     MOST_SWEEPS,
     begin,
     copy_motion,

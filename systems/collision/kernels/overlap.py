@@ -2,8 +2,8 @@
 
 import math
 
-from systems.collision.kernels import compiled
-from systems.collision.kernels.time_of_impact import nearest_of_piece
+from pinjoint.systems.collision.kernels import compiled
+from pinjoint.systems.collision.kernels.time_of_impact import nearest_of_piece
 
 OVERCORRECTION = 0.05  # of an overlap, by which discs are moved farther than necessary, so that sweeps end
 GOLDEN_ANGLE = 2.399963229728653  # between the directions in which discs with one centre move

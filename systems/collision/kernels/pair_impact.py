@@ -7,14 +7,14 @@ touches a third disc, or that they stay in contact, nothing has happened.
 
 import math
 
-from systems.collision.columns import NONE, SPEED_NOISE, Count, Disc, Number, Reason
-from systems.collision.kernels import compiled
-from systems.collision.kernels.grid import neighbours
-from systems.collision.kernels.heap import drop_first
-from systems.collision.kernels.horizon import enclose_anew, impact_on, queue_impact
-from systems.collision.kernels.persistent_contact import is_held
-from systems.collision.kernels.pile import begin_steps, crowded, enter_impact
-from systems.collision.kernels.time_of_impact import (
+from pinjoint.systems.collision.columns import NONE, SPEED_NOISE, Count, Disc, Number, Reason
+from pinjoint.systems.collision.kernels import compiled
+from pinjoint.systems.collision.kernels.grid import neighbours
+from pinjoint.systems.collision.kernels.heap import drop_first
+from pinjoint.systems.collision.kernels.horizon import enclose_anew, impact_on, queue_impact
+from pinjoint.systems.collision.kernels.persistent_contact import is_held
+from pinjoint.systems.collision.kernels.pile import begin_steps, crowded, enter_impact
+from pinjoint.systems.collision.kernels.time_of_impact import (
     INFINITY,
     are_touching,
     displacement_at,

@@ -5,8 +5,8 @@ The numbers of obstacles follow those of the particles; obstacles have no displa
 
 import math
 
-from systems.collision.kernels import compiled
-from systems.collision.kernels.time_of_impact import nearest_of_piece
+from pinjoint.systems.collision.kernels import compiled
+from pinjoint.systems.collision.kernels.time_of_impact import nearest_of_piece
 
 
 @compiled

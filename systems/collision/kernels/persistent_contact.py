@@ -10,9 +10,9 @@ between, paths are polynomials of the fourth degree through both ends: parabolas
 
 import math
 
-from systems.collision.columns import NONE, Contact, Count, Disc, Entry, Mark, Number, Stage
-from systems.collision.kernels import compiled
-from systems.collision.kernels.projection import (
+from pinjoint.systems.collision.columns import NONE, Contact, Count, Disc, Entry, Mark, Number, Stage
+from pinjoint.systems.collision.kernels import compiled
+from pinjoint.systems.collision.kernels.projection import (
     MOST_SWEEPS,
     begin,
     compliance,
@@ -22,7 +22,7 @@ from systems.collision.kernels.projection import (
     push_apart,
     set_noise,
 )
-from systems.collision.kernels.time_of_impact import (
+from pinjoint.systems.collision.kernels.time_of_impact import (
     INFINITY,
     is_straight,
     passing,

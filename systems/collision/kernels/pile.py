@@ -9,7 +9,7 @@ disc moves fast any more is put into its equilibrium (free/pile_equilibrium.py).
 
 import math
 
-from systems.collision.columns import (
+from pinjoint.systems.collision.columns import (
     NONE,
     SPEED_NOISE,
     Count,
@@ -22,9 +22,9 @@ from systems.collision.columns import (
     Reason,
     Travel,
 )
-from systems.collision.kernels import compiled
-from systems.collision.kernels.pile_energy import supplies_energy
-from systems.collision.kernels.pile_pairs import (
+from pinjoint.systems.collision.kernels import compiled
+from pinjoint.systems.collision.kernels.pile_energy import supplies_energy
+from pinjoint.systems.collision.kernels.pile_pairs import (
     allow_more_shift,
     allow_shifts,
     choose_contacts,
@@ -34,13 +34,18 @@ from systems.collision.kernels.pile_pairs import (
     stays_within_reach,
     velocity_after,
 )
-from systems.collision.kernels.pile_solver import (
+from pinjoint.systems.collision.kernels.pile_solver import (
     bounces,
     find_impulses,
     make_contacts,
     start_without_contacts,
 )
-from systems.collision.kernels.time_of_impact import INFINITY, displacement_at, smaller_radius, velocity_at
+from pinjoint.systems.collision.kernels.time_of_impact import (
+    INFINITY,
+    displacement_at,
+    smaller_radius,
+    velocity_at,
+)
 
 TOLERANCE = 1e-8  # of the smallest radius: depth by which discs may sink into others in a step
 SMALL_PILE = 50  # contacts; with more of them, these are enough:

@@ -9,9 +9,9 @@ reduced to, leaves it as gain only what undoes overlaps, which gave as much when
 never gain more than the run has lost so far, but for what lifts everything by a thousandth of a radius.
 """
 
-from systems.collision.columns import Disc, Motion, Number, Part, PileContact, PilePair
-from systems.collision.kernels import compiled
-from systems.collision.kernels.pile_solver import KEPT, PLASTIC, opening, without_contacts
+from pinjoint.systems.collision.columns import Disc, Motion, Number, Part, PileContact, PilePair
+from pinjoint.systems.collision.kernels import compiled
+from pinjoint.systems.collision.kernels.pile_solver import KEPT, PLASTIC, opening, without_contacts
 
 ROUND_OFF = 1e-12  # of the energy of a part
 SAME = 0.999  # of a bias that is a gap by the length of a step, in spite of round-off

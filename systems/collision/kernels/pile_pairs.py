@@ -8,7 +8,7 @@ its box; which contacts there are, and in which order, does not depend on when t
 
 import math
 
-from systems.collision.columns import (
+from pinjoint.systems.collision.columns import (
     NONE,
     SHORTEST_SHARE,
     Count,
@@ -21,15 +21,15 @@ from systems.collision.columns import (
     Reason,
     Travel,
 )
-from systems.collision.kernels import compiled
-from systems.collision.kernels.grid import enclose, enter, has_room, neighbours, sort
-from systems.collision.kernels.horizon import is_joined, set_layers
-from systems.collision.kernels.persistent_contact import (
+from pinjoint.systems.collision.kernels import compiled
+from pinjoint.systems.collision.kernels.grid import enclose, enter, has_room, neighbours, sort
+from pinjoint.systems.collision.kernels.horizon import is_joined, set_layers
+from pinjoint.systems.collision.kernels.persistent_contact import (
     enter_persistent,
     forget_persistent,
     is_held,
 )
-from systems.collision.kernels.time_of_impact import nearest, smaller_radius
+from pinjoint.systems.collision.kernels.time_of_impact import nearest, smaller_radius
 
 TRAVEL = 0.45  # of two discs relative to one another in a longer step than the shortest: radii of the smaller
 # Shift that impacts may pass on to a disc in a step, as a share of the travel of the fastest disc, or of a radius.

@@ -6,10 +6,10 @@ The step is that of Moreau and Jean (Jean, Comput. Methods Appl. Mech. Eng. 177,
 
 import math
 
-from systems.collision.columns import Disc, Motion, Number, Part, PileContact, PilePair, Travel
-from systems.collision.kernels import compiled
-from systems.collision.kernels.persistent_contact import is_held
-from systems.collision.kernels.time_of_impact import rest_speed
+from pinjoint.systems.collision.columns import Disc, Motion, Number, Part, PileContact, PilePair, Travel
+from pinjoint.systems.collision.kernels import compiled
+from pinjoint.systems.collision.kernels.persistent_contact import is_held
+from pinjoint.systems.collision.kernels.time_of_impact import rest_speed
 
 MOST_PILE_SWEEPS = 80  # to and fro over the contacts in a step; the next continues from its impulses
 FEW = 0.02  # of the contacts left to correct, at which sweeps end

@@ -7,8 +7,8 @@ solution of many.
 
 import math
 
-from systems.collision.columns import DIRECT, EPSILON, SPEED_NOISE, Contact, Mark
-from systems.collision.kernels import compiled
+from pinjoint.systems.collision.columns import DIRECT, EPSILON, SPEED_NOISE, Contact, Mark
+from pinjoint.systems.collision.kernels import compiled
 
 IDLE, FITTED, DEPENDENT = 0, 1, 2
 MOST_SWEEPS = 20000  # over the contacts of a large group; more: nearer to round-off, slower

@@ -10,8 +10,8 @@ All are evaluated along the path, which keeps the digits that expanded coefficie
 
 import math
 
-from systems.collision.columns import EPSILON, SHARED_END, SHARED_START, SPEED_NOISE, Disc
-from systems.collision.kernels import compiled
+from pinjoint.systems.collision.columns import EPSILON, SHARED_END, SHARED_START, SPEED_NOISE, Disc
+from pinjoint.systems.collision.kernels import compiled
 
 INFINITY = math.inf
 ROUND_OFF = 1e-9  # of a distance: more than that of the sums that tell which discs stay apart

@@ -10,9 +10,9 @@ import numpy as np
 import pytest
 from PIL import Image
 
-from game.commands.animation import FRAME, HELD, LONGEST
-from game.commands.command_line import main
-from game.session import Session
+from pinjoint.commands.animation import FRAME, HELD, LONGEST
+from pinjoint.commands.command_line import main
+from pinjoint.session import Session
 
 
 def opened(path: Path) -> Any:

@@ -15,10 +15,10 @@ from typing import Any
 
 import pytest
 
-from game import mods
-from game.commands import COMMANDS
-from game.commands.command_line import main
-from game.commands.output import FORMATS
+from pinjoint import mods
+from pinjoint.commands import COMMANDS
+from pinjoint.commands.command_line import main
+from pinjoint.commands.output import FORMATS
 
 ROOT = Path(__file__).parents[3]
 
@@ -28,7 +28,7 @@ def pinjoint(*words: str, **environment: str) -> subprocess.CompletedProcess[str
     unset = ("DISPLAY", "WAYLAND_DISPLAY", "SDL_VIDEODRIVER")
     inherited = {name: value for name, value in os.environ.items() if name not in unset}
     return subprocess.run(
-        [sys.executable, "-m", "game", *words],
+        [sys.executable, "-m", "pinjoint", *words],
         cwd=ROOT,
         env=inherited | environment,
         capture_output=True,
@@ -123,7 +123,7 @@ def test_a_file_whose_name_is_no_utf_8(tmp_path: Path, capsys: pytest.CaptureFix
 
 def test_a_reader_that_has_seen_enough_is_no_error() -> None:
     found = subprocess.run(
-        f"'{sys.executable}' -m game mods list | head -c 1; exit ${{PIPESTATUS[0]}}",
+        f"'{sys.executable}' -m pinjoint mods list | head -c 1; exit ${{PIPESTATUS[0]}}",
         shell=True,
         executable="/bin/bash",
         cwd=ROOT,
@@ -152,7 +152,7 @@ def test_a_full_disk_is_said_in_one_line(command: str) -> None:
         pytest.skip("there is no /dev/full here")
     with open("/dev/full", "w") as full:
         found = subprocess.run(
-            [sys.executable, "-m", "game", *command.split()],
+            [sys.executable, "-m", "pinjoint", *command.split()],
             cwd=ROOT,
             stdout=full,
             stderr=subprocess.PIPE,

@@ -6,10 +6,10 @@ from typing import Any
 
 import pytest
 
-from game.commands.command_line import main
-from game.documents import models
-from game.session import Session
-from systems.statics.theory import linear
+from pinjoint.commands.command_line import main
+from pinjoint.documents import models
+from pinjoint.session import Session
+from pinjoint.systems.statics.theory import linear
 from tests.reference.models import model
 
 Out = pytest.CaptureFixture[str]

@@ -10,8 +10,8 @@ from typing import Any
 
 import pytest
 
-from game.commands import progress
-from game.commands.command_line import main
+from pinjoint.commands import progress
+from pinjoint.commands.command_line import main
 from tests.properties.limits import interrupted_after
 
 pytestmark = pytest.mark.skipif(not hasattr(signal, "setitimer"), reason="nothing would interrupt it")

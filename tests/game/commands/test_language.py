@@ -8,10 +8,10 @@ import sys
 
 import pytest
 
-from components.language import language
-from game import __main__ as program
-from game.commands import language as choice
-from game.documents.preferences import CONFIG_VARIABLE, preferred_language, remember
+from pinjoint import __main__ as program
+from pinjoint.commands import language as choice
+from pinjoint.components.language import language
+from pinjoint.documents.preferences import CONFIG_VARIABLE, preferred_language, remember
 
 OF_SYSTEM = ("LANGUAGE", "LC_ALL", "LC_MESSAGES", "LANG")
 
@@ -110,7 +110,7 @@ def test_argparse_speaks_the_language_too(person, capsys):
 
 
 def test_help_names_the_option(capsys):
-    from game.commands.command_line import main
+    from pinjoint.commands.command_line import main
 
     with pytest.raises(SystemExit):
         main(["--help"])

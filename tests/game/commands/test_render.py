@@ -13,10 +13,10 @@ import numpy as np
 import pygame
 import pytest
 
-from game.app import App
-from game.commands.command_line import main
-from game.documents import models
-from systems.render.theme import load_theme
+from pinjoint.app import App
+from pinjoint.commands.command_line import main
+from pinjoint.documents import models
+from pinjoint.systems.render.theme import load_theme
 
 SVG = "{http://www.w3.org/2000/svg}"
 RUN = ["isostatic", "--until-rest", "--diagrams"]

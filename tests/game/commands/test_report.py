@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from game import Session
-from game.commands.reports.report import Analysis
+from pinjoint import Session
+from pinjoint.commands.reports.report import Analysis
 from tests.reference.models import triangle
 
 DAMPED = triangle(damping=100, density=6.15)

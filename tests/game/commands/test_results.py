@@ -11,11 +11,11 @@ from typing import Any
 import numpy as np
 import pytest
 
-from components.model import Model
-from game.commands.output import FORMATS, Format, ResultError, formatted
-from game.commands.reports.results import run_lines, run_rows, state
-from game.documents import models
-from game.paths import ENERGIES
+from pinjoint.commands.output import FORMATS, Format, ResultError, formatted
+from pinjoint.commands.reports.results import run_lines, run_rows, state
+from pinjoint.components.model import Model
+from pinjoint.documents import models
+from pinjoint.paths import ENERGIES
 from tests.reference.models import triangle
 
 ENERGY = {name: float(n) for n, name in enumerate(ENERGIES)}

@@ -10,7 +10,7 @@ from pathlib import Path
 
 import pytest
 
-from game.commands.command_line import main
+from pinjoint.commands.command_line import main
 from tests.game.commands.test_command_line import MODEL, ROOT, pinjoint
 
 LINUX = pytest.mark.skipif(not sys.platform.startswith("linux"), reason="uses a shell and /dev/full")
@@ -21,7 +21,7 @@ def in_shell(line: str) -> subprocess.CompletedProcess[str]:
     return subprocess.run(
         ["bash", "-c", line],
         cwd=ROOT,
-        env=os.environ | {"P": f"{sys.executable} -m game"},
+        env=os.environ | {"P": f"{sys.executable} -m pinjoint"},
         capture_output=True,
         text=True,
         encoding="utf-8",

@@ -6,8 +6,8 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from scipy.optimize import nnls
 
-from systems.collision.driven.columns import Tried
-from systems.collision.driven.kernels import complementarity
+from pinjoint.systems.collision.driven.columns import Tried
+from pinjoint.systems.collision.driven.kernels import complementarity
 from tests.reference.complementarity import complementary as plainly
 
 

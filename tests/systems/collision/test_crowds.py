@@ -12,14 +12,14 @@ from hypothesis import example, given
 from hypothesis import strategies as st
 from numpy.typing import NDArray
 
-from game import Session
-from systems.collision.columns import Contact, Group
-from systems.collision.driven.columns import Whole
-from systems.collision.driven.compiled import kernels
-from systems.collision.driven.kernels.crowd import CROWD_CONTACTS
-from systems.collision.driven.kernels.joint_impacts import SEPARATE
-from systems.collision.system import persistent_contacts
-from systems.program.compiler import Compile
+from pinjoint import Session
+from pinjoint.systems.collision.columns import Contact, Group
+from pinjoint.systems.collision.driven.columns import Whole
+from pinjoint.systems.collision.driven.compiled import kernels
+from pinjoint.systems.collision.driven.kernels.crowd import CROWD_CONTACTS
+from pinjoint.systems.collision.driven.kernels.joint_impacts import SEPARATE
+from pinjoint.systems.collision.system import persistent_contacts
+from pinjoint.systems.program.compiler import Compile
 from tests.reference import bits
 from tests.reference.forms import load_all, programs
 from tests.systems.collision.test_driven_collisions import GRAVITY, assert_lies, box, energy_of_discs

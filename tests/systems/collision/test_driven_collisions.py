@@ -10,18 +10,18 @@ from typing import Any
 import numpy as np
 import pytest
 
-from components.collision_state import PersistentContacts
-from components.particle import Particle
-from components.rod import spawn_rods
-from game import Session
-from systems.collision.columns import Contact, Group
-from systems.collision.driven.compiled import DRIVEN, kernels
-from systems.collision.driven.neighbours import NeighbourList
-from systems.collision.system import persistent_contacts
-from systems.edit.pull import hand_on
-from systems.physics.integrators import INTEGRATORS
-from systems.program.compiler import Compile
-from systems.program.program import Program
+from pinjoint import Session
+from pinjoint.components.collision_state import PersistentContacts
+from pinjoint.components.particle import Particle
+from pinjoint.components.rod import spawn_rods
+from pinjoint.systems.collision.columns import Contact, Group
+from pinjoint.systems.collision.driven.compiled import DRIVEN, kernels
+from pinjoint.systems.collision.driven.neighbours import NeighbourList
+from pinjoint.systems.collision.system import persistent_contacts
+from pinjoint.systems.edit.pull import hand_on
+from pinjoint.systems.physics.integrators import INTEGRATORS
+from pinjoint.systems.program.compiler import Compile
+from pinjoint.systems.program.program import Program
 from tests.benchmarks.models import touching
 from tests.reference import bits
 from tests.reference.forms import programs

@@ -7,12 +7,12 @@ from typing import Any
 import numpy as np
 import pytest
 
-from components.collision_state import FreeFlightState, PersistentContacts
-from game import Session
-from game.commands.command_line import main
-from game.documents.models import document
-from systems.collision.driven.neighbours import NeighbourList
-from systems.edit.pull import hand_on
+from pinjoint import Session
+from pinjoint.commands.command_line import main
+from pinjoint.components.collision_state import FreeFlightState, PersistentContacts
+from pinjoint.documents.models import document
+from pinjoint.systems.collision.driven.neighbours import NeighbourList
+from pinjoint.systems.edit.pull import hand_on
 from tests.systems.collision.test_driven_collisions import box, energy_of_discs
 
 GRAVITY = {"acceleration": [0.0, -9.81]}

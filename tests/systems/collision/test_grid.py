@@ -3,9 +3,9 @@
 import numpy as np
 import pytest
 
-from systems.collision.columns import NONE, Count, Grid, Number
-from systems.collision.kernels.grid import enter, leave, neighbours
-from systems.collision.kernels.horizon import set_layers
+from pinjoint.systems.collision.columns import NONE, Count, Grid, Number
+from pinjoint.systems.collision.kernels.grid import enter, leave, neighbours
+from pinjoint.systems.collision.kernels.horizon import set_layers
 
 
 def grid_of(boxes: np.ndarray) -> tuple[Grid, np.ndarray]:

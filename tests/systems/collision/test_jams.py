@@ -5,10 +5,10 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from game import Session
-from systems.collision.kernels.pile import DEPTH
-from systems.run.policy import overlap_warning
-from systems.run.simulation import Simulation
+from pinjoint import Session
+from pinjoint.systems.collision.kernels.pile import DEPTH
+from pinjoint.systems.run.policy import overlap_warning
+from pinjoint.systems.run.simulation import Simulation
 
 JAMS = Path(__file__).parent / "jams"
 

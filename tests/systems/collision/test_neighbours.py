@@ -7,11 +7,11 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from game import Session
-from systems.broad_phase import ALL_PAIRS_DISCS, near_pairs
-from systems.collision.driven.columns import Phase, Whole
-from systems.collision.driven.neighbours import NeighbourList
-from systems.program.compiler import Compile
+from pinjoint import Session
+from pinjoint.systems.broad_phase import ALL_PAIRS_DISCS, near_pairs
+from pinjoint.systems.collision.driven.columns import Phase, Whole
+from pinjoint.systems.collision.driven.neighbours import NeighbourList
+from pinjoint.systems.program.compiler import Compile
 from tests.benchmarks.models import lattice
 from tests.reference.forms import programs
 from tests.systems.collision.test_driven_collisions import truss

@@ -6,13 +6,13 @@ from collections.abc import Iterator
 import numpy as np
 import pytest
 
-from components.model import Model
-from components.particle import Particle
-from game.session import Session
-from systems.collision import overlaps
-from systems.collision.overlaps import PARTING, work_ahead
-from systems.program import compiler
-from systems.program.compiler import LONGEST_WORK, Choice, Compile, Unfinished
+from pinjoint.components.model import Model
+from pinjoint.components.particle import Particle
+from pinjoint.session import Session
+from pinjoint.systems.collision import overlaps
+from pinjoint.systems.collision.overlaps import PARTING, work_ahead
+from pinjoint.systems.program import compiler
+from pinjoint.systems.program.compiler import LONGEST_WORK, Choice, Compile, Unfinished
 
 COUNT = 40
 

@@ -6,10 +6,10 @@ import numpy as np
 from hypothesis import example, given, settings
 from hypothesis import strategies as st
 
-from components.obstacles import Obstacles
-from systems.collision.columns import Count, Number, Reason
-from systems.collision.free.discs import EVENTS, HORIZONS, PILES, Discs
-from systems.collision.kernels.pile import begin_steps
+from pinjoint.components.obstacles import Obstacles
+from pinjoint.systems.collision.columns import Count, Number, Reason
+from pinjoint.systems.collision.free.discs import EVENTS, HORIZONS, PILES, Discs
+from pinjoint.systems.collision.kernels.pile import begin_steps
 from tests.reference.scenes_of_discs import GRAVITY
 
 RADIUS = 0.05

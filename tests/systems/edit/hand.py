@@ -5,11 +5,11 @@ from __future__ import annotations
 from collections.abc import Iterable
 from typing import Any
 
-from components.snapshot import Snapshot
-from components.view import Preview
-from game import Session
-from game.documents import models
-from game.documents.document import document
+from pinjoint import Session
+from pinjoint.components.snapshot import Snapshot
+from pinjoint.components.view import Preview
+from pinjoint.documents import models
+from pinjoint.documents.document import document
 
 EMPTY = {"format": "pinjoint model", "version": 1}
 FRAME = 1.0 / 60.0

@@ -6,8 +6,8 @@ from typing import Any
 
 import numpy as np
 
-from game import Session
-from game.documents.document import document
+from pinjoint import Session
+from pinjoint.documents.document import document
 
 
 def test_copy_and_paste_at_the_pointer(triangle: Session) -> None:

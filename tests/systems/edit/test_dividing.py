@@ -5,11 +5,11 @@ import math
 import numpy as np
 import pytest
 
-from components.slider import Aim, SetSliders, Slider
-from game import Session
-from game.documents.document import document
-from game.scripts.lines import perform
-from systems.edit import Refusal
+from pinjoint import Session
+from pinjoint.components.slider import Aim, SetSliders, Slider
+from pinjoint.documents.document import document
+from pinjoint.scripts.lines import perform
+from pinjoint.systems.edit import Refusal
 from tests.reference.frames import energy, forces
 from tests.reference.models import model, particle, rod
 

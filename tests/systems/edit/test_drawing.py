@@ -6,8 +6,8 @@ import math
 
 import pytest
 
-from components.view import Preview
-from game import Session
+from pinjoint import Session
+from pinjoint.components.view import Preview
 from tests.systems.edit.hand import FRAME, press_at, preview
 
 

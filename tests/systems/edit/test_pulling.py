@@ -6,8 +6,8 @@ import math
 
 import pytest
 
-from components.snapshot import Snapshot
-from game import Session
+from pinjoint import Session
+from pinjoint.components.snapshot import Snapshot
 from tests.systems.edit.hand import EMPTY, FRAME, assert_same_state, preview, run_frames
 
 

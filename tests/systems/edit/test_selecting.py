@@ -7,8 +7,8 @@ import math
 import numpy as np
 import pytest
 
-from game import Session
-from game.documents.document import document
+from pinjoint import Session
+from pinjoint.documents.document import document
 from tests.systems.edit.hand import FRAME, names, preview
 
 
@@ -40,8 +40,8 @@ def test_ctrl_click_adds_and_removes_ctrl_a_takes_all(triangle: Session) -> None
 
 
 def test_what_a_click_would_hit_is_marked_before(triangle: Session) -> None:
-    from components.tags import Hovered
-    from systems.edit.hover import Hover
+    from pinjoint.components.tags import Hovered
+    from pinjoint.systems.edit.hover import Hover
 
     session = Session(triangle.model, [Hover()])
     session.point(1.03, 1.0)

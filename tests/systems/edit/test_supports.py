@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import pytest
 
-from components.field import Vector
-from game import Session
+from pinjoint import Session
+from pinjoint.components.field import Vector
 from tests.systems.edit.hand import press_at, preview
 
 

@@ -4,10 +4,10 @@ from __future__ import annotations
 
 import pytest
 
-from components.snapshot import Snapshot
-from game import Session
-from game.documents.history.timeline import Timeline
-from systems.edit.pull import Hand
+from pinjoint import Session
+from pinjoint.components.snapshot import Snapshot
+from pinjoint.documents.history.timeline import Timeline
+from pinjoint.systems.edit.pull import Hand
 from tests.systems.edit import hand
 from tests.systems.edit.hand import FRAME, assert_same_state, run_frames
 

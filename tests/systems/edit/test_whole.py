@@ -4,10 +4,10 @@ from __future__ import annotations
 
 import numpy as np
 
-from components.snapshot import Snapshot
-from game import Session
-from game.editor.actions import ACTIONS
-from systems.input.bindings import BINDINGS, EVERY, MENU, WITHOUT_KEY, action_for, help_lines
+from pinjoint import Session
+from pinjoint.components.snapshot import Snapshot
+from pinjoint.editor.actions import ACTIONS
+from pinjoint.systems.input.bindings import BINDINGS, EVERY, MENU, WITHOUT_KEY, action_for, help_lines
 from tests.systems.edit.hand import FRAME, assert_same_state, opened, press_at
 
 

@@ -7,21 +7,21 @@ from pathlib import Path
 
 import pytest
 
-from components.box import Box
-from components.camera import Viewport
-from components.field import SAVED, Field, same
-from components.particle import Particle
-from components.rod import Rod
-from components.tags import Selected
-from game import Session
-from game.editor.scenes.form import FormScene
-from game.editor.scenes.properties import Properties
-from game.scripts.playing import Recorder, play, session_of
-from game.scripts.script import Script
-from systems.render.form_layout import FormLayout
-from systems.render.marks import Text
-from systems.render.picture import compose
-from systems.render.theme import load_theme
+from pinjoint import Session
+from pinjoint.components.box import Box
+from pinjoint.components.camera import Viewport
+from pinjoint.components.field import SAVED, Field, same
+from pinjoint.components.particle import Particle
+from pinjoint.components.rod import Rod
+from pinjoint.components.tags import Selected
+from pinjoint.editor.scenes.form import FormScene
+from pinjoint.editor.scenes.properties import Properties
+from pinjoint.scripts.playing import Recorder, play, session_of
+from pinjoint.scripts.script import Script
+from pinjoint.systems.render.form_layout import FormLayout
+from pinjoint.systems.render.marks import Text
+from pinjoint.systems.render.picture import compose
+from pinjoint.systems.render.theme import load_theme
 from tests.reference.boxes import overlapping, text_boxes
 from tests.reference.models import model, particle, rod, triangle
 

@@ -6,10 +6,10 @@ from pathlib import Path
 
 import pytest
 
-from game import Session
-from game.documents import models
-from game.editor.scenes.properties import Properties
-from systems.forms.results import results
+from pinjoint import Session
+from pinjoint.documents import models
+from pinjoint.editor.scenes.properties import Properties
+from pinjoint.systems.forms.results import results
 from tests.reference.models import triangle
 
 

@@ -9,12 +9,12 @@ from typing import Any
 
 import pytest
 
-from components.tags import DiagramShown
-from game import Session
-from game.documents.library import DATA_VARIABLE, models_folder
-from game.editor.scenes.force_method import ForceMethod
-from game.editor.scenes.form import FormScene
-from systems.input.bindings import (
+from pinjoint import Session
+from pinjoint.components.tags import DiagramShown
+from pinjoint.documents.library import DATA_VARIABLE, models_folder
+from pinjoint.editor.scenes.force_method import ForceMethod
+from pinjoint.editor.scenes.form import FormScene
+from pinjoint.systems.input.bindings import (
     BINDINGS,
     FORCE_METHOD,
     LOAD,
@@ -26,7 +26,7 @@ from systems.input.bindings import (
     Binding,
     key_named,
 )
-from systems.render.menu import menu_of
+from pinjoint.systems.render.menu import menu_of
 from tests.properties.soundness import contents
 
 CASES = [(scene, binding) for binding in BINDINGS for scene in binding.scenes]
@@ -38,7 +38,7 @@ def data(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """More saved models than there is room for on the screen."""
     monkeypatch.setenv(DATA_VARIABLE, str(tmp_path))
     models_folder().mkdir()
-    text = (files("assets") / "models" / "isostatic.json").read_text(encoding="utf-8")
+    text = (files("pinjoint.assets") / "models" / "isostatic.json").read_text(encoding="utf-8")
     for number in range(20):
         (models_folder() / f"model {number}.json").write_text(text, encoding="utf-8")
 

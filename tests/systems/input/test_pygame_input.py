@@ -12,8 +12,8 @@ os.environ.setdefault("SDL_VIDEODRIVER", "dummy")
 import pygame
 import pytest
 
-from game import Session
-from systems.input.pygame_input import PygameInput
+from pinjoint import Session
+from pinjoint.systems.input.pygame_input import PygameInput
 
 LEFT, RIGHT = pygame.BUTTON_LEFT, pygame.BUTTON_RIGHT
 
@@ -121,7 +121,7 @@ def test_two_quick_clicks_at_a_place_are_a_double_click(
     session: Session, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     now = [0.0]
-    monkeypatch.setattr("systems.input.pygame_input.time.monotonic", lambda: now[0])
+    monkeypatch.setattr("pinjoint.systems.input.pygame_input.time.monotonic", lambda: now[0])
     click = down(300, 500), up(300, 500)
     assert pressed(session, *click, *click, *click) == ["click", "double click", "click"]
     now[0] = 1.0

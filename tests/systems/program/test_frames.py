@@ -8,17 +8,17 @@ from typing import Any
 import numpy as np
 import pytest
 
-from components.model import Model
-from game import Session
-from game.commands.command_line import main
-from game.documents.document import parse
-from systems.base import Law
-from systems.kernels import compiled
-from systems.physics.integrators import INTEGRATORS
-from systems.program.compiler import Choice, Compile
-from systems.program.parallel import make_program
-from systems.program.program import Program
-from systems.program.writer import FEW, MANY, VERY_MANY
+from pinjoint import Session
+from pinjoint.commands.command_line import main
+from pinjoint.components.model import Model
+from pinjoint.documents.document import parse
+from pinjoint.systems.base import Law
+from pinjoint.systems.kernels import compiled
+from pinjoint.systems.physics.integrators import INTEGRATORS
+from pinjoint.systems.program.compiler import Choice, Compile
+from pinjoint.systems.program.parallel import make_program
+from pinjoint.systems.program.program import Program
+from pinjoint.systems.program.writer import FEW, MANY, VERY_MANY
 from tests.reference import frames
 
 FORMS = (FEW, MANY, VERY_MANY)

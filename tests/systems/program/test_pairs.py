@@ -9,12 +9,12 @@ import numpy as np
 import pytest
 from numba import njit
 
-from components import Model
-from game import Session
-from systems.base import Law
-from systems.program import near_pairs
-from systems.program.binding import ProgramError
-from systems.program.compiler import Compile
+from pinjoint import Session
+from pinjoint.components import Model
+from pinjoint.systems.base import Law
+from pinjoint.systems.program import near_pairs
+from pinjoint.systems.program.binding import ProgramError
+from pinjoint.systems.program.compiler import Compile
 from tests.reference import bits
 from tests.reference.forms import programs
 from tests.reference.models import model, particle, rod

@@ -9,16 +9,16 @@ from typing import Any
 import numpy as np
 import pytest
 
-from game import Session
-from game.commands.arguments import UsageError
-from game.commands.options import use_cores_as_asked
-from game.documents import models
-from systems.edit.pull import Hand
-from systems.program import blocks as layout
-from systems.program import parallel as in_blocks
-from systems.program import writer
-from systems.program.blocks import Layout
-from systems.program.parallel import VARIABLE, cores
+from pinjoint import Session
+from pinjoint.commands.arguments import UsageError
+from pinjoint.commands.options import use_cores_as_asked
+from pinjoint.documents import models
+from pinjoint.systems.edit.pull import Hand
+from pinjoint.systems.program import blocks as layout
+from pinjoint.systems.program import parallel as in_blocks
+from pinjoint.systems.program import writer
+from pinjoint.systems.program.blocks import Layout
+from pinjoint.systems.program.parallel import VARIABLE, cores
 from tests.benchmarks.models import lattice
 from tests.reference import bits
 
@@ -165,9 +165,9 @@ def test_a_hand_that_moves_is_followed(small_blocks: None) -> None:
 
 APART = """
 import sys
-from systems.program import parallel as in_blocks
-from systems.program import blocks as layout
-from systems.program import writer
+from pinjoint.systems.program import parallel as in_blocks
+from pinjoint.systems.program import blocks as layout
+from pinjoint.systems.program import writer
 writer.SMALL, writer.BLOCKS_FROM, layout.BLOCK, in_blocks._WORTHWHILE = 0, 1, 12, 0
 from tests.reference import bits
 from tests.systems.program.test_parallel import run

@@ -11,14 +11,14 @@ import numpy as np
 import pytest
 from numba import njit
 
-from components.field import Field, Role
-from game import Session
-from game.documents import models
-from systems.base import Commit, Law
-from systems.kernels import compiled
-from systems.program import loops, writer
-from systems.program.binding import ProgramError
-from systems.program.compiler import generated
+from pinjoint import Session
+from pinjoint.components.field import Field, Role
+from pinjoint.documents import models
+from pinjoint.systems.base import Commit, Law
+from pinjoint.systems.kernels import compiled
+from pinjoint.systems.program import loops, writer
+from pinjoint.systems.program.binding import ProgramError
+from pinjoint.systems.program.compiler import generated
 from tests.reference import bits
 from tests.reference.elements import Model
 from tests.reference.models import model, oscillator, particle, rod, square
@@ -469,7 +469,7 @@ class WideArray(OwnArray):
         (law(failing), "does not compile"),
         (law(plain), "not compiled; put `@compiled`"),
         (law("systems.nowhere:law"), "cannot be found"),
-        (law("systems.physics.kernels:nothing"), "cannot be found"),
+        (law("pinjoint.systems.physics.kernels:nothing"), "cannot be found"),
         (law(heated, each="rod"), "choose one of rods, ends, particles, rotations, pairs, loads"),
         (law(heated, reads=("rods.stiffness",), account="heat"), "choose one of work"),
         (law(failing, each="particles"), "name parameters <table>_<column>, time, dt or"),
@@ -494,7 +494,7 @@ def test_a_name_that_is_no_python_name_is_refused() -> None:
 # --- the cache -------------------------------------------------------------------------------------------
 
 COMPILE = f"""
-from game import Session
+from pinjoint import Session
 alone = {{"format": "pinjoint model", "version": 1, "particles": [{{"name": "A", "position": [0, 0]}}]}}
 session = Session.open(alone | {{"settings": {QUICKLY_COMPILED}}})
 session.run(steps=1)
@@ -522,7 +522,7 @@ def test_an_unwritable_cache_folder_is_done_without(fresh_process: Callable[...,
     assert list(temporary.rglob("pinjoint_program_*.code"))
 
 
-SOURCE = "from systems.kernels import kept\n\n\n@kept()\ndef answer(x):\n    return kernel(x)\n"
+SOURCE = "from pinjoint.systems.kernels import kept\n\n\n@kept()\ndef answer(x):\n    return kernel(x)\n"
 CALLER = "from numba import njit\nimport edited_helpers as helpers\n\n@njit\ndef kernel(x):\n    return helpers.twice(x)\n"
 CALLEE = "from numba import njit\n\nFACTOR = 2.0\n\n@njit\ndef twice(x):\n    return FACTOR * x\n"
 
@@ -530,7 +530,7 @@ CALLEE = "from numba import njit\n\nFACTOR = 2.0\n\n@njit\ndef twice(x):\n    re
 def test_an_edited_kernel_is_noticed_in_what_it_calls_too(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr("systems.cache.folder", lambda: tmp_path)
+    monkeypatch.setattr("pinjoint.systems.cache.folder", lambda: tmp_path)
     answers = []
     for factor in ("2.0", "5.0"):
         (tmp_path / "edited_helpers.py").write_text(CALLEE.replace("2.0", factor))
@@ -552,7 +552,7 @@ def test_a_kernel_that_moved_to_another_module_is_compiled_anew(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """What is cached may know what it calls by its module, and cannot be loaded where that is gone."""
-    monkeypatch.setattr("systems.cache.folder", lambda: tmp_path)
+    monkeypatch.setattr("pinjoint.systems.cache.folder", lambda: tmp_path)
     for name in ("kernels_before", "kernels_after"):
         spec = importlib.util.spec_from_loader(name, loader=None)
         assert spec is not None

@@ -3,16 +3,16 @@
 import numpy as np
 import pytest
 
-from game.documents import models
-from game.session import Session
-from systems.catalogue import step_systems
-from systems.physics.integrators import INTEGRATORS
-from systems.program import blocks as layout
-from systems.program import parallel as in_blocks
-from systems.program import writer
-from systems.program.parallel import make_program
-from systems.program.reordered import ReorderedProgram
-from systems.schedule import Schedule
+from pinjoint.documents import models
+from pinjoint.session import Session
+from pinjoint.systems.catalogue import step_systems
+from pinjoint.systems.physics.integrators import INTEGRATORS
+from pinjoint.systems.program import blocks as layout
+from pinjoint.systems.program import parallel as in_blocks
+from pinjoint.systems.program import writer
+from pinjoint.systems.program.parallel import make_program
+from pinjoint.systems.program.reordered import ReorderedProgram
+from pinjoint.systems.schedule import Schedule
 from tests.reference.elements import Model
 from tests.systems.program.test_parallel import net
 

@@ -8,15 +8,15 @@ from enum import IntEnum
 import numpy as np
 import pytest
 
-from game import Session
-from systems.base import StopReason
-from systems.entries import ACCOUNTS, Account, Control, Mark, Measure, Search, Side
-from systems.kernels import part
-from systems.program.binding import StepRole, bind, by_role
-from systems.program.identity import meaning_of
-from systems.program.pasting import expanded, fragment, pasted
-from systems.program.program import _writer
-from systems.program.writer import FEW, MANY, VERY_MANY
+from pinjoint import Session
+from pinjoint.systems.base import StopReason
+from pinjoint.systems.entries import ACCOUNTS, Account, Control, Mark, Measure, Search, Side
+from pinjoint.systems.kernels import part
+from pinjoint.systems.program.binding import StepRole, bind, by_role
+from pinjoint.systems.program.identity import meaning_of
+from pinjoint.systems.program.pasting import expanded, fragment, pasted
+from pinjoint.systems.program.program import _writer
+from pinjoint.systems.program.writer import FEW, MANY, VERY_MANY
 
 # mypy: ignore-errors
 # ruff: noqa: F821, F841

@@ -4,15 +4,15 @@ from __future__ import annotations
 
 import numpy as np
 
-from components.camera import Camera, Viewport
-from components.model import Model
-from components.particle import Particle
-from components.rod import spawn_rods
-from components.view import View
-from components.world import Derivation
-from systems.render.marks import Picture
-from systems.render.picture import compose
-from systems.render.theme import load_theme
+from pinjoint.components.camera import Camera, Viewport
+from pinjoint.components.model import Model
+from pinjoint.components.particle import Particle
+from pinjoint.components.rod import spawn_rods
+from pinjoint.components.view import View
+from pinjoint.components.world import Derivation
+from pinjoint.systems.render.marks import Picture
+from pinjoint.systems.render.picture import compose
+from pinjoint.systems.render.theme import load_theme
 
 LIGHT = load_theme("light")
 

@@ -5,15 +5,15 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from components.load import Load
-from components.model import Model
-from components.particle import Particle
-from components.tags import DiagramShown
-from components.view import Status
-from game.session import Session
-from systems.render.arrows import LONGEST, MOST, SHORTEST
-from systems.render.marks import Fills, Strokes
-from systems.render.picture import compose
+from pinjoint.components.load import Load
+from pinjoint.components.model import Model
+from pinjoint.components.particle import Particle
+from pinjoint.components.tags import DiagramShown
+from pinjoint.components.view import Status
+from pinjoint.session import Session
+from pinjoint.systems.render.arrows import LONGEST, MOST, SHORTEST
+from pinjoint.systems.render.marks import Fills, Strokes
+from pinjoint.systems.render.picture import compose
 from tests.systems.render.pictures import LIGHT, fill, marks_of, picture_of, triangle, view_of
 
 

@@ -7,14 +7,14 @@ from typing import Any
 import numpy as np
 import pytest
 
-from components.bent import AXIAL, MOMENT, QUANTITIES, SHEAR
-from components.tags import DiagramShown
-from components.view import View
-from game import Session
-from systems.render.marks import Bars, Discs, Fills, Picture, Strokes, Text
-from systems.render.overlays import MEANINGS
-from systems.render.picture import compose
-from systems.render.theme import faded
+from pinjoint import Session
+from pinjoint.components.bent import AXIAL, MOMENT, QUANTITIES, SHEAR
+from pinjoint.components.tags import DiagramShown
+from pinjoint.components.view import View
+from pinjoint.systems.render.marks import Bars, Discs, Fills, Picture, Strokes, Text
+from pinjoint.systems.render.overlays import MEANINGS
+from pinjoint.systems.render.picture import compose
+from pinjoint.systems.render.theme import faded
 from tests.systems.render.frame_models import (
     CLAMPED,
     EI,

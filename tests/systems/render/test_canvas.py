@@ -12,18 +12,18 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from components.camera import Camera, Viewport
-from components.model import Model
-from components.particle import Particle
-from components.rod import spawn_rods
-from components.tags import Selected
-from components.view import Status, View
-from systems.render.coverage import stroke_coverage
-from systems.render.marks import Panel, Picture, Stamps, Strokes, Text
-from systems.render.picture import compose
-from systems.render.pygame_canvas import Canvas, _rounded, _small_rounded
-from systems.render.theme import load_theme
-from systems.render.typography import WEIGHTS, text_width
+from pinjoint.components.camera import Camera, Viewport
+from pinjoint.components.model import Model
+from pinjoint.components.particle import Particle
+from pinjoint.components.rod import spawn_rods
+from pinjoint.components.tags import Selected
+from pinjoint.components.view import Status, View
+from pinjoint.systems.render.coverage import stroke_coverage
+from pinjoint.systems.render.marks import Panel, Picture, Stamps, Strokes, Text
+from pinjoint.systems.render.picture import compose
+from pinjoint.systems.render.pygame_canvas import Canvas, _rounded, _small_rounded
+from pinjoint.systems.render.theme import load_theme
+from pinjoint.systems.render.typography import WEIGHTS, text_width
 from tests.properties.limits import within
 
 LIGHT = load_theme("light")

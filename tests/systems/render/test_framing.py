@@ -14,11 +14,22 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from components.camera import Viewport
-from systems.render.framing import framed
-from systems.render.marks import Bars, Discs, Fills, Mark, Panel, Picture, Rectangles, Stamps, Strokes, Text
-from systems.render.pygame_canvas import Canvas
-from systems.render.symbols import SYMBOLS
+from pinjoint.components.camera import Viewport
+from pinjoint.systems.render.framing import framed
+from pinjoint.systems.render.marks import (
+    Bars,
+    Discs,
+    Fills,
+    Mark,
+    Panel,
+    Picture,
+    Rectangles,
+    Stamps,
+    Strokes,
+    Text,
+)
+from pinjoint.systems.render.pygame_canvas import Canvas
+from pinjoint.systems.render.symbols import SYMBOLS
 
 INK, PALE = (20, 30, 40, 255), (200, 210, 220, 255)
 VIEW = Viewport(0, 0, 120, 80)

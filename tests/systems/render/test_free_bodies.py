@@ -5,11 +5,11 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from components.view import drawn_positions
-from game import Session
-from systems.render.marks import Fills, Picture, Strokes, Text
-from systems.render.picture import compose
-from systems.render.theme import load_theme
+from pinjoint import Session
+from pinjoint.components.view import drawn_positions
+from pinjoint.systems.render.marks import Fills, Picture, Strokes, Text
+from pinjoint.systems.render.picture import compose
+from pinjoint.systems.render.theme import load_theme
 
 LIGHT = load_theme("light")
 

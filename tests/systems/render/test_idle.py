@@ -11,13 +11,13 @@ os.environ.setdefault("SDL_VIDEODRIVER", "dummy")
 
 import pytest
 
-import systems.edit.hover
-from game.app import SELDOM, App
-from game.documents import models
-from systems.edit.picking import pick
-from systems.input import pygame_input
-from systems.render import picture
-from systems.render.picture import compose
+import pinjoint.systems.edit.hover
+from pinjoint.app import SELDOM, App
+from pinjoint.documents import models
+from pinjoint.systems.edit.picking import pick
+from pinjoint.systems.input import pygame_input
+from pinjoint.systems.render import picture
+from pinjoint.systems.render.picture import compose
 
 
 @pytest.fixture
@@ -67,7 +67,7 @@ def test_what_lies_under_a_resting_pointer_is_looked_up_once(app: App, monkeypat
         looked.append(where)
         return pick(*where)
 
-    monkeypatch.setattr(systems.edit.hover, "pick", looked_up)
+    monkeypatch.setattr(pinjoint.systems.edit.hover, "pick", looked_up)
     app.session.view.pointer = tuple(app.session.view.camera.to_pixels(app.session.particles["B"].position))
     assert frames(app, 20) == 1  # it is marked
     assert len(looked) <= 2  # and once more, now that its mark has changed the model

@@ -9,17 +9,17 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from components.camera import Viewport
-from components.model import Model
-from components.particle import Particle
-from components.rod import spawn_rods
-from components.tags import Hovered, Selected
-from components.view import Status
-from components.written import number
-from systems.render.labels import Label, Placed, place_labels
-from systems.render.marks import Panel, Text
-from systems.render.occupancy import FAINT, STRONG, Occupancy
-from systems.render.picture import compose
+from pinjoint.components.camera import Viewport
+from pinjoint.components.model import Model
+from pinjoint.components.particle import Particle
+from pinjoint.components.rod import spawn_rods
+from pinjoint.components.tags import Hovered, Selected
+from pinjoint.components.view import Status
+from pinjoint.components.written import number
+from pinjoint.systems.render.labels import Label, Placed, place_labels
+from pinjoint.systems.render.marks import Panel, Text
+from pinjoint.systems.render.occupancy import FAINT, STRONG, Occupancy
+from pinjoint.systems.render.picture import compose
 from tests.reference.boxes import overlapping, text_boxes
 from tests.systems.render.pictures import LIGHT, fill, marks_of, picture_of, triangle, view_of
 

@@ -6,13 +6,13 @@ import gettext
 
 import pytest
 
-from components import language
-from components.camera import Viewport
-from game.session import Session
-from systems.input.bindings import help_lines
-from systems.render.glossary import terms
-from systems.render.help import help_pages, written_key
-from systems.render.marks import Text
+from pinjoint.components import language
+from pinjoint.components.camera import Viewport
+from pinjoint.session import Session
+from pinjoint.systems.input.bindings import help_lines
+from pinjoint.systems.render.glossary import terms
+from pinjoint.systems.render.help import help_pages, written_key
+from pinjoint.systems.render.marks import Text
 from tests.golden.scenes import composed
 
 

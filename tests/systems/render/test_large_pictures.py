@@ -5,15 +5,15 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from components.camera import Viewport
-from components.model import Model
-from components.tags import Selected
-from components.view import View
-from systems.render.clip import clip_rods, clip_segments
-from systems.render.marks import Bars, Picture, Strokes
-from systems.render.occupancy import FAINT, STRONG, Occupancy
-from systems.render.picture import compose
-from systems.render.theme import load_theme
+from pinjoint.components.camera import Viewport
+from pinjoint.components.model import Model
+from pinjoint.components.tags import Selected
+from pinjoint.components.view import View
+from pinjoint.systems.render.clip import clip_rods, clip_segments
+from pinjoint.systems.render.marks import Bars, Picture, Strokes
+from pinjoint.systems.render.occupancy import FAINT, STRONG, Occupancy
+from pinjoint.systems.render.picture import compose
+from pinjoint.systems.render.theme import load_theme
 from tests.benchmarks.models import lattice
 
 LIGHT = load_theme("light")

@@ -5,15 +5,15 @@ from typing import Any
 import numpy as np
 import pytest
 
-from components.bent import QUANTITIES, axes
-from components.tags import Selected
-from components.view import Shape
-from game import Session
-from systems.edit.picking import pick_rod
-from systems.render.marks import Discs, Fills, Picture, Stamps, Strokes
-from systems.render.picture import compose
-from systems.render.sheet import measure
-from systems.render.supports import DOWN, LEFT, RIGHT
+from pinjoint import Session
+from pinjoint.components.bent import QUANTITIES, axes
+from pinjoint.components.tags import Selected
+from pinjoint.components.view import Shape
+from pinjoint.systems.edit.picking import pick_rod
+from pinjoint.systems.render.marks import Discs, Fills, Picture, Stamps, Strokes
+from pinjoint.systems.render.picture import compose
+from pinjoint.systems.render.sheet import measure
+from pinjoint.systems.render.supports import DOWN, LEFT, RIGHT
 from tests.systems.render.frame_models import (
     CLAMPED,
     PINNED,

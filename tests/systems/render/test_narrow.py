@@ -6,12 +6,12 @@ import numpy as np
 import pygame
 import pytest
 
-from game import Session
-from systems.render.panel import _window
-from systems.render.picture import compose
-from systems.render.pygame_canvas import Canvas
-from systems.render.theme import load_theme
-from systems.render.typography import fitting, shortened, text_width
+from pinjoint import Session
+from pinjoint.systems.render.panel import _window
+from pinjoint.systems.render.picture import compose
+from pinjoint.systems.render.pygame_canvas import Canvas
+from pinjoint.systems.render.theme import load_theme
+from pinjoint.systems.render.typography import fitting, shortened, text_width
 from tests.properties.limits import within
 
 SCENES = {  # what is pressed in the pause

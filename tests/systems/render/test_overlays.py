@@ -6,12 +6,12 @@ import itertools
 
 import pytest
 
-from components.model import Model
-from components.view import Status, drawn_positions
-from game import Session
-from systems.render.empty_card import Card
-from systems.render.marks import Panel, Rectangles, Stamps, Text
-from systems.render.picture import compose
+from pinjoint import Session
+from pinjoint.components.model import Model
+from pinjoint.components.view import Status, drawn_positions
+from pinjoint.systems.render.empty_card import Card
+from pinjoint.systems.render.marks import Panel, Rectangles, Stamps, Text
+from pinjoint.systems.render.picture import compose
 from tests.systems.render.pictures import LIGHT, fill, marks_of, picture_of, triangle, view_of
 
 

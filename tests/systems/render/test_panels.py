@@ -9,14 +9,14 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from components.view import Readout, drawn_positions
-from game import Session
-from game.scripts.playing import Recorder, play, session_of
-from game.scripts.script import Script
-from systems.render.marks import Panel, Text
-from systems.render.picture import compose, shown_panels
-from systems.render.readouts import ShownPanel
-from systems.render.theme import load_theme
+from pinjoint import Session
+from pinjoint.components.view import Readout, drawn_positions
+from pinjoint.scripts.playing import Recorder, play, session_of
+from pinjoint.scripts.script import Script
+from pinjoint.systems.render.marks import Panel, Text
+from pinjoint.systems.render.picture import compose, shown_panels
+from pinjoint.systems.render.readouts import ShownPanel
+from pinjoint.systems.render.theme import load_theme
 from tests.reference.boxes import Box, overlap
 
 SIZES = [(640, 480), (480, 800), (400, 640), (1000, 720), (1920, 1080), (3840, 2160)]

@@ -6,9 +6,9 @@ import numpy as np
 from hypothesis import given
 from hypothesis import strategies as st
 
-from systems.render.clip import clip_segments
-from systems.render.labels import half_size
-from systems.render.typography import shortened, text_width, wrapped
+from pinjoint.systems.render.clip import clip_segments
+from pinjoint.systems.render.labels import half_size
+from pinjoint.systems.render.typography import shortened, text_width, wrapped
 
 coordinate = st.floats(-50, 50)
 

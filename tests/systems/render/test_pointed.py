@@ -5,15 +5,15 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from components.handle import Handle
-from components.load import factor_at
-from components.tags import Hovered
-from components.view import drawn_positions
-from game import Session
-from systems.render.clip import clip_segments
-from systems.render.marks import Panel, Text
-from systems.render.picture import compose
-from systems.render.theme import load_theme
+from pinjoint import Session
+from pinjoint.components.handle import Handle
+from pinjoint.components.load import factor_at
+from pinjoint.components.tags import Hovered
+from pinjoint.components.view import drawn_positions
+from pinjoint.systems.render.clip import clip_segments
+from pinjoint.systems.render.marks import Panel, Text
+from pinjoint.systems.render.picture import compose
+from pinjoint.systems.render.theme import load_theme
 from tests.reference.boxes import overlap, text_box
 
 LIGHT = load_theme("light")

@@ -11,12 +11,12 @@ import pygame
 import pytest
 from numpy.typing import NDArray
 
-from components.camera import Viewport
-from components.field import Vector
-from systems.render.coverage import stroke_coverage
-from systems.render.marks import Bars, Discs, Mark, Picture, Points, Strokes
-from systems.render.pygame_canvas import Canvas
-from systems.render.raster import _around, load_raster
+from pinjoint.components.camera import Viewport
+from pinjoint.components.field import Vector
+from pinjoint.systems.render.coverage import stroke_coverage
+from pinjoint.systems.render.marks import Bars, Discs, Mark, Picture, Points, Strokes
+from pinjoint.systems.render.pygame_canvas import Canvas
+from pinjoint.systems.render.raster import _around, load_raster
 
 BLACK, WHITE = (0, 0, 0, 255), (255, 255, 255, 255)
 SIZE = 40

@@ -4,10 +4,10 @@ from __future__ import annotations
 
 import pytest
 
-from components.slider import ARROW, SUPPORT
-from components.view import drawn_places
-from game import Session
-from game.documents import models
+from pinjoint import Session
+from pinjoint.components.slider import ARROW, SUPPORT
+from pinjoint.components.view import drawn_places
+from pinjoint.documents import models
 from tests.golden.scenes import Window, opened
 
 WINDOWS = [Window(640, 480), Window(1000, 720), Window(1024, 640), Window(1280, 800), Window(1920, 1080)]

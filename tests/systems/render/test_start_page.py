@@ -6,10 +6,10 @@ from itertools import pairwise
 
 import pytest
 
-from components.form import Tile
-from game.documents.library import data_apart
-from game.editor.scenes.load import Load
-from systems.render.marks import Text
+from pinjoint.components.form import Tile
+from pinjoint.documents.library import data_apart
+from pinjoint.editor.scenes.load import Load
+from pinjoint.systems.render.marks import Text
 from tests.golden.scenes import Window, composed
 from tests.golden.states import STATES
 from tests.reference.boxes import overlapping, text_box, text_boxes

@@ -8,21 +8,21 @@ import sys
 import numpy as np
 import pytest
 
-from components.camera import Camera
-from components.grid import Grid
-from components.model import Model
-from components.particle import Particle
-from components.tags import Hovered, Selected
-from components.view import View, drawn_positions
-from components.world import Derivation
-from systems.render.marks import Bars, Discs, Fills, Panel, Rectangles, Stamps, Strokes, Text
-from systems.render.picture import compose
-from systems.render.supports import DOWN, LEFT, NO_SUPPORT, RIGHT, UP, freest_sides
+from pinjoint.components.camera import Camera
+from pinjoint.components.grid import Grid
+from pinjoint.components.model import Model
+from pinjoint.components.particle import Particle
+from pinjoint.components.tags import Hovered, Selected
+from pinjoint.components.view import View, drawn_positions
+from pinjoint.components.world import Derivation
+from pinjoint.systems.render.marks import Bars, Discs, Fills, Panel, Rectangles, Stamps, Strokes, Text
+from pinjoint.systems.render.picture import compose
+from pinjoint.systems.render.supports import DOWN, LEFT, NO_SUPPORT, RIGHT, UP, freest_sides
 from tests.systems.render.pictures import LIGHT, fill, marks_of, picture_of, triangle, view_of
 
 
 def test_composing_needs_no_pygame() -> None:
-    code = "import sys, systems.render.picture; print('pygame' in sys.modules, 'numba' in sys.modules)"
+    code = "import sys, pinjoint.systems.render.picture; print('pygame' in sys.modules, 'numba' in sys.modules)"
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
     assert done.stdout.split() == ["False", "False"]
 

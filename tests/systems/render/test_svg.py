@@ -9,14 +9,14 @@ from functools import partial
 import numpy as np
 import pytest
 
-from components.camera import Viewport
-from components.model import Model
-from components.tags import Selected
-from game.pictures import path_of
-from systems.render.marks import Discs, Mark, Panel, Picture, Stamps, Strokes, Text, boxes
-from systems.render.pdf import as_pdf
-from systems.render.shapes import Circle, Line, grouped
-from systems.render.svg import as_svg
+from pinjoint.components.camera import Viewport
+from pinjoint.components.model import Model
+from pinjoint.components.tags import Selected
+from pinjoint.pictures import path_of
+from pinjoint.systems.render.marks import Discs, Mark, Panel, Picture, Stamps, Strokes, Text, boxes
+from pinjoint.systems.render.pdf import as_pdf
+from pinjoint.systems.render.shapes import Circle, Line, grouped
+from pinjoint.systems.render.svg import as_svg
 from tests.systems.render.pictures import picture_of, triangle
 
 SVG = "{http://www.w3.org/2000/svg}"

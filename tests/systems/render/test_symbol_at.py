@@ -5,15 +5,15 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from components.tags import Hovered
-from game import Session
-from game.editor.frame import Frame
-from systems.edit.hover import Hover
-from systems.edit.picking import pick
-from systems.render.marks import Points, Stamps, Strokes
-from systems.render.picture import compose
-from systems.render.symbol_at import symbol_at
-from systems.render.theme import load_theme
+from pinjoint import Session
+from pinjoint.components.tags import Hovered
+from pinjoint.editor.frame import Frame
+from pinjoint.systems.edit.hover import Hover
+from pinjoint.systems.edit.picking import pick
+from pinjoint.systems.render.marks import Points, Stamps, Strokes
+from pinjoint.systems.render.picture import compose
+from pinjoint.systems.render.symbol_at import symbol_at
+from pinjoint.systems.render.theme import load_theme
 
 LIGHT = load_theme("light")
 

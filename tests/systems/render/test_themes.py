@@ -7,8 +7,8 @@ import itertools
 import numpy as np
 import pytest
 
-from systems.render.theme import load_theme, theme_from, theme_names
-from systems.render.utilisation import LEVELS, shade
+from pinjoint.systems.render.theme import load_theme, theme_from, theme_names
+from pinjoint.systems.render.utilisation import LEVELS, shade
 from tests.systems.render.pictures import (
     LIGHT,
 )

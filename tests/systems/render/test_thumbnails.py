@@ -6,13 +6,13 @@ from pathlib import Path
 
 import pytest
 
-from components.camera import Viewport
-from game import Session
-from game.documents import library, models
-from game.documents.previews import preview, solved
-from systems.render.marks import Bars
-from systems.render.theme import load_theme
-from systems.render.thumbnails import extent, thumbnail
+from pinjoint import Session
+from pinjoint.components.camera import Viewport
+from pinjoint.documents import library, models
+from pinjoint.documents.previews import preview, solved
+from pinjoint.systems.render.marks import Bars
+from pinjoint.systems.render.theme import load_theme
+from pinjoint.systems.render.thumbnails import extent, thumbnail
 from tests.reference.models import triangle
 
 

@@ -4,20 +4,20 @@ from __future__ import annotations
 
 import pytest
 
-from components.bent import QUANTITIES
-from components.camera import Viewport
-from components.tags import DiagramShown
-from components.toolbar import Button, Tool
-from components.view import drawn_positions
-from game import Session
-from game.editor.actions import ACTIONS
-from systems.input.bindings import ADDED_BUTTONS, ADDED_TOOLS, BINDINGS, TOOLBAR
-from systems.render.icons import ADDED, icon, icons
-from systems.render.marks import Panel, Stamps, Text
-from systems.render.menu import menu_of
-from systems.render.picture import compose, compose_all
-from systems.render.theme import load_theme
-from systems.render.typography import capital_height
+from pinjoint import Session
+from pinjoint.components.bent import QUANTITIES
+from pinjoint.components.camera import Viewport
+from pinjoint.components.tags import DiagramShown
+from pinjoint.components.toolbar import Button, Tool
+from pinjoint.components.view import drawn_positions
+from pinjoint.editor.actions import ACTIONS
+from pinjoint.systems.input.bindings import ADDED_BUTTONS, ADDED_TOOLS, BINDINGS, TOOLBAR
+from pinjoint.systems.render.icons import ADDED, icon, icons
+from pinjoint.systems.render.marks import Panel, Stamps, Text
+from pinjoint.systems.render.menu import menu_of
+from pinjoint.systems.render.picture import compose, compose_all
+from pinjoint.systems.render.theme import load_theme
+from pinjoint.systems.render.typography import capital_height
 from tests.reference.boxes import overlap, text_box
 
 SIZES = [(1000, 720), (640, 480), (600, 600), (3840, 2160)]

@@ -5,13 +5,13 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from components.model import Model
-from components.rod import utilisation
-from components.tags import Selected
-from game.session import Session
-from systems.render.marks import Rectangles, Strokes
-from systems.render.theme import load_theme, theme_names
-from systems.render.utilisation import LEVELS, first_at_limit, shade
+from pinjoint.components.model import Model
+from pinjoint.components.rod import utilisation
+from pinjoint.components.tags import Selected
+from pinjoint.session import Session
+from pinjoint.systems.render.marks import Rectangles, Strokes
+from pinjoint.systems.render.theme import load_theme, theme_names
+from pinjoint.systems.render.utilisation import LEVELS, first_at_limit, shade
 from tests.systems.render.pictures import LIGHT, fill, marks_of, picture_of, triangle
 from tests.systems.render.test_themes import VISIONS, lab
 

@@ -6,8 +6,8 @@ from typing import Any
 
 import pytest
 
-from game import Session
-from game.documents.document import document
+from pinjoint import Session
+from pinjoint.documents.document import document
 
 Model = dict[str, Any]
 

@@ -10,16 +10,16 @@ from typing import Any
 
 import pytest
 
-from game import Session
-from game.commands.command_line import main
-from game.documents.document import document, parse
-from game.documents.format import ModelError
-from game.scripts.playing import Recorder, play
-from game.scripts.script import Script
-from systems.base import StopReason
-from systems.edit.pull import hand_on
-from systems.program.program import Program
-from systems.run.program_steps import ProgramSteps
+from pinjoint import Session
+from pinjoint.commands.command_line import main
+from pinjoint.documents.document import document, parse
+from pinjoint.documents.format import ModelError
+from pinjoint.scripts.playing import Recorder, play
+from pinjoint.scripts.script import Script
+from pinjoint.systems.base import StopReason
+from pinjoint.systems.edit.pull import hand_on
+from pinjoint.systems.program.program import Program
+from pinjoint.systems.run.program_steps import ProgramSteps
 from tests.reference import bits
 from tests.reference.elements import Model
 from tests.reference.models import oscillator

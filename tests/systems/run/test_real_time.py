@@ -8,11 +8,11 @@ from typing import Any
 
 import pytest
 
-from game.session import Session
-from systems.collision.free import discs
-from systems.program.compiler import Choice, Unfinished
-from systems.run import real_time
-from systems.run.real_time import BUDGET, LONGEST_FRAME, LONGEST_STEP, RealTimeRunner
+from pinjoint.session import Session
+from pinjoint.systems.collision.free import discs
+from pinjoint.systems.program.compiler import Choice, Unfinished
+from pinjoint.systems.run import real_time
+from pinjoint.systems.run.real_time import BUDGET, LONGEST_FRAME, LONGEST_STEP, RealTimeRunner
 from tests.benchmarks.models import lattice
 from tests.reference.bits import columns, different
 

@@ -9,16 +9,16 @@ from hypothesis import example, given, settings
 from hypothesis import strategies as st
 from numba import njit
 
-from game import Session
-from game.documents import models
-from systems.base import StopReason
-from systems.edit.pull import Hand
-from systems.entries import ACCOUNT
-from systems.islands import islands
-from systems.machine_code import machine_code
-from systems.physics.kernels import judge
-from systems.physics.rest import RestMeasure
-from systems.run import policy
+from pinjoint import Session
+from pinjoint.documents import models
+from pinjoint.systems.base import StopReason
+from pinjoint.systems.edit.pull import Hand
+from pinjoint.systems.entries import ACCOUNT
+from pinjoint.systems.islands import islands
+from pinjoint.systems.machine_code import machine_code
+from pinjoint.systems.physics.kernels import judge
+from pinjoint.systems.physics.rest import RestMeasure
+from pinjoint.systems.run import policy
 from tests.reference import bits
 from tests.reference.elements import Model
 from tests.reference.models import model, particle, rod

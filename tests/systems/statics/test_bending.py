@@ -6,11 +6,11 @@ from typing import Any
 import numpy as np
 import pytest
 
-from components.model import Model
-from game.documents.models import parse
-from game.session import Session
-from systems.statics.equations import Array, Structure
-from systems.statics.external import external_forces
+from pinjoint.components.model import Model
+from pinjoint.documents.models import parse
+from pinjoint.session import Session
+from pinjoint.systems.statics.equations import Array, Structure
+from pinjoint.systems.statics.external import external_forces
 from tests.reference import frames
 
 SMALL = 1e-6

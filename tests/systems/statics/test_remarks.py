@@ -9,11 +9,11 @@ import numpy as np
 import pytest
 from numba import njit
 
-from game import Session
-from game.commands.command_line import main
-from game.documents import models
-from systems.base import Law
-from systems.statics.settle import settle
+from pinjoint import Session
+from pinjoint.commands.command_line import main
+from pinjoint.documents import models
+from pinjoint.systems.base import Law
+from pinjoint.systems.statics.settle import settle
 from tests.reference.models import von_mises_truss
 
 

@@ -2,8 +2,8 @@
 
 import math
 
-from systems.collision.driven.columns import Tried
-from systems.collision.kernels import compiled
+from pinjoint.systems.collision.driven.columns import Tried
+from pinjoint.systems.collision.kernels import compiled
 
 FIRM = 1e-11  # added to the compliance of each contact, as a share: makes forces unique, the least ones
 ROUND_OFF = 1e-12  # of the largest gap

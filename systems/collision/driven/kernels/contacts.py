@@ -13,16 +13,16 @@ h²/2 N₀ᵀ M⁻¹ N₀ from then on, for which forces always exist.
 
 import math
 
-from systems.base import StopReason
-from systems.collision.columns import NONE
-from systems.collision.driven.columns import Order, Phase, Real, Tried, Whole
-from systems.collision.driven.kernels.complementarity import complementary
-from systems.collision.driven.kernels.groups import chain_groups, end_groups, root_of
-from systems.collision.driven.kernels.paths import foresee, opening, take_back
-from systems.collision.kernels import compiled
-from systems.collision.kernels.pairs import gap_of
-from systems.collision.kernels.projection import coupling
-from systems.entries import Account, Control
+from pinjoint.systems.base import StopReason
+from pinjoint.systems.collision.columns import NONE
+from pinjoint.systems.collision.driven.columns import Order, Phase, Real, Tried, Whole
+from pinjoint.systems.collision.driven.kernels.complementarity import complementary
+from pinjoint.systems.collision.driven.kernels.groups import chain_groups, end_groups, root_of
+from pinjoint.systems.collision.driven.kernels.paths import foresee, opening, take_back
+from pinjoint.systems.collision.kernels import compiled
+from pinjoint.systems.collision.kernels.pairs import gap_of
+from pinjoint.systems.collision.kernels.projection import coupling
+from pinjoint.systems.entries import Account, Control
 
 CLOSED_GAP = 1e-13  # of the smaller radius: contacts with a smaller gap are closed
 LOOSELY_CLOSED_GAP = 1e-11  # instead, after STRICT_TRIES: gaps in a row between walls hardly follow forces

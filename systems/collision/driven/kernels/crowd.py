@@ -8,17 +8,22 @@ work; and no impact supplies energy.
 
 import math
 
-from systems.base import StopReason
-from systems.collision.columns import NONE, SHORTEST_SHARE, TRAVEL, Contact
-from systems.collision.driven.columns import Need, Order, Phase, Real, Whole
-from systems.collision.driven.kernels.contacts import SETTLING_HEIGHT, clear_support, enter_work, raise_scale
-from systems.collision.driven.kernels.impacts import report_impact
-from systems.collision.driven.kernels.joint_impacts import separate_motion
-from systems.collision.driven.kernels.paths import opening, take_back
-from systems.collision.kernels import compiled
-from systems.collision.kernels.pairs import gap_of
-from systems.collision.kernels.projection import push_apart
-from systems.entries import Account, Control
+from pinjoint.systems.base import StopReason
+from pinjoint.systems.collision.columns import NONE, SHORTEST_SHARE, TRAVEL, Contact
+from pinjoint.systems.collision.driven.columns import Need, Order, Phase, Real, Whole
+from pinjoint.systems.collision.driven.kernels.contacts import (
+    SETTLING_HEIGHT,
+    clear_support,
+    enter_work,
+    raise_scale,
+)
+from pinjoint.systems.collision.driven.kernels.impacts import report_impact
+from pinjoint.systems.collision.driven.kernels.joint_impacts import separate_motion
+from pinjoint.systems.collision.driven.kernels.paths import opening, take_back
+from pinjoint.systems.collision.kernels import compiled
+from pinjoint.systems.collision.kernels.pairs import gap_of
+from pinjoint.systems.collision.kernels.projection import push_apart
+from pinjoint.systems.entries import Account, Control
 
 CROWD_CONTACTS = 24  # persistent contacts and impacts in the next step, from which on particles are a crowd
 CROWD_PARTICLES = 8  # particles that are no nodes, below which they are no crowd

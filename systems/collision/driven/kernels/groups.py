@@ -1,7 +1,7 @@
 """Groups of pairs that shared particles connect; what cannot move connects none."""
 
-from systems.collision.columns import NONE
-from systems.collision.kernels import compiled
+from pinjoint.systems.collision.columns import NONE
+from pinjoint.systems.collision.kernels import compiled
 
 
 @compiled

@@ -1,9 +1,9 @@
 """The joint impact of particles that touch, and the least change of the motion of many."""
 
-from systems.collision.columns import Contact, Mark
-from systems.collision.kernels import compiled
-from systems.collision.kernels.impact import respond
-from systems.collision.kernels.projection import begin, compliance, opening_rate, project, push_apart
+from pinjoint.systems.collision.columns import Contact, Mark
+from pinjoint.systems.collision.kernels import compiled
+from pinjoint.systems.collision.kernels.impact import respond
+from pinjoint.systems.collision.kernels.projection import begin, compliance, opening_rate, project, push_apart
 
 SEPARATE = -1.0  # as the restitution of contacts that are only held apart
 MOST_CROWD_SWEEPS = 200  # over the contacts of a crowd; its next step continues from the impulses reached

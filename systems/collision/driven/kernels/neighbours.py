@@ -6,11 +6,11 @@ what lasts in pairs that stay goes on.
 
 import math
 
-from systems.collision.columns import NONE
-from systems.collision.driven.columns import Need, Order, Phase, Real, Whole
-from systems.collision.driven.kernels.groups import moves
-from systems.collision.kernels import compiled
-from systems.collision.kernels.grid import (
+from pinjoint.systems.collision.columns import NONE
+from pinjoint.systems.collision.driven.columns import Need, Order, Phase, Real, Whole
+from pinjoint.systems.collision.driven.kernels.groups import moves
+from pinjoint.systems.collision.kernels import compiled
+from pinjoint.systems.collision.kernels.grid import (
     BOX_MARGIN,
     cell_size,
     choose_layers,
@@ -19,9 +19,9 @@ from systems.collision.kernels.grid import (
     neighbours,
     sort,
 )
-from systems.collision.kernels.horizon import is_joined
-from systems.collision.kernels.pairs import gap_of
-from systems.entries import Control
+from pinjoint.systems.collision.kernels.horizon import is_joined
+from pinjoint.systems.collision.kernels.pairs import gap_of
+from pinjoint.systems.entries import Control
 
 LISTED_AROUND = 0.5  # of the radius of a particle: the least margin within which others are listed
 FEWEST_STEPS = 512  # for which the list is to last, at the present speed of a particle,

@@ -2,13 +2,13 @@
 
 import math
 
-from systems.base import StopReason
-from systems.collision.columns import EPSILON, OVERLAP
-from systems.collision.driven.columns import Real, Whole
-from systems.collision.kernels import compiled
-from systems.collision.kernels.pairs import gap_of
-from systems.collision.kernels.time_of_impact import INFINITY, first_touch
-from systems.entries import Control
+from pinjoint.systems.base import StopReason
+from pinjoint.systems.collision.columns import EPSILON, OVERLAP
+from pinjoint.systems.collision.driven.columns import Real, Whole
+from pinjoint.systems.collision.kernels import compiled
+from pinjoint.systems.collision.kernels.pairs import gap_of
+from pinjoint.systems.collision.kernels.time_of_impact import INFINITY, first_touch
+from pinjoint.systems.entries import Control
 
 TOUCHING_GAP = 1e-12  # of the reach of two particles, below which they touch
 DOUBT = 1e-3  # of a radius, by which a path may differ from a parabola where particles collide

@@ -10,9 +10,9 @@ contacts, its paths are looked through for the first impact. If there is one the
 
 import math
 
-from systems.base import StopReason
-from systems.collision.driven.columns import Goal, Need, Order, Phase, Real, Whole
-from systems.collision.driven.kernels.contacts import (
+from pinjoint.systems.base import StopReason
+from pinjoint.systems.collision.driven.columns import Goal, Need, Order, Phase, Real, Whole
+from pinjoint.systems.collision.driven.kernels.contacts import (
     begin_search,
     choose_contacts,
     judge_forces,
@@ -20,9 +20,15 @@ from systems.collision.driven.kernels.contacts import (
     resume_search,
     try_forces,
 )
-from systems.collision.driven.kernels.crowd import begin_crowd, crowd_span, is_crowd, judge_crowd, try_crowd
-from systems.collision.driven.kernels.impacts import resolve_touching, set_rest_speeds
-from systems.collision.driven.kernels.paths import (
+from pinjoint.systems.collision.driven.kernels.crowd import (
+    begin_crowd,
+    crowd_span,
+    is_crowd,
+    judge_crowd,
+    try_crowd,
+)
+from pinjoint.systems.collision.driven.kernels.impacts import resolve_touching, set_rest_speeds
+from pinjoint.systems.collision.driven.kernels.paths import (
     DOUBTFUL,
     first_impact,
     foreseen_span,
@@ -33,8 +39,8 @@ from systems.collision.driven.kernels.paths import (
     take_back,
     went_too_far,
 )
-from systems.collision.kernels import compiled
-from systems.entries import Control
+from pinjoint.systems.collision.kernels import compiled
+from pinjoint.systems.entries import Control
 
 MOST_ENDS_TRIED = 60  # for a step that ends at an impact
 
