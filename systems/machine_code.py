@@ -1,10 +1,10 @@
 """Machine code of kernels, by numba, and the quick way to compile large programs of them.
 
 Plain numba optimises each part with everything that it calls, and makes machine code of it, although only the entry
-is called from Python. Here a part is only translated to LLVM code (systems/translation.py); the entry is linked with
-its parts, then optimised and compiled as a whole, in a fraction of the time. Only the entry's parts call one another, so
-that arguments which a part does not use are dropped: an array has nine, which would cost steps of a few rods a third of
-their time. What can be called from Python by itself is a part, too, where another kernel calls it.
+is called from Python. Here a part is only translated to LLVM code; the entry is linked with its parts, then optimised and
+compiled as a whole, in a fraction of the time. Only the entry's parts call one another, so that arguments which a part
+does not use are dropped: an array has nine, which would cost steps of a few rods a third of their time. What can be
+called from Python by itself is a part, too, where another kernel calls it.
 
 This uses inner classes of numba (from `_MachineCode` on). With the environment variable PINJOINT_PLAIN_NUMBA=1 all
 kernels are compiled by numba's own `njit` with the same options: programs compute the same bits and take longer to
@@ -31,7 +31,7 @@ import numba
 from numba import njit
 from numba.core.caching import NullCache
 from numba.core.codegen import JITCodeLibrary
-from numba.core.compiler import CompileResult
+from numba.core.compiler import Compiler, CompileResult
 from numba.core.registry import CPUDispatcher, cpu_target
 from numba.core.runtime.nrt import rtsys
 from numba.core.serialize import dumps
@@ -41,7 +41,6 @@ from numba.extending import typeof_impl
 from pinjoint.components.language import tr
 from pinjoint.systems import cache, is_ours
 from pinjoint.systems.kernels import PLAIN, Kernel, Use
-from pinjoint.systems.translation import LeanCompiler
 
 _PROCESSOR = repr(cpu_target.target_context.codegen().magic_tuple())
 
@@ -256,7 +255,7 @@ class _PartCode(JITCodeLibrary):
         """Do nothing: only machine code has an environment, which is set once that is there."""
 
 
-class _PartCompiler(LeanCompiler):
+class _PartCompiler(Compiler):
     """Compiles a part as far as LLVM code."""
 
     def __init__(self, typing: Any, target: Any, library: Any, *rest: Any) -> None:
@@ -294,7 +293,7 @@ class _EntryCode(JITCodeLibrary):
         super()._optimize_final_module()
 
 
-class _EntryCompiler(LeanCompiler):
+class _EntryCompiler(Compiler):
     """Compiles an entry with its parts to machine code that can be cached."""
 
     def __init__(self, typing: Any, target: Any, library: Any, *rest: Any) -> None:

@@ -69,10 +69,10 @@ SMALL = 50  # rods or discs up to which the interpreted form may well take all s
 LARGE = 300  # rods or discs from which on one step, interpreted, takes as long as a picture
 LONGEST_CALL = 0.05  # s, interpreted
 LONGEST_WORK = 2**15  # counted operations of a call that nothing divides: about as much, interpreted
-OPERATIONS_PER_BYTE = 90  # of the interpreter's code, that are interpreted while it is compiled
+OPERATIONS_PER_BYTE = 130  # of the interpreter's code, that are interpreted while it is compiled
 BEFORE_COMPILING = 1.0  # s of interpreting, for each that compiling is expected to take
 SECONDS_PER_BYTE = (
-    1.3e-4  # of the interpreter's code, that compiling takes; for a machine that has compiled nothing yet
+    2e-4  # of the interpreter's code, that compiling takes; for a machine that has compiled nothing yet
 )
 
 UNCOMPILED: list[str] = []  # sentences: what could not be compiled, and why

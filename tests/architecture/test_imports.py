@@ -24,9 +24,9 @@ NAMES = {top: f"pinjoint.{top}" for top in ("components", "systems", RESOURCES)}
     "game": "pinjoint"
 }  # of folders
 WINDOW = ("systems/render/pygame_*.py", "systems/input/pygame_*.py", "game/app.py")
-COMPILER = ("systems/machine_code.py", "systems/translation.py")  # numba is imported as soon as it is
-COMPILED = (*COMPILER, "systems/program/*.py")
-FORMS = ("interpreter", "kernels", "machine_code", "translation")
+COMPILER = "systems/machine_code.py"  # numba is imported as soon as it is
+COMPILED = (COMPILER, "systems/program/*.py")
+FORMS = ("interpreter", "kernels", "machine_code")
 SHARED = ("is_ours", "base", "broad_phase", "cache", "entries", "islands", *FORMS, "program")  # by all systems
 COMPOSED = ("program", "run", "catalogue.py")  # of what other folders of systems hold
 MODULES_OF = {"pygame-ce": "pygame", "pillow": "PIL"}  # distributions whose module has another name
@@ -82,7 +82,7 @@ def broken_rule(path: str, name: str) -> str | None:
     if top == "pygame" and not within(path, WINDOW):
         return "pygame is imported only by the window's backends"
     if top == "numba" and not within(path, COMPILED):
-        return "numba is imported only by machine_code.py, translation.py and the step program"
+        return "numba is imported only by machine_code.py and the step program"
     return None
 
 
@@ -167,7 +167,7 @@ def test_no_modules_import_each_other() -> None:
 
 def modules(layer: str) -> list[str]:
     """The modules of a layer that are there without a window and before anything is compiled."""
-    backends = (*WINDOW, *COMPILER, "*/__main__.py")
+    backends = (*WINDOW, COMPILER, "*/__main__.py")
     paths = [path for path in files() if path.split("/")[0] == layer and not within(path, backends)]
     return [module_name(path) for path in paths]
 
