@@ -35,7 +35,7 @@ class Elsewhere:
     """What is compiled in another process, and loaded by a thread of this one while its other threads go on.
 
     ended: the jobs that were done, with what went wrong, or "". lacking: those of which it waits for the documents.
-    compiles: False if nothing ever is compiled.
+    compiles: False if nothing ever is compiled. can_load: machine code could be loaded, so far.
     """
 
     def __init__(self, *, compiles: bool = True) -> None:
@@ -45,7 +45,7 @@ class Elsewhere:
         self._compiles = compiles
         self._needed: Jobs = {}
         self._later: Jobs = {}
-        self._can_load = compiles
+        self.can_load = compiles
         self._process: subprocess.Popen[str] | None = None
         self._at_work: list[Job] = []
         self._urgent = False  # what is compiled now is needed
@@ -101,13 +101,13 @@ class Elsewhere:
             try:
                 if module.is_loaded:
                     continue
-                if self._can_load and module.is_compiled() and module.load_kept():
+                if self.can_load and module.is_compiled() and module.load_kept():
                     return
                 if not self.is_ready(module):
                     module.rewrite_all()
                     return
             except Exception as error:  # such as a compiler that is damaged
-                self._can_load = False
+                self.can_load = False
                 tell(slower(tr("machine code cannot be loaded ({error})", error=error)))
                 return
 

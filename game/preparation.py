@@ -33,6 +33,7 @@ from pinjoint.systems.physics.system import (
     Slackness,
 )
 from pinjoint.systems.plasticity.system import FirstYield, Strength, Yielding
+from pinjoint.systems.program.binding import is_our_own
 from pinjoint.systems.program.compiler import (
     LARGE,
     LOG,
@@ -70,8 +71,8 @@ def is_live(model: Model) -> bool:
 class Preparation(System):
     """Has another process compile what the open model runs with, then what it may come to need.
 
-    Runs begin, interpreted, meanwhile, and go on with machine code. What would be too slow waits, and kernels of mods that
-    have no plain form. PINJOINT_COMPILE=always has all models wait, =never none.
+    Runs begin, interpreted, meanwhile, and go on with machine code. What would be too slow waits, and models on which
+    kernels of mods act. PINJOINT_COMPILE=always has all models wait, =never none.
     """
 
     name = "programs.preparation"
@@ -195,7 +196,7 @@ class Preparation(System):
             self._asked is not Compile.ALWAYS
             and is_live(simulation.model)
             and impacts <= LONGEST_IMPACT
-            and not any(map(self._is_refused, jobs))
+            and all(map(is_our_own, simulation.plan))
         ):
             jobs = [(PARTING.name,)] if parting > LONGEST_WORK else []
         left = [job for job in jobs if not self._is_ready(job)]
@@ -226,17 +227,12 @@ class Preparation(System):
         parting, impacts = self._worked[1]
         return 0 if armed else parting, impacts
 
-    def _is_refused(self, job: Job) -> bool:
-        """True if it is known that something of it cannot be interpreted."""
-        module = self._modules.get(job)
-        return module is not None and bool(module.refusal)
-
     def _is_ready(self, job: Job) -> bool:
         """True if nothing has to wait for a job: it is loaded, or cannot be."""
         if job not in self._modules:
             return False
-        module = self._modules[job]
-        return module is None or module.is_loaded or job in self._given_up
+        module, given_up = self._modules[job], job in self._given_up or not self.elsewhere.can_load
+        return module is None or module.is_loaded or given_up
 
     def raster(self) -> Raster | None:
         """The raster of large pictures, as soon as it is loaded."""

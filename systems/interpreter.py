@@ -5,16 +5,21 @@ reads five times as fast, when a kernel is entered, and are put back when it ret
 of machine code is replaced:
 
     x / 0                 is infinite or not a number, and raises nothing; so with roots, powers, sines, …
-    x ** 2                is x * x; other whole exponents are products too
-    math.hypot, np.sin    are those of the C library
+    x ** 2                is x * x
+    math.hypot            is that of the C library
     a[i, j]               is a[i][j], and a.shape[0] is len(a)
     Enum.MEMBER, CONSTANT are the numbers that they stand for
+
+That is all that Pinjoint's own kernels need. Kernels of mods are interpreted only where nothing may be compiled, by the
+same rules, which do not cover all that numba does: whole numbers beyond 64 bits, other whole exponents, functions that
+overflow, or two kinds of numbers in one name may give other bits then, or an error.
 """
 
 from __future__ import annotations
 
 import ast
 import copy
+import inspect
 import linecache
 import math
 import threading
@@ -33,7 +38,7 @@ Interpreted = Callable[..., Any]
 
 
 class NoPlainForm(Exception):
-    """A kernel that cannot be interpreted; the message says what in it, without a full stop."""
+    """A kernel that cannot be interpreted, as its source is not known; the message says so, without a full stop."""
 
 
 # --- arithmetic ------------------------------------------------------------------------------------
@@ -61,55 +66,8 @@ def _power(x: float, y: float) -> float:
         return _NAN
 
 
-def _whole_power(x: float, n: int) -> float:
-    """x to a constant whole power, by repeated squaring, as compiled."""
-    left, result, square = abs(n), 1.0, x
-    while left:
-        if left & 1:
-            result = result * square
-        left >>= 1
-        square = square * square
-    if n >= 0:
-        return result
-    return 1.0 / result if result else _quotient(1.0, result)
-
-
-def _inverse_power(x: float, n: int) -> float:
-    """x to a constant whole power below 0, which raises ZeroDivisionError as compiled."""
-    return 1.0 / _whole_power(x, -n)
-
-
 def _sqrt(x: float) -> float:
     return math.sqrt(x) if x >= 0.0 else _NAN
-
-
-def _root(x: float) -> float:
-    """x ** 0.5 as compiled: not pow() of the C library, but a root."""
-    return math.sqrt(x + 0.0) if x >= 0.0 else _INFINITE if x == -_INFINITE else _NAN
-
-
-def _floor_divided(x: Any, y: Any) -> Any:
-    if y:
-        return _in_64_bits(x // y)
-    return 0 if isinstance(y, int) else _quotient(x, y)
-
-
-def _remainder(x: Any, y: Any) -> Any:
-    if y:
-        return x % y
-    return 0 if isinstance(y, int) else _NAN
-
-
-def _in_64_bits(x: Any) -> Any:
-    """A whole number, or a float, as it is. Raises OverflowError where nobody knows what machine code computes."""
-    if isinstance(x, float) or _LEAST <= x < _MOST:
-        return x
-    raise OverflowError("a whole number of more than 64 bits")
-
-
-def _checked(rounding: Callable[[float], int]) -> Callable[[float], int]:
-    """A whole number. Raises OverflowError or ValueError for what has none in 64 bits: the optimiser makes up any."""
-    return lambda x: int(_in_64_bits(rounding(x)))
 
 
 def _hypot(x: float, y: float) -> float:
@@ -120,7 +78,7 @@ def _hypot(x: float, y: float) -> float:
         return _INFINITE if x == x and y == y else _NAN
 
 
-def _quiet(function: Callable[..., float], overflow: float = _INFINITE) -> Callable[..., float]:
+def _quiet(function: Callable[..., float]) -> Callable[..., float]:
     """A function of the C library that raises nothing."""
 
     def computed(*given: float) -> float:
@@ -129,25 +87,9 @@ def _quiet(function: Callable[..., float], overflow: float = _INFINITE) -> Calla
         except ValueError:
             return _NAN
         except OverflowError:
-            return overflow
+            return math.copysign(_INFINITE, given[0])
 
     return computed
-
-
-def _logarithm(function: Callable[[float], float], pole: float = 0.0) -> Callable[[float], float]:
-    """A logarithm, with the place where it is infinite."""
-    return lambda x: function(x) if x > pole else -_INFINITE if x == pole else _NAN
-
-
-def _sinh(x: float) -> float:
-    try:
-        return math.sinh(x)
-    except OverflowError:
-        return math.copysign(_INFINITE, x)
-
-
-def _atanh(x: float) -> float:
-    return math.atanh(x) if -1.0 < x < 1.0 else _quotient(x, 0.0) if abs(x) == 1.0 else _NAN
 
 
 def _whole(rounding: Callable[[float], int]) -> Callable[[float], int]:
@@ -157,12 +99,6 @@ def _whole(rounding: Callable[[float], int]) -> Callable[[float], int]:
         return rounding(x) if -_MOST < x < _MOST else _LEAST
 
     return converted
-
-
-def _zeros(shape: Any, *_: Any) -> list[Any]:
-    if isinstance(shape, tuple) and len(shape) > 1:
-        return [_zeros(shape[1:]) for _ in range(shape[0])]
-    return [0.0] * (shape[0] if isinstance(shape, tuple) else shape)
 
 
 def _fill(row: list[Any], span: slice, value: Any) -> None:
@@ -177,67 +113,21 @@ def _sum(rows: list[Any], column: int) -> float:
     return total
 
 
-def _rounded(rounding: Callable[[float], int]) -> Callable[[float], float]:
-    """A rounded float, with the sign that it had."""
-    return lambda x: math.copysign(float(rounding(x)), x) if abs(x) < 2.0**52 else x
-
-
-_SAME = {
-    name: getattr(math, name) for name in ("copysign", "frexp", "fabs", "isnan", "isinf", "isfinite", "atan")
-}
-_RAISING = (
-    "sin",
-    "cos",
-    "tan",
-    "asin",
-    "acos",
-    "cosh",
-    "tanh",
-    "asinh",
-    "acosh",
-    "fmod",
-    "degrees",
-    "radians",
-    "expm1",
-)
-_IN_C: dict[str, Any] = {
-    **_SAME,
-    **{name: _quiet(getattr(math, name)) for name in (*_RAISING, "exp", "exp2", "ldexp", "atan2", "erf")},
+_AS_COMPILED: dict[str, Any] = {
     "sqrt": _sqrt,
     "hypot": _hypot,
-    "sinh": _sinh,
-    "atanh": _atanh,
-    **{name: _logarithm(getattr(math, name)) for name in ("log", "log2", "log10")},
-    "log1p": _logarithm(math.log1p, -1.0),
     "pow": _power,
     "floor": _whole(math.floor),
     "ceil": _whole(math.ceil),
-    "trunc": _whole(math.trunc),
-    "nextafter": math.nextafter,
+    "int64": int,
 }
-_NUMPY = {
-    "abs": abs, "absolute": abs, "arctan": math.atan, "arctan2": _IN_C["atan2"], "power": _power,
-    **{f"arc{name}": _IN_C[f"a{name}"] for name in ("sin", "cos", "sinh", "cosh", "tanh")},
-    "sign": lambda x: math.copysign(1.0, x) if x and x == x else x, "deg2rad": math.radians, "rad2deg": math.degrees,
-    **{name: _rounded(getattr(math, name)) for name in ("floor", "ceil", "trunc")},
-    "minimum": lambda a, b: a if a <= b or a != a else b, "maximum": lambda a, b: a if a >= b or a != a else b,
-    "float64": float, "int64": int, "intp": int, "bool_": bool, "zeros": _zeros, "empty": _zeros,
-}  # fmt: skip
 
 
-def _like_machine_code(value: Any, name: str) -> Any:
-    """What stands for math.name or np.name."""
-    if value is math:
-        return _IN_C.get(name, getattr(math, name))
-    if name in _NUMPY:
-        return _NUMPY[name]
-    return _IN_C.get(name, getattr(np, name))
-
-
-def library_of(value: Any) -> Any:
-    """math or numpy, if the value is a function of it; None otherwise."""
-    name = getattr(value, "__name__", "")
-    return next((library for library in (math, np) if name and getattr(library, name, None) is value), None)
+def _like_machine_code(library: Any, name: str) -> Any:
+    """What stands for a function of math or numpy; the other functions of numpy stay what they are."""
+    if name in _AS_COMPILED:
+        return _AS_COMPILED[name]
+    return _quiet(getattr(math, name)) if hasattr(math, name) else getattr(library, name)
 
 
 # --- rewriting -------------------------------------------------------------------------------------
@@ -266,23 +156,9 @@ _TEMPORARY = "t{}__"  # names that end like this are found in no kernel
 _HELPERS = {
     "quotient__": _quotient,
     "power__": _power,
-    "whole_power__": _whole_power,
-    "inverse_power__": _inverse_power,
-    "exp2__": _IN_C["exp2"],
     "root__": math.sqrt,
-    "half_power__": _root,
     "floor__": math.floor,
     "whole__": _whole(int),
-    **{
-        f"checked_{whole.__name__}__": _checked(whole)
-        for whole in (int, round, math.floor, math.ceil, math.trunc)
-    },
-    "float__": float,
-    "int_power__": pow,
-    "in_64_bits__": _in_64_bits,
-    "floor_divided__": _floor_divided,
-    "remainder__": _remainder,
-    "divided__": lambda x, y: (_floor_divided(x, y), _remainder(x, y)),
     "fill__": _fill,
     "part__": _Part,
     "sum__": _sum,
@@ -366,22 +242,17 @@ class _Rewriting(ast.NodeTransformer):
         ):  # found before, once: written twice, a quotient of quotients doubles with each of them
             first = ast.BoolOp(ast.Or(), [ast.Compare(early, [ast.Is()], [ast.Constant(None)]), first])
         return ast.copy_location(
-            ast.IfExp(first, ast.BinOp(a, ast.Div(), b), call_of("quotient__", a, b)), node
+            ast.IfExp(first, ast.BinOp(a, ast.Div(), b), _call_of("quotient__", a, b)), node
         )
 
     def _raised(self, node: ast.BinOp) -> ast.expr:
-        exponent = literal(node.right)
+        exponent = _literal(node.right)
         if exponent == 2:
             first, second = self._twice(node.left)
             return ast.copy_location(ast.BinOp(first, ast.Mult(), second), node)
-        if exponent == -1.0 and isinstance(exponent, float):
-            return self._divided(ast.copy_location(ast.BinOp(ast.Constant(1.0), ast.Div(), node.left), node))
-        if exponent == 0.5:
-            return ast.copy_location(call_of("half_power__", node.left), node)
-        if literal(node.left) == 2.0 and exponent is None:
-            return ast.copy_location(call_of("exp2__", node.right), node)
-        whole = isinstance(exponent, int) and not isinstance(literal(node.left), int)
-        return ast.copy_location(call_of("whole_power__" if whole else "power__", node.left, node.right), node)
+        if isinstance(exponent, int):
+            return node
+        return ast.copy_location(_call_of("power__", node.left, node.right), node)
 
     def visit_AugAssign(self, node: ast.AugAssign) -> ast.stmt:
         if not isinstance(node.op, ast.Div | ast.Pow):
@@ -397,7 +268,7 @@ class _Rewriting(ast.NodeTransformer):
         called = self._value(node.func)
         if called is math.sqrt or called is np.sqrt:
             first, second = self._twice(self.visit(node.args[0]))
-            computed = ast.IfExp(_at_least_zero(first), call_of("root__", second), ast.Constant(_NAN))
+            computed = ast.IfExp(_at_least_zero(first), _call_of("root__", second), ast.Constant(_NAN))
             return ast.copy_location(computed, node)
         if called is math.floor and len(node.args) == 1:
             return self._floor(node)
@@ -408,7 +279,7 @@ class _Rewriting(ast.NodeTransformer):
             column = node.func.value  # a[:, k]
             if isinstance(column, ast.Subscript) and isinstance(column.slice, ast.Tuple):
                 rows, place = self.visit(column.value), self.visit(column.slice.elts[1])
-                return ast.copy_location(call_of("sum__", rows, place), node)
+                return ast.copy_location(_call_of("sum__", rows, place), node)
         self.generic_visit(node)
         if name == "int" and len(node.args) == 1:
             node.func = ast.Name("whole__", ast.Load())
@@ -418,7 +289,7 @@ class _Rewriting(ast.NodeTransformer):
         """As _whole(), without a call."""
         first, second = self._twice(self.visit(node.args[0]))
         within = ast.Compare(ast.Constant(-_MOST), [ast.Lt(), ast.Lt()], [first, ast.Constant(_MOST)])
-        return ast.copy_location(ast.IfExp(within, call_of("floor__", second), ast.Constant(_LEAST)), node)
+        return ast.copy_location(ast.IfExp(within, _call_of("floor__", second), ast.Constant(_LEAST)), node)
 
     def _least_or_most(self, node: ast.Call, better: ast.cmpop) -> ast.expr:
         """The second argument where it is better, else the first; numbers that are none never are."""
@@ -443,16 +314,16 @@ class _Rewriting(ast.NodeTransformer):
 
     def visit_Subscript(self, node: ast.Subscript) -> ast.expr:
         if isinstance(node.value, ast.Attribute) and node.value.attr == "shape":
-            depth = literal(node.slice)
+            depth = _literal(node.slice)
             if isinstance(depth, int):
                 row = self.visit(node.value.value)
                 for _ in range(depth):
                     row = ast.Subscript(row, ast.Constant(0), ast.Load())
-                return ast.copy_location(call_of("len", row), node)
+                return ast.copy_location(_call_of("len", row), node)
         if isinstance(node.slice, ast.Slice):
             self.generic_visit(node)
             ends = [part or ast.Constant(None) for part in (node.slice.lower, node.slice.upper)]
-            return ast.copy_location(call_of("part__", node.value, *ends), node)
+            return ast.copy_location(_call_of("part__", node.value, *ends), node)
         if isinstance(node.slice, ast.Tuple):
             *outer, last = (self.visit(index) for index in node.slice.elts)
             row = self.visit(node.value)
@@ -467,7 +338,7 @@ class _Rewriting(ast.NodeTransformer):
         if isinstance(target, ast.Subscript) and isinstance(target.slice, ast.Slice):
             span = target.slice
             ends = [part or ast.Constant(None) for part in (span.lower, span.upper, span.step)]
-            filled = ast.Expr(call_of("fill__", target.value, call_of("slice", *ends), node.value))
+            filled = ast.Expr(_call_of("fill__", target.value, _call_of("slice", *ends), node.value))
             rewritten: ast.stmt = self.visit(ast.fix_missing_locations(ast.copy_location(filled, node)))
             return rewritten
         self.generic_visit(node)
@@ -486,17 +357,17 @@ def _plain(value: Any) -> Any:
     return int(value) if isinstance(value, IntEnum) else value
 
 
-def literal(node: ast.expr) -> Any:
+def _literal(node: ast.expr) -> Any:
     """The number, or another constant, that an expression is; None if it is none."""
     if isinstance(node, ast.Constant):
         return node.value
     if isinstance(node, ast.UnaryOp) and isinstance(node.op, ast.USub):
-        value = literal(node.operand)
+        value = _literal(node.operand)
         return -value if isinstance(value, int | float) else None
     return None
 
 
-def call_of(name: str, *arguments: ast.expr) -> ast.Call:
+def _call_of(name: str, *arguments: ast.expr) -> ast.Call:
     """The call of a function by name."""
     return ast.Call(ast.Name(name, ast.Load()), list(arguments), [])
 
@@ -506,10 +377,6 @@ def _at_least_zero(node: ast.expr) -> ast.expr:
 
 
 # --- functions -------------------------------------------------------------------------------------
-
-FORMS = (
-    "plain_forms__"  # in a generated module: returns plain forms of kernels that it calls, by their names there
-)
 
 
 def plain_function(function: Callable[..., Any]) -> Callable[..., Any]:
@@ -534,7 +401,7 @@ def in_lists(function: Callable[..., Any]) -> Interpreted:
     """
     plain = plain_function(function)
     if plain not in _rewritten:
-        _rewritten[plain] = rewritten(plain, definition(plain), plain.__globals__.get(FORMS, dict)())
+        _rewritten[plain] = _rewritten_in_lists(plain)
     return _rewritten[plain]
 
 
@@ -546,15 +413,17 @@ def rewrite(functions: Iterable[Callable[..., Any]]) -> None:
                 in_lists(function)
 
 
-def rewritten(plain: Any, node: ast.FunctionDef, forms: Mapping[str, Interpreted]) -> Interpreted:
-    """A function of this definition in lists. forms: plain forms of what it calls, as far as they are known."""
-    code, outside = plain.__code__, outside_of(plain)
+def _rewritten_in_lists(plain: Any) -> Interpreted:
+    code, node = plain.__code__, _definition(plain)
+    outside = plain.__globals__
+    if plain.__closure__:
+        outside = outside | inspect.getclosurevars(plain).nonlocals
     rewriting = _Rewriting(outside, {*code.co_varnames, *code.co_cellvars})
     module = ast.Module([ast.fix_missing_locations(rewriting.visit(node))], [])
-    scope: dict[str, Any] = {**_HELPERS, **forms}
+    scope: dict[str, Any] = dict(_HELPERS)
     exec(compile(module, code.co_filename, "exec"), scope)
     for name, value in rewriting.taken.items():
-        scope[name] = forms[name] if name in forms else _in_scope(value, name, scope)
+        scope[name] = _in_scope(value, name, scope)
     made: Any = scope[node.name]
     made.__defaults__ = plain.__defaults__
     return made  # type: ignore[no-any-return]
@@ -563,16 +432,13 @@ def rewritten(plain: Any, node: ast.FunctionDef, forms: Mapping[str, Interpreted
 def _in_scope(value: Any, name: str, scope: dict[str, Any]) -> Any:
     if isinstance(value, np.ndarray):
         return value.tolist()
-    if (library := library_of(value)) is not None:
-        return _like_machine_code(library, value.__name__)
     if not hasattr(value, "py_func"):
         return value
-    return _when_called(value, name, scope) if _is_ours(value.py_func) else in_lists(value)
-
-
-def _is_ours(plain: Any) -> bool:
-    """True for kernels that surely have a plain form, so that they need not be rewritten to know."""
-    return is_ours(plain.__module__) and plain not in _rewritten
+    plain = value.py_func
+    surely = (
+        is_ours(plain.__module__) and plain not in _rewritten
+    )  # of others it has to be seen whether there is source
+    return _when_called(value, name, scope) if surely else in_lists(value)
 
 
 def _when_called(function: Callable[..., Any], name: str, scope: dict[str, Any]) -> Interpreted:
@@ -588,26 +454,16 @@ def _when_called(function: Callable[..., Any], name: str, scope: dict[str, Any])
     return first_call
 
 
-def outside_of(plain: Any) -> Any:
-    if not plain.__closure__:
-        return plain.__globals__
-    enclosed = zip(plain.__code__.co_freevars, plain.__closure__, strict=True)
-    return {**plain.__globals__, **{name: cell.cell_contents for name, cell in enclosed}}
+_parsed: dict[str, dict[int, list[ast.FunctionDef]]] = {}  # by file, what of it is not rewritten yet
 
 
-_Defined = ast.FunctionDef | ast.Lambda
-
-
-_parsed: dict[str, dict[int, list[_Defined]]] = {}  # by file, what of it is not rewritten yet
-
-
-def _definitions(file: str) -> dict[int, list[_Defined]]:
+def _definitions(file: str) -> dict[int, list[ast.FunctionDef]]:
     """All functions in a file, by the line on which they, or their decorators, begin."""
     linecache.checkcache(file)
     lines = linecache.getlines(file)
     if not lines:
         raise NoPlainForm(f"there is no source of {file}")
-    found: dict[int, list[_Defined]] = {}
+    found: dict[int, list[ast.FunctionDef]] = {}
     try:
         parsed = ast.parse("".join(lines))
     except SyntaxError as error:  # it is another text, such as a page with the function in it
@@ -615,12 +471,10 @@ def _definitions(file: str) -> dict[int, list[_Defined]]:
     for node in ast.walk(parsed):
         if isinstance(node, ast.FunctionDef):
             found.setdefault(min([node.lineno, *(d.lineno for d in node.decorator_list)]), []).append(node)
-        elif isinstance(node, ast.Lambda):
-            found.setdefault(node.lineno, []).append(node)
     return found
 
 
-def definition(plain: Any) -> ast.FunctionDef:
+def _definition(plain: Any) -> ast.FunctionDef:
     """The definition of a function, to be changed: one that was changed before is read again."""
     code = plain.__code__
     node = _taken(code, _parsed.get(code.co_filename, {}))
@@ -629,29 +483,17 @@ def definition(plain: Any) -> ast.FunctionDef:
         node = _taken(code, _parsed[code.co_filename])
     if node is None:
         raise NoPlainForm(f"there is no source of {plain.__qualname__} in {code.co_filename}")
-    if isinstance(node, ast.Lambda):
-        body: list[ast.stmt] = [ast.Return(node.body)]
-        return ast.copy_location(ast.FunctionDef("lambda__", node.args, body, []), node)
     return node
 
 
-def _taken(code: CodeType, parsed: dict[int, list[_Defined]]) -> _Defined | None:
+def _taken(code: CodeType, parsed: dict[int, list[ast.FunctionDef]]) -> ast.FunctionDef | None:
     """The definition of this function, which is taken from those that were parsed; None if it is not there."""
     there = parsed.get(code.co_firstlineno, [])
-    same = [node for node in there if _compiles_to(code, node)]
+    same = [node for node in there if node.name == code.co_name]
     if not same:
         return None
     there.remove(same[0])
     return same[0]
-
-
-def _compiles_to(code: CodeType, node: _Defined) -> bool:
-    """True if this is the function, of several on one line."""
-    if not isinstance(node, ast.Lambda):
-        return node.name == code.co_name
-    body = node.body
-    place = body.lineno, body.end_lineno, body.col_offset, body.end_col_offset
-    return code.co_name == "<lambda>" and place in code.co_positions()
 
 
 # --- arrays in, arrays out -------------------------------------------------------------------------

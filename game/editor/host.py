@@ -32,7 +32,7 @@ class Window(Protocol):
 
 @dataclass(frozen=True)
 class Waiting:
-    """That a large model waits for its program to be compiled: for how long already, and in all, probably (s)."""
+    """That a model waits for its program to be compiled: for how long already, and in all, probably (s)."""
 
     seconds: float
     expected: float

@@ -199,6 +199,15 @@ def by_role(bound: Iterable[Bound]) -> dict[StepRole, list[Bound]]:
     }
 
 
+def is_our_own(system: StepSystem) -> bool:
+    """True if all kernels of a step system are Pinjoint's own; finding out loads none."""
+    declared = [getattr(system, name, "") for name in KERNELS]
+    modules = [
+        k.partition(":")[0] if isinstance(k, str) else plain_function(k).__module__ for k in declared if k
+    ]
+    return all(map(is_ours, modules))
+
+
 def bind(system: StepSystem, model: Model, kernel: str = "kernel") -> Bound:
     """Find a step system's kernel (or its `branch` or `margin`) and its parameters. Raises ProgramError."""
     try:

@@ -21,20 +21,17 @@ from functools import cache as once
 from functools import cached_property
 from itertools import islice
 from pathlib import Path
-from types import MappingProxyType, ModuleType, SimpleNamespace
+from types import ModuleType, SimpleNamespace
 from typing import Any
 
 from pinjoint.components.language import begun, tr
 from pinjoint.components.mistake import Mistake
 from pinjoint.systems import cache
-from pinjoint.systems.interpreter import FORMS, NoPlainForm, Rewriting, plain_function, rewrite
+from pinjoint.systems.interpreter import NoPlainForm, Rewriting, plain_function, rewrite
 from pinjoint.systems.kernels import Kernel, Use
-from pinjoint.systems.kinds import Kind, typed
+from pinjoint.systems.program.binding import ProgramError
 from pinjoint.systems.program.endless import ending, others_of
 from pinjoint.systems.program.identity import key_of, reached_from
-
-Kinds = tuple[Kind, ...]
-
 
 # --- which form ------------------------------------------------------------------------------------
 
@@ -103,7 +100,8 @@ class Unfinished(Exception):
 class GeneratedModule:
     """Generated source, with the kernels that it calls by name, in two forms: plain Python and machine code.
 
-    Both compute the same bits, so that one may follow the other between any two calls. functions: what Python may
+    Both compute the same bits, so that one may follow the other between any two calls. Nothing proves that of kernels that
+    others wrote: what calls some is compiled before its first call, unless nothing may be. functions: what Python may
     call, by name, as declared. spent: time that interpreting took in this process (s). portion: of what there is to do,
     such as steps, for one interpreted call, so that another form may soon follow.
     """
@@ -113,18 +111,16 @@ class GeneratedModule:
         name: str,
         contents: Callable[[], tuple[str, Mapping[str, Callable[..., Any]]]],
         warm_up: Callable[[], object] = lambda: None,
-        kinds: Mapping[str, Kinds] = MappingProxyType({}),
         needs: tuple[GeneratedModule, ...] = (),
     ) -> None:
         """name: of what it is for, which a process that compiles is given. contents: returns source and kernels; the
-        call imports them. warm_up: calls all functions; needed where types are not declared. kinds: of what kernels that
-        others wrote are given, by their names. needs: modules whose machine code its own calls.
+        call imports them. warm_up: calls all functions; needed where types are not declared. needs: modules whose machine
+        code its own calls.
         """
         self.name = name
         self.spent = 0.0
         self.refusal = ""
         self._contents = contents
-        self._kinds = kinds
         self._needs = needs
         self.warm_up = warm_up
         self._form: Any = None
@@ -155,9 +151,13 @@ class GeneratedModule:
         linecache.cache[shown] = len(source), None, source.splitlines(keepends=True), shown  # for tracebacks
         module = ModuleType(shown)
         vars(module).update(kernels)
-        vars(module)[FORMS] = lambda: {n: typed(kernels[n], kinds).plain for n, kinds in self._kinds.items()}
         exec(compile(source, shown, "exec"), vars(module))
         return module
+
+    @cached_property
+    def others(self) -> list[Callable[..., Any]]:
+        """The kernels that others wrote among those that it calls: interpreted, they might give other bits."""
+        return others_of(self._source_and_kernels[1].values())
 
     @property
     def functions(self) -> dict[str, Kernel]:
@@ -172,7 +172,9 @@ class GeneratedModule:
             Choice.changes += 1
             if Choice.compile is Compile.ALWAYS:
                 self.load()
-            else:
+            elif self.others and Choice.compile is not Compile.NEVER:
+                self.load_or_tell()
+            if self._form is None:
                 self._begin_interpreted()
         elif self.spent > self._patience and Choice.spent > STARTING and not self._compiled:
             self._lose_patience()
@@ -180,7 +182,7 @@ class GeneratedModule:
 
     @cached_property
     def rewritten(self) -> dict[str, Callable[..., Any]] | None:
-        """The interpreted functions, not timed; None where a kernel has no plain form, and `refusal` says why."""
+        """The interpreted functions, not timed; None where a kernel has no source, and `refusal` says which."""
         try:
             return {name: function.interpreted for name, function in self.functions.items()}
         except NoPlainForm as error:
@@ -208,10 +210,12 @@ class GeneratedModule:
             self.load_or_tell()
 
     def load_or_tell(self) -> None:
-        """Go on with machine code, or else interpreted, and tell why."""
+        """Go on with machine code, or else interpreted, and tell why. Raises ProgramError of kernels that others wrote."""
         try:
             self.load()
         except Exception as error:  # numba raises many kinds
+            if self.others and isinstance(error, ProgramError):
+                raise
             self._patience = math.inf
             tell(
                 tr(
@@ -256,8 +260,7 @@ class GeneratedModule:
 
     def _ended(self, functions: dict[str, Callable[..., Any]]) -> dict[str, Callable[..., Any]]:
         """The functions, which end the process where a kernel that others wrote never returns."""
-        others = others_of(self._source_and_kernels[1].values())
-        return {name: ending(f, others) for name, f in functions.items()} if others else functions
+        return {name: ending(f, self.others) for name, f in functions.items()} if self.others else functions
 
     def did(self, work: int) -> None:
         """Note how much the last call did, interpreted, so that the next one takes about LONGEST_CALL."""
@@ -364,21 +367,18 @@ def interpreted_here() -> list[GeneratedModule]:
 
 _loading = threading.RLock()
 _interpreted: list[GeneratedModule] = []
-_modules: dict[Any, GeneratedModule] = {}  # by source, kernels and kinds
+_modules: dict[Any, GeneratedModule] = {}  # by source and kernels
 
 
 def generated(
     name: str,
     source: str,
     kernels: Mapping[str, Callable[..., Any]],
-    kinds: Mapping[str, Kinds] = MappingProxyType({}),
     needs: tuple[GeneratedModule, ...] = (),
 ) -> GeneratedModule:
-    """The module with this source, the same one each time. kinds, needs: as of GeneratedModule."""
-    called = ((name, id(kernel), kinds.get(name)) for name, kernel in sorted(kernels.items()))
-    return _modules.setdefault(
-        (source, *called), GeneratedModule(name, lambda: (source, kernels), kinds=kinds, needs=needs)
-    )
+    """The module with this source, the same one each time. needs: as of GeneratedModule."""
+    called = ((name, id(kernel)) for name, kernel in sorted(kernels.items()))
+    return _modules.setdefault((source, *called), GeneratedModule(name, lambda: (source, kernels), needs=needs))
 
 
 def entries_to(kernels: Mapping[str, Callable[..., Any]]) -> tuple[str, dict[str, Callable[..., Any]]]:

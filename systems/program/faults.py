@@ -4,13 +4,13 @@ from __future__ import annotations
 
 import traceback
 from collections.abc import Callable, Iterable
+from numbers import Real
 from typing import Any
 
-from pinjoint.components.language import marked, plural, tr
+from pinjoint.components.language import marked, tr
 from pinjoint.components.model import Model
 from pinjoint.systems.base import Integrator
-from pinjoint.systems.interpreter import NoPlainForm, plain_function
-from pinjoint.systems.kinds import Array, Kind, kind_of_dtype, typed
+from pinjoint.systems.interpreter import NoPlainForm, in_lists, plain_function, rewrite
 from pinjoint.systems.program.binding import PROVIDED, Bound, ProgramError, shape_given
 from pinjoint.systems.program.compiler import Choice, Compile
 
@@ -40,46 +40,31 @@ def _dtype_of(b: Bound, parameter: str, model: Model) -> Any:
     return model.tables[table].fields[column].storage
 
 
-def kinds_of(b: Bound, model: Model) -> tuple[Kind, ...]:
-    """The kinds of what a kernel gets."""
-    if b.each == "loads":
-        return "f", Array("f", 1), "i"
-
-    def kind_of(parameter: str) -> Kind:
-        dtype = _dtype_of(b, parameter, model)
-        kind: Kind = "f" if dtype is None else kind_of_dtype(dtype)
-        for width in reversed(shape_given(b, parameter, model)):
-            kind = (kind,) * width
-        return kind
-
-    return tuple(map(kind_of, b.parameters))
-
-
-def check_results(bound: Iterable[Bound], model: Model) -> None:
-    """Raise ProgramError for the first kernel of others that, interpreted, does not return what it must."""
+def check_plain_forms(bound: Iterable[Bound]) -> None:
+    """Raise ProgramError for the first kernel of others that has no source, where nothing may be compiled."""
+    if Choice.compile is not Compile.NEVER:
+        return
     for b in bound:
-        if not b.is_ours and (problem := _problem_interpreted(b, model)):
-            raise ProgramError(problem, b.system)
+        try:
+            rewrite([b.function])
+        except NoPlainForm as reason:
+            raise ProgramError(
+                tr(
+                    "The kernel of {system} cannot be interpreted: {reason}. PINJOINT_COMPILE=never forbids compiling it;"
+                    " leave that out.",
+                    system=b.system.name,
+                    reason=str(reason),
+                ),
+                b.system,
+            ) from reason
 
 
-def _problem_interpreted(b: Bound, model: Model) -> str:
-    try:
-        made = typed(b.function, kinds_of(b, model)).result
-    except NoPlainForm as reason:
-        if Choice.compile is not Compile.NEVER:
-            return ""  # it is compiled at once
-        return tr(
-            "The kernel of {system} cannot be interpreted: {reason}. PINJOINT_COMPILE=never forbids compiling it; leave that"
-            " out.",
-            system=b.system.name,
-            reason=str(reason),
-        )
+def wrong_result(b: Bound, made: Any) -> str:
+    """What is wrong with what a kernel returned, interpreted, as a sentence; "" if nothing is."""
     numbers = made if isinstance(made, tuple) else (made,)
-    if len(numbers) == _count(b) and all(isinstance(kind, str) and kind for kind in numbers):
+    if len(numbers) == _count(b) and all(isinstance(number, Real) for number in numbers):
         return ""
-    nested = any(isinstance(kind, tuple) for kind in numbers)
-    said = tr("tuples") if nested else plural("1 number", "{count} numbers", len(numbers))
-    return _wrong_result(b, said if made else tr("nothing"))
+    return _wrong_result(b, tr("nothing") if made is None else f"{made!r:.40}")
 
 
 def _wrong_result(b: Bound, made: str) -> str:
@@ -138,13 +123,11 @@ def failure_of(b: Bound, error: Exception) -> str:
     )
 
 
-def form_of(b: Bound, model: Model) -> Callable[..., Any]:
-    """A kernel as Python calls it with numbers: interpreted, or compiled where it has machine code only."""
+def form_of(b: Bound) -> Callable[..., Any]:
+    """A kernel as Python calls it with numbers: interpreted, or compiled where there is no source of it."""
     try:
-        plain = typed(b.function, kinds_of(b, model)).plain
+        plain = in_lists(b.function)
     except NoPlainForm:
-        if b.is_ours:
-            return b.function
         if Choice.compile is Compile.NEVER:
             raise
         from pinjoint.systems.machine_code import machine_code
@@ -155,9 +138,9 @@ def form_of(b: Bound, model: Model) -> Callable[..., Any]:
 
 
 def problem_of(b: Bound, model: Model) -> str:
-    """The fault of a kernel, compiled by itself, as a sentence; "" if there is none."""
+    """The fault of a kernel, compiled by itself, as a sentence; "" if there is none, or if nothing may be compiled."""
     if Choice.compile is Compile.NEVER:
-        return "" if b.is_ours else _problem_interpreted(b, model)
+        return ""
     try:
         made = _result_type(b, model)
     except Exception as failure:  # numba raises many kinds

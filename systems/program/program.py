@@ -26,9 +26,9 @@ from pinjoint.systems.physics.kernels import conserved
 from pinjoint.systems.program.between import Between
 from pinjoint.systems.program.binding import Bound, ProgramError, bind, find
 from pinjoint.systems.program.block_writer import BlockWriter
-from pinjoint.systems.program.compiler import Choice, Compile, GeneratedModule, generated
+from pinjoint.systems.program.compiler import GeneratedModule, generated
 from pinjoint.systems.program.controlled_writer import ControlledWriter
-from pinjoint.systems.program.faults import check_results, explain, failure_of, kinds_of
+from pinjoint.systems.program.faults import check_plain_forms, explain, failure_of
 from pinjoint.systems.program.near_pairs import NearPairs
 from pinjoint.systems.program.reference_laws import in_turn
 from pinjoint.systems.program.writer import VERY_MANY, Writer, sides_of
@@ -72,13 +72,12 @@ def module_of(
     model: Model, systems: Sequence[StepSystem], integrator: Integrator, form: str
 ) -> GeneratedModule:
     """The module of the program of a plan, in that form, which is only written."""
-    return _module(_writer(model, systems, integrator, form), model, _between(systems))
+    return _module(_writer(model, systems, integrator, form), _between(systems))
 
 
-def _module(writer: Writer, model: Model, between: Between | None) -> GeneratedModule:
-    kinds = {b.call: kinds_of(b, model) for b in writer.kernels if not b.is_ours}
+def _module(writer: Writer, between: Between | None) -> GeneratedModule:
     needs = (between.module,) if between is not None else ()
-    return generated(marked("the step program"), writer.source(), writer.names, kinds, needs)
+    return generated(marked("the step program"), writer.source(), writer.names, needs)
 
 
 def _between(systems: Iterable[StepSystem]) -> Between | None:
@@ -107,16 +106,15 @@ class Program:
         self.integrator = integrator
         self._writer = _writer(model, systems, integrator, form)
         self.between = _between(systems)
-        self.module = _module(self._writer, model, self.between)
+        self.module = _module(self._writer, self.between)
         self.measures = np.zeros(len(Measure))
         self.follows_state = not self._writer.working and all(b.follows_state for b in self._writer.bound)
         self.failure: ProgramError | None = None
-        self._types: dict[str, Any] = {}
         self._state_revision = -1
         self.bind()
         present = weakref.ref(self)  # the module lives longer
         self.module.warm_up = lambda: program._call_all() if (program := present()) is not None else None
-        check_results(self._writer.kernels, model)
+        check_plain_forms(self._writer.kernels)
         self.module.begin(self._rows("rods"))
         if not self.module.is_loaded:
             self._call_all()
@@ -186,7 +184,6 @@ class Program:
         extra: dict[str, Any] = {}
         for system in self.systems:
             extra.update(bind(system, model).stored_arrays)
-        self._heed_types({name: array.dtype for name, array in extra.items()})
         written = {w.replace(".", "_", 1): w for b in self._writer.commits for w in b.system.writes}
         extra |= {name: self._storage(path) for name, path in written.items()}
         self._near = NearPairs(model, [b.cutoff for b in self._writer.pairs]) if self._writer.pairs else None
@@ -223,12 +220,6 @@ class Program:
         controls = self.integrator.estimates_error and settings.time_step is None
         self.tolerance = settings.tolerance if controls else 0.0
         self._state_revision = -1
-
-    def _heed_types(self, types: dict[str, Any]) -> None:
-        """Go on compiled where arrays of a system hold numbers of another type than before."""
-        if self._types not in ({}, types) and Choice.compile is not Compile.NEVER:
-            self.load()
-        self._types = types
 
     # --- events ------------------------------------------------------------------------------------
 

@@ -20,7 +20,7 @@ from pinjoint.components.rod import bends
 from pinjoint.systems.base import StepSystem
 from pinjoint.systems.program.binding import Bound, ProgramError, StepRole, bind, by_role, written_row
 from pinjoint.systems.program.compiler import Choice, Compile, generated
-from pinjoint.systems.program.faults import failure_of, form_of
+from pinjoint.systems.program.faults import failure_of, form_of, wrong_result
 from pinjoint.systems.program.loops import RodLoop
 from pinjoint.systems.program.names import DRIFT, SHIFT, SPUN, TURNED
 from pinjoint.systems.program.near_pairs import pairs_within
@@ -57,11 +57,13 @@ class KernelRows:
 
     def of(self, bound: Bound) -> Numbers:
         """What the kernel gives for each row, shape (rows, results)."""
-        called = form_of(bound, self.model)
+        called = form_of(bound)
         try:
-            rows = [np.atleast_1d(called(*arguments)) for arguments in self._arguments(bound)]
+            rows = [called(*arguments) for arguments in self._arguments(bound)]
         except Exception as error:
             raise ProgramError(failure_of(bound, error), bound.system) from error
+        if problem := next(filter(None, (wrong_result(bound, row) for row in rows)), ""):
+            raise ProgramError(problem, bound.system)
         return np.array(rows, dtype=np.float64).reshape(len(rows), -1)
 
     def seconds_per_call(self, bound: Bound) -> float:

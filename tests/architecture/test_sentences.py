@@ -46,7 +46,6 @@ IN_PROGRAMS = (
     "systems/program/templates/",
     "systems/machine_code.py",
     "systems/interpreter.py",
-    "systems/kinds.py",
 )
 NAMES = {"limit reached"}  # statuses, which scripts compare
 PHRASE = re.compile(r"[A-Za-z]{2,}[,.:;]? [a-zA-Z]{2,}|[a-z]{3,}\.$")

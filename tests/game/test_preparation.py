@@ -332,9 +332,12 @@ def test_a_fault_of_the_compiler_costs_no_run_and_is_said_once(
     assert sum(process.jobs == compiler.processes[0].jobs for process in compiler.processes) == 1
 
 
+@pytest.mark.parametrize("name", ["app", "large"])
 def test_machine_code_that_cannot_be_loaded_costs_no_run(
-    app: App, compiler: Compiler, monkeypatch: pytest.MonkeyPatch
+    name: str, compiler: Compiler, monkeypatch: pytest.MonkeyPatch, request: pytest.FixtureRequest
 ) -> None:
+    app: App = request.getfixturevalue(name)
+
     def broken(module: GeneratedModule) -> bool:
         raise ImportError("numba needs another NumPy")
 
@@ -452,6 +455,22 @@ def test_what_another_process_compiles_is_what_a_mod_needs(mod: str) -> None:
             _assert_the_same_there(session)
     finally:
         mods.unload(mods.MODS[before:])
+
+
+def test_a_model_waits_while_a_law_of_a_mod_acts_on_it(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(Choice, "compile", Compile.SOON)
+    before, window = len(mods.MODS), Preparation()
+    try:
+        mods.load_all([ASSETS / "mods" / "wind"])
+        session = Session(models.load("isostatic"))
+        assert window.waits_for(session.simulation) is None
+        session.particles["A"].wind_area = 0.5  # type: ignore[attr-defined]
+        assert window.waits_for(session.simulation) is not None
+        session.undo()
+        assert window.waits_for(session.simulation) is None
+    finally:
+        mods.unload(mods.MODS[before:])
+        window.close()
 
 
 def _assert_the_same_there(session: Session) -> None:
