@@ -454,16 +454,19 @@ def _when_called(function: Callable[..., Any], name: str, scope: dict[str, Any])
     return first_call
 
 
-_parsed: dict[str, dict[int, list[ast.FunctionDef]]] = {}  # by file, what of it is not rewritten yet
+_Defined = ast.FunctionDef | ast.Lambda
 
 
-def _definitions(file: str) -> dict[int, list[ast.FunctionDef]]:
+_parsed: dict[str, dict[int, list[_Defined]]] = {}  # by file, what of it is not rewritten yet
+
+
+def _definitions(file: str) -> dict[int, list[_Defined]]:
     """All functions in a file, by the line on which they, or their decorators, begin."""
     linecache.checkcache(file)
     lines = linecache.getlines(file)
     if not lines:
         raise NoPlainForm(f"there is no source of {file}")
-    found: dict[int, list[ast.FunctionDef]] = {}
+    found: dict[int, list[_Defined]] = {}
     try:
         parsed = ast.parse("".join(lines))
     except SyntaxError as error:  # it is another text, such as a page with the function in it
@@ -471,6 +474,8 @@ def _definitions(file: str) -> dict[int, list[ast.FunctionDef]]:
     for node in ast.walk(parsed):
         if isinstance(node, ast.FunctionDef):
             found.setdefault(min([node.lineno, *(d.lineno for d in node.decorator_list)]), []).append(node)
+        elif isinstance(node, ast.Lambda):
+            found.setdefault(node.lineno, []).append(node)
     return found
 
 
@@ -483,17 +488,29 @@ def _definition(plain: Any) -> ast.FunctionDef:
         node = _taken(code, _parsed[code.co_filename])
     if node is None:
         raise NoPlainForm(f"there is no source of {plain.__qualname__} in {code.co_filename}")
+    if isinstance(node, ast.Lambda):
+        body: list[ast.stmt] = [ast.Return(node.body)]
+        return ast.copy_location(ast.FunctionDef("lambda__", node.args, body, []), node)
     return node
 
 
-def _taken(code: CodeType, parsed: dict[int, list[ast.FunctionDef]]) -> ast.FunctionDef | None:
+def _taken(code: CodeType, parsed: dict[int, list[_Defined]]) -> _Defined | None:
     """The definition of this function, which is taken from those that were parsed; None if it is not there."""
     there = parsed.get(code.co_firstlineno, [])
-    same = [node for node in there if node.name == code.co_name]
+    same = [node for node in there if _compiles_to(code, node)]
     if not same:
         return None
     there.remove(same[0])
     return same[0]
+
+
+def _compiles_to(code: CodeType, node: _Defined) -> bool:
+    """True if this is the function, of several on one line."""
+    if not isinstance(node, ast.Lambda):
+        return node.name == code.co_name
+    body = node.body
+    place = body.lineno, body.end_lineno, body.col_offset, body.end_col_offset
+    return code.co_name == "<lambda>" and place in code.co_positions()
 
 
 # --- arrays in, arrays out -------------------------------------------------------------------------

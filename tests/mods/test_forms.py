@@ -55,11 +55,7 @@ def factory(k):
         return -k * velocity[0]
     return made
 
-drag = factory(0.5)
-
-@compiled
-def half(x):
-    return 0.5 * x
+drag, half = factory(0.5), compiled(lambda x: 0.5 * x)
 
 @compiled
 def size(x, scale=2):
@@ -78,7 +74,7 @@ force = Forces.push
 
 
 def test_both_forms_give_the_same_bits(opened: Any) -> None:
-    """Kernels made by factories, in classes; called with keywords and defaults."""
+    """Kernels made by factories, in classes, of lambdas; called with keywords and defaults."""
     session = opened(Compile.NEVER, INTERPRETED)
     session.run(steps=30)
     assert is_interpreted(session)
