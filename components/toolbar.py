@@ -1,11 +1,11 @@
-"""Toolbar: buttons at the left edge of the window, and where they are: the same for drawing and for clicking."""
+"""Toolbar: buttons at the left edge of the window, and how many of them have room there."""
 
 from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass
 
-from pinjoint.components.camera import Rectangle, Viewport
+from pinjoint.components.camera import Viewport
 
 BUTTON = 30.0, 26.0  # points, width and height
 LEAST_HEIGHT = 23.5  # points of a button in a low window, before another column begins
@@ -31,13 +31,6 @@ class Tool:
     enabled: bool = True
 
 
-@dataclass(frozen=True)
-class Button(Rectangle):
-    """A tool and the rectangle of its button in pixels."""
-
-    tool: Tool
-
-
 Groups = tuple[tuple[Tool, ...], ...]
 
 
@@ -57,44 +50,25 @@ class Toolbar:
         The toolbar has as few columns as the height allows; where MOST_COLUMNS are too high, groups are folded into
         `more`, and where that does not help it is hidden.
         """
-        columns, _ = self._shown(window, unit)
+        columns, _, _ = self.shown(window, unit)
         width = round((columns * BUTTON[0] + 2 * EDGE) * unit) if columns else 0
         return Viewport(window.left, window.top, width, window.height)
 
-    def buttons(self, window: Viewport, unit: float) -> list[Button]:
-        """Where the buttons are; none where it is hidden."""
-        columns, groups = self._shown(window, unit)
-        buttons, top = [], EDGE
-        width, height = BUTTON
-        if columns:
-            height = min(height, (window.height / unit - _gaps(groups)) / _rows_of(groups, columns))
-        for number, group in enumerate(groups):
-            if number == len(groups) - 1:
-                top = window.height / unit - EDGE - _rows(group, columns) * height
-            for index, tool in enumerate(group):
-                row, column = divmod(index, columns)
-                left, right = (round((EDGE + at * width) * unit) for at in (column, column + 1))
-                upper, lower = (round((top + at * height) * unit) for at in (row, row + 1))
-                place = window.left + left, window.top + upper, right - left, lower - upper
-                buttons.append(Button(*place, tool))
-            top += _rows(group, columns) * height + GAP
-        return buttons
-
     def folded(self, window: Viewport, unit: float) -> tuple[tuple[Tool, ...], ...]:
         """The groups for which there is no room."""
-        _, groups = self._shown(window, unit)
+        _, groups, _ = self.shown(window, unit)
         return tuple(group for group in self.groups[:-1] if group not in groups)
 
-    def _shown(self, window: Viewport, unit: float) -> tuple[int, Groups]:
-        """The number of columns and the groups in them; none where it is hidden."""
-        if not self.groups or window.width < LEAST_WIDTH * unit:
-            return 0, ()
-        for groups in self._kept():
-            for columns in range(1, MOST_COLUMNS + 1):
-                least = _rows_of(groups, columns) * LEAST_HEIGHT + _gaps(groups)
-                if least * unit <= window.height:
-                    return columns, groups
-        return 0, ()
+    def shown(self, window: Viewport, unit: float) -> tuple[int, Groups, float]:
+        """The number of columns, the groups in them, and the points that a button is high; none where it is hidden."""
+        if self.groups and window.width >= LEAST_WIDTH * unit:
+            for groups in self._kept():
+                for columns in range(1, MOST_COLUMNS + 1):
+                    rows = sum(-(-len(group) // columns) for group in groups)
+                    room = window.height / unit - (len(groups) - 1) * GAP - 2 * EDGE
+                    if rows * LEAST_HEIGHT <= room:
+                        return columns, groups, min(BUTTON[1], room / rows)
+        return 0, (), 0.0
 
     def _kept(self) -> Iterator[Groups]:
         """All groups; then without the last ones, but for that at the bottom."""
@@ -102,16 +76,3 @@ class Toolbar:
         if self.more is not None:
             for count in range(len(self.groups) - 2, 1, -1):
                 yield (*self.groups[:count], (self.more, *self.groups[-1]))
-
-
-def _gaps(groups: Groups) -> float:
-    """Points above, between and below groups."""
-    return (len(groups) - 1) * GAP + 2 * EDGE
-
-
-def _rows_of(groups: Groups, columns: int) -> int:
-    return sum(_rows(group, columns) for group in groups)
-
-
-def _rows(group: tuple[Tool, ...], columns: int) -> int:
-    return -(-len(group) // columns)

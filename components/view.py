@@ -4,12 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from pinjoint.components.bent import AXIAL, middles
-from pinjoint.components.camera import LEAST_MARGIN, Camera, Viewport
+from pinjoint.components.camera import LEAST_MARGIN, Camera, Rectangle, Viewport
 from pinjoint.components.card import Card
 from pinjoint.components.field import Vector
 from pinjoint.components.kind import all_points
@@ -17,7 +18,7 @@ from pinjoint.components.menu import Menu
 from pinjoint.components.model import Model
 from pinjoint.components.rod import bends
 from pinjoint.components.slider import ARROW, SUPPORT, Place, SliderStack, under
-from pinjoint.components.toolbar import Button, Toolbar
+from pinjoint.components.toolbar import Toolbar
 
 CONVENTIONS = TEXTBOOK, THESIS = ("textbook", "thesis")  # of the force method
 
@@ -154,6 +155,24 @@ class Shape:
     note: str = field(default="", compare=False)
 
 
+@dataclass(frozen=True)
+class Hit(Rectangle):
+    """Where a press does something.
+
+    action: what; "": nothing, but what lies below does not get it; None: what the scene says. enabled: it would do
+    something now. item: what it is for, such as a tool, a box or a slider. at: the pixel where it acts, where that is not
+    the one that was pressed. wheel: what that does, up and down; None: it goes to what lies below. again: the second click
+    of a double click is another click.
+    """
+
+    action: str | None
+    enabled: bool = True
+    item: Any = None
+    at: Vector | None = None
+    wheel: tuple[str, str] | None = None
+    again: bool = False
+
+
 @dataclass
 class View:
     """How one model is shown in one viewport.
@@ -162,11 +181,11 @@ class View:
     heading: the word top left ("Pause"), or "". all_diagrams: force diagrams of all elements. quantity: which force
     diagrams show where rods bend, "N", "M" or "V".
     legend: show the meaning of colours. explains_all: of those of the pictures beside this one, too.
-    help: the page of keys that is shown, from 1; 0: none. keys: its lines (key, meaning). pages: how many there are.
+    help: the page of keys that is shown, from 1; 0: none. keys: the lines of all pages (key, meaning), while it is.
     pointer: the pixel under the mouse, or None outside. pixel_ratio: device pixels per point (HiDPI).
     forces_known: False while a large model waits for the program that computes forces; then no forces are shown.
     caption: lines at the top: a title, and facts about the model. page: text in place of the model.
-    pressed: the button of the toolbar that was pressed and is still under the pointer: it shows no tip.
+    pressed: what was pressed and is still under the pointer: it shows no tip.
     tool: "place", "rod", "support", "force" or "velocity" while clicks and drags make one, or "".
     preview: what is being drawn. toolbar: what can be clicked at the left edge; hidden with the legend.
     flashes: points (m) where particles collided just now, shape (k, 2).
@@ -199,8 +218,7 @@ class View:
     help: int = 0
     pixel_ratio: float = 1.0
     status: Status = field(default_factory=Status)
-    keys: list[tuple[str, str]] = field(default_factory=list)
-    pages: int = 0
+    keys: tuple[tuple[str, str], ...] = ()
     pointer: Vector | None = None
     tool: str = ""
     preview: Preview | None = None
@@ -208,7 +226,7 @@ class View:
     caption: tuple[str, ...] = ()
     page: Page | None = None
     toolbar: Toolbar = field(default_factory=Toolbar)
-    pressed: Button | None = None
+    pressed: Hit | None = None
     sliders: SliderStack = field(default_factory=SliderStack)
     menu: Menu | None = None
     theme: str = "light"
@@ -291,13 +309,6 @@ class View:
         """Show the structure in one piece, for what free bodies do not show; False if it was."""
         apart, self.free_bodies = self.free_bodies, False
         return apart
-
-    def button_at(self, pixel: Vector | None) -> Button | None:
-        """The button of the toolbar at a pixel."""
-        if pixel is None or not self.strip.contains(pixel):
-            return None
-        buttons = self.toolbar.buttons(self.camera.viewport, self.pixel_ratio)
-        return next((button for button in buttons if button.contains(pixel)), None)
 
     @property
     def canvas(self) -> Viewport:

@@ -31,7 +31,7 @@ from pinjoint.editor.context import FAULTS, Context
 from pinjoint.editor.dropping import open_dropped
 from pinjoint.editor.frame import Actions, Frame, HeadlessFrame, ShowView
 from pinjoint.editor.menu import IN_MENU
-from pinjoint.editor.routing import Layer, for_tools, layer, meaning
+from pinjoint.editor.routing import Layer, for_tools, hit_at, layer, meaning
 from pinjoint.editor.scenes import all_scenes, scene_systems
 from pinjoint.editor.scenes.files import FileScene
 from pinjoint.editor.sliders import slider_stack, sliders_of
@@ -49,8 +49,7 @@ from pinjoint.systems.catalogue import SYSTEMS, step_systems
 from pinjoint.systems.edit import Refusal
 from pinjoint.systems.edit.dividing import divide
 from pinjoint.systems.edit.pull import Pull
-from pinjoint.systems.input.bindings import FILES, FORMS, LIVE, TEXT, key_named, only_in_pause
-from pinjoint.systems.render.picture import Stage
+from pinjoint.systems.input.bindings import FILES, FORMS, LIVE, TEXT, help_lines, key_named, only_in_pause
 from pinjoint.systems.run.simulation import Simulation
 from pinjoint.systems.run.system import Time
 from pinjoint.systems.run.watch import watched
@@ -95,7 +94,6 @@ class Session(Context):
         self.on_resize: Callable[[], None] | None = None
         self.course: Course | None = None
         self._clicked: Layer | None = None  # what took the last press, if that was a click
-        self._blank = Model()  # what the footer and the card of a lesson are drawn over
         self.extent = (
             self.view.camera.viewport.width,
             self.view.camera.viewport.height,
@@ -380,7 +378,8 @@ class Session(Context):
         super().begin_document()
 
     def offer_tools(self) -> None:
-        """Let toolbar and sliders show what can be done now; where they are not seen they stay as they were."""
+        """Let toolbar, sliders and help show what can be done now; what is not seen stays as it was."""
+        self.view.keys = tuple(help_lines(self.scene)) if self.view.help else ()
         if not self.scenes.active.covers(self):
             self.view.toolbar, self.view.sliders = toolbar_of(self), slider_stack(self)
 
@@ -410,10 +409,11 @@ class Session(Context):
             self.open_files(key.removeprefix(FILES).splitlines())
             return
         pixel = self.pointer if pixel is None else _near(pixel)
-        here = layer(self, pixel)
+        hit = hit_at(self, key, pixel)
+        here = layer(self, hit)
         if key == "double click" and self._clicked not in (None, here):
             return  # its first click led here, and the second is not meant for what is here
-        (name, at), pressed = meaning(self, key, pixel), pixel
+        (name, at), pressed = meaning(self, key, pixel, hit), pixel
         if key == "escape" and self.fault and self.scene not in FORMS:
             self.faults_seen = len(FAULTS)
         elif name is not None:
@@ -422,7 +422,7 @@ class Session(Context):
                 self.on_press(key, pressed)
             if self.time_passes:
                 self.get_ready()
-            self.view.pressed = self.view.button_at(pixel)
+            self.view.pressed = hit
             left = self._left_for_tools() if for_tools(self, key, pixel) else ""
             if name != left:  # the tool that opens a scene closes it, too
                 self.act(name, at)
@@ -565,15 +565,6 @@ class Session(Context):
             if not blamed_on_mod(error):
                 raise
         return frame
-
-    @property
-    def stages(self) -> Sequence[Stage]:
-        """All that is drawn: models and forms of the active scene, each in its view, toolbar and footer."""
-        stages = list(self.scenes.active.stages(self))
-        if not self.scenes.active.covers(self):
-            stages.append((self.view.toolbar, self.view))
-        stages += [(self._blank, view) for view in (self.footer, self.beside) if view is not None]
-        return stages
 
     def update_view(self, elapsed: float = 0.0) -> None:
         """Bring what the view says about the run up to date, so many seconds after the last time."""

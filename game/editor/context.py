@@ -278,6 +278,7 @@ class Context(Workspace):
         self.lesson: Script | None = None
         self.course: Course | None = None
         self.beside: View | None = None
+        self.blank = Model()
         self.faults_seen = len(FAULTS)
 
     # --- documents ---------------------------------------------------------------------------------
@@ -444,6 +445,15 @@ class Context(Workspace):
     def focus(self) -> tuple[Model, View]:
         """The model that a pointer picks from, and its view."""
         return self.scenes.active.focus(self)
+
+    @property
+    def stages(self) -> Sequence[Stage]:
+        """All that is drawn: models and forms of the active scene, each in its view, toolbar and footer."""
+        stages = list(self.scenes.active.stages(self))
+        if not self.scenes.active.covers(self):
+            stages.append((self.view.toolbar, self.view))
+        stages += [(self.blank, view) for view in (self.footer, self.beside) if view is not None]
+        return stages
 
     def slider_at(self, pixel: Vector) -> Place | None:
         """The slider at a pixel, of whichever model that the scene shows."""

@@ -21,6 +21,7 @@ from pinjoint.systems.forms.results import told
 from pinjoint.systems.input.bindings import LIVE, help_lines
 from pinjoint.systems.render.help import help_pages
 from pinjoint.systems.render.overlays import BAR
+from pinjoint.systems.render.theme import load_theme
 
 COMPILING = marked("Compiling the program for this model, once: about {seconds:.0f} s left.")
 COMPILED_SOON = marked("Compiling the program for this model, once: nearly done.")
@@ -52,9 +53,6 @@ def show(context: Context, elapsed: float) -> None:
     view.heading = tr(scene.heading)
     view.shape = context.document.shapes.shown
     view.swing = context.document.shapes.swing(elapsed) if view.shape is not None else 1.0
-    pages = pages_of_help(context) if view.help else []
-    view.keys = pages[min(view.help, len(pages)) - 1] if pages else []
-    view.pages = len(pages)
     _show_readouts(context)
     _point_out(context)
     view.status = Status(
@@ -68,10 +66,11 @@ def show(context: Context, elapsed: float) -> None:
     )
 
 
-def pages_of_help(context: Context) -> list[list[tuple[str, str]]]:
-    """Pages of the keys of the active scene; where view.help is more than their number, the last one is shown."""
-    scene = context.scenes.active
-    return help_pages(help_lines(scene.name), scene.helped(context), context.view.pixel_ratio)
+def count_of_pages(context: Context) -> int:
+    """How many pages the keys of the active scene take; where view.help is more, the last one is shown."""
+    scene, view = context.scenes.active, context.view
+    theme = load_theme(view.theme)
+    return len(help_pages(tuple(help_lines(scene.name)), scene.helped(context), view.pixel_ratio, theme))
 
 
 def _show_readouts(context: Context) -> None:

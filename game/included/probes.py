@@ -20,8 +20,6 @@ from pinjoint.mods import App
 from pinjoint.paths import TIME, Quantity, quantity
 from pinjoint.systems.base import Phase, System
 from pinjoint.systems.edit import Refusal
-from pinjoint.systems.render.picture import panel_at
-from pinjoint.systems.render.theme import load_theme
 
 MOST = 20_000  # samples; beyond, every second one is dropped
 FEW = 3  # plots at a time
@@ -234,10 +232,9 @@ def panels(session: Context) -> Sequence[Readout]:
 
 
 def close(session: Context, pixel: Vector) -> None:
-    """Take away the plot whose panel is at a pixel."""
-    probes, (model, view) = probes_of(session), session.focus
-    panel = panel_at(model, view, load_theme(view.theme), pixel)
-    closed = _names(panel.readout) if panel is not None else ()
+    """Take away the plot whose panel was pressed."""
+    probes, pressed = probes_of(session), session.view.pressed
+    closed = _names(pressed.item) if pressed is not None else ()
     shown = zip(probes.all, panels(session), strict=True)
     probes.all = [probe for probe, readout in shown if _names(readout) != closed]
 

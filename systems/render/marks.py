@@ -6,6 +6,7 @@ Marks of which a picture holds hundreds are tuples, which are faster to make. `o
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass, field
 from typing import NamedTuple
 
@@ -13,6 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pinjoint.components.camera import Rectangle, Viewport
+from pinjoint.components.view import Hit
 from pinjoint.systems.render.theme import Colour
 
 Points = NDArray[np.float64]
@@ -152,13 +154,15 @@ Mark = Strokes | Fills | Bars | Stamps | Discs | Rectangles | Panel | Text
 class Picture:
     """Everything to be drawn in one viewport; without a background, over what is there already.
 
-    meanings: names of the colours that occur in it and mean something.
+    meanings: names of the colours that occur in it and mean something. hits: where a press does something, the topmost
+    last.
     """
 
     viewport: Viewport
     background: Colour | None
     marks: list[Mark] = field(default_factory=list)
     meanings: tuple[str, ...] = ()
+    hits: Sequence[Hit] = ()
 
     @property
     def texts(self) -> list[str]:

@@ -1,161 +1,110 @@
-"""Menu: where its entries are, for drawing and for clicking, and its marks."""
+"""The menu that is open: its entries in columns beside the place where it opened."""
 
 from __future__ import annotations
 
 import numpy as np
 
-from pinjoint.components.camera import Rectangle, Viewport
+from pinjoint.components.camera import Rectangle
 from pinjoint.components.field import Vector
-from pinjoint.components.language import begun, tr
-from pinjoint.components.menu import Menu
 from pinjoint.components.toolbar import Tool
-from pinjoint.components.view import View
-from pinjoint.systems.render.help import written_key
-from pinjoint.systems.render.marks import Mark, Panel, Strokes, Text, boxes
-from pinjoint.systems.render.theme import Theme, faded
-from pinjoint.systems.render.typography import font_size, shortened, text_width
+from pinjoint.components.view import Hit, View
+from pinjoint.systems.render.buttons import ink_of, tool_row
+from pinjoint.systems.render.layout import Column, Drawn, Gap, Paper, Part, Plate, Row, Text, in_columns, rule
+from pinjoint.systems.render.marks import Mark, Panel, Strokes
+from pinjoint.systems.render.theme import Colour, Theme, faded
 
-_SIZES = ((12.5, 22.0), (11.5, 19.0), (10.0, 16.0), (9.0, 13.0))  # points: type, and from entry to entry
-_PAD, _CHECK, _GAP = 10.0, 16.0, 20.0  # points: at the sides, for the check mark, between title and key
-_BETWEEN, _EDGE = 7.0, 4.0  # points between groups; above, below, and to the edges of the window
-_RADIUS = 6.0  # points
-
-
-def menu_of(view: View) -> MenuLayout | None:
-    """The menu that is open in a view: beside the place where it opened, with the largest type that fits."""
-    if view.menu is None:
-        return None
-    for size in _SIZES:
-        layout = MenuLayout(view.menu, view.camera.viewport, view.pixel_ratio, *size)
-        if layout.fits:
-            break
-    return layout
+_SIZES = 12.5, 11.5, 10.0, 9.0, 8.0  # points of its type, the largest in which an entry is whole
+_ROW, _LEAST = 21.0, 200.0  # points: of an entry, and across a column where not all have room
+_EDGE = 4.0  # points above, below, and to the edges of the window
 
 
-class MenuLayout:
-    """Places in pixels. frame: the whole menu. entries: a rectangle of each. rules: lines between groups."""
+def put_menu(paper: Paper, view: View, theme: Theme) -> None:
+    """The menu that is open in a view; a press beside it closes it.
 
-    def __init__(self, menu: Menu, window: Viewport, unit: float, points: float, row: float) -> None:
-        self.menu, self.unit, self.size, self.row = menu, unit, font_size(points, unit), row * unit
-        edge = _EDGE * unit
-        self.head = self.row if menu.title else 0.0
-        columns = self._even_columns(window.height - 4 * edge - self.head)
-        width = max(
-            [self._width(tool) for tool in menu.entries] + [text_width(menu.title, self.size, "semibold") / 2]
-        )
-        self.column = min(width + (2 * _PAD + _CHECK) * unit, (window.width - 2 * edge) / len(columns))
-        high = max(rows[-1][1] + self.row for rows in columns) + self.head + 2 * edge
-        wide = self.column * len(columns)
-        self.fits = high <= window.height - 2 * edge and width + (2 * _PAD + _CHECK) * unit <= self.column + 0.5
-        x, y = menu.at
-        beside = x + max(round(unit), 1)
-        left = beside if beside + wide <= window.right - edge else x - wide
-        top = y if y + high <= window.bottom - edge else y - high
-        left = min(max(left, window.left + edge), max(window.right - edge - wide, window.left))
-        top = min(max(top, window.top + edge), max(window.bottom - edge - high, window.top))
-        self.frame = Rectangle(left, top, wide, high)
-        self.entries: list[Rectangle] = []
-        self.rules: list[Rectangle] = []
-        for column, rows in enumerate(columns):
-            for is_rule, y in rows:
-                at = Rectangle(left + column * self.column, top + edge + self.head + y, self.column, self.row)
-                (self.rules if is_rule else self.entries).append(at)
-
-    def _width(self, tool: Tool) -> float:
-        key = text_width(written_key(tool.key), self.size) + _GAP * self.unit if tool.key else 0.0
-        return text_width(titled(tool), self.size) + key
-
-    def _even_columns(self, room: float) -> list[list[tuple[bool, float]]]:
-        """As few columns as the room above each other needs, about equally high."""
-        columns, high = self._columns(room), len(self.menu.entries) * self.row
-        least = high / len(columns)
-        lower = (
-            self._columns(least + number * self.row) for number in range(int((room - least) / self.row) + 1)
-        )
-        return next((even for even in lower if len(even) == len(columns)), columns)
-
-    def _columns(self, room: float) -> list[list[tuple[bool, float]]]:
-        """(is a rule, its top) of every line, in as many columns as the room above each other needs."""
-        columns, y, between = [list[tuple[bool, float]]()], 0.0, _BETWEEN * self.unit
-        for number, group in enumerate(self.menu.groups):
-            high = len(group) * self.row
-            if columns[-1] and y + between + min(high, room) > room:
-                columns.append([])
-                y = 0.0
-            elif number:
-                columns[-1].append((True, y + between / 2))
-                y += between
-            for _ in group:
-                if columns[-1] and y + self.row > room:
-                    columns.append([])
-                    y = 0.0
-                columns[-1].append((False, y))
-                y += self.row
-        return columns
-
-    def entry_at(self, pixel: Vector) -> int:
-        """The number of the entry at a pixel; -1: none."""
-        return next((number for number, place in enumerate(self.entries) if place.contains(pixel)), -1)
-
-    def pointed_at(self, pointer: Vector | None) -> int:
-        """The number of the entry that the pointer, else the keys, have come to; -1: none."""
-        if pointer is not None and pointer != self.menu.pointed and (under := self.entry_at(pointer)) >= 0:
-            return under
-        return self.menu.chosen
-
-    def beside(self, number: int, by: int) -> int:
-        """The entry nearest to this one in the column to the right (1) or left (-1) of it; the same without any."""
-        here = self.entries[max(number, 0)]
-        there = [
-            (abs(place.top - here.top), other)
-            for other, place in enumerate(self.entries)
-            if round((place.left - here.left) / self.column) == by
-        ]
-        return min(there)[1] if there else number
+    Where not all columns have room, those are shown that end with the one that keys have come to.
+    """
+    menu, window, u = view.menu, view.camera.viewport, view.pixel_ratio
+    if menu is None:
+        return
+    parts = _columns(view, theme)
+    most = max(int(window.width / (_LEAST * u)), 1)
+    last = next((n for n, column in enumerate(parts) if menu.chosen in numbers_in(column)), 0)
+    first = max(min(last, len(parts) - 1) - most + 1, 0)
+    columns = Row([Column(column, grow=1.0) for column in parts[first : first + most]])
+    title = [Text(menu.title, _SIZES, theme.muted, "semibold")] if menu.title else []
+    head = Row(title, around=(10.0, 0.0, 0.0), high=_ROW if title else 0.0)
+    whole = Plate(
+        Column((head, columns), around=(0.0, _EDGE, _EDGE)), theme.background, theme.line, radius=6.0, action=""
+    )
+    edge, (x, y) = _EDGE * u, menu.at
+    wide = min(whole.width(u), window.width - 2 * edge)
+    high = whole.height(u, wide)
+    beside = x + max(round(u), 1)
+    left = beside if beside + wide <= window.right - edge else x - wide
+    top = y if y + high <= window.bottom - edge else y - high
+    left = min(max(left, window.left + edge), max(window.right - edge - wide, window.left))
+    top = min(max(top, window.top + edge), max(window.bottom - edge - high, window.top))
+    placed = Paper(u)
+    placed.put(whole, Rectangle(left, top, wide, high))
+    paper.hits += [Hit(*window.box, "close menu", again=True), *placed.hits]
+    now = _pointed_at(view, placed.hits, paper.pointer)
+    lit = [_light(hit, theme.text, u) for hit in placed.hits if hit.item == now]
+    paper.marks += [*placed.marks[:1], *lit, *placed.marks[1:]]
 
 
-def titled(tool: Tool) -> str:
-    """The title of an entry or a button in the present language, as a sentence begins."""
-    return begun(tr(tool.title))
+def pointed_at(view: View, theme: Theme, pointer: Vector) -> int:
+    """The number of the entry that the pointer, once it has moved, else the keys, have come to; -1: none."""
+    paper = Paper(view.pixel_ratio)
+    put_menu(paper, view, theme)
+    return _pointed_at(view, paper.hits, pointer)
 
 
-def draw_menu(view: View, theme: Theme) -> list[Mark]:
-    """The menu that is open, over everything else."""
-    layout = menu_of(view)
-    if layout is None:
-        return []
-    u, size, frame, menu = layout.unit, layout.size, layout.frame, layout.menu
-    marks: list[Mark] = [Panel(*frame.box, _RADIUS * u, theme.background, theme.line)]
-    if menu.title:
-        title = shortened(menu.title, frame.width - 2 * _PAD * u, size, "semibold")
-        y = frame.top + _EDGE * u + layout.head / 2
-        marks.append(Text(title, frame.left + _PAD * u, y, size, theme.muted, "semibold"))
-    for rule in layout.rules:
-        thin = max(round(u), 1)
-        left, width = round(rule.left + _PAD * u), round(rule.width - 2 * _PAD * u)
-        marks.append(boxes(theme.line, (left, round(rule.top), width, thin)))
-    now = layout.pointed_at(view.pointer)
-    for number, (tool, place) in enumerate(zip(menu.entries, layout.entries, strict=True)):
-        if number == now:
-            inner = place.left + 3 * u, place.top, place.width - 6 * u, place.height
-            marks.append(Panel(*inner, 4.0 * u, faded(theme.text, 0.09 if tool.enabled else 0.04)))
-        marks += _entry(layout, tool, place, theme)
-    return marks
+def _pointed_at(view: View, hits: list[Hit], pointer: Vector | None) -> int:
+    assert view.menu is not None
+    moved = pointer is not None and pointer != view.menu.pointed
+    under = (hit.item for hit in hits if moved and hit.item is not None and hit.contains(pointer))
+    return next(under, view.menu.chosen)
 
 
-def _entry(layout: MenuLayout, tool: Tool, place: Rectangle, theme: Theme) -> list[Mark]:
-    """A check mark if it is on, its title, and its key at the right if there is room."""
-    u, size, y = layout.unit, layout.size, place.middle[1]
-    ink = theme.text if tool.enabled else faded(theme.muted, 0.5)
-    left = place.left + (_PAD + _CHECK) * u
-    room = place.right - _PAD * u - left
-    title, key = titled(tool), written_key(tool.key) if tool.key else ""
-    marks: list[Mark] = [Text(shortened(title, room, size), left, y, size, ink)]
-    if key and text_width(title, size) + text_width(key, size) + 0.5 * _GAP * u <= room:
-        paler = faded(theme.muted, 1.0 if tool.enabled else 0.5)
-        marks.append(Text(key, place.right - _PAD * u, y, size, paler, anchor="right"))
-    if tool.pressed:
-        x = place.left + _PAD * u
-        corners = np.array([[x, y], [x + 3.5 * u, y + 3.5 * u], [x + 9.5 * u, y - 4.0 * u]])
-        marks.append(Strokes(corners[:-1], corners[1:], 1.6 * u, ink))
-    return marks
+def entry_beside(view: View, theme: Theme, number: int, by: int) -> int:
+    """The entry at the same height in the column to the right (1) or left (-1) of that of an entry, or the same."""
+    columns = [numbers_in(column) for column in _columns(view, theme)]
+    here = next((n for n, column in enumerate(columns) if number in column), 0)
+    if not 0 <= here + by < len(columns):
+        return number
+    there = columns[here + by]
+    return there[min(columns[here].index(max(number, 0)), len(there) - 1)]
+
+
+def numbers_in(column: list[Part]) -> list[int]:
+    """The numbers of the entries in a column."""
+    return [part.item for part in column if isinstance(part, Plate)]
+
+
+def _columns(view: View, theme: Theme) -> list[list[Part]]:
+    assert view.menu is not None
+    menu, u, number = view.menu, view.pixel_ratio, iter(range(len(view.menu.entries)))
+    groups = [[_entry(tool, next(number), menu.at, theme) for tool in group] for group in menu.groups]
+    room = view.camera.viewport.height - (4 * _EDGE + _ROW * bool(menu.title)) * u
+    return in_columns(groups, Row((Gap(10.0), rule(theme.line, 7.0), Gap(10.0))), u, room, np.inf)
+
+
+def _entry(tool: Tool, number: int, at: Vector, theme: Theme) -> Plate:
+    """A check mark if it is on, its title and its key."""
+    ink = ink_of(theme, enabled=tool.enabled)
+    sign = Drawn(lambda at, u: _tick(at, u, ink) if tool.pressed else [], 16.0)
+    row = tool_row(tool, theme, sign, _SIZES, 20.0)
+    inside = Row((row,), around=(10.0, 0.0, 0.0), high=_ROW)
+    return Plate(inside, action=tool.action, enabled=tool.enabled, item=number, at=at)
+
+
+def _light(place: Hit, ink: Colour, u: float) -> Panel:
+    """The plate of the entry that a press would choose."""
+    fill = faded(ink, 0.09 if place.enabled else 0.04)
+    return Panel(place.left + 3 * u, place.top, place.width - 6 * u, place.height, 4.0 * u, fill)
+
+
+def _tick(at: Rectangle, u: float, ink: Colour) -> list[Mark]:
+    x, y = at.left, at.middle[1]
+    corners = np.array([[x, y], [x + 3.5 * u, y + 3.5 * u], [x + 9.5 * u, y - 4.0 * u]])
+    return [Strokes(corners[:-1], corners[1:], 1.6 * u, ink)]

@@ -25,7 +25,8 @@ from pinjoint.systems.render.form_layout import (
     problem_lines,
     short_note,
 )
-from pinjoint.systems.render.help import draw_help
+from pinjoint.systems.render.help import put_help
+from pinjoint.systems.render.layout import Paper
 from pinjoint.systems.render.marks import Fills, Mark, Panel, Picture, Stamps, Text, boxes, cross
 from pinjoint.systems.render.theme import Colour, Theme, faded
 from pinjoint.systems.render.thumbnails import thumbnail
@@ -47,9 +48,10 @@ def compose_form(form: Form, view: View, theme: Theme) -> Picture:
         *writer.rows(),
         *writer.footer(),
         *writer.scroll_bar(),
-        *draw_help(view, layout.viewport, theme),
     ]
-    return Picture(layout.viewport, theme.panel, marks)
+    paper = Paper(view.pixel_ratio, view.pointer, marks)
+    put_help(paper, view, layout.viewport, theme)
+    return Picture(layout.viewport, theme.panel, marks, hits=paper.hits)
 
 
 class _Writer:

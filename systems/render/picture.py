@@ -5,28 +5,28 @@ from __future__ import annotations
 import re
 from collections.abc import Callable, Sequence
 
-from pinjoint.components.field import Vector
 from pinjoint.components.form import Form
 from pinjoint.components.model import Model
 from pinjoint.components.toolbar import Toolbar
-from pinjoint.components.view import View
+from pinjoint.components.view import Hit, View
 from pinjoint.systems.render.arrows import draw_loads, draw_velocities
 from pinjoint.systems.render.bending_diagrams import draw_diagrams
 from pinjoint.systems.render.cuts import draw_cuts
 from pinjoint.systems.render.diagrams import draw_particle_diagrams
-from pinjoint.systems.render.empty_card import draw_card, shows_card
+from pinjoint.systems.render.empty_card import put_card, shows_card
 from pinjoint.systems.render.free_bodies import draw_free_bodies
 from pinjoint.systems.render.labels import Placed, place_labels
-from pinjoint.systems.render.lesson_card import draw_lesson
+from pinjoint.systems.render.layout import Paper
+from pinjoint.systems.render.lesson_card import compose_lesson
 from pinjoint.systems.render.marks import Picture
 from pinjoint.systems.render.members import draw_distributed_forces, draw_hinges, draw_moments
 from pinjoint.systems.render.overlays import BAR, draw_notice, draw_overlays, draw_scale, place_scale
 from pinjoint.systems.render.page import draw_page
 from pinjoint.systems.render.panel import compose_form
 from pinjoint.systems.render.pointed import draw_pointed
-from pinjoint.systems.render.readouts import ShownPanel, draw_readouts
+from pinjoint.systems.render.readouts import put_readouts
 from pinjoint.systems.render.sheet import ABOVE, BELOW, Sheet, measure
-from pinjoint.systems.render.sliders import draw_sliders
+from pinjoint.systems.render.sliders import put_sliders
 from pinjoint.systems.render.structure import (
     draw_ghost,
     draw_grid,
@@ -81,31 +81,33 @@ def compose(
     if isinstance(model, Toolbar):
         return compose_toolbar(model, view, theme, others)
     if view.card is not None:
-        return Picture(view.camera.viewport, theme.panel, draw_lesson(view, theme))
+        return compose_lesson(view.card, view, theme)
     sheet = measure(model, view, theme, placed)
     if view.page is None:
-        return _composed(sheet)[0]
+        return _composed(sheet)
     if view.explains_all:
         sheet.legend = [name for picture in others for name in picture.meanings]
     return Picture(sheet.viewport, theme.background, draw_page(sheet))
 
 
-def on_status_bar(view: View, pixel: Vector) -> bool:
-    """True if a pixel of the picture of a model shows the status bar."""
-    v = view.canvas
-    return v.contains(pixel) and pixel[1] >= v.bottom - BAR * view.pixel_ratio
+def hits(model: Model | Form | Toolbar, view: View, theme: Theme) -> Sequence[Hit]:
+    """Where a press does something in the picture of a stage; the model is drawn only where panels stand beside it."""
+    if not isinstance(model, Model) or view.card is not None or (view.readouts and view.legend):
+        return compose(model, view, theme).hits
+    paper = Paper(view.pixel_ratio)
+    _put_controls(paper, model, view, theme)
+    return paper.hits
 
 
-def panel_at(model: Model, view: View, theme: Theme, pixel: Vector) -> ShownPanel | None:
-    """The panel that a pixel of the picture of a model shows."""
-    if not (view.readouts and view.legend and view.panels.contains(pixel)):
-        return None
-    return next((panel for panel in shown_panels(model, view, theme) if panel.place.contains(pixel)), None)
-
-
-def shown_panels(model: Model, view: View, theme: Theme) -> list[ShownPanel]:
-    """The panels in the picture of a model."""
-    return _composed(measure(model, view, theme))[1]
+def _put_controls(paper: Paper, model: Model, view: View, theme: Theme) -> None:
+    """What lies over a model wherever that is: the status bar, sliders, the card of an empty model."""
+    v, high = view.canvas, BAR * view.pixel_ratio
+    if view.page is None:
+        if not view.caption:  # one of several models has no status bar
+            paper.hits.append(Hit(v.left, v.bottom - high, v.width, high, ""))
+        put_sliders(paper, view, theme)
+    if shows_card(model, view):
+        put_card(paper, view, theme)
 
 
 def _draw_structure(sheet: Sheet) -> None:
@@ -128,8 +130,8 @@ def _draw_structure(sheet: Sheet) -> None:
     draw_particle_diagrams(sheet, sides)
 
 
-def _composed(sheet: Sheet) -> tuple[Picture, list[ShownPanel]]:
-    """The picture of a model, and where its panels are."""
+def _composed(sheet: Sheet) -> Picture:
+    """The picture of a model."""
     model, theme = sheet.model, sheet.theme
     draw_grid(sheet)
     for layer in BELOW:
@@ -145,13 +147,13 @@ def _composed(sheet: Sheet) -> tuple[Picture, list[ShownPanel]]:
     for layer in ABOVE:
         sheet.marks += layer(sheet)
     overlays, room = draw_overlays(sheet)
-    overlays += draw_sliders(sheet)
-    readouts, panels = draw_readouts(sheet, room)
-    overlays += readouts
+    paper = Paper(sheet.unit, sheet.view.pointer, overlays)
+    for place in sheet.view.slider_places:
+        sheet.occupancy.block(*place.box)
+    put_readouts(paper, sheet, room)
     overlays += draw_notice(sheet, room)
     scale = place_scale(sheet, room) if model.particles.count and sheet.view.has_scale else None
-    if shows_card(model, sheet.view):
-        overlays += draw_card(sheet.view, theme)
+    _put_controls(paper, model, sheet.view, theme)
     if not sheet.view.has_units:
         sheet.labels = [label._replace(text=_bare(label.text)) for label in sheet.labels]
     labels = place_labels(sheet.labels, sheet.occupancy, sheet.unit, sheet.placed)
@@ -164,7 +166,7 @@ def _composed(sheet: Sheet) -> tuple[Picture, list[ShownPanel]]:
     ]
     sheet.placed |= sheet.scales
     marks = [*sheet.marks, *labels, *over]
-    return Picture(sheet.viewport, theme.background, marks, tuple(sheet.legend)), panels
+    return Picture(sheet.viewport, theme.background, marks, tuple(sheet.legend), paper.hits)
 
 
 def _bare(text: str) -> str:

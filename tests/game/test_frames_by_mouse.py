@@ -10,11 +10,11 @@ from pinjoint.components.camera import Viewport
 from pinjoint.components.view import drawn_positions
 from pinjoint.documents.document import document
 from pinjoint.systems.edit.picking import RING
-from pinjoint.systems.render.menu import menu_of
 from pinjoint.systems.render.picture import compose
 from pinjoint.systems.render.theme import load_theme
+from tests.reference.hits import push
 from tests.reference.models import model, particle, rod, triangle
-from tests.systems.render.test_toolbar import push, tool
+from tests.systems.render.test_toolbar import tool
 
 EMPTY = {"format": "pinjoint model", "version": 1}
 
@@ -38,11 +38,7 @@ def portal() -> Session:
 
 
 def choose(session: Session, action: str) -> None:
-    layout = menu_of(session.view)
-    assert layout is not None
-    number = [entry.action for entry in layout.menu.entries].index(action)
-    place = layout.entries[number]
-    session.press("click", (place.left + 5.0, place.top + 5.0))
+    push(session, action)
 
 
 def titles(session: Session) -> list[str]:

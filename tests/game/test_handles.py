@@ -7,12 +7,12 @@ from collections.abc import Iterator
 import pytest
 
 from pinjoint import Session
-from pinjoint.components.camera import Rectangle
 from pinjoint.components.field import Vector
 from pinjoint.components.model import Model
+from pinjoint.components.view import Readout
 from pinjoint.documents.library import data_apart
 from pinjoint.editor.scenes.form import FormScene
-from pinjoint.systems.render.picture import shown_panels
+from pinjoint.systems.render.picture import hits
 from pinjoint.systems.render.theme import load_theme
 from tests.golden.scenes import SCENES, Scene, Window, opened, pressed
 from tests.golden.states import STATES
@@ -52,25 +52,20 @@ MORE: dict[str, Scene] = {
 }
 
 
-def middle(place: Rectangle) -> Vector:
-    return place.left + place.width / 2, place.top + place.height / 2
-
-
 def handles(session: Session) -> Iterator[tuple[str, Vector]]:
     """What can be closed or moved in the picture: what it is called, and a pixel to press."""
     session.update_view()
     for shown, view in session.stages:
         if not isinstance(shown, Model) or view.page is not None:
             continue
-        for panel in shown_panels(shown, view, load_theme(view.theme)):
-            if panel.readout.closes:
-                assert panel.close is not None, panel.readout.title
-                yield f"panel {panel.readout.title} {panel.readout.plot}", middle(panel.close)
+        for hit in hits(shown, view, load_theme(view.theme)):
+            if isinstance(hit.item, Readout) and hit.action:
+                yield f"panel {hit.item.title} {hit.item.plot}", hit.middle
         for place in view.slider_places:
             left, right, y = place.track
             elsewhere = 0.75 if place.control.share < 0.5 else 0.25
             yield f"slider {place.control.title}", (left + elsewhere * (right - left), y)
-            yield f"button {place.control.title} {place.control.button}", middle(place.button)
+            yield f"button {place.control.title} {place.control.button}", place.button.middle
 
 
 def state_of(session: Session) -> tuple[object, ...]:
@@ -103,5 +98,5 @@ def test_every_cross_and_knob_that_is_drawn_works(name: str, window: Window) -> 
 def close_form(session: Session) -> None:
     scene = session.scenes.active
     if isinstance(scene, FormScene):
-        session.press("click", middle(scene.layout(session).close))
+        session.press("click", scene.layout(session).close.middle)
         assert session.scenes.active is not scene

@@ -20,11 +20,12 @@ from pinjoint.lessons.checking import check_lesson
 from pinjoint.lessons.course import Course
 from pinjoint.scripts.lines import perform
 from pinjoint.scripts.script import Script, ScriptError, lessons_with_tasks
-from pinjoint.systems.render.lesson_card import CardLayout
 from pinjoint.systems.render.marks import Text
-from pinjoint.systems.render.picture import compose_all
+from pinjoint.systems.render.picture import compose, compose_all
 from pinjoint.systems.render.theme import load_theme
-from pinjoint.systems.render.typography import text_width
+from tests.golden.scenes import Window
+from tests.golden.test_layout import problems
+from tests.reference.hits import hits_for, push
 
 
 @pytest.fixture(autouse=True)
@@ -196,9 +197,7 @@ def test_choices_are_made_by_key_mouse_and_script(session: Session) -> None:
     assert (course.accepted, course.mood) == (False, "wrong")
     session.update_view()
     assert session.beside is not None
-    layout = CardLayout(session.beside)
-    top, line = next((top, line) for top, line in layout.shown if line.answer == 0)
-    session.press("click", (layout.left + 20.0, top + line.height / 2))
+    push(session, "answer 1")
     assert course.accepted
 
 
@@ -500,16 +499,12 @@ def test_every_task_is_legible_in_windows_of_all_sizes(
         assert session.beside is not None
         main, card = session.view.camera.viewport, session.beside.camera.viewport
         assert main.width * main.height + card.width * card.height == size[0] * size[1]
-        layout = CardLayout(session.beside)
-        assert not layout.hidden or layout.first == 0
-        for place, button in layout.buttons:
+        shown = compose(session.blank, session.beside, load_theme("light"))
+        assert not list(problems([shown], Window(*size)))
+        for button in course.card().buttons:
+            [place] = hits_for(session, button.action)
             assert card.left <= place.left < place.right <= card.right, button
-            assert layout.bottom <= place.top or layout.right <= place.left
-            assert place.bottom <= card.bottom
-        for top, line in layout.shown:
-            assert card.top <= top < top + line.height <= layout.bottom + 1.0
-            for part in line.text.split("\n"):
-                assert layout.left + text_width(part, line.size) <= layout.right, part
+            assert card.top <= place.top < place.bottom <= card.bottom, button
 
 
 @pytest.mark.parametrize("size", [(1024, 640), (1280, 800)])

@@ -19,6 +19,7 @@ from pinjoint.systems.render.marks import Strokes
 from pinjoint.systems.render.picture import compose
 from pinjoint.systems.render.theme import load_theme
 from pinjoint.systems.render.thumbnails import thumbnail
+from tests.reference.hits import push
 
 FRAME = 1.0 / 60.0
 
@@ -70,9 +71,7 @@ def test_the_button_takes_the_tool_up_and_drags_draw_one_after_the_other() -> No
     session = room()
     session.resize(1280, 800)
     session.update_view()
-    strip = session.view.toolbar.buttons(session.view.camera.viewport, 1.0)
-    button = next(button for button in strip if button.tool.action == "walls.wall")
-    session.press("click", (button.left + 2, button.top + 2))
+    push(session, "walls.wall")
     assert session.view.tool == "walls.wall"
     session.drag((-1, 0), (1, 0))
     session.drag((1.01, 0.01), (1, 0.8))  # the new one begins where the other ends

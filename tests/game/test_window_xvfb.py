@@ -24,6 +24,7 @@ from pinjoint.documents import models
 from pinjoint.documents.library import DATA_VARIABLE
 from pinjoint.documents.preferences import CONFIG_VARIABLE
 from pinjoint.editor.scenes.form import FormScene
+from tests.reference.hits import hits_for
 
 MISSING = [name for name in ("Xvfb", "xdotool") if shutil.which(name) is None]
 pytestmark = pytest.mark.skipif(bool(MISSING), reason=f"{' and '.join(MISSING)} not installed")
@@ -219,10 +220,7 @@ class Person:
 
     def click_tool(self, action: str) -> None:
         """Click a button of the toolbar."""
-        view = self.follower.view
-        buttons = view.toolbar.buttons(view.camera.viewport, view.pixel_ratio)
-        button = next(button for button in buttons if button.tool.action == action)
-        self.click((button.left + button.width / 2, button.top + button.height / 2))
+        self.click(hits_for(self.follower, action)[-1].middle)
 
     def click_box(self, title: str) -> None:
         """Click a box of a panel by its title."""

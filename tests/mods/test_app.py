@@ -22,6 +22,7 @@ from pinjoint.systems.render.picture import compose
 from pinjoint.systems.render.theme import load_theme
 from tests.mods.conftest import Write
 from tests.mods.test_isolation import TRUSS
+from tests.reference.hits import hits_for
 
 
 def opened(write_mod: Write, body: str, head: str = "") -> Session:
@@ -292,9 +293,7 @@ def test_an_action_with_an_icon_has_a_button_whatever_became_of_its_key(
     session.view.camera.viewport = Viewport(0, 0, 1000, 720)
     session.update_view()
     assert session.view.toolbar.groups[-2][-1].action == "apple.toggle"
-    found = session.view.toolbar.buttons(session.view.camera.viewport, 1.0)
-    button = next(button for button in found if button.tool.action == "apple.toggle")
-    session.view.pointer = button.left + 5.0, button.top + 5.0
+    session.view.pointer = hits_for(session, "apple.toggle")[0].middle
     toolbar, view = session.stages[-1]
     assert compose(toolbar, view, load_theme()).texts == ["Turn it", *([shown] if shown else [])]
     session.press("click", session.view.pointer)

@@ -9,9 +9,10 @@ from hypothesis import strategies as st
 from hypothesis.stateful import RuleBasedStateMachine, initialize, invariant, rule
 
 from pinjoint import Session
+from pinjoint.components.toolbar import Tool
 from pinjoint.systems.input.bindings import BINDINGS, LIVE
-from pinjoint.systems.render.empty_card import card_button_at
 from tests.properties.soundness import check_sound, contents
+from tests.reference.hits import hits_in
 from tests.reference.sessions import put_states_aside
 
 EMPTY = {"format": "pinjoint model", "version": 1}
@@ -45,8 +46,7 @@ class Editing(RuleBasedStateMachine):
     def on_button(self, at: tuple[float, float]) -> bool:
         """Whether a point lies behind the toolbar or the card of an empty model: a click could leave it for good."""
         pixel, session = self.session.point(*at), self.session
-        on_card = card_button_at(session.model, session.view, pixel) is not None
-        return on_card or session.view.strip.contains(pixel)
+        return any(isinstance(hit.item, Tool) and hit.contains(pixel) for hit in hits_in(session))
 
     @rule(at=places, button=st.sampled_from(["click", "ctrl+click"]))
     def click(self, at: tuple[float, float], button: str) -> None:

@@ -18,8 +18,9 @@ from pinjoint.systems.edit import Refusal
 from pinjoint.systems.edit.picking import pick
 from pinjoint.systems.edit.supports import SUPPORTS, Held, support
 from pinjoint.systems.input.bindings import LIVE
-from pinjoint.systems.render.menu import menu_of
+from pinjoint.systems.render.menu import entry_beside, pointed_at
 from pinjoint.systems.render.symbol_at import symbol_at
+from pinjoint.systems.render.theme import load_theme
 
 
 @action("open menu", while_drawing=True)
@@ -49,15 +50,16 @@ def _to_entry(way: str) -> Action:
     """An arrow key in an open menu."""
 
     def act(context: Context, pixel: Vector) -> None:
-        layout = menu_of(context.view)
-        if layout is None:
+        view, menu = context.view, context.view.menu
+        if menu is None:
             return
-        here, count = layout.pointed_at(pixel), len(layout.entries)
+        theme = load_theme(view.theme)
+        here, count = pointed_at(view, theme, pixel), len(menu.entries)
         if way in ("up", "down"):
             chosen = (here + 1) % count if way == "down" else (max(here, 0) - 1) % count
         else:
-            chosen = layout.beside(here, 1 if way == "right" else -1)
-        context.view.menu = replace(layout.menu, chosen=chosen, pointed=pixel)
+            chosen = entry_beside(view, theme, here, 1 if way == "right" else -1)
+        view.menu = replace(menu, chosen=chosen, pointed=pixel)
 
     return act
 

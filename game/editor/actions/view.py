@@ -7,7 +7,7 @@ from pinjoint.components.language import LANGUAGES, language, speak, tr
 from pinjoint.components.rod import has_strength
 from pinjoint.documents.shapes import NoShape
 from pinjoint.editor.context import Action, Context, action
-from pinjoint.editor.view_model import pages_of_help
+from pinjoint.editor.view_model import count_of_pages
 from pinjoint.systems.edit import Refusal
 from pinjoint.systems.render.theme import load_theme
 
@@ -93,7 +93,7 @@ def _next_language(context: Context, pixel: Vector) -> None:
 @action("toggle help", while_drawing=True)
 def _toggle_help(context: Context, pixel: Vector) -> None:
     """Show the next page of keys; after the last, none."""
-    count = len(pages_of_help(context))
+    count = count_of_pages(context)
     context.view.help = (min(context.view.help, count) + 1) % (count + 1)
 
 
@@ -101,7 +101,7 @@ def _turn(by: int) -> Action:
     """Another page of the keys, if there is one."""
 
     def act(context: Context, pixel: Vector) -> None:
-        count = len(pages_of_help(context))
+        count = count_of_pages(context)
         context.view.help = min(max(min(context.view.help, count) + by, 1), count)
 
     return act

@@ -161,7 +161,7 @@ class Properties(FormScene):
         aside, view = self._aside(context), context.view
         if aside is None:
             return context.model, view
-        beside = replace(view, aside=aside, keys=[], status=replace(view.status, hint=""))
+        beside = replace(view, aside=aside, keys=(), status=replace(view.status, hint=""))
         beside.readouts = self._readouts(view, aside)
         beside.camera = self._camera_beside(context.model, beside)
         return context.model, beside

@@ -26,8 +26,8 @@ from pinjoint.systems.input.bindings import (
     Binding,
     key_named,
 )
-from pinjoint.systems.render.menu import menu_of
 from tests.properties.soundness import contents
+from tests.reference.hits import hits_in
 
 CASES = [(scene, binding) for binding in BINDINGS for scene in binding.scenes]
 FOLLOWING = {"drag to", "drop"}  # are part of a drag
@@ -101,10 +101,7 @@ def _at_left_in_wide_menu(session: Session) -> None:
 
 
 def _over_an_entry(session: Session) -> None:
-    layout = menu_of(session.view)
-    assert layout is not None
-    place = layout.entries[1]
-    session.view.pointer = place.left + 5.0, place.top + 5.0
+    session.view.pointer = next(hit.middle for hit in hits_in(session) if hit.item == 1)
 
 
 def _deselected(session: Session) -> None:

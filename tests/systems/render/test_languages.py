@@ -7,13 +7,14 @@ import gettext
 import pytest
 
 from pinjoint.components import language
-from pinjoint.components.camera import Viewport
 from pinjoint.session import Session
-from pinjoint.systems.input.bindings import help_lines
+from pinjoint.systems.input.bindings import BINDINGS
+from pinjoint.systems.render.buttons import written_key
 from pinjoint.systems.render.glossary import terms
-from pinjoint.systems.render.help import help_pages, written_key
 from pinjoint.systems.render.marks import Text
 from tests.golden.scenes import composed
+
+IN_ENGLISH = {binding.title for binding in BINDINGS if binding.title}
 
 
 class _Quoting(gettext.NullTranslations):
@@ -40,24 +41,33 @@ def test_an_empty_text_stays_empty() -> None:
     assert language.tr("") == ""
 
 
+def help_of(size: tuple[int, int]) -> list[list[tuple[str, str]]]:
+    """What every page of the help says: each text, and its weight."""
+    session = Session.open("hyperstatic")
+    session.resize(*size)
+    pages = []
+    while session.press("f1") or session.view.help:
+        card = [m for m in composed(session)[-1].marks if isinstance(m, Text)]
+        pages.append([(text.text, text.weight) for text in card])
+    return pages
+
+
 @pytest.mark.usefixtures("quoting")
 def test_all_of_the_help_is_translated() -> None:
-    for page in help_pages(help_lines("pause"), Viewport(0, 0, 640, 480), 1.0):
-        for key, meaning in page:
-            whole = key.strip() and not key.startswith(" ")
-            assert key or meaning.startswith("‹"), "a purpose"
-            assert not whole or meaning.startswith("‹") or not meaning, (key, meaning)
+    for page in help_of((640, 480)):
+        plain = {text for text, weight in page if weight == "regular"}
+        assert sum(text.startswith("‹") for text in plain) > 3
+        assert not IN_ENGLISH & plain
     assert written_key("ctrl+space") == "Ctrl+‹Space›"
     assert written_key("ctrl+z") == "Ctrl+Z"
 
 
 def test_the_help_is_not_kept_in_the_language_of_before(monkeypatch: pytest.MonkeyPatch) -> None:
-    viewport = Viewport(0, 0, 640, 480)
-    before = help_pages(help_lines("pause"), viewport, 1.0)
+    before = help_of((640, 480))
     monkeypatch.setattr(language._SPOKEN, "catalogue", _Quoting())
     monkeypatch.setattr(language._SPOKEN, "code", "quoted")
     assert written_key("space") == "‹Space›"
-    assert help_pages(help_lines("pause"), viewport, 1.0) != before
+    assert help_of((640, 480)) != before
 
 
 @pytest.mark.usefixtures("quoting")
@@ -82,11 +92,12 @@ def test_every_term_is_explained_in_whole_sentences() -> None:
     assert len({entry.term for entry in terms()}) == len(terms())
 
 
-def test_the_glossary_comes_after_the_keys_and_tells_every_term() -> None:
-    for width, height in ((320, 240), (640, 480), (1280, 800)):
-        pages = help_pages(help_lines("pause"), Viewport(0, 0, width, height), 1.0)
-        first = next(number for number, page in enumerate(pages) if page[0] == ("", "Glossary"))
-        assert first > 0
-        assert all(page[0] == ("", "Glossary") for page in pages[first:])
-        told = " ".join(key.strip() for page in pages[first:] for key, _ in page)
-        assert all(entry.term in told for entry in terms()), (width, height)
+@pytest.mark.parametrize("size", [(320, 240), (640, 480), (1280, 800)])
+def test_the_glossary_comes_after_the_keys_and_tells_every_term(size: tuple[int, int]) -> None:
+    pages = help_of(size)
+    first = next(number for number, page in enumerate(pages) if ("Glossary", "semibold") in page)
+    assert first > 0
+    assert all(("Glossary", "semibold") in page for page in pages[first:])
+    told = " ".join(text for page in pages[first:] for text, _ in page)
+    for entry in terms():
+        assert all(word in told for word in entry.term.split()), entry.term

@@ -9,9 +9,9 @@ import pytest
 from pinjoint import Session
 from pinjoint.components.model import Model
 from pinjoint.components.view import Status, drawn_positions
-from pinjoint.systems.render.empty_card import Card
 from pinjoint.systems.render.marks import Panel, Rectangles, Stamps, Text
 from pinjoint.systems.render.picture import compose
+from tests.reference.hits import hits_in
 from tests.systems.render.pictures import LIGHT, fill, marks_of, picture_of, triangle, view_of
 
 
@@ -93,8 +93,8 @@ def test_an_empty_model_says_how_to_begin() -> None:
     session.update_view()
     texts = compose(session.model, session.view, LIGHT).texts
     assert {"An empty model", "Draw a particle", "P", "Open a model", "D"} <= set(texts)
-    enabled = [button for button in Card(session.view).buttons if button.tool.enabled]
-    assert [button.tool.action for button in enabled] == ["place", "rod", "rigid", "load", "toggle help"]
+    enabled = [hit for hit in hits_in(session) if hit.enabled and hit.at is not None]
+    assert [hit.action for hit in enabled] == ["place", "rod", "rigid", "load", "toggle help"]
     place, _, _, load, _ = enabled
     session.press("click", (place.left + 40.0, place.top + 5.0))
     session.update_view()

@@ -14,10 +14,10 @@ from pinjoint.components.view import Readout, drawn_positions
 from pinjoint.scripts.playing import Recorder, play, session_of
 from pinjoint.scripts.script import Script
 from pinjoint.systems.render.marks import Panel, Text
-from pinjoint.systems.render.picture import compose, shown_panels
-from pinjoint.systems.render.readouts import ShownPanel
+from pinjoint.systems.render.picture import compose
 from pinjoint.systems.render.theme import load_theme
 from tests.reference.boxes import Box, overlap
+from tests.reference.hits import hits_in
 
 SIZES = [(640, 480), (480, 800), (400, 640), (1000, 720), (1920, 1080), (3840, 2160)]
 KEYS = ("m", "j", "o", "escape", "o", "u")  # theory, energy, a plot of the rod, one of the energies, speeds
@@ -76,22 +76,16 @@ def test_each_panel_is_closed_by_the_button_in_its_corner(size: tuple[int, int])
     selected = session.selected
     assert len(session.view.readouts) > 5
     while session.view.readouts:
-        panel = next(panel for panel in panels_in(session) if panel.close is not None)
-        assert panel.close is not None
-        middle = panel.close.left + panel.close.width / 2, panel.close.top + panel.close.height / 2
+        close = next(hit for hit in hits_in(session) if isinstance(hit.item, Readout) and hit.action)
         titles = {readout.title for readout in session.view.readouts}
         for button in ("right click", "double click", "click"):
             assert {readout.title for readout in session.view.readouts} == titles
-            session.press(button, middle)
+            session.press(button, close.middle)
             session.update_view()
         left = {readout.title for readout in session.view.readouts}
-        assert panel.readout.title not in left
+        assert close.item.title not in left
         assert left < titles
     assert (session.selected, session.view.menu, session.scene) == (selected, None, "pause")
-
-
-def panels_in(session: Session) -> list[ShownPanel]:
-    return shown_panels(session.model, session.view, load_theme("light"))
 
 
 def test_what_is_switched_on_last_is_unfolded() -> None:

@@ -8,17 +8,17 @@ from pinjoint import Session
 from pinjoint.components.bent import QUANTITIES
 from pinjoint.components.camera import Viewport
 from pinjoint.components.tags import DiagramShown
-from pinjoint.components.toolbar import Button, Tool
-from pinjoint.components.view import drawn_positions
+from pinjoint.components.toolbar import Tool
+from pinjoint.components.view import Hit, drawn_positions
 from pinjoint.editor.actions import ACTIONS
 from pinjoint.systems.input.bindings import ADDED_BUTTONS, ADDED_TOOLS, BINDINGS, TOOLBAR
 from pinjoint.systems.render.icons import ADDED, icon, icons
 from pinjoint.systems.render.marks import Panel, Stamps, Text
-from pinjoint.systems.render.menu import menu_of
 from pinjoint.systems.render.picture import compose, compose_all
 from pinjoint.systems.render.theme import load_theme
 from pinjoint.systems.render.typography import capital_height
 from tests.reference.boxes import overlap, text_box
+from tests.reference.hits import hits_in, push
 
 SIZES = [(1000, 720), (640, 480), (600, 600), (3840, 2160)]
 
@@ -34,19 +34,16 @@ def opened(source: object = "isostatic", size: tuple[int, int] = (1000, 720), ra
 EMPTY = {"format": "pinjoint model", "version": 1}
 
 
-def buttons(session: Session) -> dict[str, Button]:
-    view = session.view
-    found = view.toolbar.buttons(view.camera.viewport, view.pixel_ratio)
-    return {button.tool.action: button for button in found}
-
-
-def push(session: Session, action: str, key: str = "click") -> None:
-    button = buttons(session)[action]
-    session.press(key, (button.left + button.width / 2, button.top + button.height / 2))
+def buttons(session: Session) -> dict[str, Hit]:
+    """Those of the toolbar, by their actions."""
+    on_strip = (hit for hit in hits_in(session) if isinstance(hit.item, Tool) and hit.at is None)
+    return {hit.item.action: hit for hit in on_strip}
 
 
 def tool(session: Session, action: str) -> Tool:
-    return buttons(session)[action].tool
+    found = buttons(session)[action].item
+    assert isinstance(found, Tool)
+    return found
 
 
 def test_every_tool_is_an_action_with_a_key_and_an_icon() -> None:
@@ -115,10 +112,7 @@ def test_where_height_is_short_groups_are_folded_into_a_menu(size: tuple[int, in
     push(session, "more tools")
     assert view.menu is not None
     assert {*found, *(entry.action for entry in view.menu.entries)} == everything | {"more tools"}
-    layout = menu_of(view)
-    assert layout is not None
-    place = layout.entries[[entry.action for entry in view.menu.entries].index("save")]
-    session.press("click", (place.left + 2.0, place.top + 2.0))
+    push(session, "save")
     assert session.scene == "save"
 
 
@@ -268,7 +262,7 @@ def test_no_tip_covers_what_is_said(scene: str, size: tuple[int, int]) -> None:
         assert tip[2] <= size[0]
         texts = [mark for picture in below for mark in picture.marks if isinstance(mark, Text)]
         covered = [text.text for text in texts if overlap(text_box(text, capital_height(text.size)), tip)]
-        assert not covered, button.tool.action
+        assert not covered, button.action
 
 
 def test_the_tip_goes_after_a_press_and_comes_back_with_the_pointer() -> None:
@@ -301,7 +295,7 @@ def test_what_free_bodies_do_not_show_is_not_lit_and_puts_them_together(key: str
         assert not session.view.free_bodies
         assert getattr(session.view, shown)
         session.press("x")
-        lit = {button.tool.action for button in buttons(session).values() if button.tool.pressed}
+        lit = {button.action for button in buttons(session).values() if button.item.pressed}
         assert lit == {"toggle free bodies"}
         session.press("x")
         while getattr(session.view, shown):
