@@ -168,7 +168,7 @@ def _crowding(sheet: Sheet, every: Values, quantity: str) -> float:
     points, normals = _stations(sheet, _baseline(sheet, np.arange(len(every))), shares, quantity)
     explained = (*names, *_BESIDE) if view.legend else ()
     low, high = bounds(view.room)
-    low[1] += heading_height(view.heading, sheet.viewport.width, sheet.unit, explained)
+    low[1] += heading_height(view.heading, sheet.viewport.width, sheet.unit, sheet.theme, explained)
     reach = normals * values(every, shares)[..., None]
     free = np.maximum(np.where(reach < 0.0, points - low, high - points), _LEAST * sheet.unit)
     return float(np.nan_to_num(np.abs(reach) / free).max(initial=0.0))

@@ -19,7 +19,7 @@ _HOVER, _PRESSED, _IDLE, _MAIN, _DISABLED = 0.09, 0.16, 0.06, 0.85, 0.45  # opac
 
 def button(
     inside: Part,
-    action: str,
+    action: str | None,
     theme: Theme,
     *,
     enabled: bool = True,
@@ -60,7 +60,7 @@ def tool_icon(tool: Tool, theme: Theme, wide: float) -> Drawn:
     return icon(tool.icon, ICON, ink_of(theme, enabled=tool.enabled, pressed=tool.pressed), wide)
 
 
-def closing(action: str, theme: Theme, side: float, item: Any = None, size: float = 1.0) -> Plate:
+def closing(action: str | None, theme: Theme, side: float, item: Any = None, size: float = 1.0) -> Plate:
     """The button with a cross that closes something."""
     sign = Drawn(lambda at, u: [cross(at, size * u, theme.muted)], side)
     return button(sign, action, theme, item=item, inset=0.0)

@@ -40,7 +40,9 @@ def put_card(paper: Paper, view: View, theme: Theme) -> None:
     rows = []
     for tool in (known[action] for action in _FIRST if action in known):
         sign = Row((tool_icon(tool, theme, 20.0), Gap(14.0)))
-        row = Row((tool_row(tool, theme, sign, (13.0, 12.0, 11.0, 10.0), 26.0),), around=(12.0, 0.0, 0.0), high=27.0)
+        row = Row(
+            (tool_row(tool, theme, sign, (13.0, 12.0, 11.0, 10.0), 26.0),), around=(12.0, 0.0, 0.0), high=27.0
+        )
         rows.append(button(row, tool.action, theme, enabled=tool.enabled, item=tool, at=there))
     emblem = [Drawn(lambda at, u: _emblem(at, u, theme), high=66.0)] if v.height >= _ROOMY * u else []
     title = Text(tr("An empty model"), 20.0, theme.text, "semibold", "centre")

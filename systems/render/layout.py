@@ -29,7 +29,8 @@ ALL = 1_000  # lines: as many as a text takes
 class Paper:
     """What trees are placed on: pixels per point and where the pointer is; marks and hits so far, the topmost last.
 
-    scrolled: of the part that scrolls, the number of its first row in sight, of those in sight, and of all.
+    scrolled: of the part that scrolls, the number of its first row in sight, of those in sight, and of all. draws: False
+    where only hits are wanted.
     """
 
     unit: float
@@ -37,6 +38,7 @@ class Paper:
     marks: list[Mark] = field(default_factory=list)
     hits: list[Hit] = field(default_factory=list)
     scrolled: tuple[int, int, int] = (0, 0, 0)
+    draws: bool = True
 
     def put(self, part: Part, place: Rectangle) -> None:
         """Place a tree in a rectangle."""
@@ -146,7 +148,8 @@ class Drawn(Part):
         return self.high * u
 
     def put(self, paper: Paper, place: Rectangle) -> None:
-        paper.marks += self.draw(place, paper.unit)
+        if paper.draws:
+            paper.marks += self.draw(place, paper.unit)
 
 
 def icon(symbol: str, size: float, colour: Colour, wide: float) -> Drawn:
@@ -285,14 +288,15 @@ def _last_first(heights: Sequence[float], gap: float, room: float) -> int:
 class Plate(Part):
     """A part on paper with round corners, which may be pressed.
 
-    fill, outline: of the paper; None: none. hover: its fill under the pointer. inset: points between its place and the
-    paper. action, …, again: of its hit, see there; it has none without an action and an item.
+    fill, outline: of the paper; None: none. hover, hover_outline: those under the pointer. inset: points between its
+    place and the paper. action, …, again: of its hit, see there; it has none without an action and an item.
     """
 
     inside: Part
     fill: Colour | None = None
     outline: Colour | None = None
     hover: Colour | None = None
+    hover_outline: Colour | None = None
     radius: float = 5.0
     inset: float = 0.0
     action: str | None = None
@@ -311,14 +315,15 @@ class Plate(Part):
 
     def put(self, paper: Paper, place: Rectangle) -> None:
         if self.action is not None or self.item is not None:
-            how = self.action, self.enabled, self.item, self.at, self.wheel, self.again
-            paper.hits.append(Hit(*place.box, *how))
+            hit = Hit(*place.box, self.action, self.enabled, self.item, self.at, self.wheel, self.again)
+            paper.hits.append(hit)
         under = self.hover is not None and self.enabled and paper.is_under_pointer(place)
         fill, by = self.hover if under else self.fill, self.inset * paper.unit
+        outline = self.hover_outline if under and self.hover_outline else self.outline
         if fill is not None:
             size = place.width - 2 * by, place.height - 2 * by
             radius = self.radius * paper.unit
-            paper.marks.append(Panel(place.left + by, place.top + by, *size, radius, fill, self.outline))
+            paper.marks.append(Panel(place.left + by, place.top + by, *size, radius, fill, outline))
         self.inside.put(paper, place)
 
 

@@ -61,8 +61,9 @@ def pointed_at(view: View, theme: Theme, pointer: Vector) -> int:
 
 def _pointed_at(view: View, hits: list[Hit], pointer: Vector | None) -> int:
     assert view.menu is not None
-    moved = pointer is not None and pointer != view.menu.pointed
-    under = (hit.item for hit in hits if moved and hit.item is not None and hit.contains(pointer))
+    if pointer is None or pointer == view.menu.pointed:
+        return view.menu.chosen
+    under = (hit.item for hit in hits if hit.item is not None and hit.contains(pointer))
     return next(under, view.menu.chosen)
 
 

@@ -4,27 +4,29 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import NamedTuple
+from functools import partial
 
 import numpy as np
 
 from pinjoint.components import written
-from pinjoint.components.camera import Viewport
+from pinjoint.components.camera import Rectangle, Viewport
 from pinjoint.components.language import begun, marked, plural, tr
 from pinjoint.components.round_numbers import round_down
 from pinjoint.components.view import BETWEEN
-from pinjoint.systems.render.marks import Mark, Panel, Stamps, Strokes, Text, boxes
+from pinjoint.systems.render import marks
+from pinjoint.systems.render.layout import Drawn, Paper, Part, Plate, Row, Text, icon
+from pinjoint.systems.render.marks import Mark, Panel, Stamps, Strokes, boxes
 from pinjoint.systems.render.sheet import Sheet
 from pinjoint.systems.render.structure import HALO_OPACITY
 from pinjoint.systems.render.symbols import dashed
-from pinjoint.systems.render.theme import Colour, faded
-from pinjoint.systems.render.typography import at_most, font_size, line_height, shortened, text_width, wrapped
+from pinjoint.systems.render.theme import Colour, Theme, faded
+from pinjoint.systems.render.typography import font_size, line_height, shortened, text_width, wrapped
 from pinjoint.systems.render.utilisation import scale_bar
 
 _EDGE = 14.0  # points between overlays and the edges of the viewport
 _HEADING = 20.0  # points, size of its type
 _SMALL = 300.0  # points; lower viewports leave out optional overlays
-_FEW_LINES = 3  # of a notice
+_FEW_LINES, _AROUND_NOTICE = 3, 52.0  # of a notice: lines; points at the sides of its text, its sign among them
 _NOISE = 1e-6  # pixels; smaller displacements count as none
 BAR = 28.0  # points, height of the status bar
 _ROW, _ROWS_BESIDE = 28.0, 2  # of the legend: points, and how many stand beside the heading
@@ -34,73 +36,49 @@ _SCALE = ("scale", 0)  # the key by which its place is kept
 
 def draw_overlays(sheet: Sheet) -> tuple[list[Mark], tuple[float, float]]:
     """Marks in fixed places, kept free of labels; and the height taken at the top and the bottom."""
-    marks, bottom = _status_bar(sheet)
+    status, bottom = _status_bar(sheet)
     heading, heading_end = _heading(sheet)
     legend, top = _legend(sheet, heading_end)
     caption, top = _caption(sheet, heading_end[1], top)
-    return marks + heading + legend + caption, (top, bottom)
+    return status + heading + legend + caption, (top, bottom)
 
 
 # --- the status bar --------------------------------------------------------------------------------
 
 
 def _status_bar(sheet: Sheet) -> tuple[list[Mark], float]:
-    """The bar at the bottom, if there is anything to say, and the height that is left above it."""
+    """The bar at the bottom, if there is anything to say, and the height that is left above it.
+
+    The time and the pace are left out where they would leave no room for the next possible step.
+    """
     v, u, theme, status = sheet.viewport, sheet.unit, sheet.theme, sheet.view.status
-    bottom = float(v.bottom)
     if not (status.state or status.hint):
-        return [], bottom
-    top, thin = round(bottom - BAR * u), max(round(u), 1)
+        return [], float(v.bottom)
+    top, thin = round(v.bottom - BAR * u), max(round(u), 1)
     sheet.occupancy.block(v.left, top, v.width, BAR * u)
-    marks: list[Mark] = [boxes(theme.panel, (v.left, top, v.width, v.bottom - top))]
-    marks.append(boxes(theme.line, (v.left, top, v.width, thin)))
-    middle = (top + thin + bottom) / 2
-    x = v.left + _EDGE * u
+    bar = (
+        boxes(theme.panel, (v.left, top, v.width, v.bottom - top)),
+        boxes(theme.line, (v.left, top, v.width, thin)),
+    )
+    paper, steps, parts = Paper(u, marks=[*bar]), status.hint.split(BETWEEN), list[Part]()
     if status.state:
-        dot = np.array([[x + 3.5 * u, middle]])
-        marks.append(Stamps("disc", dot, 3.5 * u, u, _state_colour(sheet), _state_colour(sheet)))
-        x += 13.0 * u
-        state = begun(tr(status.state))
-        x = _append(sheet, marks, state, x, middle, theme.text, "semibold")
+        state = Text(begun(tr(status.state)), 12.0, theme.text, "semibold")
+        parts.append(Row((icon("disc", 3.5, _state_colour(sheet), 7.0), state), 6.0))
         time = "" if status.time is None else f"t = {written.time(status.time)}"
-        step = text_width(status.hint.partition(BETWEEN)[0], sheet.font(12.0))
-        for text, behind in ((time, 0.0), (written.pace(status.speed), step)):
-            x = _append(sheet, marks, text, x, middle, theme.text, behind=behind)
-    _append_hint(sheet, marks, x, middle)
-    return marks, float(top)
-
-
-def _append(
-    sheet: Sheet,
-    marks: list[Mark],
-    text: str,
-    x: float,
-    y: float,
-    colour: Colour,
-    weight: str = "regular",
-    *,
-    behind: float = 0.0,
-) -> float:
-    """Write a part of the status bar if so many pixels are left behind it; returns where the next one begins."""
-    size = sheet.font(12.0)
-    width = text_width(text, size, weight)
-    apart = 24.0 * sheet.unit * bool(behind)
-    if not text or x + width + apart + behind > sheet.viewport.right - _EDGE * sheet.unit:
-        return x
-    marks.append(Text(text, x, y, size, colour, weight))
-    return x + width + 18.0 * sheet.unit
-
-
-def _append_hint(sheet: Sheet, marks: list[Mark], x: float, y: float) -> None:
-    """The next possible steps at the right end, as many as there is room for."""
-    v, u, size = sheet.viewport, sheet.unit, sheet.font(12.0)
-    right = v.right - _EDGE * u
-    room, steps = right - x - 6.0 * u, sheet.view.status.hint.split(BETWEEN)
-    while len(steps) > 1 and text_width(BETWEEN.join(steps), size) > room:
+        for said in filter(None, (time, written.pace(status.speed))):
+            text = Text(said, 12.0, theme.text)
+            behind = 6.0 * u + text_width(steps[0], sheet.font(12.0))
+            whole = Row([*parts, text], 18.0, (_EDGE, 0.0, 0.0)).width(u) + behind
+            parts += [text] if whole <= v.width else []
+    room = v.width - Row(parts, 18.0, (_EDGE, 0.0, 0.0)).width(u) - 6.0 * u
+    while len(steps) > 1 and text_width(BETWEEN.join(steps), sheet.font(12.0)) > room:
         steps.pop()
-    text = shortened(BETWEEN.join(steps), room, size)
-    if text == BETWEEN.join(steps) or len(text) > 12:
-        marks.append(Text(text, right, y, size, sheet.theme.muted, anchor="right"))
+    hint = Text(BETWEEN.join(steps), 12.0, theme.muted, anchor="right", grow=1.0)
+    paper.put(
+        Row([*parts, hint], 18.0, (_EDGE, 0.0, 0.0)),
+        Rectangle(v.left, top + thin, v.width, v.bottom - top - thin),
+    )
+    return paper.marks, float(top)
 
 
 def _state_colour(sheet: Sheet) -> Colour:
@@ -115,7 +93,7 @@ def _state_colour(sheet: Sheet) -> Colour:
 # --- heading and problem ---------------------------------------------------------------------------
 
 
-def heading_height(text: str, width: float, unit: float, explained: Sequence[str] = ()) -> float:
+def heading_height(text: str, width: float, unit: float, theme: Theme, explained: Sequence[str] = ()) -> float:
     """Pixels that a heading takes at the top of a viewport, with a legend that explains these names."""
     size, widest = font_size(_HEADING, unit), width - 2 * _EDGE * unit
     lines = wrapped(text, widest, size, "semibold")
@@ -123,9 +101,9 @@ def heading_height(text: str, width: float, unit: float, explained: Sequence[str
     if not explained:
         return height
     right = _EDGE * unit + max(text_width(line, size, "semibold") for line in lines)
-    legend = _arranged(meanings_of(explained), width, right, unit)
-    rows = len(legend.rows) * _ROW * unit
-    return max(height, rows + 2 * _ABOVE * unit - 4.0 * unit) if legend.beside else height + rows
+    plates, beside = _arranged(meanings_of(explained), theme, width, right, unit)
+    rows = len(plates) * _ROW * unit
+    return max(height, rows + 2 * _ABOVE * unit - 4.0 * unit) if beside else height + rows
 
 
 def _heading(sheet: Sheet) -> tuple[list[Mark], tuple[float, float]]:
@@ -135,13 +113,13 @@ def _heading(sheet: Sheet) -> tuple[list[Mark], tuple[float, float]]:
     if not sheet.view.heading:
         return [], (v.left, v.top)
     lines = wrapped(sheet.view.heading, v.width - 2 * _EDGE * u, size, "semibold")
-    marks: list[Mark] = []
+    made: list[Mark] = []
     for number, line in enumerate(lines):
         y = top + 9.0 * u + number * line_height(size)
         sheet.occupancy.block(left, y - size / 2, text_width(line, size, "semibold"), size)
-        marks.append(Text(line, left, y, size, sheet.theme.text, "semibold"))
+        made.append(marks.Text(line, left, y, size, sheet.theme.text, "semibold"))
     right = left + max(text_width(line, size, "semibold") for line in lines)
-    return marks, (right, top + len(lines) * line_height(size) - 4.0 * u)
+    return made, (right, top + len(lines) * line_height(size) - 4.0 * u)
 
 
 def _caption(sheet: Sheet, heading_end: float, top: float) -> tuple[list[Mark], float]:
@@ -151,10 +129,10 @@ def _caption(sheet: Sheet, heading_end: float, top: float) -> tuple[list[Mark], 
     """
     v, u, theme, size = sheet.viewport, sheet.unit, sheet.theme, sheet.font(13.0)
     shape = (sheet.view.shape.title,) if sheet.view.shape is not None else ()
-    marks: list[Mark] = []
+    made: list[Mark] = []
     if sheet.view.caption:
         thin = max(round(u), 1)
-        marks.append(boxes(theme.line, (v.left, v.top, v.width, thin), (v.left, v.top, thin, v.height)))
+        made.append(boxes(theme.line, (v.left, v.top, v.width, thin), (v.left, v.top, thin, v.height)))
     elif not shape:
         return [], top
     left, room = v.left + _EDGE * u, v.width - 2 * _EDGE * u
@@ -173,20 +151,10 @@ def _caption(sheet: Sheet, heading_end: float, top: float) -> tuple[list[Mark], 
             y = upper + 8.0 * u + (number + 0.5) * line_height(size)
             width = text_width(text, size, weight)
             sheet.occupancy.block(left, y - size / 2, width, size)
-            marks.append(Panel(left - 4.0 * u, y - 0.7 * size, width + 8.0 * u, 1.4 * size, 3.0 * u, paper))
-            marks.append(Text(text, left, y, size, colour, weight))
+            made.append(Panel(left - 4.0 * u, y - 0.7 * size, width + 8.0 * u, 1.4 * size, 3.0 * u, paper))
+            made.append(marks.Text(text, left, y, size, colour, weight))
             number += 1
-    return marks, max(top, upper + 8.0 * u + number * line_height(size))
-
-
-def _beside_panels(sheet: Sheet, said: str, size: int, around: float) -> tuple[Viewport, float, list[str]]:
-    """Where a notice stands, and the width and lines of its text: beside the panels, unless it is long."""
-    for v in (sheet.view.room, sheet.viewport):
-        room = min(v.width - 2 * _EDGE * sheet.unit, 640.0 * sheet.unit) - around
-        lines = wrapped(said, room, size)
-        if len(lines) <= _FEW_LINES:
-            break
-    return v, room, lines
+    return made, max(top, upper + 8.0 * u + number * line_height(size))
 
 
 def draw_notice(sheet: Sheet, ends: tuple[float, float]) -> list[Mark]:
@@ -195,31 +163,36 @@ def draw_notice(sheet: Sheet, ends: tuple[float, float]) -> list[Mark]:
     said = status.problem or status.notice
     if not said:
         return []
-    u, theme, size = sheet.unit, sheet.theme, sheet.font(13.0)
-    pad, icon = 12.0 * u, 18.0 * u
-    around = 2 * pad + icon + 10.0 * u
-    v, room, lines = _beside_panels(sheet, said, size, around)
-    bottom = min(bottom, v.bottom)
-    width = around + max(text_width(line, size) for line in lines)
-    most = max(int((bottom - top - 60.0 * u) / line_height(size)), 1)
-    lines = at_most(lines, most, room, size)
-    height = len(lines) * line_height(size) + 2 * pad - 4.0 * u
-    places = _for_notice(sheet, v, width, height, (top, bottom))
+    u, theme = sheet.unit, sheet.theme
+    ink, paper = (theme.problem, theme.problem_panel) if status.problem else (theme.text, theme.panel)
+    sign = Drawn(partial(_exclaimed, "!" if status.problem else "i", ink, paper), 18.0, 18.2)
+    for v in (sheet.view.room, sheet.viewport):  # beside the panels, unless it is long
+        room = min(v.width - 2 * _EDGE * u, 640.0 * u)
+        most = max(int((min(bottom, v.bottom) - top - 60.0 * u) / line_height(sheet.font(13.0))), 1)
+        text = Text(said, 13.0, ink, lines=most, grow=1.0)
+        if text.height(u, room - _AROUND_NOTICE * u) <= _FEW_LINES * line_height(sheet.font(13.0)):
+            break
+    widest = max(
+        text_width(line, sheet.font(13.0))
+        for line in wrapped(said, room - _AROUND_NOTICE * u, sheet.font(13.0))
+    )
+    inside = Row((sign, text), 10.0, (12.0, 10.0, 10.0), top=True)
+    whole = Plate(inside, paper, ink if status.problem else theme.line, radius=6.0)
+    width = widest + _AROUND_NOTICE * u
+    height = whole.height(u, width)
+    places = _for_notice(sheet, v, width, height, (top, min(bottom, v.bottom)))
     left, upper = min(places, key=lambda at: _hidden(sheet, at, width, height))
     sheet.occupancy.block(left, upper, width, height)
-    first = upper + height / 2 - (len(lines) - 1) * line_height(size) / 2
-    at = np.array([[left + pad + icon / 2, first]])
-    ink, paper = (theme.problem, theme.problem_panel) if status.problem else (theme.text, theme.panel)
-    return [
-        Panel(left, upper, width, height, 6.0 * u, paper, ink if status.problem else theme.line),
-        Stamps("disc", at, icon / 2, u, ink, ink),
-        Text("!" if status.problem else "i", float(at[0, 0]), first, size, paper, "semibold", "centre"),
-        *(
-            Text(line, left + pad + icon + 10.0 * u, first + number * line_height(size), size, ink)
-            for number, line in enumerate(lines)
-        ),
-        *_progress(sheet, left + pad, upper + height - 5.0 * u, width - 2 * pad),
-    ]
+    placed = Paper(u)
+    placed.put(whole, Rectangle(left, upper, width, height))
+    return [*placed.marks, *_progress(sheet, left + 12.0 * u, upper + height - 5.0 * u, width - 24.0 * u)]
+
+
+def _exclaimed(sign: str, ink: Colour, paper: Colour, place: Rectangle, u: float) -> list[Mark]:
+    """A sign in a disc."""
+    (x, y), size = place.middle, font_size(13.0, u)
+    disc = Stamps("disc", np.array([[x, y]]), 9.0 * u, u, ink, ink)
+    return [disc, marks.Text(sign, x, y, size, paper, "semibold", "centre")]
 
 
 def _for_notice(
@@ -296,77 +269,60 @@ def _legend(sheet: Sheet, heading_end: tuple[float, float]) -> tuple[list[Mark],
 
     They stand beside the heading if one or two rows have room there, else below it.
     """
-    v, u, theme, size = sheet.viewport, sheet.unit, sheet.theme, sheet.font(11.0)
+    v, u, theme = sheet.viewport, sheet.unit, sheet.theme
     meanings = meanings_of(sheet.legend) if sheet.view.legend else {}
     if not meanings or v.width < 240.0 * u:
         return [], heading_end[1]
-    legend = _arranged(meanings, v.width, heading_end[0] - v.left, u)
-    if not legend.beside and v.height < _SMALL * u and not sheet.view.explains_all:
+    plates, beside = _arranged(meanings, theme, v.width, heading_end[0] - v.left, u)
+    if not beside and v.height < _SMALL * u and not sheet.view.explains_all:
         return [], heading_end[1]
-    top = v.top + _ABOVE * u if legend.beside else heading_end[1] + 8.0 * u
-    marks: list[Mark] = []
-    height = 24.0 * u
-    for row in legend.rows:
-        width = sum(entry.width for entry in row) + _BETWEEN * u * (len(row) - 1) + 2 * _PAD * u
-        left = v.right - _ABOVE * u - width
-        sheet.occupancy.block(left, top, width, height)
-        marks.append(Panel(left, top, width, height, 6.0 * u, faded(theme.panel, 0.94), theme.line))
-        x = left + _PAD * u
-        for entry in row:
-            marks += _swatch(sheet, entry.name, x, top + height / 2, entry.swatch)
-            says = x + entry.swatch + 6.0 * u
-            marks.append(Text(meanings[entry.name], says, top + height / 2, size, theme.text))
-            x += entry.width + _BETWEEN * u
+    top = v.top + _ABOVE * u if beside else heading_end[1] + 8.0 * u
+    paper = Paper(u)
+    for plate in plates:
+        width = plate.width(u)
+        place = Rectangle(v.right - _ABOVE * u - width, top, width, 24.0 * u)
+        sheet.occupancy.block(*place.box)
+        paper.put(plate, place)
         top += _ROW * u
-    return marks, max(top - 4.0 * u, heading_end[1])
+    return paper.marks, max(top - 4.0 * u, heading_end[1])
 
 
-class _Entry(NamedTuple):
-    """What a legend says of one name, and the pixels that it and its sample take."""
-
-    name: str
-    swatch: float
-    width: float
-
-
-class _Legend(NamedTuple):
-    """The rows of a legend, and whether they stand beside the heading, else below it."""
-
-    rows: list[list[_Entry]]
-    beside: bool
-
-
-def _arranged(meanings: dict[str, str], width: float, heading: float, u: float) -> _Legend:
-    """A legend in a viewport that is so wide, of which the heading takes the left up to `heading`."""
-    entries = []
-    for name, meaning in meanings.items():
-        swatch = (_BAR_WIDTH if name == "utilisation" else 16.0) * u
-        entries.append(_Entry(name, swatch, swatch + 6.0 * u + text_width(meaning, font_size(11.0, u))))
-    whole = width - 2 * (_ABOVE + _PAD) * u
+def _arranged(
+    meanings: dict[str, str], theme: Theme, width: float, heading: float, u: float
+) -> tuple[list[Plate], bool]:
+    """A legend in rows, and whether it stands beside the heading, which takes the left up to `heading`, else below it."""
+    entries = [
+        Row(
+            (
+                Drawn(partial(_swatch, name, theme), _BAR_WIDTH if name == "utilisation" else 16.0),
+                Text(said, 11.0, theme.text),
+            ),
+            6.0,
+        )
+        for name, said in meanings.items()
+    ]
     room = width - heading - (_ABOVE + _BETWEEN + 2 * _PAD) * u
-    beside = max(entry.width for entry in entries) <= room
-    rows = _rows(entries, _BETWEEN * u, room) if beside else []
-    if beside and len(rows) <= _ROWS_BESIDE:
-        return _Legend(rows, True)
-    return _Legend(_rows(entries, _BETWEEN * u, whole), False)
+    beside = max(entry.width(u) for entry in entries) <= room
+    rows = _rows(entries, room, u) if beside else []
+    if not rows or len(rows) > _ROWS_BESIDE:
+        rows, beside = _rows(entries, width - 2 * (_ABOVE + _PAD) * u, u), False
+    paper = faded(theme.panel, 0.94)
+    return [Plate(Row(row, _BETWEEN, (_PAD, 0.0, 0.0)), paper, theme.line, radius=6.0) for row in rows], beside
 
 
-def _rows(entries: Sequence[_Entry], gap: float, room: float) -> list[list[_Entry]]:
+def _rows(entries: Sequence[Row], room: float, u: float) -> list[list[Row]]:
     """The entries in rows that fit into `room`, at least one each."""
-    rows: list[list[_Entry]] = [[]]
-    used = 0.0
+    rows: list[list[Row]] = [[]]
     for entry in entries:
-        if rows[-1] and used + entry.width > room:
+        if rows[-1] and Row([*rows[-1], entry], _BETWEEN).width(u) > room:
             rows.append([])
-            used = 0.0
         rows[-1].append(entry)
-        used += entry.width + gap
     return rows
 
 
-def _swatch(sheet: Sheet, name: str, x: float, y: float, width: float) -> list[Mark]:
+def _swatch(name: str, theme: Theme, place: Rectangle, u: float) -> list[Mark]:
     """A small sample of what a colour means: a diagram, a yielding rod, a slack cable, an arrow."""
-    u, theme = sheet.unit, sheet.theme
+    x, y, width = place.left, place.middle[1], place.width
     if name == "utilisation":
         return scale_bar(theme, x, y, width, u)
     in_ink = ("slack", "hinge", "moment", "shear", "velocity", "inertia")
@@ -444,7 +400,7 @@ def draw_scale(sheet: Sheet, scale: Scale | None) -> list[Mark]:
     return [
         Panel(scale.left, scale.top, width, _STRIP * u, 4.0 * u, faded(sheet.theme.background, 0.8)),
         *([_ruler(sheet, x, y, round(scale.ruler))] if scale.ruler else []),
-        Text(text, x + ruler, y + 4.0 * u, size, sheet.theme.muted),
+        marks.Text(text, x + ruler, y + 4.0 * u, size, sheet.theme.muted),
     ]
 
 

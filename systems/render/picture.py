@@ -14,6 +14,7 @@ from pinjoint.systems.render.bending_diagrams import draw_diagrams
 from pinjoint.systems.render.cuts import draw_cuts
 from pinjoint.systems.render.diagrams import draw_particle_diagrams
 from pinjoint.systems.render.empty_card import put_card, shows_card
+from pinjoint.systems.render.form import compose_form
 from pinjoint.systems.render.free_bodies import draw_free_bodies
 from pinjoint.systems.render.labels import Placed, place_labels
 from pinjoint.systems.render.layout import Paper
@@ -22,7 +23,6 @@ from pinjoint.systems.render.marks import Picture
 from pinjoint.systems.render.members import draw_distributed_forces, draw_hinges, draw_moments
 from pinjoint.systems.render.overlays import BAR, draw_notice, draw_overlays, draw_scale, place_scale
 from pinjoint.systems.render.page import draw_page
-from pinjoint.systems.render.panel import compose_form
 from pinjoint.systems.render.pointed import draw_pointed
 from pinjoint.systems.render.readouts import put_readouts
 from pinjoint.systems.render.sheet import ABOVE, BELOW, Sheet, measure

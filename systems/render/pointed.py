@@ -4,17 +4,18 @@ from __future__ import annotations
 
 import numpy as np
 
+from pinjoint.components.camera import Rectangle
 from pinjoint.components.handle import Handle
 from pinjoint.components.particle import Particle
 from pinjoint.components.rod import Rod
 from pinjoint.components.tags import Hovered
 from pinjoint.systems.render.clip import bounds, clip_segments
-from pinjoint.systems.render.marks import Mark, Panel, Points, Text
+from pinjoint.systems.render.layout import Column, Paper, Plate, Row, Text
+from pinjoint.systems.render.marks import Mark, Points
 from pinjoint.systems.render.occupancy import STRONG
 from pinjoint.systems.render.sheet import Sheet
 from pinjoint.systems.render.symbols import SUPPORT_DEPTH
 from pinjoint.systems.render.theme import faded
-from pinjoint.systems.render.typography import line_height, text_width
 
 _PAD, _GAP, _NEAR = 8.0, 14.0, 16.0  # points: inside the box, between columns, to the pointer
 _ROWS = (8, 2, 1)  # how many are told, where that many find room
@@ -29,35 +30,22 @@ def draw_pointed(sheet: Sheet) -> list[Mark]:
     pointed, handle = sheet.view.pointed, _hovered(sheet)
     if pointed is None or handle is None or sheet.view.preview is not None or sheet.view.help:
         return []
-    u, theme, size, line = sheet.unit, sheet.theme, sheet.font(12.0), line_height(sheet.font(12.0))
+    theme = sheet.theme
+    title = Text(pointed.title, 12.0, theme.text, "semibold")
     for count in _ROWS:  # fewer where more would cover values
-        rows = pointed.rows[:count]
-        inner = _inner_width(sheet, pointed.title, rows)
-        box = inner + 2 * _PAD * u, (len(rows) + 1) * line + _PAD * u
-        place = _beside(sheet, handle, *box) or _farther(sheet, handle, *box)
-        if place is not None:
-            break
-    else:
-        return []
-    left, top, width, height = place
-    x, y = left + _PAD * u, top + (_PAD * u + line) / 2
-    marks: list[Mark] = [
-        Panel(left, top, width, height, 5.0 * u, faded(theme.panel, 0.96), theme.line),
-        Text(pointed.title, x, y, size, theme.text, "semibold"),
-    ]
-    for name, value in rows:
-        y += line
-        marks.append(Text(name, x, y, size, theme.muted))
-        marks.append(Text(value, x + inner, y, size, theme.text, "semibold", "right"))
-    return marks
-
-
-def _inner_width(sheet: Sheet, title: str, rows: tuple[tuple[str, str], ...]) -> float:
-    """Pixels of the title, or of the widest name beside the widest value."""
-    size = sheet.font(12.0)
-    names = max((text_width(name, size) for name, _ in rows), default=0)
-    values = max((text_width(value, size, "semibold") for _, value in rows), default=0)
-    return max(names + _GAP * sheet.unit + values, text_width(title, size, "semibold"))
+        rows = [
+            Row((Text(name, 12.0, theme.muted, grow=1.0), Text(value, 12.0, theme.text, "semibold")), _GAP)
+            for name, value in pointed.rows[:count]
+        ]
+        inside = Column([title, *rows], around=(_PAD, _PAD / 2, _PAD / 2))
+        box = Plate(inside, faded(theme.panel, 0.96), theme.line)
+        width = box.width(sheet.unit)
+        size = width, box.height(sheet.unit, width)
+        if (place := _beside(sheet, handle, *size) or _farther(sheet, handle, *size)) is not None:
+            paper = Paper(sheet.unit)
+            paper.put(box, Rectangle(*place))
+            return paper.marks
+    return []
 
 
 def _hovered(sheet: Sheet) -> Handle | None:

@@ -33,9 +33,8 @@ def put_sliders(paper: Paper, view: View, theme: Theme) -> None:
         knob = partial(_knob, place, theme, paper.is_under_pointer(place))
         said = Column((line, Drawn(knob, grow=1.0)), around=(PAD, 0.0, 0.0), grow=1.0)
         ink = theme.focus if control.pressed else theme.muted
-        sign = Text(
-            control.button, 10.0 if len(control.button) > 1 else 14.0, ink, "semibold", "centre", wide=BUTTON
-        )
+        sizes = (10.0, 9.0, 8.0, 7.0) if len(control.button) > 1 else 14.0
+        sign = Text(control.button, sizes, ink, "semibold", "centre", wide=BUTTON)
         pressed = button(sign, SLIDER, theme, pressed=control.pressed, inset=3.0)
         paper.put(Plate(Row((said, pressed)), faded(theme.panel, 0.94), theme.line, radius=6.0), place)
         paper.hits.append(Hit(*place.box, SLIDER, item=place, wheel=("slider up", "slider down"), again=True))

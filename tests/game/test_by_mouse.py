@@ -65,8 +65,9 @@ def click_button(session: Session, name: str) -> None:
     """Click "close" or "accept" of a form."""
     scene = session.scenes.active
     assert isinstance(scene, FormScene)
-    place = getattr(scene.layout(session), name)
-    session.press("click", (place.left + place.width / 2, place.top + place.height / 2))
+    place = scene.layout(session).place_of(name)
+    assert place is not None
+    session.press("click", place.middle)
 
 
 # --- menus -----------------------------------------------------------------------------------------------
@@ -311,9 +312,7 @@ def test_the_second_click_on_a_picture_is_not_meant_for_the_model_that_it_opened
     session.press("d")
     scene = session.scenes.active
     assert isinstance(scene, FormScene)
-    tiles = [
-        place for place in scene.layout(session).places if not isinstance(place.item, str) and place.top > 100
-    ]
+    tiles = [place for place in scene.layout(session).places if place.top > 100]
     pixel = tiles[0].left + 10.0, tiles[0].top + 10.0
     session.press("click", pixel)
     assert session.scene == "pause"

@@ -98,5 +98,7 @@ def test_every_cross_and_knob_that_is_drawn_works(name: str, window: Window) -> 
 def close_form(session: Session) -> None:
     scene = session.scenes.active
     if isinstance(scene, FormScene):
-        session.press("click", scene.layout(session).close.middle)
+        close = scene.layout(session).place_of("close")
+        assert close is not None
+        session.press("click", close.middle)
         assert session.scenes.active is not scene

@@ -575,7 +575,7 @@ def test_arrows_reach_every_picture_and_show_it(session: Session, size: tuple[in
         assert scene_of(session).layout(session).place_of(tile) is not None
     for _ in form.tiles:
         session.press("up")
-    assert scene_of(session).layout(session).first <= 1
+    assert scene_of(session).layout(session).paper.scrolled[0] <= 1
 
 
 def test_examples_are_pictured_and_said_what_they_are(session: Session) -> None:

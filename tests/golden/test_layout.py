@@ -69,16 +69,16 @@ def test_every_key_is_explained_in_a_window_of_any_size(key: str, size: tuple[in
     session.press("i")
     if key:
         session.press(key)
-    told: set[str] = set()
-    for _ in range(100):
+    told = ""
+    for _ in range(200):
         session.press("f1")
         shown = list(texts(composed(session))) if session.view.help else []
         if not shown:
             break
-        told |= {text for text, _ in shown}
-        card = [(text, box) for text, box in shown if text in told and not text.endswith("…")]
+        told = " ".join([told, *(text for text, _ in shown)])
+        card = [(text, box) for text, box in shown if not text.endswith("…")]
         assert all(
             left >= 0.0 and right <= size[0] and bottom <= size[1] for _, (left, _, right, bottom) in card
         )
     assert session.view.help == 0
-    assert {title for _, title in help_lines(session.scene)} <= told
+    assert not [title for _, title in help_lines(session.scene) if title not in told]

@@ -78,9 +78,7 @@ class FileScene(FormScene):
     def _neighbour(self, context: Context, direction: str) -> Tile | None:
         """The tile next to the chosen one in a direction; the first visible tile if none is chosen yet."""
         layout, chosen = self.layout(context), self.form.chosen
-        rows = [
-            [item for item in row if isinstance(item, Tile)] for row in layout.rows if not isinstance(row, str)
-        ]
+        rows = [[item for item in row if isinstance(item, Tile)] for row in layout.rows]
         at = next(((row, row.index(chosen)) for row in rows if chosen in row), None)
         if at is None:
             return next((place.item for place in layout.places if isinstance(place.item, Tile)), None)

@@ -23,6 +23,7 @@ from pinjoint.systems.base import Phase, System
 from pinjoint.systems.render.diagrams import largest_force
 from pinjoint.systems.render.overlays import heading_height
 from pinjoint.systems.render.page import page_height
+from pinjoint.systems.render.theme import load_theme
 
 if TYPE_CHECKING:  # it imports scipy
     from pinjoint.force_method.guide import AnySet, Guide, Mechanism
@@ -169,7 +170,9 @@ class ForceMethod(Scene):
         self._foot.page = self._working()
         self._head.legend = context.view.legend and whole.height >= LEAST_EXPLAINED * ratio
         explained = self._explained() if self._head.legend else ()
-        head = round(heading_height(self._head.heading, whole.width, ratio, explained))
+        head = round(
+            heading_height(self._head.heading, whole.width, ratio, load_theme(context.view.theme), explained)
+        )
         wanted = page_height(self._foot.page, whole.width, ratio)
         foot = min(wanted, round(MOST_OF_HEIGHT * whole.height))
         if foot < wanted:

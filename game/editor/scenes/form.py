@@ -14,9 +14,10 @@ from pinjoint.components.language import decimals, english, joined, marked, tr
 from pinjoint.components.suggestions import missing
 from pinjoint.editor.context import Context, Scene
 from pinjoint.systems.forms import typing
-from pinjoint.systems.render.form_layout import FormLayout, lay_out, row_of
-from pinjoint.systems.render.panel import caret_at
+from pinjoint.systems.render.form import FormLayout, lay_out
+from pinjoint.systems.render.form_box import caret_at
 from pinjoint.systems.render.picture import Stage
+from pinjoint.systems.render.theme import load_theme
 
 # By titles that boxes once had, and scripts still name them by, those of today.
 FORMER = {f"applied force {axis}": f"load {axis}" for axis in "xy"} | {
@@ -119,7 +120,8 @@ class FormScene(Scene):
 
     def layout(self, context: Context) -> FormLayout:
         """Where its boxes and tiles are now."""
-        return lay_out(self.form, self.viewport(context), context.view.pixel_ratio)
+        view = context.view
+        return lay_out(self.form, self.viewport(context), view.pixel_ratio, load_theme(view.theme))
 
     def resized(self, context: Context) -> None:
         """Keep the selected box in sight."""
@@ -157,16 +159,13 @@ class FormScene(Scene):
 
     def click(self, context: Context, pixel: Vector) -> None:
         """Select a box (a switch also turns), put its caret, choose a tile, or press a button."""
-        layout = self.layout(context)
-        if layout.close.contains(pixel):
-            typing.accept(self.form)
-            self.leave(context)
-            return
-        if layout.accept is not None and layout.accept.contains(pixel):
-            self.accept(context)
-            return
-        place = next((p for p in layout.places if p.contains(pixel)), None)
+        place = self.layout(context).at(pixel)
         match place.item if place is not None else None:
+            case "close":
+                typing.accept(self.form)
+                self.leave(context)
+            case "accept":
+                self.accept(context)
             case Box() as box:
                 again = box is self.form.selected
                 if not again:
@@ -204,20 +203,20 @@ class FormScene(Scene):
     def scroll(self, context: Context, rows: int) -> None:
         """Scroll by a number of rows."""
         heading = self.form.heading
-        heading.first = max(self.layout(context).first + rows, 0)
-        heading.first = self.layout(context).first
+        heading.first = max(self.layout(context).paper.scrolled[0] + rows, 0)
+        heading.first = self.layout(context).paper.scrolled[0]
 
     def page(self, context: Context, by: int) -> None:
         """Scroll by all visible rows but one."""
-        self.scroll(context, by * max(self.layout(context).shown - 1, 1))
+        self.scroll(context, by * max(self.layout(context).paper.scrolled[1] - 1, 1))
 
     def reveal(self, context: Context, item: Box | Tile) -> None:
-        """Scroll until a box or tile is visible, with the heading of its section if it is the first of that."""
+        """Scroll until a box or tile is visible."""
         layout, heading = self.layout(context), self.form.heading
         if layout.place_of(item) is not None:
             return
-        row, above = row_of(layout, item)
-        heading.first = min(layout.first, above)
+        row = next(number for number, row in enumerate(layout.rows) if item in row)
+        heading.first = min(layout.paper.scrolled[0], row)
         while heading.first < row and self.layout(context).place_of(item) is None:
             heading.first += 1
 

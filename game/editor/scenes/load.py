@@ -130,8 +130,8 @@ class Load(FileScene):
             self.say(tr("No model or lesson has this in its name. Delete characters with Backspace."))
 
     def hint(self, context: Context) -> str:
-        layout = self.layout(context)
-        more = tr("Wheel shows more") if layout.shown < layout.count else ""
+        _, shown, count = self.layout(context).paper.scrolled
+        more = tr("Wheel shows more") if shown < count else ""
         steps = tr("Arrows choose     Return open     Type to search     Esc back")
         return joined([tr("Click a picture"), more, steps], BETWEEN)
 

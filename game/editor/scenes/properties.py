@@ -18,7 +18,7 @@ from pinjoint.editor.context import Context
 from pinjoint.editor.scenes.form import FormScene
 from pinjoint.systems.edit.picking import pick
 from pinjoint.systems.forms import answers, properties, results, typing
-from pinjoint.systems.render.form_layout import FormLayout
+from pinjoint.systems.render.form import FormLayout
 from pinjoint.systems.render.picture import Stage
 
 

@@ -18,7 +18,7 @@ from pinjoint.editor.scenes.form import FormScene
 from pinjoint.editor.scenes.properties import Properties
 from pinjoint.scripts.playing import Recorder, play, session_of
 from pinjoint.scripts.script import Script
-from pinjoint.systems.render.form_layout import FormLayout
+from pinjoint.systems.render.form import FormLayout
 from pinjoint.systems.render.marks import Text
 from pinjoint.systems.render.picture import compose
 from pinjoint.systems.render.theme import load_theme
@@ -793,17 +793,17 @@ def test_page_keys_scroll_by_pages_and_tab_brings_back_the_section(session: Sess
     session.press("return")
     scene = session.scenes.active
     assert isinstance(scene, FormScene)
-    shown = scene.layout(session).shown
-    assert shown > 3
+    _, shown, _ = scene.layout(session).paper.scrolled
+    assert shown > 2
     session.press("page down")
-    assert scene.layout(session).first == shown - 1
+    assert scene.layout(session).paper.scrolled[0] == shown - 1
     for _ in range(20):
         session.press("page down")
-    layout = scene.layout(session)
-    assert layout.first + layout.shown == layout.count
+    first, shown, count = scene.layout(session).paper.scrolled
+    assert first + shown == count
     session.press("tab")
     assert scene.form.selected is scene.form.boxes[0]
-    assert scene.layout(session).first == 0
+    assert scene.layout(session).paper.scrolled[0] == 0
 
 
 def test_boxes_stand_where_they_are_drawn_before_any_picture() -> None:

@@ -7,7 +7,7 @@ import pygame
 import pytest
 
 from pinjoint import Session
-from pinjoint.systems.render.panel import _window
+from pinjoint.systems.render.form_box import window_of
 from pinjoint.systems.render.picture import compose
 from pinjoint.systems.render.pygame_canvas import Canvas
 from pinjoint.systems.render.theme import load_theme
@@ -48,7 +48,7 @@ def test_a_box_shows_what_fits_around_its_caret(room: float) -> None:
     text = "12345.678"
     with within(10.0):
         for caret in range(len(text) + 1):
-            start, visible = _window(text, caret, room, 13)
+            start, visible = window_of(text, caret, room, 13)
             assert text[start:].startswith(visible)
             assert not visible or text_width(visible, 13) <= room
             assert start <= caret <= start + len(visible) or room < text_width("0", 13)
@@ -59,6 +59,6 @@ def test_long_texts_take_no_longer_than_what_is_seen_of_them() -> None:
     with within(5.0):
         assert fitting(text, 100.0, 12) < 100
         assert text_width(shortened(text, 100.0, 12), 12) <= 100
-        start, visible = _window(text, 900_000, 100.0, 12)
+        start, visible = window_of(text, 900_000, 100.0, 12)
         assert 900_000 - 100 < start < start + len(visible) <= 900_000
         assert np.isfinite(start)
