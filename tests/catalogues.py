@@ -17,7 +17,7 @@ from pathlib import Path
 from typing import IO, Any
 
 from babel.messages.catalog import Catalog, Message
-from babel.messages.extract import extract_from_dir, extract_python
+from babel.messages.extract import extract_from_dir
 from babel.messages.frontend import parse_keywords
 from babel.messages.mofile import write_mo
 from babel.messages.pofile import read_po, write_po
@@ -39,11 +39,23 @@ msgstr ""
 """
 
 
+def sentences(
+    file: IO[bytes], keywords: Iterable[str], comment_tags: object, options: object
+) -> Iterator[tuple[int, str | None, Any, list[str]]]:
+    """The sentences of a module in Python, as Babel asks for them, whose own way passes over some calls within calls."""
+    for node in ast.walk(ast.parse(file.read())):
+        match node:
+            case ast.Call(func=ast.Name(name) | ast.Attribute(attr=name), args=[_, *_]) if name in keywords:
+                said = [part.value if isinstance(part, ast.Constant) else None for part in node.args]
+                texts = tuple(part if isinstance(part, str) else None for part in said)
+                yield node.lineno, name, texts if len(texts) > 1 else texts[0], []
+
+
 def kinds(
-    file: IO[bytes], keywords: Any, tags: Any, options: Any
+    file: IO[bytes], keywords: Iterable[str], comment_tags: object, options: object
 ) -> Iterator[tuple[int, str | None, Any, list[str]]]:
     """The sentences of a module in Python, as Babel asks for them, and what people call its kinds and their Fields."""
-    yield from extract_python(file, keywords, tags, options)
+    yield from sentences(file, keywords, comment_tags, options)
     file.seek(0)
     for node in ast.walk(ast.parse(file.read())):
         match node:
@@ -113,7 +125,6 @@ def extracted(domain: str) -> Catalog:
         [(pattern, method) for pattern, method, _ in mappings],
         {pattern: options for pattern, _, options in mappings},
         parse_keywords(settings["keywords"]),
-        settings["comment_tags"],
     )
     for file, line, message, comments, context in places:
         found.add(message, None, [(file, line)], auto_comments=comments, context=context)

@@ -4,7 +4,9 @@ from __future__ import annotations
 
 import ast
 import gettext
+import tomllib
 from collections.abc import Iterator
+from functools import cache
 from pathlib import Path
 from string import Formatter
 
@@ -13,7 +15,7 @@ import pytest
 from pinjoint.components.language import DOMAIN, ENGLISH, LANGUAGES
 from tests.catalogues import ROOT, extracted, folders, is_translated, path_of, texts, translations
 
-KEYWORDS = {"tr": 1, "marked": 1, "plural": 2, "tr_in": 2}  # the number of arguments that are literals
+KEYWORDS = {"tr": [0], "marked": [0], "plural": [0, 1], "tr_in": [0, 1], "fail": [1]}  # places of literals
 SOURCES = [
     path for folder in ("components", "systems", "game") for path in sorted((ROOT / folder).rglob("*.py"))
 ]
@@ -90,8 +92,29 @@ def can_be_filled(text: str) -> bool:
 def calls() -> Iterator[tuple[Path, ast.Call, str]]:
     for path in SOURCES:
         for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
-            if isinstance(node, ast.Call) and isinstance(node.func, ast.Name) and node.func.id in KEYWORDS:
-                yield path, node, node.func.id
+            match node:
+                case ast.Call(func=ast.Name(name), args=[_, *_]) if name in KEYWORDS or name in errors():
+                    yield path, node, name
+
+
+@cache
+def errors() -> set[str]:
+    """Names of the classes of errors that say a sentence."""
+    kinds = [
+        node
+        for path in SOURCES
+        for node in ast.walk(ast.parse(path.read_text(encoding="utf-8")))
+        if isinstance(node, ast.ClassDef)
+    ]
+    found = {"Explained"}
+    while more := {kind.name for kind in kinds if found & {ast.unparse(base) for base in kind.bases}} - found:
+        found |= more
+    return found
+
+
+def test_the_sentences_of_every_error_are_extracted():
+    settings = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))["tool"]["babel"]
+    assert errors() <= set(settings["keywords"])
 
 
 def test_sentences_are_literals_so_that_catalogues_hold_them(present):
@@ -99,12 +122,12 @@ def test_sentences_are_literals_so_that_catalogues_hold_them(present):
     held = {part for _, said in present[DOMAIN] for part in (said if isinstance(said, tuple) else (said,))}
     wrong = []
     for path, call, keyword in calls():
-        for argument in call.args[: KEYWORDS[keyword]]:
+        for argument in (call.args[place] for place in KEYWORDS.get(keyword, [0])):
             if isinstance(argument, ast.Constant):
                 known = argument.value in held or (keyword == "tr_in" and argument is call.args[0])
             else:  # of what is marked elsewhere
                 literals = ast.Constant, ast.JoinedStr, ast.BinOp
-                known = keyword in ("tr", "tr_in") and not any(
+                known = keyword not in ("marked", "plural") and not any(
                     isinstance(b, literals) for b in branches(argument)
                 )
             if not known:

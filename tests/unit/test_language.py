@@ -1,5 +1,7 @@
 """Sentences in the language of the person, and the same in English for scripts."""
 
+import pickle
+
 import pytest
 
 from pinjoint.components import language
@@ -52,7 +54,7 @@ def test_messages_are_translated_numbers_with_commas_names_as_they_are() -> None
 
 @pytest.mark.usefixtures("portuguese")
 def test_errors_and_sentences_in_a_row_keep_their_english() -> None:
-    error = Mistake(tr("{rod} carries {force:.1f} kN.", rod="AB", force=1.0))
+    error = Mistake("{rod} carries {force:.1f} kN.", rod="AB", force=1.0)
     said = tr("It says: {error}", error=error)
     assert said == "Diz: A barra AB suporta 1,0 kN."
     assert english(said) == "It says: AB carries 1.0 kN."
@@ -69,6 +71,27 @@ def test_what_is_translated_already_and_nothing_stay_as_they_are() -> None:
     raised = begun(tr_in("support", "free"))
     assert (raised, english(raised)) == ("Livre", "Free")
     assert begun("rod AB") == "Rod AB"
+
+
+@pytest.mark.usefixtures("portuguese")
+def test_what_was_said_in_english_is_said_anew_with_what_it_is_filled_with(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    monkeypatch.setattr(language._SPOKEN, "code", "en")
+    error = Mistake("{rod} carries {force:.1f} kN.", rod=begun(tr_in("support", "free")), force=1.0)
+    both = joined([tr("It says: {error}", error=error), "AB"], "; ")
+    assert (str(error), both) == ("Free carries 1.0 kN.", "It says: Free carries 1.0 kN.; AB")
+    monkeypatch.setattr(language._SPOKEN, "code", "pt")
+    assert str(error) == "A barra Livre suporta 1,0 kN."
+    assert tr(both) == "Diz: A barra Livre suporta 1,0 kN.; AB"
+    monkeypatch.setattr(language._SPOKEN, "code", "en")
+    assert tr(tr(both)) == "It says: Free carries 1.0 kN.; AB"
+
+
+def test_an_error_can_be_copied_and_sent_to_another_process() -> None:
+    error = pickle.loads(pickle.dumps(Mistake("{rod} carries {force:.1f} kN.", rod=object(), force=1.0)))
+    assert type(error) is Mistake
+    assert str(error).endswith("carries 1.0 kN.")
 
 
 def test_an_unknown_language_is_refused_and_nothing_changes() -> None:
