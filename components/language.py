@@ -155,13 +155,13 @@ def joined(parts: Iterable[str], separator: str = " ") -> str:
     """Sentences that are said one after the other, without those that are empty."""
     known = [part for part in parts if part]
     same = separator.join(map(english, known))
-    return _said(separator.join(known), same, (joined, (known, separator), {}))
+    return in_both(separator.join(known), same, (joined, (known, separator), {}))
 
 
 def begun(text: str) -> str:
     """A text as a sentence begins with it: "Rod AB"."""
     same = str(english(text))
-    return _said(text[:1].upper() + text[1:], same[:1].upper() + same[1:], (begun, (text,), {}))
+    return in_both(text[:1].upper() + text[1:], same[:1].upper() + same[1:], (begun, (text,), {}))
 
 
 def listed(names: Sequence[str]) -> str:
@@ -194,27 +194,22 @@ class _Filling(Formatter):
         return decimals(text) if isinstance(value, float) else text
 
 
-_FILLING = _Filling()
-
-
-def in_both(shown: str, same: str) -> str:
-    """What is shown, with what it is in English unless that is the same."""
-    return same if shown == same else _said(shown, same, None)
+def in_both(shown: str, same: str, made: Any = None) -> str:
+    """What is shown, with what it is in English unless that is the same; made: what says it again, as in Said."""
+    if shown == same and made is None:
+        return same
+    said = Said(shown)
+    said.code, said.english, said.made = _SPOKEN.code, same, made
+    return said
 
 
 def _filled(message: str, shown: str, values: dict[str, Any], made: Any) -> str:
     if _SPOKEN.code == ENGLISH:
         shown = same = message.format(**values) if values else message
     else:
-        shown = _FILLING.vformat(shown, (), values) if values else shown
+        shown = _Filling().vformat(shown, (), values) if values else shown
         same = message.format(**{name: english(value) for name, value in values.items()}) if values else message
-    return _said(shown, same, made)
-
-
-def _said(shown: str, same: str, made: Any) -> Said:
-    said = Said(shown)
-    said.code, said.english, said.made = _SPOKEN.code, same, made
-    return said
+    return in_both(shown, same, made)
 
 
 def _anew(value: Any) -> Any:

@@ -26,6 +26,10 @@ from pinjoint.components.language import DOMAIN, ENGLISH, LANGUAGES, LOCALE
 
 ROOT = Path(__file__).parents[1]
 MODS = ROOT / "assets" / "mods"
+SETTINGS = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))["tool"]["babel"]
+KEYWORDS = parse_keywords(
+    SETTINGS["keywords"]
+)  # names of functions whose arguments are sentences, and which of them are
 NO_DATE = datetime(2000, 1, 1, tzinfo=UTC)  # a date would make every update a change
 _HEADER = """\
 msgid ""
@@ -110,11 +114,10 @@ def folders() -> dict[str, tuple[Path, Path]]:
 
 def extracted(domain: str) -> Catalog:
     """The sentences of the sources of a domain."""
-    settings = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))["tool"]["babel"]
     if domain == DOMAIN:
         mappings = [
             (pattern, mapping["method"], mapping)
-            for mapping in settings["mappings"]
+            for mapping in SETTINGS["mappings"]
             for pattern in mapping["patterns"]
         ]
     else:
@@ -124,7 +127,7 @@ def extracted(domain: str) -> Catalog:
         folders()[domain][0],
         [(pattern, method) for pattern, method, _ in mappings],
         {pattern: options for pattern, _, options in mappings},
-        parse_keywords(settings["keywords"]),
+        KEYWORDS,
     )
     for file, line, message, comments, context in places:
         found.add(message, None, [(file, line)], auto_comments=comments, context=context)

@@ -12,7 +12,7 @@ from typing import ClassVar
 from pinjoint.components.camera import Viewport
 from pinjoint.components.field import Vector
 from pinjoint.components.language import listed, marked, tr
-from pinjoint.components.mistake import Explained, NotFound, WrongValue
+from pinjoint.components.mistake import NotFound, WrongValue
 from pinjoint.components.model import Model
 from pinjoint.components.rod import bends
 from pinjoint.components.settings import NO_DIAGRAMS, Settings
@@ -88,10 +88,6 @@ class Gesture:
 
 # The systems that let time pass, for scenes that want what happens in a simulation.
 PHYSICS = ("run.*", "physics.*", "plasticity.*", "loads.*", "collision.*", "edit.pull")
-
-
-class SceneError(Explained, ValueError):
-    """A transition that does not exist; the message says from where to where, and what does."""
 
 
 class Scene:
@@ -213,15 +209,15 @@ class Scenes:
         return tuple(self._by_name)
 
     def request(self, *names: str) -> None:
-        """Ask for a transition, or a chain of them. Raises SceneError if one is not legal."""
+        """Ask for a transition, or a chain of them. Raises WrongValue if one is not legal."""
         here = self._by_name[self._requested[-1]] if self._requested else self.active
         for name in names:
             if name not in self._by_name:
                 known = ", ".join(self._by_name)
-                raise SceneError("There is no scene '{scene}'; choose from {names}.", scene=name, names=known)
+                raise WrongValue("There is no scene '{scene}'; choose from {names}.", scene=name, names=known)
             if name not in here.targets and here.name not in self._by_name[name].sources:
                 targets = ", ".join(here.targets)
-                raise SceneError(
+                raise WrongValue(
                     "From the scene '{here}' one cannot go to '{scene}', only to {scenes}.",
                     here=here.name,
                     scene=name,

@@ -2,7 +2,7 @@
 
 from collections.abc import Callable
 
-from pinjoint.editor.context import PHYSICS, Scene, SceneError, Scenes
+from pinjoint.editor.context import PHYSICS, Scene, Scenes
 from pinjoint.editor.scenes.files import Pictures
 from pinjoint.editor.scenes.force_method import ForceMethod, Sets
 from pinjoint.editor.scenes.live import Pause, Simulation
@@ -12,7 +12,7 @@ from pinjoint.editor.scenes.save import Save
 from pinjoint.systems.base import System
 from pinjoint.systems.render.picture import Stage
 
-__all__ = ["PHYSICS", "SCENES", "Scene", "SceneError", "Scenes", "Stage", "all_scenes", "scene_systems"]
+__all__ = ["PHYSICS", "SCENES", "Scene", "Scenes", "Stage", "all_scenes", "scene_systems"]
 
 SCENES: list[Callable[[], Scene]] = []  # that mods add; made anew for every session
 
