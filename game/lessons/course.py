@@ -133,7 +133,7 @@ class Course:
         script = self.lesson.script
         for number, entry in lines:
             for failure in play_line(script, number, entry, self._session):
-                raise ScriptError(joined([script.path, str(failure)]))
+                raise ScriptError(joined([str(script.path), str(failure)]))
 
     def again(self) -> None:
         """Begin the task anew, from the model with which it began."""
