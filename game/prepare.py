@@ -42,15 +42,11 @@ Job = tuple[str, ...]  # the name of a unit, or a step program: integrator, form
 
 
 class Task(msgspec.Struct, frozen=True):
-    """Jobs, each with the document of the model that they are of.
-
-    asker: the process that starts this one, which may end before this one asks who it is. mods: their folders.
-    later: nobody waits for it.
-    """
+    """Jobs, each with the document of its model. asker: the process that wants them. later: nobody waits for it."""
 
     asker: int
     language: str
-    mods: list[str]
+    mods: list[str]  # their folders
     later: bool
     jobs: list[tuple[Job, int]]
     documents: list[bytes]

@@ -95,9 +95,8 @@ def _paths(value: Any) -> list[Path]:
 def _is_one_file(one: Path, other: Path) -> bool:
     """True if two names are of one file, by links, too, or will be."""
     try:
-        if one.exists() and other.exists():
-            return one.samefile(other)
-        return os.path.realpath(one) == os.path.realpath(other)
+        there = one.exists() and other.exists()
+        return one.samefile(other) if there else os.path.realpath(one) == os.path.realpath(other)
     except (OSError, ValueError):  # names that no file can have
         return False
 
