@@ -154,6 +154,8 @@ def english(said: object) -> Any:
 def joined(parts: Iterable[str], separator: str = " ") -> str:
     """Sentences that are said one after the other, without those that are empty."""
     known = [part for part in parts if part]
+    if len(known) < 2:
+        return known[0] if known else ""
     same = separator.join(map(english, known))
     return in_both(separator.join(known), same, (joined, (known, separator), {}))
 
