@@ -10,6 +10,7 @@ from collections.abc import Callable, Iterator, Sequence
 from typing import ClassVar
 
 from pinjoint.components.camera import Viewport
+from pinjoint.components.extensions import EXTENSIONS
 from pinjoint.components.field import Vector
 from pinjoint.components.language import listed, marked, tr
 from pinjoint.components.model import Model
@@ -253,8 +254,6 @@ class Scenes:
 # --- the context -----------------------------------------------------------------------------------------
 
 _TIME = Time()
-FAULTS: list[str] = []  # sentences about mods that failed while the program ran, the oldest first
-PANELS: list[Callable[[Context], Sequence[Readout]]] = []  # panels of mods beside the model
 
 
 class Context(Workspace):
@@ -278,7 +277,7 @@ class Context(Workspace):
         self.lesson: Script | None = None
         self.course: Course | None = None
         self.beside: View | None = None
-        self.faults_seen = len(FAULTS)
+        self.faults_seen = len(EXTENSIONS.faults)
 
     # --- documents ---------------------------------------------------------------------------------
 
@@ -314,7 +313,7 @@ class Context(Workspace):
     @property
     def fault(self) -> str:
         """The mod that failed last and why, until Escape is pressed; "" if none did."""
-        return FAULTS[-1] if len(FAULTS) > self.faults_seen else ""
+        return EXTENSIONS.faults[-1] if len(EXTENSIONS.faults) > self.faults_seen else ""
 
     # --- time --------------------------------------------------------------------------------------
 
@@ -457,7 +456,7 @@ class Context(Workspace):
 
     def panels(self) -> Iterator[Readout]:
         """The panels of mods beside the model."""
-        return (readout for panel in PANELS for readout in panel(self))
+        return (readout for panel in EXTENSIONS.panels for readout in panel(self))
 
     def exaggerate(self) -> None:
         """Let the automatic displacement scale suit the model, but not in the middle of a drag."""
