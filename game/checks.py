@@ -275,16 +275,14 @@ def _driven_by(system: System, simulation: Simulation) -> Iterator[None]:
     if not isinstance(system, Integrator):
         yield
         return
-    former = INTEGRATORS.get(system.key)
+    former = dict(INTEGRATORS)
     INTEGRATORS[system.key] = system
     try:
         simulation.model.settings.integrator = system.key
         yield
     finally:
-        if former is None:
-            del INTEGRATORS[system.key]
-        else:
-            INTEGRATORS[former.key] = former
+        INTEGRATORS.clear()
+        INTEGRATORS.update(former)
 
 
 def _check_finite(name: str, model: Model) -> None:

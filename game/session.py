@@ -121,7 +121,7 @@ class Session(Context):
         )
 
     def __repr__(self) -> str:
-        name, model = self.file.name or "untitled", self.model
+        name, model = self.document.file.name or "untitled", self.model
         size = f"{model.particles.count} particles, {model.rods.count} rods"
         return f"<Session '{name}': {size}, {self.scene}, t = {self.time:.6g} s>"
 
@@ -161,7 +161,7 @@ class Session(Context):
         remarks on a run at rest.
         """
         said = self.fault or self.scenes.active.message or self.simulation.said or self.notice
-        return joined([said, *(remark.message for remark in self.remarks)])
+        return joined([said, *(remark.message for remark in self.document.assessment.remarks)])
 
     # --- time --------------------------------------------------------------------------------------
 

@@ -44,12 +44,8 @@ from pinjoint.systems.input.bindings import (
     LIVE,
     Binding,
     add_binding,
-    add_button,
-    add_tool,
     key_named,
     remove_binding,
-    remove_button,
-    remove_tool,
 )
 from pinjoint.systems.physics.integrators import INTEGRATORS
 from pinjoint.systems.render.icons import Part, check_icon
@@ -146,8 +142,7 @@ class App:
         )(TOOLS[name].use)
         if icon:
             self._icon(name, icon)
-            add_tool(name)
-            self._undo.append(lambda: remove_tool(name))
+            self._add(EXTENSIONS.tools, name)
 
     def shape(self, kind: type[Handle], shape: Shape) -> None:
         """Let particles collide with elements of a kind: `shape(table)` returns the Pieces that they are."""
@@ -246,8 +241,7 @@ class App:
                 self.key(key, name, scenes, title)
             if icon:
                 self._icon(name, icon)
-                add_button(Binding(key, name, tuple(scenes), title or name))
-                self._undo.append(lambda: remove_button(name))
+                self._add(EXTENSIONS.buttons, Binding("", name, tuple(scenes), title or name))
             return function
 
         return register

@@ -57,11 +57,8 @@ def page() -> str:
     """What the page is to say."""
     kinds = [kind for kind in KINDS if kind is not Clock]
     sections = [section(kind, kind.table) for kind in kinds]
-    ours = [
-        (name, kind)
-        for name, kind in EXTENSIONS.kinds.items()
-        if kind.__module__.startswith("pinjoint.included")
-    ]
+    kinds = EXTENSIONS.kinds.items()
+    ours = [(name, kind) for name, kind in kinds if kind.__module__.startswith("pinjoint.included")]
     sections += [section(kind, kind.table, f" (in files `components` / `{name}`)") for name, kind in ours]
     return "\n".join([HEAD, *sections, histories()]) + SLIDERS
 

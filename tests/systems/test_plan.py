@@ -85,8 +85,7 @@ def arcade() -> Iterator[Callable[..., Session]]:
     """Opens sessions in which there are two further scenes."""
     EXTENSIONS.scenes.extend([Arcade, Still])
     yield lambda document, *systems: Session.open(document, systems)
-    EXTENSIONS.scenes.remove(Arcade)
-    EXTENSIONS.scenes.remove(Still)
+    del EXTENSIONS.scenes[-2:]
 
 
 def go(session: Session, scene: str) -> None:
