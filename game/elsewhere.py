@@ -169,6 +169,7 @@ def started(jobs: Mapping[Job, bytes], urgent: bool) -> subprocess.Popen[str]:
             encoding="utf-8",
             errors="replace",
             creationflags=getattr(subprocess, priority, 0),
+            start_new_session=True,  # Ctrl+C in a terminal is for the window, which then ends it
         )
 
 
