@@ -16,15 +16,14 @@ from pinjoint.systems.render.clip import bounds, clip_segments
 from pinjoint.systems.render.labels import Label, half_size
 from pinjoint.systems.render.marks import Discs, Fills, Points, Rectangles, Strokes
 from pinjoint.systems.render.occupancy import FAINT, STRONG
-from pinjoint.systems.render.sheet import FEW, MANY, Rows, Sheet
+from pinjoint.systems.render.sheet import DIRECTIONS, FEW, MANY, Rows, Sheet
 from pinjoint.systems.render.symbols import LARGEST_STAMP, RIM, arcs, circle, dashed
 from pinjoint.systems.render.theme import Colour, faded
 from pinjoint.systems.render.values import BACKING, reach
 
 _CLOSEST_LINES = 8.0  # points between grid lines
 _CLOSE = 8  # places of a name that touch its particle, at these corners and sides
-_CORNERS = np.array([[-1.0, -1.0], [1.0, -1.0], [-1.0, 1.0], [1.0, 1.0]])
-_SIDES = np.array([[0.0, -1.0], [-1.0, 0.0], [1.0, 0.0], [0.0, 1.0]])
+_CORNERS, _SIDES = np.array([(x, y) for y in (-1.0, 1.0) for x in (-1.0, 1.0)]), DIRECTIONS[[3, 2, 0, 1]]
 _CABLE = 0.5  # width of a cable, of that of another rod
 _DASH = 5.0  # points
 _GHOST_FROM = 4.0  # points of displacement
