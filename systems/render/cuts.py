@@ -11,10 +11,11 @@ from pinjoint.systems.render.marks import Points, Strokes
 from pinjoint.systems.render.members import draw_arcs
 from pinjoint.systems.render.occupancy import STRONG
 from pinjoint.systems.render.sheet import Rows, Sheet
+from pinjoint.systems.render.symbols import dashed
 from pinjoint.systems.render.theme import faded
 from pinjoint.systems.render.values import FIRST, half_sizes, off, write
 
-_DASH, _BETWEEN = 5.0, 3.5  # points, of the lines that are left of a rod
+_DASH = 5.0  # points, of the lines that are left of a rod
 _OPEN, _PAIR = 5.0, 17.0  # points, half of a cut: without and with arrows in it
 _FACE = 4.5  # points, half of the line across it
 _SHARES = (0.5, 0.35, 0.65, 0.28, 0.72)  # along a rod: where it may be cut
@@ -37,7 +38,7 @@ def draw_cuts(sheet: Sheet) -> None:
 
 
 def _cut_through(sheet: Sheet, number: int, cut: Cut, joints: Rows, along: Points) -> None:
-    u, ink, of = sheet.unit, faded(sheet.theme.ink, 0.6), np.array([number])
+    u, ink = sheet.unit, faded(sheet.theme.ink, 0.6)
     first, last = sheet.centres[joints]
     shares = np.array(_SHARES)[:, None]
     away = distance_to_segments((first + shares * (last - first))[:, None], sheet.start, sheet.end)
@@ -45,20 +46,16 @@ def _cut_through(sheet: Sheet, number: int, cut: Cut, joints: Rows, along: Point
     middle = first + _SHARES[int(np.argmax(free)) if free.any() else 1] * (last - first)
     half = (_PAIR if cut.label else _OPEN) * u
     faces = np.stack([middle - half * along, middle + half * along])
-    for joint, face in zip((first, last), faces, strict=True):
-        way = face - joint
-        count = max(int(np.hypot(*way) / ((_DASH + _BETWEEN) * u)), 1)
-        at = joint + np.arange(count)[:, None] / count * way
-        sheet.marks.append(Strokes(at, at + _DASH * u * way / np.hypot(*way), 1.25 * u, ink))
-        sheet.occupancy.line(joint[None], face[None], STRONG, (_KEY, of))
+    start, end, _ = dashed(sheet.centres[joints], faces, _DASH * u)
+    sheet.marks.append(Strokes(start, end, 1.25 * u, ink))
+    sheet.occupancy.line(sheet.centres[joints], faces, STRONG, (_KEY, np.full(2, number)))
     across = np.array([-along[1], along[0]]) * _FACE * u
     sheet.marks.append(Strokes(faces - across, faces + across, 1.25 * u, ink))
     if not cut.label:
         return
     towards = np.stack([along, -along])
-    owners = [("particles", int(joint)) for joint in joints]
     length = np.full(2, half - 2.0 * u)
-    draw_arrows(sheet, owners, faces, towards, length, sheet.theme.load, (_KEY, joints), 1.75)
+    draw_arrows(sheet, ("particles", joints), faces, towards, length, sheet.theme.load, (_KEY, joints), 1.75)
     _label(sheet, number, cut.label, middle, np.stack([across, -across]) / (_FACE * u), 6.0 * u)
 
 

@@ -65,7 +65,6 @@ _SHORTEST, _SHORTEST_WITH_VALUE = (
     6.0,
     24.0,
 )  # points, of rods with a diagram; values of others would only hide them
-_OUTLINED = 16.0  # points, of rods from which on rectangles have an outline
 _MANY = 300  # rods, above which diagrams of those that bend are outlines
 _PIECES = ((24, 24), (120, 12), (_MANY, 8), (np.inf, 4))  # of a diagram, by how many rods have one at most
 _PIECE = 5.0  # points, or longer
@@ -329,7 +328,7 @@ def _draw_areas(sheet: Sheet, name: str, diagram: _Diagram, heights: Values, dra
     rows, points, heights = diagram.rows[drawn], diagram.points[drawn], heights[drawn]
     rise = heights[..., None] * diagram.normals[drawn]
     colour, edge, u = _colour(sheet, name), points + rise, sheet.unit
-    is_outlined, of = not diagram.is_straight or sheet.rod_length > _OUTLINED * u, ("rods", rows)
+    is_outlined, of = not diagram.is_straight or sheet.rod_length > 16.0 * u, ("rods", rows)
     if diagram.is_straight:
         area = faded(colour, 0.16 if is_outlined else 0.5)
         sheet.marks.append(Bars(points[:, 0], points[:, 1], rise[:, 0], area, of))

@@ -25,8 +25,6 @@ MOST = 150  # rods that are taken apart: of more, arrows would hide one another
 SHORTEST = 74.0  # points: shorter rods stay whole, since there is no room for arrows
 _CLEAR = math.cos(math.radians(24.0))  # of the angle between an arrow and the rods that leaves both readable
 _ASIDE = 10.0  # points by which an arrow stands beside a rod where all is taken
-_GAP = 4.0  # points between an arrow and its value
-_SHARES = (0.5, 0.75, 0.3, 1.0)  # of a line, beside which its value may stand
 _PIECES, _ARC = 16, 9.0  # of a bent rod; points, radius of the arrow of a moment at its end
 _SMALLEST_SHARE = 1e-3  # of the largest force: a smaller one of inertia is told, not drawn
 
@@ -76,7 +74,7 @@ def _draw_rods(sheet: Sheet, known: Apart, long: NDArray[np.bool_], largest: flo
         _write(
             sheet,
             "0 kN",
-            beside(sheet, "0 kN", *own, _SHARES, _GAP),
+            _by_line(sheet, "0 kN", *own),
             sheet.theme.zero,
             ("rods.end0", row),
             ("rods", row),
@@ -98,7 +96,7 @@ def _draw_rods(sheet: Sheet, known: Apart, long: NDArray[np.bool_], largest: flo
             for row, *line in zip(rods[which].tolist(), rim, rod_end[which], strict=True):
                 text, key = written.force(abs(float(force[row]))), (f"rods.end{side}", row)
                 own = line[0], line[1]
-                _write(sheet, text, beside(sheet, text, *own, _SHARES, _GAP), colour, key, ("rods", row), own)
+                _write(sheet, text, _by_line(sheet, text, *own), colour, key, ("rods", row), own)
 
 
 def _draw_bodies(sheet: Sheet, start: Points, end: Points, gap: NDArray[np.float64]) -> None:
@@ -162,7 +160,7 @@ def _draw_bending(
                 rod_ends[side][index],
             )
             ways = np.array([[0.0, -1.0], [0.0, 1.0], across[index], -across[index]])
-            places = off(at, ways, (_ARC + _GAP) * u, half_sizes(sheet, [text]))
+            places = off(at, ways, (_ARC + 4.0) * u, half_sizes(sheet, [text]))
             first, last = at + _ARC * u * ways[:2]
             key_of_value = "rods.bending_moment", 2 * row + side
             _write(sheet, text, places, colour, key_of_value, ("rods", row), (first, last))
@@ -232,10 +230,15 @@ def _directions_of_rods(sheet: Sheet, row: int) -> list[Points]:
     return found
 
 
+def _by_line(sheet: Sheet, text: str, start: Points, end: Points) -> Points:
+    """Where a value may stand beside a line: on either side of its middle, then nearer to its ends."""
+    return beside(sheet, text, start, end, (0.5, 0.75, 0.3, 1.0), 4.0)
+
+
 def _by_arrow(sheet: Sheet, text: str, start: Points, end: Points, way: Points) -> Points:
     """Where the value of an arrow may stand: beyond an end of it that lies that way, or beside it."""
-    beyond = off(end, way, _GAP * sheet.unit, half_sizes(sheet, [text]))
-    return np.concatenate([beyond, beside(sheet, text, start, end, _SHARES, _GAP)])
+    beyond = off(end, way, 4.0 * sheet.unit, half_sizes(sheet, [text]))
+    return np.concatenate([beyond, _by_line(sheet, text, start, end)])
 
 
 def _write(

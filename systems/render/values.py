@@ -50,7 +50,7 @@ def in_rows(at: Points, way: Points, across: Sequence[Values], along: Points, sl
 
 
 def beside(sheet: Sheet, text: str, start: Points, end: Points, shares: Sequence[float], gap: float) -> Points:
-    """Where a value may stand beside a line at shares of it, on either side: its right as drawn first, (2 × shares, 2)."""
+    """Where a value may stand beside a line, so many points off, at shares of it: right as drawn, then left, (n, 2)."""
     way = end - start
     right = np.array([-way[1], way[0]]) / max(float(np.hypot(*way)), 1e-9)
     sides, along = np.tile([right, -right], (len(shares), 1)), np.repeat(shares, 2)[:, None]
