@@ -5,14 +5,14 @@ from __future__ import annotations
 import re
 from collections.abc import Callable, Sequence
 
+from pinjoint.components.extensions import EXTENSIONS
 from pinjoint.components.form import Form
 from pinjoint.components.model import Model
 from pinjoint.components.toolbar import Toolbar
 from pinjoint.components.view import Hit, View
-from pinjoint.systems.render.arrows import draw_loads, draw_velocities
-from pinjoint.systems.render.bending_diagrams import draw_diagrams
+from pinjoint.systems.render.arrows import draw_loads, draw_particle_diagrams, draw_velocities
 from pinjoint.systems.render.cuts import draw_cuts
-from pinjoint.systems.render.diagrams import draw_particle_diagrams
+from pinjoint.systems.render.diagrams import draw_diagrams
 from pinjoint.systems.render.empty_card import put_card, shows_card
 from pinjoint.systems.render.form import compose_form
 from pinjoint.systems.render.free_bodies import draw_free_bodies
@@ -25,7 +25,7 @@ from pinjoint.systems.render.overlays import BAR, draw_notice, draw_overlays, dr
 from pinjoint.systems.render.page import draw_page
 from pinjoint.systems.render.pointed import draw_pointed
 from pinjoint.systems.render.readouts import put_readouts
-from pinjoint.systems.render.sheet import ABOVE, BELOW, Sheet, measure
+from pinjoint.systems.render.sheet import Sheet, measure
 from pinjoint.systems.render.sliders import put_sliders
 from pinjoint.systems.render.structure import (
     draw_ghost,
@@ -123,7 +123,8 @@ def _draw_structure(sheet: Sheet) -> None:
     draw_hinges(sheet)
     sheet.marks += sheet.above
     draw_distributed_forces(sheet)
-    sheet.marks += [*draw_loads(sheet), *draw_velocities(sheet)]
+    draw_loads(sheet)
+    draw_velocities(sheet)
     draw_moments(sheet)
     draw_cuts(sheet)
     draw_shape(sheet)
@@ -134,7 +135,7 @@ def _composed(sheet: Sheet) -> Picture:
     """The picture of a model."""
     model, theme = sheet.model, sheet.theme
     draw_grid(sheet)
-    for layer in BELOW:
+    for layer in EXTENSIONS.below:
         sheet.marks += layer(sheet)
     if sheet.view.free_bodies and sheet.view.forces_known:
         draw_halos(sheet)
@@ -144,7 +145,7 @@ def _composed(sheet: Sheet) -> Picture:
     else:
         _draw_structure(sheet)
     label_names(sheet)
-    for layer in ABOVE:
+    for layer in EXTENSIONS.above:
         sheet.marks += layer(sheet)
     overlays, room = draw_overlays(sheet)
     paper = Paper(sheet.unit, sheet.view.pointer, overlays)
