@@ -50,7 +50,10 @@ _TILE, _TILE_GAP, _CAPTION, _PROPORTION = (
     0.6,
 )  # points across a tile, between, below; of its picture
 _PILL, _PILL_WIDTH = 40.0, 184.0  # points: tiles without pictures
-_BESIDE, _NAME = 985.0, 492.0  # points of width from which the name stands beside the heading; that it takes
+_BESIDE, _NAMES = (
+    985.0,
+    (412.0, 492.0),
+)  # points of width from which the name stands beside the heading; that it takes
 _LOWEST, _LEAST_PICTURE = 0.65, 24.0  # of a picture's height that it keeps where one more row fits then; points
 _SECTIONS_SEEN = 2  # with pictures, that begin in sight in any window
 _EXPLAINED, _MOST_EXPLAINED = 2, 6  # lines of explanation: of boxes, and at most
@@ -132,10 +135,10 @@ class _Writer:
             _Line("" if section in sections[:number] else section, [reading])
             for number, (section, reading) in enumerate(zip(sections, self.form.readings, strict=True))
         ]  # they stay while boxes are scrolled
-        if len(readings) * _READING * u > _MOST_READINGS * v.height:
+        if len(readings) * _READING * u > _MOST_READINGS * (v.height - 100.0 * u):
             self.lines, readings = readings + self.lines, []
         message = Text(self.form.heading.message, 12.0, theme.problem, lines=ALL, apart=16.0)
-        said = Column([message] * bool(message.text), around=(0.0, 3.0, 3.0), high=22.0 if self.files else 10.0)
+        said = Column([message] * bool(message.text), around=(0.0, 3.0, 3.0), high=22.0 if self.files else 8.0)
         head = Column(
             (*self._header(), *(self._row(line, 0.0) for line in readings), said), around=(0.0, 12.0, 0.0)
         )
@@ -162,19 +165,14 @@ class _Writer:
         close = closing(None, theme, 24.0, "close")
         if self.files is None:
             return [Row((title, close), 8.0, high=28.0)]
-        room = min(_NAME * u, self.width) - 80.0 * u
-        name = bare_box(self.files, room, theme, u, selected=self.files is self.selected, grow=1.0)
+        beside = self.width >= _BESIDE * u
+        wide = min(_NAMES[not beside], self.width / u)
+        name = bare_box(self.files, (wide - 80.0) * u, theme, u, selected=self.files is self.selected, grow=1.0)
         said = Text(tr(self.form.accept), 13.0, theme.text, "semibold", "centre", grow=1.0)
-        accept = button(
-            Row((said,), around=(8.0, 0.0, 0.0), wide=64.0),
-            None,
-            theme,
-            stands_out=True,
-            item="accept",
-            inset=0.0,
-        )
-        both = Row((name, accept), 8.0, wide=min(_NAME, self.width / u), high=26.0)
-        if self.width >= _BESIDE * u:
+        inside = Row((said,), around=(8.0, 0.0, 0.0), wide=64.0)
+        accept = button(inside, None, theme, stands_out=True, item="accept", inset=0.0)
+        both = Row((name, accept), 8.0, wide=wide, high=26.0)
+        if beside:
             return [Row((title, both, close), 8.0, high=28.0)]
         return [Row((title, close), 8.0, high=28.0), Gap(high=6.0), Row((both, Gap(grow=1.0)))]
 
@@ -193,7 +191,7 @@ class _Writer:
             told if high >= _APART else "", _TOLD, colour, lines=max(int(high / _APART + 0.01), 1), apart=_APART
         )
         steps = Text(_steps(hint, self.width, font_size(12.0, self.u)), 12.0, self.theme.muted)
-        return Column((Column((text, Gap(grow=1.0)), high=high), Row((steps,), high=26.0)))
+        return Column((Column((text, Gap(grow=1.0)), high=high), Row((steps,), high=24.0)))
 
     def _explanation(self, hovered: object) -> tuple[str, Colour]:
         """What is said about the item under the pointer, else about the chosen or selected one; and its colour."""
@@ -241,7 +239,7 @@ class _Writer:
     def _tile(self, tile: Tile, width: float, picture: float) -> Plate:
         """A picture of the model, its title and its caption."""
         drawn = Drawn(partial(_picture, tile, self.theme), high=picture)
-        legend = Column((self._legend(tile, width),), around=(0.0, 4.0, 0.0), high=_CAPTION)
+        legend = Column((self._legend(tile, width),), high=_CAPTION)
         return Plate(Column((self._card(drawn, tile, 6.0), legend)), item=tile)
 
     def _card(self, inside: Part, tile: Tile, radius: float) -> Plate:
@@ -255,7 +253,7 @@ class _Writer:
         title = Text(tile.title, 12.5, self.theme.text, "semibold", lines=2, apart=15.5)
         caption = Text(tile.caption, 11.0, self.theme.muted, apart=15.5)
         fits = title.height(self.u, width) < 16.0 * self.u
-        return Column((title, caption) if fits else (title,), wide=width / self.u)
+        return Column((title, caption) if fits else (title,), around=(0.0, 4.5, 0.0), grow=1.0)
 
     def _picture_height(self, room: float) -> float:
         """Points of the pictures of tiles: fewer until two sections begin in sight, and where one more row fits then."""

@@ -1,10 +1,17 @@
-"""Help: a card with everything that can be pressed in the present mode, by purpose, and then the glossary."""
+"""Help: a card with everything that can be pressed in the present mode, by purpose, and then the glossary.
+
+The terms of the program stand beside those of courses, each explained in plain sentences (assets/glossary.json).
+"""
 
 from __future__ import annotations
 
+import json
+import unicodedata
 from collections.abc import Sequence
-from functools import lru_cache
+from functools import cache, lru_cache
+from importlib.resources import files
 from itertools import groupby
+from typing import NamedTuple
 
 import numpy as np
 
@@ -12,7 +19,6 @@ from pinjoint.components.camera import Rectangle, Viewport
 from pinjoint.components.language import language, tr
 from pinjoint.components.view import Hit, View
 from pinjoint.systems.render.buttons import closing, written_key
-from pinjoint.systems.render.glossary import glossary
 from pinjoint.systems.render.layout import ALL, Column, Gap, Paper, Part, Plate, Row, Text, in_columns, rule
 from pinjoint.systems.render.marks import Fills
 from pinjoint.systems.render.theme import Theme, faded
@@ -25,6 +31,27 @@ _TERM, _MEANING = 140.0, 330.0  # points across a term and its meaning
 Lines = tuple[tuple[str, str], ...]  # (key, meaning); ("", purpose) stands above the keys of a purpose
 
 
+class Term(NamedTuple):
+    """A term, what it means, and perhaps what it is also called."""
+
+    term: str
+    meaning: str
+    also: str = ""
+
+
+@cache
+def terms() -> list[Term]:
+    """All terms, as the file has them."""
+    held = json.loads((files("pinjoint.assets") / "glossary.json").read_text(encoding="utf-8"))
+    return [Term(**entry) for entry in held]
+
+
+def _glossary() -> list[Term]:
+    """All terms in the present language, in its alphabetical order."""
+    said = [Term(*map(tr, entry)) for entry in terms()]
+    return sorted(said, key=lambda entry: unicodedata.normalize("NFKD", entry.term.casefold()))
+
+
 def help_pages(keys: Lines, viewport: Viewport, unit: float, theme: Theme) -> list[list[Column]]:
     """The pages in the present language that a viewport needs, each in columns; those of the glossary are the last."""
     return _pages(keys, viewport, unit, theme, language())
@@ -32,7 +59,7 @@ def help_pages(keys: Lines, viewport: Viewport, unit: float, theme: Theme) -> li
 
 @lru_cache(maxsize=4)
 def _pages(keys: Lines, viewport: Viewport, u: float, theme: Theme, _: str) -> list[list[Column]]:
-    known = [(f"{term} ({also})" if also else term, meaning) for term, meaning, also in glossary()]
+    known = [(f"{term} ({also})" if also else term, meaning) for term, meaning, also in _glossary()]
     terms = [("", tr("Glossary")), *known]
     joined = _joined(keys)
     widest = max(Text(names, _SIZE, theme.text, "semibold").width(u) for names, _ in joined) / u

@@ -70,7 +70,7 @@ def _status_bar(sheet: Sheet) -> tuple[list[Mark], float]:
             behind = 6.0 * u + text_width(steps[0], sheet.font(12.0))
             whole = Row([*parts, text], 18.0, (_EDGE, 0.0, 0.0)).width(u) + behind
             parts += [text] if whole <= v.width else []
-    room = v.width - Row(parts, 18.0, (_EDGE, 0.0, 0.0)).width(u) - 6.0 * u
+    room = v.width - Row(parts, 18.0, (_EDGE, 0.0, 0.0)).width(u) - 24.0 * u
     while len(steps) > 1 and text_width(BETWEEN.join(steps), sheet.font(12.0)) > room:
         steps.pop()
     hint = Text(BETWEEN.join(steps), 12.0, theme.muted, anchor="right", grow=1.0)

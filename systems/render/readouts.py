@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import replace
 
 from pinjoint.components.camera import Rectangle
 from pinjoint.components.language import english, tr
@@ -71,13 +72,12 @@ def _panel(sheet: Sheet, readout: Readout, width: float, plot: float) -> Plate:
     title = Text(tr(readout.title), _SIZE, theme.text, "semibold", lines=ALL, grow=1.0)
     parts: list[Part] = [_titled(sheet, title, readout)]
     for row in readout.rows:
-        name, value = (
-            Text(row[0], _SIZE, theme.muted, lines=ALL),
-            Text(row[1], _SIZE, theme.text, "semibold", "right", ALL),
-        )
-        there = [text for text in (name, value) if text.text]
-        beside = Row([Text(row[0], _SIZE, theme.muted, grow=1.0), value], _GAP)
-        parts += [beside] if len(there) > 1 and beside.width(sheet.unit) <= room else there
+        name, value = Text(row[0], _SIZE, theme.muted), Text(row[1], _SIZE, theme.text, "semibold", "right")
+        there = [
+            replace(text, grow=float(text is name or not name.text)) for text in (name, value) if text.text
+        ]
+        beside = Row(there, _GAP)
+        parts += [beside] if beside.width(sheet.unit) <= room else [replace(text, lines=ALL) for text in there]
     if (plotted := readout.plot) is not None:
         parts.append(Drawn(lambda at, u: draw_plot(plotted, at.box, theme, u, sheet.view.pointer), high=plot))
     return _plate(sheet, Column(parts, around=(_PAD, _PAD, _PAD)), readout)

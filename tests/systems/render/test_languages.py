@@ -10,7 +10,7 @@ from pinjoint.components import language
 from pinjoint.session import Session
 from pinjoint.systems.input.bindings import BINDINGS
 from pinjoint.systems.render.buttons import written_key
-from pinjoint.systems.render.glossary import terms
+from pinjoint.systems.render.help import terms
 from pinjoint.systems.render.marks import Text
 from tests.golden.scenes import composed
 
