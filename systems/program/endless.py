@@ -9,6 +9,7 @@ import os
 import sys
 import threading
 from collections.abc import Callable, Iterable
+from contextlib import nullcontext
 from typing import Any
 
 from pinjoint.components.language import tr
@@ -16,6 +17,9 @@ from pinjoint.systems import is_ours
 from pinjoint.systems.interpreter import plain_function
 
 STATUS = 1  # of the process
+_SHARES = (
+    30  # of a call's time, between which a compiler at work is waited for: that takes longer on a slow machine
+)
 
 
 class Patience:
@@ -33,18 +37,23 @@ def ending(function: Callable[..., Any], kernels: Iterable[Callable[..., Any]]) 
     """A function that calls one of these kernels, and ends the process if it does not return."""
 
     def called(*given: Any) -> Any:
-        timer = threading.Timer(Patience.seconds, _end, [Patience.seconds, kernels])
-        timer.daemon = True
-        timer.start()
+        ended = threading.Event()
+        threading.Thread(target=_watch, args=(ended, Patience.seconds, kernels), daemon=True).start()
         try:
             return function(*given)
         finally:
-            timer.cancel()
+            ended.set()
 
     return called
 
 
-def _end(seconds: float, kernels: Iterable[Callable[..., Any]]) -> None:
+def _watch(ended: threading.Event, seconds: float, kernels: Iterable[Callable[..., Any]]) -> None:
+    for _ in range(_SHARES):
+        compiler = sys.modules.get("numba.core.compiler_lock")
+        with compiler.global_compiler_lock if compiler is not None else nullcontext():
+            pass
+        if ended.wait(seconds / _SHARES):
+            return
     codes = [plain_function(kernel).__code__ for kernel in kernels]
     places = ", ".join(f"{code.co_name} ({code.co_filename}, {code.co_firstlineno})" for code in codes)
     said = tr(
