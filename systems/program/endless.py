@@ -17,13 +17,10 @@ from pinjoint.systems import is_ours
 from pinjoint.systems.interpreter import plain_function
 
 STATUS = 1  # of the process
-_SHARES = (
-    30  # of a call's time, between which a compiler at work is waited for: that takes longer on a slow machine
-)
 
 
 class Patience:
-    """seconds: that a call of a program with kernels of others may take."""
+    """seconds: that a call of a program with kernels of others may take, apart from compiling."""
 
     seconds = 600.0
 
@@ -38,7 +35,7 @@ def ending(function: Callable[..., Any], kernels: Iterable[Callable[..., Any]]) 
 
     def called(*given: Any) -> Any:
         ended = threading.Event()
-        threading.Thread(target=_watch, args=(ended, Patience.seconds, kernels), daemon=True).start()
+        threading.Thread(target=_end, args=(ended, Patience.seconds, kernels), daemon=True).start()
         try:
             return function(*given)
         finally:
@@ -47,12 +44,12 @@ def ending(function: Callable[..., Any], kernels: Iterable[Callable[..., Any]]) 
     return called
 
 
-def _watch(ended: threading.Event, seconds: float, kernels: Iterable[Callable[..., Any]]) -> None:
-    for _ in range(_SHARES):
+def _end(ended: threading.Event, seconds: float, kernels: Iterable[Callable[..., Any]]) -> None:
+    for _ in range(30):  # a compiler at work is waited for in between: it takes long where a machine is busy
         compiler = sys.modules.get("numba.core.compiler_lock")
         with compiler.global_compiler_lock if compiler is not None else nullcontext():
             pass
-        if ended.wait(seconds / _SHARES):
+        if ended.wait(seconds / 30.0):
             return
     codes = [plain_function(kernel).__code__ for kernel in kernels]
     places = ", ".join(f"{code.co_name} ({code.co_filename}, {code.co_firstlineno})" for code in codes)
