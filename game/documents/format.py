@@ -46,8 +46,8 @@ class ModelError(Mistake, ValueError):
     """A model that cannot be read or written; the message says where, what is wrong and the remedy."""
 
 
-def fail(path: str, problem: str) -> NoReturn:
-    raise ModelError(joined([f"{path}:", problem]))
+def fail(path: str, problem: str, /, **values: Any) -> NoReturn:
+    raise ModelError(joined([f"{path}:", tr(problem, **values)]))
 
 
 def required(kind: type[Handle]) -> Sequence[str]:
@@ -68,10 +68,10 @@ def copied(value: Any, where: str) -> Any:
     if isinstance(value, list | tuple):
         return [copied(item, where) for item in value]
     if isinstance(value, str) and is_broken(value):
-        fail(where, tr("{value!a} contains a damaged character, which a file cannot hold.", value=value))
+        fail(where, "{value!a} contains a damaged character, which a file cannot hold.", value=value)
     if value is None or isinstance(value, str | int) or (isinstance(value, float) and math.isfinite(value)):
         return value
-    fail(where, tr("a model file cannot hold {value}.", value=quoted(value)))
+    fail(where, "a model file cannot hold {value}.", value=quoted(value))
 
 
 def missing_mods(model: Model) -> list[str]:
