@@ -5,7 +5,7 @@ from __future__ import annotations
 from pinjoint.components.field import Vector
 from pinjoint.components.view import Hit, Readout
 from pinjoint.editor.context import Context
-from pinjoint.systems.input.bindings import FORMS, LIVE, MENU, action_for
+from pinjoint.systems.input.actions import FORMS, LIVE, MENU, action_for
 from pinjoint.systems.render.menu import pointed_at
 from pinjoint.systems.render.picture import hits
 from pinjoint.systems.render.sliders import SLIDER

@@ -10,7 +10,7 @@ from hypothesis.stateful import RuleBasedStateMachine, initialize, invariant, ru
 
 from pinjoint import Session
 from pinjoint.components.toolbar import Tool
-from pinjoint.systems.input.bindings import BINDINGS, LIVE
+from pinjoint.systems.input.actions import ACTIONS, LIVE
 from tests.properties.soundness import check_sound, contents
 from tests.reference.hits import hits_in
 from tests.reference.sessions import put_states_aside
@@ -38,7 +38,11 @@ class Editing(RuleBasedStateMachine):
         self.session.point(*at)
         self.session.press(key)
 
-    @rule(key=st.sampled_from(sorted({b.key for b in BINDINGS if set(b.scenes) & set(LIVE)} - set("sdk"))))
+    @rule(
+        key=st.sampled_from(
+            sorted({b.key for _, b in ACTIONS.bound() if set(b.scenes) & set(LIVE)} - set("sdk"))
+        )
+    )
     def press(self, key: str) -> None:
         if key not in ("return", "ctrl+o", "ctrl+s", "ctrl+n", "drag middle"):
             self.session.press(key)

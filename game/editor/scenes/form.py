@@ -19,20 +19,6 @@ from pinjoint.systems.render.form_box import caret_at
 from pinjoint.systems.render.picture import Stage
 from pinjoint.systems.render.theme import load_theme
 
-# By titles that boxes once had, and scripts still name them by, those of today.
-FORMER = {f"applied force {axis}": f"load {axis}" for axis in "xy"} | {
-    "undeformed diagrams": "diagrams on undeformed rods"
-}
-
-
-class Texts(dict[str, str]):
-    """The texts of boxes by their titles, former ones among them."""
-
-    def __missing__(self, title: str) -> str:
-        if title in FORMER:
-            return self[FORMER[title]]
-        raise KeyError(title)
-
 
 class FormScene(Scene):
     """A mode with a form, which is made on entering and dropped on leaving."""
@@ -186,12 +172,11 @@ class FormScene(Scene):
 
     @property
     def boxes(self) -> dict[str, str]:
-        return Texts((english(box.title), box.text) for box in self.form.boxes)
+        return {english(box.title): box.text for box in self.form.boxes}
 
     def click_box(self, context: Context, title: str) -> None:
         """Select the box with that title, in English or as it is shown, as a click on it does. Raises LookupError."""
         wanted = title.strip().lower()
-        wanted = FORMER.get(wanted, wanted)
         for box in self.form.boxes:
             if wanted in (english(box.title).lower(), tr(box.title).lower()):
                 self.reveal(context, box)

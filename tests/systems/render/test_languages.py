@@ -8,13 +8,13 @@ import pytest
 
 from pinjoint.components import language
 from pinjoint.session import Session
-from pinjoint.systems.input.bindings import BINDINGS
+from pinjoint.systems.input.actions import ACTIONS
 from pinjoint.systems.render.buttons import written_key
 from pinjoint.systems.render.help import terms
 from pinjoint.systems.render.marks import Text
 from tests.golden.scenes import composed
 
-IN_ENGLISH = {binding.title for binding in BINDINGS if binding.title}
+IN_ENGLISH = {binding.title for _, binding in ACTIONS.bound() if binding.title}
 
 
 class _Quoting(gettext.NullTranslations):
