@@ -244,8 +244,8 @@ class Context:
     is too large to go on before its step program is compiled.
     scenes: the mode, and its transitions. gesture: what is being drawn or dragged. performing: a script is shown in the
     window, so input is not for the scenes and no time passes by itself. footer: the strip below the picture meanwhile.
-    lesson: the script that a person asked for. course: the lessons.course.Course that a person is in; beside: its card, in the
-    part of the window that it takes. faults_seen: how many faults of mods were shown and taken away.
+    lesson: the script that a person asked for. course: the lessons.course.Course that a person is in; beside: its card, in
+    the part of the window that it takes. faults_seen: how many faults of mods were shown and taken away.
     """
 
     def __init__(
