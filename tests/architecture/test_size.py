@@ -15,7 +15,7 @@ CONTAINERS = ("list", "dict", "set", "deque", "defaultdict", "OrderedDict", "Cou
 FUNCTION = ast.FunctionDef | ast.AsyncFunctionDef
 
 MOST = {
-    "lines": 67_420,
+    "lines": 67_424,
     "files": 408,
     "names": 4_070,  # functions, classes and constants of modules
     "public names": 2_442,
