@@ -2,7 +2,7 @@
 
 Of a model whose particles fly free it is a FreeFlightState, of one whose particles an integrator moves it is a
 PersistentContacts; a model has at most one of them, in the clock's column `collision_state`. Both are mappings: what a
-model file holds. Files written before the two were told apart hold one mapping for both, under the key `paths`.
+model file holds.
 """
 
 from __future__ import annotations
@@ -59,11 +59,9 @@ class _Saved(Mapping[str, Any]):
 class FreeFlightState(_Saved):
     """The paths of all particles and the contacts that persist, of particles that fly free.
 
-    motion: one row per particle, its columns FLIGHT of systems/collision/columns.py, the last four of which files of
-    earlier programs lack. contacts: a particle and one that it
+    motion: one row per particle, its columns FLIGHT of systems/collision/columns.py. contacts: a particle and one that it
     touches, in the order in which the flight looks at them, shape (k, 2). forces: in the contacts, N, shape (k,). pile:
-    PILE_COUNTS and PILE_NUMBERS of columns.py, how far a pile is with its steps, shape (9,), in files
-    of earlier programs (7,).
+    PILE_COUNTS and PILE_NUMBERS of columns.py, how far a pile is with its steps, shape (9,).
     """
 
     kind = "free flight"
@@ -97,7 +95,7 @@ def check_collision_state(value: Any, where: str) -> CollisionState:
     if isinstance(value, FreeFlightState | PersistentContacts):
         return value
     try:
-        entries = dict(value) if "kind" in value else _from_paths(**value)
+        entries = dict(value)
         kind = _KINDS[entries.pop("kind")]
         found = kind(**{key: _read(key, entry) for key, entry in entries.items()})
         count = len(found.contacts if isinstance(found, FreeFlightState) else found.pairs)
@@ -110,14 +108,6 @@ def check_collision_state(value: Any, where: str) -> CollisionState:
             where=where,
         ) from None
     return found
-
-
-def _from_paths(motion: Any, contacts: Any, forces: Any, crowd: Any) -> dict[str, Any]:
-    """The entries of files of earlier programs: `crowd` is the pile, or without motion at most the longest step."""
-    if len(motion):
-        return {"kind": "free flight", "motion": motion, "contacts": contacts, "forces": forces, "pile": crowd}
-    (longest,) = crowd or [None]
-    return {"kind": "persistent contacts", "pairs": contacts, "forces": forces, "longest_step": longest}
 
 
 def _read(key: str, value: Any) -> Any:
