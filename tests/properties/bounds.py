@@ -31,9 +31,7 @@ def checked(code: str, timeout: float | None = None) -> subprocess.CompletedProc
     with tempfile.TemporaryDirectory() as folder:
         (Path(folder) / "sitecustomize.py").write_text(_GUARD, encoding="utf-8")
         own = {"NUMBA_BOUNDSCHECK": "1", "PINJOINT_COMPILE": "always", "XDG_CACHE_HOME": folder}
-        own["NUMBA_OPT"] = (
-            "0"  # a third of the time: checks are the same, and compiling is what takes long here
-        )
+        own["NUMBA_OPT"] = "0"  # compiling, which is what takes long here, takes a third; checks are the same
         return subprocess.run(
             [sys.executable, "-c", code],
             env=os.environ | own | {"PYTHONPATH": os.pathsep.join([folder, str(Path(__file__).parents[2])])},
