@@ -6,7 +6,8 @@ import logging
 import math
 import os
 import traceback
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any, TypeVar
@@ -84,6 +85,15 @@ class Mod:
         if error is not None:  # without its message, which is code of the mod
             places = "".join(traceback.format_tb(error.__traceback__)).rstrip()
             LOG.debug("Traceback of the mod '%s':\n%s", self.name, places)
+
+    @contextmanager
+    def aside(self) -> Iterator[None]:
+        """As if it were switched off, inside the `with`."""
+        before, self.problem = self.problem, tr("it is left out for a trial")
+        try:
+            yield
+        finally:
+            self.problem = before
 
     def describe(self, error: BaseException) -> str:
         """An error with the file and the line of this mod in which it happened."""

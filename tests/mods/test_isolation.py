@@ -174,7 +174,7 @@ def test_what_a_system_does_by_commands_is_one_step_of_undo(session: Any) -> Non
             "@njit(error_model='numpy')\ndef bad(particles_position):\n"
             "    return 1.0 / (particles_position[1] - 1.0), 0.0",
             "",
-            "apple.bad gave inf for particle C, which is not finite (apple/__init__.py, line 6)",
+            "The run leads to numbers that are not finite. Without apple.bad the steps lead on.",
         ),
         ("@njit\ndef bad(particles_position):\n    return particles_position.nothing, 0.0", "", "does not compile"),
         ("@njit\ndef bad(particles_position):\n    return 1.0", "", "must return a pair"),
@@ -218,7 +218,7 @@ def bad(particles_position, particles_velocity, time):
         made.run(time=0.01)
     assert 0.0 <= made.time < 0.006
     check_switched_off(
-        made, before, "apple.bad gave nan for particle A, which is not finite (apple/__init__.py, line 7)"
+        made, before, "The run leads to numbers that are not finite. Without apple.bad the steps lead on."
     )
     assert made.run(time=0.01 - made.time) == "time reached"  # without the mod
 
@@ -454,7 +454,11 @@ def plugin(app):
         ("0.0", "1 / 0", "cutoff of 'apple.pull' failed: ZeroDivisionError"),
         ("0.0", "'far'", "cutoff of 'apple.pull' failed: TypeError: what it returned is 'far'"),
         ("0.0", "-1.0", "The cutoff of apple.pull is -1.0; give a distance above 0 m"),
-        ("1.0 / (apart[0] - apart[0])", "5.0", "gave inf for particle A and particle B"),
+        (
+            "1.0 / (apart[0] - apart[0])",
+            "5.0",
+            "The run leads to numbers that are not finite. Without apple.pull the steps lead on.",
+        ),
         ("apart", "5.0", "must return a pair, the force (fx, fy) on the first particle"),
     ],
 )
