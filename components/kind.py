@@ -8,20 +8,21 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from pinjoint.components.extensions import EXTENSIONS
 from pinjoint.components.field import Role
 from pinjoint.components.handle import Handle
 from pinjoint.components.language import tr
-from pinjoint.components.model import ADDED, KINDS, Model
+from pinjoint.components.model import KINDS, Model
 from pinjoint.components.table import Table, fields_of
 from pinjoint.components.wording import is_identifier
 
 
-def add_kind(mod: str, kind: type[Handle]) -> str:
-    """Let all models made from now on have a table of a mod's kind; returns what files call it.
+def checked_kind(mod: str, kind: type[Handle]) -> str:
+    """What files call a mod's kind of elements.
 
     Raises ValueError if a model has such elements already, or a Field is none that a mod can add.
     """
-    others = [*KINDS, *ADDED.values()]
+    others = [*KINDS, *EXTENSIONS.kinds.values()]
     fields = {field.name: field for field in fields_of(kind)}
     for part in ("table", "noun"):
         word = getattr(kind, part, "")
@@ -77,13 +78,12 @@ def add_kind(mod: str, kind: type[Handle]) -> str:
                 )
             )
     called = f"{mod}.{kind.__name__}"
-    ADDED[called] = kind
     return called
 
 
 def outlines(model: Model) -> Iterator[tuple[Table[Any], NDArray[np.float64]]]:
     """The tables of mods' kinds that have points and elements, with those points (m), shape (n, points, 2)."""
-    for kind in ADDED.values():
+    for kind in EXTENSIONS.kinds.values():
         table = model.tables.get(kind.table)
         if table is not None and table.count and kind.points:
             yield table, np.stack([table.column(point) for point in kind.points], axis=1)

@@ -18,6 +18,8 @@ from pathlib import Path
 from string import Formatter
 from typing import Any
 
+from pinjoint.components.extensions import EXTENSIONS
+
 DOMAIN = "pinjoint"
 LOCALE = Path(__file__).parents[1] / "assets" / "locale"
 ENGLISH = "en"
@@ -45,7 +47,6 @@ class _Spoken:
 
 
 _SPOKEN = _Spoken()
-_OF_MODS: dict[str, Path] = {}  # their folders of catalogues, by domain
 
 
 def language() -> str:
@@ -66,7 +67,7 @@ def speak(code: str) -> None:
     catalogue = gettext.NullTranslations()
     if code != ENGLISH:
         catalogue = gettext.translation(DOMAIN, LOCALE, languages=[code])
-        for domain, folder in _OF_MODS.items():
+        for domain, folder in EXTENSIONS.catalogues.items():
             catalogue.add_fallback(gettext.translation(domain, folder, languages=[code], fallback=True))
     _SPOKEN.code, _SPOKEN.catalogue = code, catalogue
 
@@ -84,13 +85,7 @@ def add_catalogues(domain: str, folder: Path) -> None:
             raise ValueError(
                 tr("The catalogue {file} cannot be read; compile it again.", file=place)
             ) from error
-    _OF_MODS[domain] = folder
-    speak(_SPOKEN.code)
-
-
-def remove_catalogues(domain: str) -> None:
-    """Take back what `add_catalogues` did."""
-    del _OF_MODS[domain]
+    EXTENSIONS.catalogues[domain] = folder
     speak(_SPOKEN.code)
 
 

@@ -11,6 +11,7 @@ from typing import Any
 
 import numpy as np
 
+from pinjoint.components.extensions import EXTENSIONS
 from pinjoint.components.field import LARGEST, Field, FieldError, Vector
 from pinjoint.components.handle import Handle
 from pinjoint.components.language import tr
@@ -44,16 +45,7 @@ class HistoryKind:
     breaks: Callable[[History], Iterable[float]] = lambda history: ()
 
 
-HISTORIES: dict[str, HistoryKind] = {}
-
-
-def register_history(kind: HistoryKind) -> None:
-    """Make a kind of history known to model files, loads and statics."""
-    if kind.name in HISTORIES:
-        raise ValueError(
-            tr("There is a kind of history '{name}' already; give this one another name.", name=kind.name)
-        )
-    HISTORIES[kind.name] = kind
+HISTORIES: dict[str, HistoryKind] = EXTENSIONS.histories  # ours below, then those of mods
 
 
 def check_history(value: Any, where: str) -> History:
@@ -134,21 +126,17 @@ def _check_ramp(history: History, where: str) -> None:
         )
 
 
-register_history(
-    HistoryKind(
-        "constant", {}, "pinjoint.systems.loads.kernels:constant", static=1.0, ends=lambda history: -math.inf
-    )
+HISTORIES["constant"] = HistoryKind(
+    "constant", {}, "pinjoint.systems.loads.kernels:constant", static=1.0, ends=lambda history: -math.inf
 )
-register_history(
-    HistoryKind(
-        "ramp",
-        {"start": 0.0, "duration": 1.0},
-        "pinjoint.systems.loads.kernels:ramp",
-        static=1.0,
-        ends=lambda history: float(history["start"] + history["duration"]),
-        breaks=lambda history: (history["start"], history["start"] + history["duration"]),
-        check=_check_ramp,
-    )
+HISTORIES["ramp"] = HistoryKind(
+    "ramp",
+    {"start": 0.0, "duration": 1.0},
+    "pinjoint.systems.loads.kernels:ramp",
+    static=1.0,
+    ends=lambda history: float(history["start"] + history["duration"]),
+    breaks=lambda history: (history["start"], history["start"] + history["duration"]),
+    check=_check_ramp,
 )
 
 CONSTANT = check_history({"kind": "constant"}, "load")

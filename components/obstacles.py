@@ -10,8 +10,8 @@ from weakref import WeakKeyDictionary
 import numpy as np
 from numpy.typing import NDArray
 
+from pinjoint.components.extensions import EXTENSIONS
 from pinjoint.components.field import Role
-from pinjoint.components.handle import Handle
 from pinjoint.components.language import tr
 from pinjoint.components.model import Model
 from pinjoint.components.table import Table
@@ -96,16 +96,15 @@ NO_OBSTACLES = Obstacles(np.zeros((0, 2)), np.zeros((0, 2)), np.zeros(0), np.zer
 
 Shape = Callable[[Table[Any]], Pieces]
 
-SHAPES: dict[type[Handle], Shape] = {}  # the kinds of elements with which particles collide
 
 _known: WeakKeyDictionary[Model, tuple[tuple[Any, ...], Obstacles]] = WeakKeyDictionary()  # with their versions
 
 
 def obstacles(model: Model) -> Obstacles:
-    """The pieces of all elements of the kinds in SHAPES, with the restitution of the settings where none is given."""
+    """The pieces of all elements with which particles collide, with the restitution of the settings where none is given."""
     if not any_obstacles(model):
         return NO_OBSTACLES
-    versions = model.newest(Role.DOCUMENT), *SHAPES.values()
+    versions = model.newest(Role.DOCUMENT), *EXTENSIONS.obstacles.values()
     known = _known.get(model)
     if known is None or known[0] != versions:
         known = _known[model] = versions, _found(model)
@@ -113,7 +112,11 @@ def obstacles(model: Model) -> Obstacles:
 
 
 def _found(model: Model) -> Obstacles:
-    parts = [(model.tables[kind.table], shape) for kind, shape in SHAPES.items() if kind.table in model.tables]
+    parts = [
+        (model.tables[kind.table], shape)
+        for kind, shape in EXTENSIONS.obstacles.items()
+        if kind.table in model.tables
+    ]
     found = [(table, shape(table)) for table, shape in parts if table.count]
     ends = np.concatenate([np.zeros((0, 2, 2)), *(pieces.ends for _, pieces in found)])
     restitution = _joined(found, "restitution")
@@ -133,4 +136,4 @@ def _joined(found: list[tuple[Table[Any], Pieces]], name: str) -> Floats:
 
 def any_obstacles(model: Model) -> bool:
     """True if there is anything of a kind with which particles collide."""
-    return any(model.tables[kind.table].count for kind in SHAPES if kind.table in model.tables)
+    return any(model.tables[kind.table].count for kind in EXTENSIONS.obstacles if kind.table in model.tables)

@@ -332,7 +332,7 @@ class App:
     def _follow_title(self) -> None:
         """Let the window's title name the model, after a dot while there is unsaved work."""
         session = self.session
-        name = session.file.name or (tr("Untitled") if session.document.unsaved else "")
+        name = session.document.file.name or (tr("Untitled") if session.document.unsaved else "")
         title = f"{'• ' if session.document.unsaved else ''}{name} – Pinjoint" if name else "Pinjoint"
         if title != self.window.title:
             self.window.title = title

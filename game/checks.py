@@ -21,7 +21,7 @@ from pinjoint.mods.loading import load_all
 from pinjoint.session import Session
 from pinjoint.systems.base import Commit, Integrator, Law, StepSystem, StopReason, System
 from pinjoint.systems.catalogue import all_systems
-from pinjoint.systems.physics.integrators import INTEGRATORS, register_integrator, remove_integrator
+from pinjoint.systems.physics.integrators import INTEGRATORS
 from pinjoint.systems.program.binding import ProgramError, bind
 from pinjoint.systems.program.kernel_rows import KernelRows
 from pinjoint.systems.program.program import MOTION, TURNING
@@ -275,16 +275,14 @@ def _driven_by(system: System, simulation: Simulation) -> Iterator[None]:
     if not isinstance(system, Integrator):
         yield
         return
-    former = INTEGRATORS.get(system.key)
-    register_integrator(system)
+    former = dict(INTEGRATORS)
+    INTEGRATORS[system.key] = system
     try:
         simulation.model.settings.integrator = system.key
         yield
     finally:
-        if former is None:
-            remove_integrator(system.key)
-        else:
-            register_integrator(former)
+        INTEGRATORS.clear()
+        INTEGRATORS.update(former)
 
 
 def _check_finite(name: str, model: Model) -> None:

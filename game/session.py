@@ -13,6 +13,7 @@ import numpy as np
 from pinjoint.components.camera import Viewport
 from pinjoint.components.card import share_of
 from pinjoint.components.environment import Environment
+from pinjoint.components.extensions import EXTENSIONS
 from pinjoint.components.field import FieldError, Vector
 from pinjoint.components.language import begun, joined, listed, marked, tr
 from pinjoint.components.load import Load
@@ -27,7 +28,7 @@ from pinjoint.documents import models
 from pinjoint.documents.format import ModelError
 from pinjoint.documents.open_documents import ModelFile, Source, file_of
 from pinjoint.editor.actions import ACTIONS, WHILE_DRAWING
-from pinjoint.editor.context import FAULTS, Context
+from pinjoint.editor.context import Context
 from pinjoint.editor.dropping import open_dropped
 from pinjoint.editor.frame import Actions, Frame, HeadlessFrame, ShowView
 from pinjoint.editor.menu import IN_MENU
@@ -45,7 +46,7 @@ from pinjoint.mods.heeding import blamed_on_mod, heeding_mods
 from pinjoint.scripts.expectation import expect
 from pinjoint.scripts.script import Script, ScriptError
 from pinjoint.systems.base import EVENT_INTERVAL, Phase, StopReason, System
-from pinjoint.systems.catalogue import SYSTEMS, step_systems
+from pinjoint.systems.catalogue import step_systems
 from pinjoint.systems.edit import Refusal
 from pinjoint.systems.edit.dividing import divide
 from pinjoint.systems.edit.pull import Pull
@@ -86,7 +87,7 @@ class Session(Context):
         pull, scenes = Pull(), all_scenes()
         ours = [Actions(), ShowView(), Time(), *scene_systems(), *step_systems(), pull]
         schedule = Schedule(
-            [*ours, *(make() for make in SYSTEMS), *systems],
+            [*ours, *(make() for make in EXTENSIONS.systems), *systems],
             wanted={scene.name: scene.systems for scene in scenes},
         )
         super().__init__(model, schedule, pull, scenes, view or View(), file)
@@ -120,7 +121,7 @@ class Session(Context):
         )
 
     def __repr__(self) -> str:
-        name, model = self.file.name or "untitled", self.model
+        name, model = self.document.file.name or "untitled", self.model
         size = f"{model.particles.count} particles, {model.rods.count} rods"
         return f"<Session '{name}': {size}, {self.scene}, t = {self.time:.6g} s>"
 
@@ -160,7 +161,7 @@ class Session(Context):
         remarks on a run at rest.
         """
         said = self.fault or self.scenes.active.message or self.simulation.said or self.notice
-        return joined([said, *(remark.message for remark in self.remarks)])
+        return joined([said, *(remark.message for remark in self.document.assessment.remarks)])
 
     # --- time --------------------------------------------------------------------------------------
 
@@ -415,7 +416,7 @@ class Session(Context):
             return  # its first click led here, and the second is not meant for what is here
         (name, at), pressed = meaning(self, key, pixel), pixel
         if key == "escape" and self.fault and self.scene not in FORMS:
-            self.faults_seen = len(FAULTS)
+            self.faults_seen = len(EXTENSIONS.faults)
         elif name is not None:
             self.notice, self._clicked = "", here if key == "click" else None
             if self.on_press is not None:

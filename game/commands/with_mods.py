@@ -8,13 +8,12 @@ from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from pathlib import Path
 
-from pinjoint.commands import COMMANDS
 from pinjoint.commands.arguments import Parser
+from pinjoint.components.extensions import EXTENSIONS
 from pinjoint.components.language import marked, tr
 from pinjoint.documents.library import data_folder
 from pinjoint.documents.locks import lock_file
-from pinjoint.editor.context import FAULTS
-from pinjoint.mods.loading import MODS, load
+from pinjoint.mods.loading import load
 from pinjoint.mods.mod import INCLUDED, LOG, ModError
 from pinjoint.streams import tell
 
@@ -38,11 +37,11 @@ def load_as_asked(words: Sequence[str]) -> list[str]:
     for folder in options.mods:
         if not Path(folder).is_dir():
             raise ModError(tr("--mods {folder}: there is no such folder; check its name.", folder=folder))
-    unsafe = not options.no_mods and others[:1] not in [[name] for name in COMMANDS] and crashed()
+    unsafe = not options.no_mods and others[:1] not in [[name] for name in EXTENSIONS.commands] and crashed()
     if unsafe:
-        FAULTS.append(tr(LEFT_OUT))
+        EXTENSIONS.faults.append(tr(LEFT_OUT))
     named = {Path(folder).resolve() for folder in options.mods}
-    computes = set(others[:1]) & set(COMMANDS) - {"open"}
+    computes = set(others[:1]) & set(EXTENSIONS.commands) - {"open"}
     for mod in load(options.mods, installed=not (options.no_mods or unsafe)):
         if mod.off and others[:1] != ["mods"]:
             if computes and mod.folder is not None and {mod.folder, mod.folder.parent} & named:
@@ -68,7 +67,7 @@ def crashed() -> bool:
 @contextmanager
 def in_use() -> Iterator[None]:
     """Keep a log and a lock file while a window is open with a person's mods; only a crash leaves the file behind."""
-    if not any(mod.loaded and mod.source != INCLUDED for mod in MODS):
+    if not any(mod.loaded and mod.source != INCLUDED for mod in EXTENSIONS.mods):
         yield
         return
     path = data_folder() / "running" / f"{uuid.uuid4().hex}.lock"

@@ -14,11 +14,12 @@ import numpy as np
 from pinjoint.completion import complete
 from pinjoint.components.commands import Assign
 from pinjoint.components.departure import Departure
+from pinjoint.components.extensions import EXTENSIONS
 from pinjoint.components.field import Column, Field, FieldError
 from pinjoint.components.grid import Grid
 from pinjoint.components.handle import Handle
 from pinjoint.components.language import joined, marked, tr
-from pinjoint.components.model import ADDED, Model
+from pinjoint.components.model import Model
 from pinjoint.components.particle import Particle, check_spin, check_velocities
 from pinjoint.components.rod import Rod
 from pinjoint.components.section import NAMES, given_by
@@ -133,10 +134,10 @@ def _read_added(model: Model, kinds: Any) -> None:
     for name, elements in kinds.items():
         if not isinstance(name, str) or "." not in name or not isinstance(elements, list | tuple):
             fail(path, tr("{name} must have the form {form}.", name=quoted(name), form='"mod.Kind": […]'))
-        if name not in ADDED:
-            _refuse_misspelt(name, ADDED, path)
+        if name not in EXTENSIONS.kinds:
+            _refuse_misspelt(name, EXTENSIONS.kinds, path)
             model.foreign_kinds[name] = copied(elements, f"{path}.{name}")
-    for name, kind in ADDED.items():  # kinds that refer to others come after them
+    for name, kind in EXTENSIONS.kinds.items():  # kinds that refer to others come after them
         if name in kinds:
             _read(model, _section(f"{path}.{name}", kind, kinds[name]))
 
@@ -246,7 +247,9 @@ def _refuse_unknown(
                     key=key,
                 ),
             )
-        if added := [name for name, of in ADDED.items() if kind is None and str(key) in (name, of.table)]:
+        if added := [
+            name for name, of in EXTENSIONS.kinds.items() if kind is None and str(key) in (name, of.table)
+        ]:
             form = f'"{FOREIGN}": {{"{added[0]}": […]}}'
             fail(where, tr("there is no key '{key}' here; write {form}.", key=key, form=form))
         key = str(key)
@@ -445,9 +448,11 @@ def _check_components(section: _Section) -> None:
 
 def _refuse_misspelt(name: str, known: Collection[str], where: str) -> None:
     """Refuse unknown components of a loaded mod; those of other mods are kept unread. Raises ModelError."""
-    components = itertools.chain.from_iterable(map(_components, (*SECTIONS.values(), *ADDED.values())))
+    components = itertools.chain.from_iterable(
+        map(_components, (*SECTIONS.values(), *EXTENSIONS.kinds.values()))
+    )
     mod = name.partition(".")[0]
-    if mod in {loaded.partition(".")[0] for loaded in (*ADDED, *components)}:
+    if mod in {loaded.partition(".")[0] for loaded in (*EXTENSIONS.kinds, *components)}:
         fail(
             where,
             tr(

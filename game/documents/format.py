@@ -9,13 +9,14 @@ from typing import Any, NoReturn
 
 from pinjoint.components.clock import Clock
 from pinjoint.components.environment import Environment
+from pinjoint.components.extensions import EXTENSIONS
 from pinjoint.components.field import SAVED, Field
 from pinjoint.components.grid import Grid
 from pinjoint.components.handle import Handle
 from pinjoint.components.language import joined, tr
 from pinjoint.components.load import Load
 from pinjoint.components.mistake import Mistake
-from pinjoint.components.model import ADDED, Model
+from pinjoint.components.model import Model
 from pinjoint.components.particle import Particle
 from pinjoint.components.rod import Rod
 from pinjoint.components.settings import Settings
@@ -51,7 +52,7 @@ def fail(path: str, problem: str) -> NoReturn:
 
 def required(kind: type[Handle]) -> Sequence[str]:
     """The keys that every element of a kind must have."""
-    if kind.table in REQUIRED or kind not in ADDED.values():
+    if kind.table in REQUIRED or kind not in EXTENSIONS.kinds.values():
         return REQUIRED.get(kind.table, ())
     return [field.key for field in fields_of(kind) if field.name in kind.points or field.references]
 

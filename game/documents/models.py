@@ -22,6 +22,7 @@ from typing import Any, NoReturn
 
 import msgspec
 
+from pinjoint.components.extensions import EXTENSIONS
 from pinjoint.components.language import joined, marked, tr
 from pinjoint.components.model import Model
 from pinjoint.components.suggestions import nearest
@@ -47,9 +48,6 @@ __all__ = [
 ]
 
 
-FOLDERS: list[Path] = []  # of mods, with models that are opened by name
-
-
 def bundled() -> list[str]:
     """Names of the models that come with the program and its mods, in alphabetical order."""
     return sorted(_bundled_files())
@@ -58,7 +56,9 @@ def bundled() -> list[str]:
 def _bundled_files() -> dict[str, Traversable]:
     """The files of these models by name."""
     entries = (
-        entry for folder in (*FOLDERS, files("pinjoint.assets") / "models") for entry in folder.iterdir()
+        entry
+        for folder in (*EXTENSIONS.folders, files("pinjoint.assets") / "models")
+        for entry in folder.iterdir()
     )
     return {entry.name.removesuffix(".json"): entry for entry in entries if entry.name.endswith(".json")}
 

@@ -10,11 +10,12 @@ import msgspec
 import numpy as np
 from numpy.typing import NDArray
 
+from pinjoint.components.extensions import EXTENSIONS
 from pinjoint.components.field import SAVED, Vector
 from pinjoint.components.handle import Handle
 from pinjoint.components.language import marked, tr
 from pinjoint.components.load import Load
-from pinjoint.components.model import ADDED, Model
+from pinjoint.components.model import Model
 from pinjoint.components.particle import Particle
 from pinjoint.components.rod import Rod
 from pinjoint.components.table import Table, fields_of
@@ -125,7 +126,11 @@ def _points(kind: Kind) -> tuple[str, ...]:
 
 def _added() -> list[Kind]:
     """The kinds of mods that can be copied: they have points, and refer to no other elements."""
-    return [kind for kind in ADDED.values() if kind.points and not any(f.references for f in fields_of(kind))]
+    return [
+        kind
+        for kind in EXTENSIONS.kinds.values()
+        if kind.points and not any(f.references for f in fields_of(kind))
+    ]
 
 
 def _columns(model: Model, kind: Kind, rows: Rows, place: Rows) -> dict[str, Any]:

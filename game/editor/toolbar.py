@@ -117,7 +117,7 @@ _NEEDS: dict[str, Condition] = {
     "undo": lambda context: context.can_undo,
     "redo": lambda context: context.can_redo,
     **dict.fromkeys(("copy", "duplicate", "delete"), lambda context: context.has_selected),
-    "step back": lambda context: context.timeline.first < context.model.clock.steps,
+    "step back": lambda context: context.document.timeline.first < context.model.clock.steps,
     "restart": lambda context: not context.document.is_undeformed,
     **dict.fromkeys(
         ("settle", "support", "force", "moment", "velocity"),

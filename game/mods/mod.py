@@ -12,10 +12,10 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any, TypeVar
 
+from pinjoint.components.extensions import EXTENSIONS
 from pinjoint.components.language import english, tr
 from pinjoint.components.mistake import Mistake
 from pinjoint.components.wording import is_identifier, printable, quoted
-from pinjoint.editor.context import FAULTS
 from pinjoint.interrupts import is_persons
 from pinjoint.mods.declared import check, check_has_run
 from pinjoint.mods.limit import within
@@ -80,7 +80,7 @@ class Mod:
             name=self.name,
             reason=reason,
         )
-        FAULTS.append(sentence)
+        EXTENSIONS.faults.append(sentence)
         LOG.error(english(sentence))
         if error is not None:  # without its message, which is code of the mod
             places = "".join(traceback.format_tb(error.__traceback__)).rstrip()

@@ -8,9 +8,9 @@ from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass
 from typing import Any
 
+from pinjoint.components.extensions import EXTENSIONS
 from pinjoint.components.language import tr
 from pinjoint.components.wording import as_json, cut
-from pinjoint.editor.context import FAULTS
 from pinjoint.mods.mod import ModError
 from pinjoint.paths import apply_override
 from pinjoint.scripts.expectation import check
@@ -41,15 +41,15 @@ def play_line(script: Script, number: int, entry: Mapping[str, Any], session: Se
 
     One of every line is that no mod fails.
     """
-    known, failures = len(FAULTS), list[Failure]()
+    known, failures = len(EXTENSIONS.faults), list[Failure]()
     try:
         failures += [Failure(number, *wrong) for wrong in perform(session, entry)]
     except ModError:
-        pass  # it is among FAULTS
+        pass  # it is among EXTENSIONS.faults
     except (ValueError, LookupError, TypeError) as error:
         reason = error.args[0] if error.args else error
         raise script.error(number, reason) from error
-    return failures + [Failure(number, tr("mods that work"), fault) for fault in FAULTS[known:]]
+    return failures + [Failure(number, tr("mods that work"), fault) for fault in EXTENSIONS.faults[known:]]
 
 
 _EXAMPLES: dict[str, Any] = {  # by key of a line: a value of the required shape

@@ -8,11 +8,11 @@ from collections.abc import Mapping
 from contextlib import suppress
 from typing import Any, TextIO
 
+from pinjoint.components.extensions import EXTENSIONS
 from pinjoint.components.field import Vector
 from pinjoint.components.language import ENGLISH, joined, language, spoken, tr
 from pinjoint.components.wording import is_broken
 from pinjoint.documents.format import ModelError
-from pinjoint.mods.loading import MODS
 from pinjoint.mods.mod import INCLUDED
 from pinjoint.scripts.lines import Failure, play_line
 from pinjoint.scripts.script import HEADER, Script, ScriptError
@@ -60,7 +60,11 @@ def check_mods(script: Script) -> str:
 
 def _loaded_mods() -> dict[str, str]:
     """Versions of the mods that act now, those that come with the program apart, by name."""
-    return {mod.name: mod.version for mod in MODS if mod.loaded and not mod.off and mod.source != INCLUDED}
+    return {
+        mod.name: mod.version
+        for mod in EXTENSIONS.mods
+        if mod.loaded and not mod.off and mod.source != INCLUDED
+    }
 
 
 def play(script: Script, session: Session | None = None) -> list[Failure]:

@@ -14,10 +14,11 @@ import numpy as np
 
 from pinjoint import __version__
 from pinjoint.commands.reports.report import Analysis
+from pinjoint.components.extensions import EXTENSIONS
 from pinjoint.components.language import english, tr
 from pinjoint.documents import models
 from pinjoint.documents.open_documents import file_of
-from pinjoint.mods import MODS, load
+from pinjoint.mods import load
 from pinjoint.mods.mod import INCLUDED
 from pinjoint.paths import apply_override
 from pinjoint.sweeps.measure import Measure, read_measures
@@ -59,7 +60,7 @@ class SoftwareEnvironment:
     @classmethod
     def present(cls) -> SoftwareEnvironment:
         """The software of this process, as it is now."""
-        mods = (mod for mod in MODS if mod.loaded and mod.source != INCLUDED)
+        mods = (mod for mod in EXTENSIONS.mods if mod.loaded and mod.source != INCLUDED)
         return cls(
             __version__,
             tuple(

@@ -12,14 +12,12 @@ from collections.abc import Sequence
 from functools import cache
 from importlib.resources import files
 
+from pinjoint.components.extensions import EXTENSIONS
 from pinjoint.components.language import tr
 
 Part = tuple[str, tuple[float, ...]]
 
 STROKE = 1.8  # the width of lines
-
-
-ADDED: dict[str, tuple[Part, ...]] = {}  # icons of mods
 
 
 _NUMBERS = {"disc": 3, "arc": 5}  # of one part; lines and areas have two for each of their points
@@ -46,7 +44,7 @@ def check_icon(parts: Sequence[Part]) -> None:
 
 def icon(name: str) -> tuple[Part, ...]:
     """The parts of an icon. Raises KeyError."""
-    return ADDED[name] if name in ADDED else icons()[name]
+    return EXTENSIONS.icons[name] if name in EXTENSIONS.icons else icons()[name]
 
 
 @cache

@@ -5,6 +5,7 @@ from __future__ import annotations
 import re
 from collections.abc import Callable, Sequence
 
+from pinjoint.components.extensions import EXTENSIONS
 from pinjoint.components.field import Vector
 from pinjoint.components.form import Form
 from pinjoint.components.model import Model
@@ -25,7 +26,7 @@ from pinjoint.systems.render.page import draw_page
 from pinjoint.systems.render.panel import compose_form
 from pinjoint.systems.render.pointed import draw_pointed
 from pinjoint.systems.render.readouts import ShownPanel, draw_readouts
-from pinjoint.systems.render.sheet import ABOVE, BELOW, Sheet, measure
+from pinjoint.systems.render.sheet import Sheet, measure
 from pinjoint.systems.render.sliders import draw_sliders
 from pinjoint.systems.render.structure import (
     draw_ghost,
@@ -132,7 +133,7 @@ def _composed(sheet: Sheet) -> tuple[Picture, list[ShownPanel]]:
     """The picture of a model, and where its panels are."""
     model, theme = sheet.model, sheet.theme
     draw_grid(sheet)
-    for layer in BELOW:
+    for layer in EXTENSIONS.below:
         sheet.marks += layer(sheet)
     if sheet.view.free_bodies and sheet.view.forces_known:
         draw_halos(sheet)
@@ -142,7 +143,7 @@ def _composed(sheet: Sheet) -> tuple[Picture, list[ShownPanel]]:
     else:
         _draw_structure(sheet)
     label_names(sheet)
-    for layer in ABOVE:
+    for layer in EXTENSIONS.above:
         sheet.marks += layer(sheet)
     overlays, room = draw_overlays(sheet)
     overlays += draw_sliders(sheet)

@@ -95,7 +95,7 @@ class Analysis:
         return {
             **found,
             "message": joined([session.message, unknown]),
-            "events": [*happened, *_records(session.model, session.remarks)],
+            "events": [*happened, *_records(session.model, session.document.assessment.remarks)],
             "error_estimate": error.record(bent=bends(session.model)) if error is not None else None,
         }
 

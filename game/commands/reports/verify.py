@@ -102,7 +102,7 @@ def verify(session: Session, name: str, limit: float | None, *, simulate: bool =
     found |= _by_element(comparison if model.rods.count else None)
     worst = {way: comparison.worst(way) for way in ("simulation", "linear")}
     found["worst"] = {way: row and asdict(row) for way, row in worst.items() if model.rods.count}
-    found["remarks"] = [event_record(model, event) for event in session.remarks]
+    found["remarks"] = [event_record(model, event) for event in session.document.assessment.remarks]
     if theory.exact is not None and (simulated is not None or not simulate) and model.rods.count:
         departed = any(remark["kind"] in DEPARTURES for remark in found["remarks"])
         agreed = VERIFIED if not differs(comparison) else DIFFERS if departed else NOT_VERIFIED

@@ -82,7 +82,7 @@ def nudge(context: Context, direction: Vector, *, far: bool) -> bool:
         return False
     positions = nudged(model, context.view, chosen.positions, direction, far=far)
     moved = [*chosen.particles, *chosen.others]
-    with context.history.as_one(("nudge", *(handle.entity for handle in moved))):
+    with context.document.history.as_one(("nudge", *(handle.entity for handle in moved))):
         chosen.place(positions)
     place = written.place(positions[0], written.DIGITS)
     context.notice = tr("{element}: {value}", element=all_of(context, moved), value=place)

@@ -62,7 +62,7 @@ def _force_method(context: Context, pixel: Vector) -> None:
 @action("save again")
 def _save_again(context: Context, pixel: Vector) -> None:
     """Save to the same file; a model without one is named first, and a file that was changed since is asked about."""
-    file = context.file
+    file = context.document.file
     if file.path is None:
         _to_pause_and(context, "save")
         return

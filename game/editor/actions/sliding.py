@@ -66,7 +66,7 @@ def _step(by: float) -> Action:
         if place is None or place.control.share is None:
             return
         value = slider_of(context, place.control.key).value_at(place.control.share + by)
-        with context.history.as_one(("slider", place.control.key)):
+        with context.document.history.as_one(("slider", place.control.key)):
             move_to(context, place.control.key, value)
 
     return act

@@ -23,7 +23,7 @@ def _arrow(direction: Vector, steps: int, *, far: bool) -> Action:
     """The action of an arrow key: once there is a run, right is forward in time; before, it moves what is selected."""
 
     def act(context: Context, pixel: Vector) -> None:
-        if context.at_beginning and nudge(context, direction, far=far):
+        if context.document.at_beginning and nudge(context, direction, far=far):
             return
         if steps:
             _step(context, steps * (_far(context) if far else 1))
@@ -103,9 +103,11 @@ def _step(context: Context, steps: int) -> None:
 
 action("step")(lambda context, pixel: _step(context, 1))
 action("step back")(lambda context, pixel: _step(context, -1))
-action("faster", while_drawing=True)(lambda context, pixel: context.clock.faster(PACE_STEP))
-action("slower", while_drawing=True)(lambda context, pixel: context.clock.faster(1.0 / PACE_STEP))
-action("natural pace", while_drawing=True)(lambda context, pixel: setattr(context.clock, "factor", 1.0))
+action("faster", while_drawing=True)(lambda context, pixel: context.document.live.clock.faster(PACE_STEP))
+action("slower", while_drawing=True)(lambda context, pixel: context.document.live.clock.faster(1.0 / PACE_STEP))
+action("natural pace", while_drawing=True)(
+    lambda context, pixel: setattr(context.document.live.clock, "factor", 1.0)
+)
 
 
 @action("restart")
