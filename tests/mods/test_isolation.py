@@ -270,7 +270,9 @@ def test_an_action_that_fails_changes_nothing(session: Any) -> None:
 
 def test_a_panel_that_fails(session: Any) -> None:
     made, before = session(OTHER.format("app.panel(lambda session: 'text')"))
-    check_switched_off(made, before, "returned is 'text'; it must be of type Readout | Sequence[Readout] | None")
+    check_switched_off(
+        made, before, "returned is 'text'; it must be of type Readout | Sequence[Readout] | None"
+    )
 
 
 def test_a_layer_that_fails(session: Any) -> None:
