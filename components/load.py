@@ -52,32 +52,26 @@ def check_history(value: Any, where: str) -> History:
     """A history with all its parameters, or FieldError."""
     if not isinstance(value, Mapping) or not isinstance(value.get("kind"), str):
         raise FieldError(
-            tr(
-                '{where}: history is {value}; it must be like {{"kind": "ramp", "duration": 0.5}}.',
-                where=where,
-                value=quoted(value),
-            )
+            '{where}: history is {value}; it must be like {{"kind": "ramp", "duration": 0.5}}.',
+            where=where,
+            value=quoted(value),
         )
     kind = HISTORIES.get(value["kind"])
     if kind is None:
         raise FieldError(
-            tr(
-                "{where}: there is no kind of history '{kind}'; choose one of {known}.",
-                where=where,
-                kind=cut(value["kind"]),
-                known=", ".join(sorted(HISTORIES)),
-            )
+            "{where}: there is no kind of history '{kind}'; choose one of {known}.",
+            where=where,
+            kind=cut(value["kind"]),
+            known=", ".join(sorted(HISTORIES)),
         )
     unknown = sorted(map(str, set(value) - {"kind", *kind.parameters}))
     if unknown:
         raise FieldError(
-            tr(
-                "{where}: a history of the kind '{kind}' has no '{unknown}'; it takes only: {allowed}.",
-                where=where,
-                kind=kind.name,
-                unknown=cut(unknown[0]),
-                allowed=", ".join(["kind", *kind.parameters]),
-            )
+            "{where}: a history of the kind '{kind}' has no '{unknown}'; it takes only: {allowed}.",
+            where=where,
+            kind=kind.name,
+            unknown=cut(unknown[0]),
+            allowed=", ".join(["kind", *kind.parameters]),
         )
     full = {"kind": kind.name} | {
         name: _check_parameter(value.get(name, default), default, name, where)
@@ -93,24 +87,20 @@ def _check_parameter(value: Any, default: Any, name: str, where: str) -> Any:
             value = value.tolist()
         if not isinstance(value, list | tuple):
             raise FieldError(
-                tr(
-                    "{where}: {name} of the history is {value}; it must be a list of numbers.",
-                    where=where,
-                    name=name,
-                    value=quoted(value),
-                )
+                "{where}: {name} of the history is {value}; it must be a list of numbers.",
+                where=where,
+                name=name,
+                value=quoted(value),
             )
         return tuple(_check_parameter(item, 0.0, name, where) for item in value)
     is_number = isinstance(value, int | float | np.integer | np.floating) and not isinstance(value, bool)
     if not is_number or not abs(value) <= LARGEST:
         raise FieldError(
-            tr(
-                "{where}: {name} of the history is {value}; it must be a number between -{largest:g} and {largest:g}.",
-                where=where,
-                name=name,
-                value=quoted(value),
-                largest=LARGEST,
-            )
+            "{where}: {name} of the history is {value}; it must be a number between -{largest:g} and {largest:g}.",
+            where=where,
+            name=name,
+            value=quoted(value),
+            largest=LARGEST,
         )
     return float(value)
 
@@ -118,11 +108,9 @@ def _check_parameter(value: Any, default: Any, name: str, where: str) -> Any:
 def _check_ramp(history: History, where: str) -> None:
     if history["duration"] < 0.0:
         raise FieldError(
-            tr(
-                "{where}: duration of the history is {duration:g} s; it must be at least 0 s.",
-                where=where,
-                duration=history["duration"],
-            )
+            "{where}: duration of the history is {duration:g} s; it must be at least 0 s.",
+            where=where,
+            duration=history["duration"],
         )
 
 

@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 from pinjoint.components.extensions import EXTENSIONS
 from pinjoint.components.field import Role
 from pinjoint.components.language import tr
+from pinjoint.components.mistake import WrongValue
 from pinjoint.components.model import Model
 from pinjoint.components.table import Table
 from pinjoint.components.wording import quoted
@@ -59,35 +60,29 @@ def check_pieces(table: Table[Any], pieces: Pieces, source: str) -> Pieces:
         )
     ends, owner, count = np.asarray(pieces.ends, dtype=np.float64), np.asarray(pieces.owner), len(pieces.owner)
     if ends.shape != (count, 2, 2):
-        raise ValueError(
-            tr(
-                "{source}: `ends` has the shape {shape} for {count} pieces; give each piece two points [x, y].",
-                source=source,
-                shape=ends.shape,
-                count=count,
-            )
+        raise WrongValue(
+            "{source}: `ends` has the shape {shape} for {count} pieces; give each piece two points [x, y].",
+            source=source,
+            shape=ends.shape,
+            count=count,
         )
     radius, restitution = (np.broadcast_to(values, count) for values in (pieces.radius, pieces.restitution))
     if not np.isfinite(ends).all() or not (radius >= 0.0).all() or not np.isfinite(radius).all():
-        raise ValueError(
-            tr("{source}: an end or a radius is not finite, or a radius is below 0; correct it.", source=source)
+        raise WrongValue(
+            "{source}: an end or a radius is not finite, or a radius is below 0; correct it.", source=source
         )
     if ((restitution < 0.0) | (restitution > 1.0)).any():
-        raise ValueError(
-            tr(
-                "{source}: a restitution is not between 0 and 1; give such a number, or NaN for that of the settings.",
-                source=source,
-            )
+        raise WrongValue(
+            "{source}: a restitution is not between 0 and 1; give such a number, or NaN for that of the settings.",
+            source=source,
         )
     for row in owner[(owner < 0) | (owner >= table.count)][:1].tolist():
-        raise ValueError(
-            tr(
-                "{source}: a piece belongs to row {row}, but there are only {count} {table}; rows count from 0.",
-                source=source,
-                row=row,
-                count=table.count,
-                table=tr(table.name),
-            )
+        raise WrongValue(
+            "{source}: a piece belongs to row {row}, but there are only {count} {table}; rows count from 0.",
+            source=source,
+            row=row,
+            count=table.count,
+            table=tr(table.name),
         )
     return pieces
 

@@ -122,11 +122,11 @@ def _find_display() -> None:
     """Get ready for a window that somebody can see, or one as SDL_VIDEODRIVER says. Raises NoDisplay, pygame.error."""
     chosen = "SDL_VIDEODRIVER" in os.environ
     if not chosen and sys.platform.startswith("linux") and not any(map(os.environ.get, DISPLAYS)):
-        raise NoDisplay(tr("neither {first} nor {second} is set", first=DISPLAYS[0], second=DISPLAYS[1]))
+        raise NoDisplay("neither {first} nor {second} is set", first=DISPLAYS[0], second=DISPLAYS[1])
     pygame.display.init()
     if not chosen and pygame.display.get_driver() in UNSEEN:  # the last resort of SDL
         pygame.display.quit()
-        raise NoDisplay(tr("the display cannot be reached"))
+        raise NoDisplay("the display cannot be reached")
 
 
 def place_on(

@@ -17,6 +17,7 @@ from pinjoint.components.extensions import EXTENSIONS
 from pinjoint.components.field import FieldError, Vector
 from pinjoint.components.language import begun, joined, listed, marked, tr
 from pinjoint.components.load import Load
+from pinjoint.components.mistake import WrongValue
 from pinjoint.components.model import Model
 from pinjoint.components.particle import Particle
 from pinjoint.components.rod import Rod
@@ -182,7 +183,7 @@ class Session(Context):
         interrupt (Ctrl+C) leaves the state after a step shortly before, from which a further run goes on.
         """
         if sum(option is not None for option in (until, time, steps)) != 1 or until not in (None, "rest"):
-            raise ValueError(tr('Say how far to run: until="rest", time=SECONDS or steps=NUMBER, one of them.'))
+            raise WrongValue('Say how far to run: until="rest", time=SECONDS or steps=NUMBER, one of them.')
         limit = _forward("limit", limit)
         time = None if time is None else _forward("time", time)
         steps = None if steps is None else int(_forward("steps", steps, whole=True))
@@ -265,7 +266,7 @@ class Session(Context):
         from pinjoint.systems.statics.path import goal_of, load_path
 
         if points < 2:
-            raise ValueError(tr("points is {points}; a curve has at least 2.", points=points))
+            raise WrongValue("points is {points}; a curve has at least 2.", points=points)
         return load_path(self.model, goal_of(self.model, factor, until), points=points, branch=branch)
 
     def buckling(self, modes: int = 5) -> Buckling:
@@ -278,7 +279,7 @@ class Session(Context):
         from pinjoint.systems.statics.buckling import buckling
 
         if modes < 1:
-            raise ValueError(tr("modes is {modes}; ask for at least 1.", modes=modes))
+            raise WrongValue("modes is {modes}; ask for at least 1.", modes=modes)
         return buckling(self.model, modes)
 
     # --- editing -----------------------------------------------------------------------------------
@@ -324,7 +325,7 @@ class Session(Context):
     def answer(self, value: Any) -> None:
         """Answer the task of a lesson: names of elements to select, a number, or the text of a choice."""
         if self.course is None:
-            raise ValueError(tr("There is no lesson to answer; begin one from the start page."))
+            raise WrongValue("There is no lesson to answer; begin one from the start page.")
         self.course.answer(value)
 
     def take_up_lesson(self) -> None:
@@ -470,16 +471,14 @@ class Session(Context):
         if not (
             1 <= width <= LARGEST_SIDE and 1 <= height <= LARGEST_SIDE and 0.0 < pixel_ratio <= LARGEST_RATIO
         ):
-            raise ValueError(
-                tr(
-                    "The size is {width:g} × {height:g} pixels, {ratio:g} to a point; give sides from 1 to {most}, and at"
-                    " most {largest:g} to a point.",
-                    width=width,
-                    height=height,
-                    ratio=pixel_ratio,
-                    most=LARGEST_SIDE,
-                    largest=LARGEST_RATIO,
-                )
+            raise WrongValue(
+                "The size is {width:g} × {height:g} pixels, {ratio:g} to a point; give sides from 1 to {most}, and at"
+                " most {largest:g} to a point.",
+                width=width,
+                height=height,
+                ratio=pixel_ratio,
+                most=LARGEST_SIDE,
+                largest=LARGEST_RATIO,
             )
         self.extent = width, height
         taken_right, taken_below = share_of(width, height, pixel_ratio) if self.beside is not None else (0, 0)
@@ -523,7 +522,7 @@ class Session(Context):
     def point(self, x: float, y: float) -> Vector:
         """Move the pointer to a point of the model (m); returns its pixel. Raises ValueError."""
         if not (math.isfinite(x) and math.isfinite(y)):
-            raise ValueError(tr("The point is ({x}, {y}); give finite coordinates, in m.", x=x, y=y))
+            raise WrongValue("The point is ({x}, {y}); give finite coordinates, in m.", x=x, y=y)
         self.scenes.active.finish()
         x, y = _near(self.focus[1].camera.to_pixels((x, y)).tolist())
         self.focus[1].pointer = x, y
@@ -587,8 +586,8 @@ def _near(pixel: Sequence[float]) -> Vector:
     """A pixel at a distance from the window that computes. Raises ValueError."""
     x, y = pixel
     if not (abs(x) <= FARTHEST and abs(y) <= FARTHEST):
-        raise ValueError(
-            tr("The pixel ({x:g}, {y:g}) is too far from what is shown; take a nearer place.", x=x, y=y)
+        raise WrongValue(
+            "The pixel ({x:g}, {y:g}) is too far from what is shown; take a nearer place.", x=x, y=y
         )
     return x, y
 
@@ -604,9 +603,9 @@ def _forward(name: str, value: float, *, whole: bool = False) -> float:
             else tr("{name} is {value}; it must be a finite number.", name=name, value=given)
         )
     if value >= 2**63:
-        raise ValueError(tr("{name} is {value}; it must be below 2^63.", name=name, value=value))
+        raise WrongValue("{name} is {value}; it must be below 2^63.", name=name, value=value)
     if value < 0:
-        raise ValueError(
-            tr("{name} is {value}; time only runs forward: undo or restart goes back.", name=name, value=value)
+        raise WrongValue(
+            "{name} is {value}; time only runs forward: undo or restart goes back.", name=name, value=value
         )
     return float(value)

@@ -73,12 +73,10 @@ def _described(mod: Mod) -> dict[str, Any]:
 def _checked(folder: Path) -> list[dict[str, Any]]:
     """The mods in a folder, each with its problems. Raises ModError if there is none."""
     if not folder.is_dir():
-        raise ModError(tr("There is no folder {folder}; check its name.", folder=folder))
+        raise ModError("There is no folder {folder}; check its name.", folder=folder)
     found = load([folder])
     if not found:
-        raise ModError(
-            tr("There is no mod in {folder}; to write one, use: pinjoint mods new NAME", folder=folder)
-        )
+        raise ModError("There is no mod in {folder}; to write one, use: pinjoint mods new NAME", folder=folder)
     return [_described(mod) | ({} if mod.off else {"problems": mistakes_of(mod)}) for mod in found]
 
 

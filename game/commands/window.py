@@ -28,7 +28,7 @@ def _refuse_misspelt(word: str) -> None:
     """Raise UsageError for a word that is not a model but nearly a command."""
     near = nearest(word, EXTENSIONS.commands, cutoff=0.75)
     if near and word not in models.bundled() and not Path(word).exists():
-        raise UsageError(tr("There is no command '{word}'; did you mean '{near}'?", word=word, near=near))
+        raise UsageError("There is no command '{word}'; did you mean '{near}'?", word=word, near=near)
 
 
 def _epilog() -> str:
@@ -98,10 +98,8 @@ def in_window(model: Model, file: ModelFile, theme: str | None = None, **further
             return open_window(model, file, theme, **further)
     except NoDisplay as error:
         raise UsageError(
-            tr(
-                "No window can be opened: {error}. Without a display, use: pinjoint run MODEL,"
-                " or pinjoint play SCRIPT without --window.",
-                error=error,
-            ),
+            "No window can be opened: {error}. Without a display, use: pinjoint run MODEL,"
+            " or pinjoint play SCRIPT without --window.",
             NO_DISPLAY,
+            error=error,
         ) from None

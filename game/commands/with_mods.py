@@ -36,7 +36,7 @@ def load_as_asked(words: Sequence[str]) -> list[str]:
     options, others = parser.parse_known_args(list(words))
     for folder in options.mods:
         if not Path(folder).is_dir():
-            raise ModError(tr("--mods {folder}: there is no such folder; check its name.", folder=folder))
+            raise ModError("--mods {folder}: there is no such folder; check its name.", folder=folder)
     unsafe = not options.no_mods and others[:1] not in [[name] for name in EXTENSIONS.commands] and crashed()
     if unsafe:
         EXTENSIONS.faults.append(tr(LEFT_OUT))
@@ -45,9 +45,7 @@ def load_as_asked(words: Sequence[str]) -> list[str]:
     for mod in load(options.mods, installed=not (options.no_mods or unsafe)):
         if mod.off and others[:1] != ["mods"]:
             if computes and mod.folder is not None and {mod.folder, mod.folder.parent} & named:
-                raise ModError(
-                    tr("The mod '{name}' cannot be used: {problem}", name=mod.name, problem=mod.problem)
-                )
+                raise ModError("The mod '{name}' cannot be used: {problem}", name=mod.name, problem=mod.problem)
             tell(tr("The mod '{name}' was left out: {problem}", name=mod.name, problem=mod.problem))
     return others
 

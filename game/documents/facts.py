@@ -13,7 +13,6 @@ from pinjoint.components.clock import Clock
 from pinjoint.components.extensions import EXTENSIONS
 from pinjoint.components.field import MADE, Column, Field
 from pinjoint.components.handle import Handle
-from pinjoint.components.language import tr
 from pinjoint.components.model import Model
 from pinjoint.components.table import Table
 from pinjoint.documents.format import (
@@ -195,10 +194,8 @@ def _refuse_non_finite(
     for row in np.argwhere(~finite)[:1, 0].tolist():
         element, value = table.handles[rows[row]], field.loaded(column, row)
         raise ModelError(
-            tr(
-                "{element}: {field} is {value}, which no file can hold; undo, or go back to the beginning.",
-                element=model.describe(element),
-                field=field.title,
-                value=str(value),
-            )
+            "{element}: {field} is {value}, which no file can hold; undo, or go back to the beginning.",
+            element=model.describe(element),
+            field=field.title,
+            value=str(value),
         )

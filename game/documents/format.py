@@ -13,7 +13,7 @@ from pinjoint.components.extensions import EXTENSIONS
 from pinjoint.components.field import SAVED, Field
 from pinjoint.components.grid import Grid
 from pinjoint.components.handle import Handle
-from pinjoint.components.language import joined, tr
+from pinjoint.components.language import joined
 from pinjoint.components.load import Load
 from pinjoint.components.mistake import Mistake
 from pinjoint.components.model import Model
@@ -68,10 +68,10 @@ def copied(value: Any, where: str) -> Any:
     if isinstance(value, list | tuple):
         return [copied(item, where) for item in value]
     if isinstance(value, str) and is_broken(value):
-        fail(where, tr("{value!a} contains a damaged character, which a file cannot hold.", value=value))
+        fail(where, "{value!a} contains a damaged character, which a file cannot hold.", value=value)
     if value is None or isinstance(value, str | int) or (isinstance(value, float) and math.isfinite(value)):
         return value
-    fail(where, tr("a model file cannot hold {value}.", value=quoted(value)))
+    fail(where, "a model file cannot hold {value}.", value=quoted(value))
 
 
 def missing_mods(model: Model) -> list[str]:

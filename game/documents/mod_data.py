@@ -7,7 +7,7 @@ from collections.abc import Callable, Iterator, Mapping
 from typing import Any
 
 from pinjoint.components.extensions import EXTENSIONS
-from pinjoint.components.language import tr
+from pinjoint.components.mistake import WrongValue
 from pinjoint.components.wording import quoted
 
 DATA = "components"  # the key of the data of mods, at elements and in the document
@@ -65,15 +65,11 @@ def _data_in(document: Mapping[str, Any]) -> Iterator[Mapping[Any, Any]]:
 
 def _check(stated: Any) -> None:
     if not isinstance(stated, Mapping):
-        raise ValueError(tr("it must be an object such as {form}.", form='{"wind": "1.0"}'))
+        raise WrongValue("it must be an object such as {form}.", form='{"wind": "1.0"}')
     for name, version in stated.items():
         if not isinstance(version, str) or not _is_version(version):
-            raise ValueError(
-                tr(
-                    'the version of {name} is {version}; write it like "1.0".',
-                    name=name,
-                    version=quoted(version),
-                )
+            raise WrongValue(
+                'the version of {name} is {version}; write it like "1.0".', name=name, version=quoted(version)
             )
 
 

@@ -13,6 +13,7 @@ from pinjoint.components.camera import Viewport
 from pinjoint.components.extensions import EXTENSIONS
 from pinjoint.components.field import Vector
 from pinjoint.components.language import listed, marked, tr
+from pinjoint.components.mistake import NotFound, WrongValue
 from pinjoint.components.model import Model
 from pinjoint.components.rod import bends
 from pinjoint.components.settings import NO_DIAGRAMS, Settings
@@ -46,7 +47,7 @@ def action(name: str, *, while_drawing: bool = False) -> Callable[[Action], Acti
 
     def register(function: Action) -> Action:
         if name in ACTIONS:
-            raise ValueError(tr("There is an action '{name}' already.", name=name))
+            raise WrongValue("There is an action '{name}' already.", name=name)
         ACTIONS[name] = function
         if while_drawing:
             WHILE_DRAWING.add(name)
@@ -177,11 +178,9 @@ class Scene:
 
     def click_box(self, context: Context, title: str) -> None:
         """Select the box with that title. Raises LookupError."""
-        raise LookupError(
-            tr(
-                "In the scene '{scene}' there are no boxes; go to 'properties', 'save' or 'load' first.",
-                scene=self.name,
-            )
+        raise NotFound(
+            "In the scene '{scene}' there are no boxes; go to 'properties', 'save' or 'load' first.",
+            scene=self.name,
         )
 
     @property
@@ -220,18 +219,14 @@ class Scenes:
         for name in names:
             if name not in self._by_name:
                 known = ", ".join(self._by_name)
-                raise SceneError(
-                    tr("There is no scene '{scene}'; choose from {names}.", scene=name, names=known)
-                )
+                raise SceneError("There is no scene '{scene}'; choose from {names}.", scene=name, names=known)
             if name not in here.targets and here.name not in self._by_name[name].sources:
                 targets = ", ".join(here.targets)
                 raise SceneError(
-                    tr(
-                        "From the scene '{here}' one cannot go to '{scene}', only to {scenes}.",
-                        here=here.name,
-                        scene=name,
-                        scenes=targets,
-                    )
+                    "From the scene '{here}' one cannot go to '{scene}', only to {scenes}.",
+                    here=here.name,
+                    scene=name,
+                    scenes=targets,
                 )
             here = self._by_name[name]
         self._requested.extend(names)

@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pinjoint.components import CM, Field, FieldError, Handle, Pieces, Selected, Table, Vector
-from pinjoint.components.language import marked, tr
+from pinjoint.components.language import marked
 from pinjoint.components.tags import Hovered
 from pinjoint.mods import App
 from pinjoint.systems.render.clip import bounds, clip_segments
@@ -50,7 +50,7 @@ class Wall(Handle):
         for row in rows[points][:1].tolist():
             where = table.world.describe(table[row])
             raise FieldError(
-                tr("{wall}: its start and its end are the same point; place one elsewhere.", wall=where)
+                "{wall}: its start and its end are the same point; place one elsewhere.", wall=where
             )
 
 

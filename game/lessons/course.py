@@ -8,6 +8,7 @@ from typing import Any
 
 from pinjoint.components.card import Card, CardButton
 from pinjoint.components.language import decimals, marked, tr
+from pinjoint.components.mistake import WrongValue
 from pinjoint.components.view import Shape
 from pinjoint.documents.document import document
 from pinjoint.documents.models import ModelError, load
@@ -162,7 +163,7 @@ class Course:
         elif task.kind == CHOICES and isinstance(value, str):
             self.choice = value
         else:
-            raise ValueError(tr("the task asks for {kind}, not for {value}.", kind=task.kind, value=value))
+            raise WrongValue("the task asks for {kind}, not for {value}.", kind=task.kind, value=value)
         self.check()
 
     def choose(self, number: int) -> None:

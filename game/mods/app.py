@@ -15,6 +15,7 @@ from pinjoint.components.handle import Handle
 from pinjoint.components.kind import checked_kind
 from pinjoint.components.language import add_catalogues, joined, language, speak, tr
 from pinjoint.components.load import HISTORIES, HistoryKind
+from pinjoint.components.mistake import WrongValue
 from pinjoint.components.obstacles import Shape
 from pinjoint.components.table import fields_of
 from pinjoint.documents import models
@@ -106,12 +107,10 @@ class App:
         def upgraded(document: dict[str, Any], version: str) -> None:
             self._mod.call(what, upgrade, document, version)
             if self._mod.off:
-                raise ValueError(
-                    tr(
-                        "the data of {mod} {version} could not be upgraded; --no-mods opens it without the mod.",
-                        mod=name,
-                        version=version or "?",
-                    )
+                raise WrongValue(
+                    "the data of {mod} {version} could not be upgraded; --no-mods opens it without the mod.",
+                    mod=name,
+                    version=version or "?",
                 )
 
         self._put(EXTENSIONS.upgrades, name, upgraded)
@@ -123,11 +122,9 @@ class App:
         """
         if len(kind.points) != 2:
             raise ModError(
-                tr(
-                    "A tool draws from one point to another; {kind} must have 2 points, not {count}.",
-                    kind=kind.__name__,
-                    count=len(kind.points),
-                )
+                "A tool draws from one point to another; {kind} must have 2 points, not {count}.",
+                kind=kind.__name__,
+                count=len(kind.points),
             )
         name = f"{self.name}.{kind.noun}"
         TOOLS[name] = drawing_of(kind, name, key)
@@ -147,9 +144,7 @@ class App:
     def shape(self, kind: type[Handle], shape: Shape) -> None:
         """Let particles collide with elements of a kind: `shape(table)` returns the Pieces that they are."""
         if kind in EXTENSIONS.obstacles:
-            raise ModError(
-                tr("The shape of {table} is registered already; register it once.", table=kind.table)
-            )
+            raise ModError("The shape of {table} is registered already; register it once.", table=kind.table)
         self._put(EXTENSIONS.obstacles, kind, guarded_shape(self._mod, kind, shape))
 
     def system(self, system: Callable[[], System]) -> None:
@@ -165,7 +160,7 @@ class App:
         key = made.key
         if key in INTEGRATORS:
             raise ModError(
-                tr("There is an integrator '{key}' already; give {name} another name.", key=key, name=made.name)
+                "There is an integrator '{key}' already; give {name} another name.", key=key, name=made.name
             )
         self._put(INTEGRATORS, key, made)
 
@@ -174,7 +169,7 @@ class App:
         kind = guarded_history(self._mod, kind)
         if kind.name in HISTORIES:
             raise ModError(
-                tr("There is a kind of history '{name}' already; give this one another name.", name=kind.name)
+                "There is a kind of history '{name}' already; give this one another name.", name=kind.name
             )
         self._put(HISTORIES, kind.name, kind)
 
@@ -182,11 +177,11 @@ class App:
         """Let the models in a folder be opened by name, like those that come with Pinjoint."""
         path = Path(folder)
         if not path.is_dir():
-            raise ModError(tr("There is no folder of models {folder}; check its path.", folder=path))
+            raise ModError("There is no folder of models {folder}; check its path.", folder=path)
         taken = {entry.name for entry in path.glob("*.json")} & {f"{name}.json" for name in models.bundled()}
         if taken:
             raise ModError(
-                tr("There is a bundled model '{name}' already; give the file another name.", name=min(taken))
+                "There is a bundled model '{name}' already; give the file another name.", name=min(taken)
             )
         self._add(EXTENSIONS.folders, path)
 
@@ -195,21 +190,17 @@ class App:
     def scene(self, scene: type[Scene]) -> None:
         """Add a mode. Its `sources` are the scenes from which it can be reached; "pause" must be a target."""
         if scene.name in {other.name for other in all_scenes()}:
-            raise ModError(
-                tr("There is a scene '{name}' already; give this one another name.", name=scene.name)
-            )
+            raise ModError("There is a scene '{name}' already; give this one another name.", name=scene.name)
         made = guarded_scene(self._mod, scene)
         if "pause" not in scene.targets:
             raise ModError(
-                tr("The scene '{name}' must lead to pause; add 'pause' to its targets.", name=scene.name)
+                "The scene '{name}' must lead to pause; add 'pause' to its targets.", name=scene.name
             )
         if hasattr(scene, "advance"):
             raise ModError(
-                tr(
-                    "The scene '{name}' has a method 'advance', which is no longer called; write a System with"
-                    " phase = Phase.STEP and scenes = ('{name}',), and register it by app.system.",
-                    name=scene.name,
-                )
+                "The scene '{name}' has a method 'advance', which is no longer called; write a System with"
+                " phase = Phase.STEP and scenes = ('{name}',), and register it by app.system.",
+                name=scene.name,
             )
         self._add(EXTENSIONS.scenes, made)
 
@@ -232,9 +223,7 @@ class App:
 
         def register(function: Action) -> Action:
             if name in ACTIONS:
-                raise ModError(
-                    tr("There is an action '{name}' already; give this one another name.", name=name)
-                )
+                raise ModError("There is an action '{name}' already; give this one another name.", name=name)
             action(name, while_drawing=while_drawing)(guarded_action(self._mod, name, function))
             self._undo += [lambda: ACTIONS.pop(name), lambda: WHILE_DRAWING.discard(name)]
             if key:
@@ -254,11 +243,9 @@ class App:
         """
         if name not in ACTIONS:
             raise ModError(
-                tr(
-                    "The key '{key}' is for the action '{name}', which is not registered; register the action first.",
-                    key=key,
-                    name=name,
-                )
+                "The key '{key}' is for the action '{name}', which is not registered; register the action first.",
+                key=key,
+                name=name,
             )
         key = _checked_key(key)
         binding = Binding(key, name, tuple(scenes), title or name)
@@ -282,7 +269,7 @@ class App:
         UsageError, ModelError, FieldError and PathError that it raises are shown as mistakes of the person.
         """
         if name in EXTENSIONS.commands:
-            raise ModError(tr("There is a command '{name}' already; give this one another name.", name=name))
+            raise ModError("There is a command '{name}' already; give this one another name.", name=name)
         self._put(EXTENSIONS.commands, name, Command(guarded_command(self._mod, name, run), about))
 
     # --- what is seen ------------------------------------------------------------------------------------
@@ -310,7 +297,7 @@ class App:
         try:
             check_icon(icon)
         except ValueError as error:
-            raise ModError(tr("The icon of '{name}': {error}", name=name, error=error)) from None
+            raise ModError("The icon of '{name}': {error}", name=name, error=error) from None
         self._put(EXTENSIONS.icons, name, tuple(icon))
 
     def _keeps_data(self) -> None:
@@ -336,12 +323,10 @@ class App:
     def _check_prefix(self, what: str, name: str) -> None:
         if not name.startswith(f"{self.name}."):
             raise ModError(
-                tr(
-                    "The name of the {kind} '{name}' must begin with the name of its mod, such as '{better}'.",
-                    kind=what,
-                    name=name,
-                    better=f"{self.name}.{name}",
-                )
+                "The name of the {kind} '{name}' must begin with the name of its mod, such as '{better}'.",
+                kind=what,
+                name=name,
+                better=f"{self.name}.{name}",
             )
 
 
@@ -354,11 +339,7 @@ def _checked_key(key: str) -> str:
         raise ModError(joined([str(error), names])) from None
     if "shift" in key.lower() and "shift" not in named:
         raise ModError(
-            tr(
-                "The key '{key}' is the same as '{named}'; use that, or 'ctrl+shift+{named}'.",
-                key=key,
-                named=named,
-            )
+            "The key '{key}' is the same as '{named}'; use that, or 'ctrl+shift+{named}'.", key=key, named=named
         )
     return named
 
@@ -366,7 +347,7 @@ def _checked_key(key: str) -> str:
 def check_plugin(plugin: object) -> Callable[[App], object]:
     """The function `plugin(app)` of a mod. Raises ModError."""
     if not callable(plugin):
-        raise ModError(tr("It has no function plugin(app); write `def plugin(app): …` in its __init__.py."))
+        raise ModError("It has no function plugin(app); write `def plugin(app): …` in its __init__.py.")
     if len(inspect.signature(plugin).parameters) != 1:
-        raise ModError(tr("Its function plugin must take one argument: def plugin(app)."))
+        raise ModError("Its function plugin must take one argument: def plugin(app).")
     return plugin

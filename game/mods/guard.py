@@ -19,6 +19,7 @@ from pinjoint.components.field import Column, Field, FieldError, Role
 from pinjoint.components.handle import Handle
 from pinjoint.components.language import tr
 from pinjoint.components.load import HistoryKind
+from pinjoint.components.mistake import WrongValue
 from pinjoint.components.model import Model
 from pinjoint.components.obstacles import Pieces, Shape, check_pieces
 from pinjoint.components.snapshot import Snapshot
@@ -63,7 +64,7 @@ def check_declarations(made: Any, role: type) -> None:
             if isinstance(
                 getattr_static(made, name, None), property
             ):  # might answer differently, or fail, later
-                raise ModError(tr("{name} is a property; give the value itself.", name=called))
+                raise ModError("{name} is a property; give the value itself.", name=called)
             check(getattr(made, name, None), get_args(hint)[0], called)
 
 
@@ -84,9 +85,7 @@ def guarded_system(mod: Mod, made: System) -> System:
     role = next((role for role in _ROLES if isinstance(made, role)), None)
     if role is None:
         name = type(made).__name__
-        raise ModError(
-            tr("{name} is not a System; derive it from a class in pinjoint.systems.base.", name=name)
-        )
+        raise ModError("{name} is not a System; derive it from a class in pinjoint.systems.base.", name=name)
     check_declarations(made, role)
     made.mod, own = mod, vars(made)
     what, process = tr("the system '{name}'", name=made.name), made.process
@@ -161,12 +160,10 @@ def check_view(view: View) -> None:
     check_fields(view, View)
     numbers = (*view.camera.centre, view.camera.scale, view.pixel_ratio)
     if not (all(map(math.isfinite, numbers)) and view.camera.scale > 0.0 < view.pixel_ratio):
-        raise ValueError(
-            tr(
-                "the view's camera is at {centre} with {scale} pixels per metre; give finite numbers, and a scale above 0",
-                centre=str(numbers[:2]),
-                scale=str(numbers[2]),
-            )
+        raise WrongValue(
+            "the view's camera is at {centre} with {scale} pixels per metre; give finite numbers, and a scale above 0",
+            centre=str(numbers[:2]),
+            scale=str(numbers[2]),
         )
 
 
@@ -212,8 +209,8 @@ def guarded_integrator(mod: Mod, integrator: Integrator) -> Integrator:
         size = own(frequency, decay)
         check(size, float, "it")
         if not size >= 0.0:
-            raise ValueError(
-                tr("it is {size} s; return a number of at least 0 (0: no step is stable)", size=str(size))
+            raise WrongValue(
+                "it is {size} s; return a number of at least 0 (0: no step is stable)", size=str(size)
             )
         return size
 
@@ -255,12 +252,10 @@ def _guarded_checker(mod: Mod, field: Field[Any], own: Callable[[Any, str], Any]
         made = mod.call(what, own, value, where, otherwise=value, mistakes=(FieldError,))
         if mod.off and not was_off:
             raise FieldError(
-                tr(
-                    "{where}: {field} cannot be checked; {problem}",
-                    where=where,
-                    field=field.title,
-                    problem=mod.problem,
-                )
+                "{where}: {field} cannot be checked; {problem}",
+                where=where,
+                field=field.title,
+                problem=mod.problem,
             )
         return made
 

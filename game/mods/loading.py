@@ -61,17 +61,13 @@ def load_all(folders: Iterable[str | Path]) -> None:
         found = load([folder])
         if not found:
             raise ModError(
-                tr(
-                    "There is no mod in {folder}; a mod is a folder with a file {manifest}.",
-                    folder=folder,
-                    manifest=MANIFEST,
-                )
+                "There is no mod in {folder}; a mod is a folder with a file {manifest}.",
+                folder=folder,
+                manifest=MANIFEST,
             )
         for mod in found:
             if mod.off:
-                raise ModError(
-                    tr("The mod '{name}' cannot be used: {problem}", name=mod.name, problem=mod.problem)
-                )
+                raise ModError("The mod '{name}' cannot be used: {problem}", name=mod.name, problem=mod.problem)
 
 
 def include(module: ModuleType, description: str) -> None:
@@ -99,7 +95,7 @@ def _load(mod: Mod) -> None:
     try:
         for name in required(mod):
             if any(other.name == name and other.off for other in EXTENSIONS.mods):
-                raise ModError(tr("It requires the mod '{name}', which cannot be used.", name=name))
+                raise ModError("It requires the mod '{name}', which cannot be used.", name=name)
         mod.within(PATIENCE, lambda: _plug_in(mod, app))
         surroundings.check()
     except ModError as error:
@@ -141,12 +137,10 @@ def _find(mod: Mod) -> None:
     assert mod.folder is not None
     file = mod.folder / "__init__.py"
     if not file.is_file():
-        raise ModError(tr("It has no __init__.py; write one with a function plugin(app)."))
+        raise ModError("It has no __init__.py; write one with a function plugin(app).")
     origin = finding.origin_of_module(mod.name)
     if origin is not None and not _is_from(origin, file):
-        raise ModError(
-            tr("There is a Python module '{name}' already; give the mod another name.", name=mod.name)
-        )
+        raise ModError("There is a Python module '{name}' already; give the mod another name.", name=mod.name)
     if mod.name in sys.modules:
         return
     spec = importlib.util.spec_from_file_location(mod.name, file, submodule_search_locations=[str(mod.folder)])

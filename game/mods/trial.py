@@ -12,6 +12,7 @@ from pinjoint.components.extensions import EXTENSIONS
 from pinjoint.components.field import MADE, Field, FieldError
 from pinjoint.components.language import joined, marked, tr
 from pinjoint.components.load import HISTORIES
+from pinjoint.components.mistake import WrongValue
 from pinjoint.components.model import Model
 from pinjoint.components.suggestions import missing
 from pinjoint.documents import models
@@ -214,11 +215,8 @@ def _way_to(session: Session, scene: str) -> list[str]:
                 ways[name] = [*ways[here], name]
                 pending.append(name)
     if scene not in ways:
-        raise ValueError(
-            tr(
-                "The scene '{name}' cannot be reached; list the scenes that lead to it in its sources",
-                name=scene,
-            )
+        raise WrongValue(
+            "The scene '{name}' cannot be reached; list the scenes that lead to it in its sources", name=scene
         )
     return ways[scene]
 

@@ -42,11 +42,9 @@ def check_mods(script: Script) -> str:
     here = _loaded_mods()
     if missing := [f"{name} {version}" for name, version in script.mods.items() if name not in here]:
         raise ScriptError(
-            tr(
-                "{file} was recorded with mods that are not loaded: {mods}. Name their folder: --mods FOLDER.",
-                file=script.path,
-                mods=", ".join(missing),
-            )
+            "{file} was recorded with mods that are not loaded: {mods}. Name their folder: --mods FOLDER.",
+            file=script.path,
+            mods=", ".join(missing),
         )
     others = [f"{name} {version}" for name, version in here.items() if version != script.mods.get(name)]
     if not others:

@@ -13,7 +13,7 @@ from functools import cache
 from importlib.resources import files
 
 from pinjoint.components.extensions import EXTENSIONS
-from pinjoint.components.language import tr
+from pinjoint.components.mistake import WrongValue
 
 Part = tuple[str, tuple[float, ...]]
 
@@ -33,12 +33,10 @@ def check_icon(parts: Sequence[Part]) -> None:
             else few <= len(numbers) and len(numbers) % 2 == 0
         )
         if kind not in (*_NUMBERS, "line", "area") or not fits or not all(map(math.isfinite, numbers)):
-            raise ValueError(
-                tr(
-                    "{part!r} is not a part of an icon; write ('line', (-5, 0, 5, 0)), 'area' with three points or"
-                    " more, ('arc', (x, y, radius, from, to)) or ('disc', (x, y, radius)).",
-                    part=(kind, numbers),
-                )
+            raise WrongValue(
+                "{part!r} is not a part of an icon; write ('line', (-5, 0, 5, 0)), 'area' with three points or"
+                " more, ('arc', (x, y, radius, from, to)) or ('disc', (x, y, radius)).",
+                part=(kind, numbers),
             )
 
 

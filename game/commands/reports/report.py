@@ -144,11 +144,9 @@ def run_at(simulation: Simulation, name: str, times: Sequence[float], states: li
     """
     if times[0] < (present := simulation.model.clock.time):
         raise AnalysisError(
-            tr(
-                "The model is at t = {present:.9g} s already, after {asked:.9g} s; ask for later times.",
-                present=present,
-                asked=times[0],
-            )
+            "The model is at t = {present:.9g} s already, after {asked:.9g} s; ask for later times.",
+            present=present,
+            asked=times[0],
         )
     for target in times:
         simulation.run_to(target)

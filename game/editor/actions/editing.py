@@ -41,7 +41,7 @@ def _place(context: Context, pixel: Vector) -> None:
 def _delete(context: Context, pixel: Vector) -> None:
     doomed = context.selected
     if not doomed:
-        raise Refusal(tr("Nothing is selected; first click what you want to delete."))
+        raise Refusal("Nothing is selected; first click what you want to delete.")
     before = {table.name: table.count for table in context.model.tables.values()}
     named = context.name(doomed[0])
     delete(context.model, doomed)

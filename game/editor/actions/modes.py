@@ -52,7 +52,7 @@ def _escape(context: Context, pixel: Vector) -> None:
 @action("force method")
 def _force_method(context: Context, pixel: Vector) -> None:
     if context.model.particles.count == 0:
-        raise Refusal(tr("There is nothing to solve yet; draw a structure with P and L, or open one with D."))
+        raise Refusal("There is nothing to solve yet; draw a structure with P and L, or open one with D.")
     context.scenes.request("force method")
 
 
@@ -70,11 +70,9 @@ def _save_again(context: Context, pixel: Vector) -> None:
     if there not in ((), file.stamp):
         context.document.file = replace(file, stamp=there)
         raise Refusal(
-            tr(
-                "Another window or program has changed '{file}'. Press Ctrl+S again to replace it, or S to save under"
-                " another name.",
-                file=file.name,
-            )
+            "Another window or program has changed '{file}'. Press Ctrl+S again to replace it, or S to save under"
+            " another name.",
+            file=file.name,
         )
     try:
         context.save_as(file.path)
@@ -98,10 +96,8 @@ def _form_scene(context: Context) -> FormScene:
     scene = context.scenes.active
     if not isinstance(scene, FormScene):
         raise SceneError(
-            tr(
-                "In the scene '{scene}' there are no boxes; go to 'properties', 'save' or 'load' first.",
-                scene=scene.name,
-            )
+            "In the scene '{scene}' there are no boxes; go to 'properties', 'save' or 'load' first.",
+            scene=scene.name,
         )
     return scene
 

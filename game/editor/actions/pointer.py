@@ -68,7 +68,7 @@ def _draw(context: Context, tool: str, pixel: Vector) -> None:
     if begun is not None:
         context.gesture = begun
     elif context.gesture is None:
-        raise Refusal(tr("Begin at a particle. P makes a new particle, Esc puts the tool away."))
+        raise Refusal("Begin at a particle. P makes a new particle, Esc puts the tool away.")
 
 
 for _kind in TOOLS.values():

@@ -78,7 +78,7 @@ def _slider_of_box(context: Context, pixel: Vector) -> None:
     scene = context.scenes.active
     box = scene.form.selected if isinstance(scene, FormScene) else None
     if box is None:
-        raise Refusal(tr("Click the box with the number first; then Ctrl+L makes a slider for it."))
+        raise Refusal("Click the box with the number first; then Ctrl+L makes a slider for it.")
     add_slider_for(context, box)
 
 

@@ -29,10 +29,8 @@ def _arrow(direction: Vector, steps: int, *, far: bool) -> Action:
             _step(context, steps * (_far(context) if far else 1))
         elif context.has_selected:
             raise Refusal(
-                tr(
-                    "Once a run has begun, arrow keys step through time. Ctrl with an arrow moves the selection; R goes back"
-                    " to the beginning."
-                )
+                "Once a run has begun, arrow keys step through time. Ctrl with an arrow moves the selection; R goes back"
+                " to the beginning."
             )
 
     return act
@@ -43,7 +41,7 @@ def _move(direction: Vector, *, far: bool) -> Action:
 
     def act(context: Context, pixel: Vector) -> None:
         if not nudge(context, direction, far=far):
-            raise Refusal(tr("Nothing that can be moved is selected; click a particle or a rod first."))
+            raise Refusal("Nothing that can be moved is selected; click a particle or a rod first.")
 
     return act
 
@@ -113,7 +111,7 @@ action("natural pace", while_drawing=True)(
 @action("restart")
 def _restart(context: Context, pixel: Vector) -> None:
     if context.document.is_undeformed:
-        raise Refusal(tr("This is the beginning already: no time has passed. Ctrl+Z undoes edits."))
+        raise Refusal("This is the beginning already: no time has passed. Ctrl+Z undoes edits.")
     known = context.document.undeformed is not None
     context.restart()
     begun_at_rest = tr(

@@ -108,9 +108,7 @@ class PullParticle(Gesture):
     def __init__(self, context: Context, particle: Particle) -> None:
         if context.settings.displacement_scale == 0.0:
             raise Refusal(
-                tr(
-                    "Displacements are drawn at scale 0, so nothing can be pulled; set the displacement scale above 0."
-                )
+                "Displacements are drawn at scale 0, so nothing can be pulled; set the displacement scale above 0."
             )
         self._particle = particle
         context.simulation.advance(0)
