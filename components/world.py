@@ -383,7 +383,10 @@ class World:
 
     @contextmanager
     def transaction(self, title: str) -> Iterator[None]:
-        """Make all commands inside one entry of the log; if one raises, none of them happened."""
+        """Make all commands inside one entry of the log; if one raises, none of them happened.
+
+        title: said by `tr`, or marked: it is shown in the language that is present then.
+        """
         inverses: list[Command] = []
         outer, self._open = self._open, inverses
         try:

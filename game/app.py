@@ -20,6 +20,7 @@ from pinjoint.boundary import Boundary
 from pinjoint.components.camera import Viewport
 from pinjoint.components.field import Vector
 from pinjoint.components.language import language, tr
+from pinjoint.components.mistake import Explained
 from pinjoint.components.model import Model
 from pinjoint.components.view import MAGNIFICATIONS, View, magnified
 from pinjoint.documents import library, models
@@ -66,7 +67,7 @@ Points = NDArray[np.float64]
 Colours = NDArray[np.uint8]
 
 
-class NoDisplay(RuntimeError):
+class NoDisplay(Explained, RuntimeError):
     """There is nowhere to open a window; the message is the reason."""
 
 

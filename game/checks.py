@@ -13,6 +13,7 @@ import numpy as np
 
 from pinjoint.components.field import SAVED, Column, Role, same
 from pinjoint.components.language import marked
+from pinjoint.components.mistake import Explained
 from pinjoint.components.model import Model
 from pinjoint.components.suggestions import missing
 from pinjoint.documents import models
@@ -72,7 +73,7 @@ MODELS: tuple[Any, ...] = (EVERYTHING, ELASTIC, BODIES)
 Source = Any  # a model's name or document, or a function that returns a Model
 
 
-class SystemCheckError(AssertionError):
+class SystemCheckError(Explained, AssertionError):
     """A system that breaks its declarations; the message says how."""
 
 

@@ -504,7 +504,7 @@ class Session(Context):
         self.scenes.apply(self)
 
     def expect(self, text: str) -> None:
-        """Raise ExpectationError, an AssertionError, unless a text such as "scene = pause" is true.
+        """Raise AssertionError unless a text such as "scene = pause" is true.
 
         Also "rods.AB.axial_force ≈ -28.34 ± 0.01", "energy.imbalance < 1"; see game/scripts/script.py.
         """

@@ -20,12 +20,13 @@ from graphlib import CycleError, TopologicalSorter
 from typing import Any, Protocol
 
 from pinjoint.components.language import tr
+from pinjoint.components.mistake import Explained
 from pinjoint.components.model import Model
 from pinjoint.components.suggestions import remedy
 from pinjoint.systems.base import Commit, Event, Integrator, Law, Phase, StepSystem, System
 
 
-class ScheduleError(ValueError):
+class ScheduleError(Explained, ValueError):
     """Systems that cannot be put in order; the message names them and says what to declare."""
 
 

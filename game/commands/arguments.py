@@ -22,8 +22,8 @@ OUTPUTS = ("output", "events", "report", "record", "plot")  # options of all com
 class UsageError(Mistake):
     """Bad usage or a bad model: one sentence for the person, and the exit status."""
 
-    def __init__(self, sentence: str, status: int = BAD_INPUT) -> None:
-        super().__init__(sentence)
+    def __init__(self, message: str, status: int = BAD_INPUT, /, **values: Any) -> None:
+        super().__init__(message, **values)
         self.status = status
 
 

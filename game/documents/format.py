@@ -13,7 +13,7 @@ from pinjoint.components.extensions import EXTENSIONS
 from pinjoint.components.field import SAVED, Field
 from pinjoint.components.grid import Grid
 from pinjoint.components.handle import Handle
-from pinjoint.components.language import joined
+from pinjoint.components.language import joined, tr
 from pinjoint.components.load import Load
 from pinjoint.components.mistake import Mistake
 from pinjoint.components.model import Model
@@ -46,8 +46,8 @@ class ModelError(Mistake, ValueError):
     """A model that cannot be read or written; the message says where, what is wrong and the remedy."""
 
 
-def fail(path: str, problem: str) -> NoReturn:
-    raise ModelError(joined([f"{path}:", problem]))
+def fail(path: str, problem: str, /, **values: Any) -> NoReturn:
+    raise ModelError(joined([f"{path}:", tr(problem, **values)]))
 
 
 def required(kind: type[Handle]) -> Sequence[str]:

@@ -15,6 +15,7 @@ from platformdirs import user_data_path
 from pinjoint.components import suggestions
 from pinjoint.components.box import fits_file_names
 from pinjoint.components.language import plural, tr
+from pinjoint.components.mistake import Explained
 from pinjoint.documents import models
 
 DATA_VARIABLE = "PINJOINT_DATA"  # names another folder than the system's own
@@ -29,7 +30,7 @@ _KEPT_BY_WINDOWS = {
 }
 
 
-class NameRefused(ValueError):
+class NameRefused(Explained, ValueError):
     """A name that no file can have on every system; the message says why and what helps."""
 
 

@@ -91,10 +91,6 @@ class Gesture:
 PHYSICS = ("run.*", "physics.*", "plasticity.*", "loads.*", "collision.*", "edit.pull")
 
 
-class SceneError(ValueError):
-    """A transition that does not exist; the message says from where to where, and what does."""
-
-
 class Scene:
     """One mode. Systems say by their `scenes` in which they are active; keys are in input/bindings.py.
 
@@ -214,15 +210,15 @@ class Scenes:
         return tuple(self._by_name)
 
     def request(self, *names: str) -> None:
-        """Ask for a transition, or a chain of them. Raises SceneError if one is not legal."""
+        """Ask for a transition, or a chain of them. Raises WrongValue if one is not legal."""
         here = self._by_name[self._requested[-1]] if self._requested else self.active
         for name in names:
             if name not in self._by_name:
                 known = ", ".join(self._by_name)
-                raise SceneError("There is no scene '{scene}'; choose from {names}.", scene=name, names=known)
+                raise WrongValue("There is no scene '{scene}'; choose from {names}.", scene=name, names=known)
             if name not in here.targets and here.name not in self._by_name[name].sources:
                 targets = ", ".join(here.targets)
-                raise SceneError(
+                raise WrongValue(
                     "From the scene '{here}' one cannot go to '{scene}', only to {scenes}.",
                     here=here.name,
                     scene=name,

@@ -18,7 +18,7 @@ from pinjoint.systems.edit.dividing import DIVISIONS
 from pinjoint.systems.edit.rods import is_rigid
 from pinjoint.systems.edit.supports import SUPPORTS, Held, held
 from pinjoint.systems.input.bindings import Binding, offers, toolbar
-from pinjoint.systems.render.bending_diagrams import NAMES
+from pinjoint.systems.render.diagrams import NAMES
 
 Condition = Callable[[Context], bool]
 

@@ -130,12 +130,15 @@ class App:
         TOOLS[name] = drawing_of(kind, name, key)
         TOOL_HINTS[name] = tr(
             "{table}: click two points, or drag from one to the other     {key} or Esc done",
-            table=kind.table,
+            table=tr(kind.table),
             key=key.upper(),
         )
         self._undo += [lambda: TOOLS.pop(name), lambda: TOOL_HINTS.pop(name)]
         self.action(
-            name, key=key, title=title or tr("{kind}, from point to point", kind=kind.noun), while_drawing=True
+            name,
+            key=key,
+            title=title or tr("{kind}, from point to point", kind=tr(kind.noun)),
+            while_drawing=True,
         )(TOOLS[name].use)
         if icon:
             self._icon(name, icon)

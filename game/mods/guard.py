@@ -61,9 +61,7 @@ def check_declarations(made: Any, role: type) -> None:
     for name, hint in get_type_hints(role).items():
         if get_origin(hint) is ClassVar:
             called = f"{(made if isinstance(made, type) else type(made)).__name__}.{name}"
-            if isinstance(
-                getattr_static(made, name, None), property
-            ):  # might answer differently, or fail, later
+            if isinstance(getattr_static(made, name, None), property):  # might answer otherwise, or fail, later
                 raise ModError("{name} is a property; give the value itself.", name=called)
             check(getattr(made, name, None), get_args(hint)[0], called)
 

@@ -9,7 +9,7 @@ from collections.abc import Callable, Iterator, Mapping, Sequence
 from typing import Any, Protocol
 
 from pinjoint.components.handle import Handle
-from pinjoint.components.language import english, listed, marked
+from pinjoint.components.language import english, listed, marked, tr
 from pinjoint.components.mistake import NotFound, WrongValue
 from pinjoint.components.suggestions import missing
 from pinjoint.components.view import View
@@ -29,10 +29,6 @@ _SAMENESS = ("=", "≈", "~")
 _NOTHING = ("none", "null")  # texts for no value
 
 
-class ExpectationError(AssertionError):
-    """An expectation that does not hold; the message gives the expected and the present value."""
-
-
 class Shown(Readable, Protocol):
     """The part of a session that expectations read."""
 
@@ -47,9 +43,9 @@ class Shown(Readable, Protocol):
 
 
 def expect(session: Shown, text: str) -> None:
-    """Raise ExpectationError unless a text holds; ValueError or LookupError if it cannot be tested."""
+    """Raise AssertionError unless a text holds; ValueError or LookupError if it cannot be tested."""
     for expected, got in check(session, text):
-        raise ExpectationError("expected {expected}, got {got}", expected=expected, got=str(got))
+        raise AssertionError(tr("expected {expected}, got {got}", expected=expected, got=str(got)))
 
 
 def check(session: Shown, text: str) -> Iterator[tuple[str, Any]]:

@@ -16,6 +16,7 @@ from numpy.typing import NDArray
 
 from pinjoint.components.field import Role
 from pinjoint.components.language import marked, tr
+from pinjoint.components.mistake import Explained
 from pinjoint.components.model import Model
 from pinjoint.components.wording import is_identifier
 from pinjoint.systems import is_ours
@@ -55,11 +56,11 @@ _KINDS = ("rods", "ends", "particles", "rotations", "pairs", "loads")
 ROWS_OF = {"pairs": "particles", "rotations": "particles", "ends": "rods"}  # tables of kinds that are none
 
 
-class ProgramError(ValueError):
+class ProgramError(Explained, ValueError):
     """A step system that cannot join the program; the message names it, the reason and the remedy."""
 
-    def __init__(self, message: str, system: StepSystem | None = None) -> None:
-        super().__init__(message)
+    def __init__(self, message: str, system: StepSystem | None = None, /, **values: Any) -> None:
+        super().__init__(message, **values)
         self.system = system
 
 

@@ -11,10 +11,9 @@ from pinjoint.components.form import Form
 from pinjoint.components.model import Model
 from pinjoint.components.toolbar import Toolbar
 from pinjoint.components.view import View
-from pinjoint.systems.render.arrows import draw_loads, draw_velocities
-from pinjoint.systems.render.bending_diagrams import draw_diagrams
+from pinjoint.systems.render.arrows import draw_loads, draw_particle_diagrams, draw_velocities
 from pinjoint.systems.render.cuts import draw_cuts
-from pinjoint.systems.render.diagrams import draw_particle_diagrams
+from pinjoint.systems.render.diagrams import draw_diagrams
 from pinjoint.systems.render.empty_card import draw_card, shows_card
 from pinjoint.systems.render.free_bodies import draw_free_bodies
 from pinjoint.systems.render.labels import Placed, place_labels
@@ -122,7 +121,8 @@ def _draw_structure(sheet: Sheet) -> None:
     draw_hinges(sheet)
     sheet.marks += sheet.above
     draw_distributed_forces(sheet)
-    sheet.marks += [*draw_loads(sheet), *draw_velocities(sheet)]
+    draw_loads(sheet)
+    draw_velocities(sheet)
     draw_moments(sheet)
     draw_cuts(sheet)
     draw_shape(sheet)

@@ -14,7 +14,7 @@ from pinjoint.components.extensions import EXTENSIONS
 from pinjoint.components.model import Model
 from pinjoint.components.view import View, drawn_places
 from pinjoint.systems.render.arrows import draw_loads, draw_velocities
-from pinjoint.systems.render.bending_diagrams import draw_diagrams
+from pinjoint.systems.render.diagrams import draw_diagrams
 from pinjoint.systems.render.marks import Bars, Discs, Fills, Mark, Points, Rectangles, Stamps, Strokes
 from pinjoint.systems.render.members import draw_distributed_forces, draw_hinges, draw_moments
 from pinjoint.systems.render.sheet import measure
@@ -110,7 +110,9 @@ def _marks(model: Model, camera: Camera, unit: float, theme: Theme) -> tuple[Mar
     draw_distributed_forces(sheet)
     sheet.view.all_diagrams = False  # arrows of one length; the values of diagrams are left out
     draw_moments(sheet)
-    return (*sheet.marks, *draw_loads(sheet), *draw_velocities(sheet))
+    draw_loads(sheet)
+    draw_velocities(sheet)
+    return tuple(sheet.marks)
 
 
 def _tinted(theme: Theme) -> Colour:

@@ -4,12 +4,14 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from typing import Any
 
 import numpy as np
 from scipy.linalg import qr
 
 from pinjoint.components.field import ENDS
 from pinjoint.components.language import marked
+from pinjoint.components.mistake import Explained
 from pinjoint.components.model import Model
 from pinjoint.components.particle import Particle
 from pinjoint.components.rod import Rod, bends
@@ -24,14 +26,14 @@ _FIRST = 1e-3  # of bending moments, which are released before bars
 _RANK = 1e-9  # relative size below which a pivot is zero
 
 
-class ForceMethodError(ValueError):
+class ForceMethodError(Explained, ValueError):
     """A static unknown that cannot be used; the message names it, the reason and the remedy.
 
     motion: of the mechanism that its release would leave, (n, 2 or 3), the largest 1; None for other reasons.
     """
 
-    def __init__(self, message: str, motion: Array | None = None) -> None:
-        super().__init__(message)
+    def __init__(self, message: str, motion: Array | None = None, /, **values: Any) -> None:
+        super().__init__(message, **values)
         self.motion = motion
 
 

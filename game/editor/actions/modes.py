@@ -7,9 +7,10 @@ from dataclasses import replace
 
 from pinjoint.components.field import Vector
 from pinjoint.components.language import tr
+from pinjoint.components.mistake import WrongValue
 from pinjoint.documents.models import ModelError
 from pinjoint.documents.open_documents import stamp_of
-from pinjoint.editor.context import Action, Context, SceneError, action
+from pinjoint.editor.context import Action, Context, action
 from pinjoint.editor.scenes.form import FormScene
 from pinjoint.editor.scenes.properties import Properties
 from pinjoint.systems.edit import Refusal
@@ -95,7 +96,7 @@ def _properties(context: Context, pixel: Vector) -> None:
 def _form_scene(context: Context) -> FormScene:
     scene = context.scenes.active
     if not isinstance(scene, FormScene):
-        raise SceneError(
+        raise WrongValue(
             "In the scene '{scene}' there are no boxes; go to 'properties', 'save' or 'load' first.",
             scene=scene.name,
         )

@@ -13,7 +13,7 @@ from pinjoint.editor.gestures.drawing import TOOLS, Drawing, DrawSupport
 from pinjoint.editor.gestures.moving import BoxSelect, Move, MovePoint, PullParticle
 from pinjoint.systems.edit import Refusal
 from pinjoint.systems.edit.picking import everything, pick, pick_grid, pick_line, pick_particle, pick_point
-from pinjoint.systems.render.bending_diagrams import NAMES
+from pinjoint.systems.render.diagrams import NAMES
 
 
 @action("drag", while_drawing=True)

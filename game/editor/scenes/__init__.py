@@ -1,7 +1,7 @@
 """Scenes: the modes of the program, a state machine with pause as its hub."""
 
 from pinjoint.components.extensions import EXTENSIONS
-from pinjoint.editor.context import PHYSICS, Scene, SceneError, Scenes
+from pinjoint.editor.context import PHYSICS, Scene, Scenes
 from pinjoint.editor.scenes.files import Pictures
 from pinjoint.editor.scenes.force_method import ForceMethod, Sets
 from pinjoint.editor.scenes.live import Pause, Simulation
@@ -11,7 +11,7 @@ from pinjoint.editor.scenes.save import Save
 from pinjoint.systems.base import System
 from pinjoint.systems.render.picture import Stage
 
-__all__ = ["PHYSICS", "SCENES", "Scene", "SceneError", "Scenes", "Stage", "all_scenes", "scene_systems"]
+__all__ = ["PHYSICS", "SCENES", "Scene", "Scenes", "Stage", "all_scenes", "scene_systems"]
 
 
 def all_scenes() -> list[Scene]:
