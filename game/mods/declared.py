@@ -115,8 +115,8 @@ def _fits(value: Any, declared: Any) -> bool:
         )
     if kind is np.ndarray:
         number = get_args(parts[1])[0] if parts[1:] else Any
-        of = _KINDS[np.dtype(number).kind] if isinstance(number, type) else "fiub"
-        return isinstance(value, np.ndarray) and value.dtype.kind in of
+        letter = np.dtype(number).kind if isinstance(number, type) else ""
+        return isinstance(value, np.ndarray) and value.dtype.kind in _KINDS.get(letter, "fiub")
     if kind is type:
         return isinstance(value, type) and issubclass(value, parts[0] if isinstance(parts[0], type) else object)
     if kind is Callable:
