@@ -15,7 +15,7 @@ CONTAINERS = ("list", "dict", "set", "deque", "defaultdict", "OrderedDict", "Cou
 FUNCTION = ast.FunctionDef | ast.AsyncFunctionDef
 
 MOST = {
-    "lines": 66_954,
+    "lines": 66_959,
     "files": 406,
     "names": 4_030,  # functions, classes and constants of modules
     "public names": 2_438,
