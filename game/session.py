@@ -32,7 +32,7 @@ from pinjoint.documents.format import ModelError
 from pinjoint.documents.open_documents import ModelFile, Source, file_of
 from pinjoint.editor.context import Context
 from pinjoint.editor.dropping import open_dropped
-from pinjoint.editor.frame import Actions, Frame, HeadlessFrame, ShowView
+from pinjoint.editor.frame import Actions, Exaggerate, Frame, HeadlessFrame, ShowView
 from pinjoint.editor.routing import Layer, for_tools, hit_at, layer, meaning
 from pinjoint.editor.scenes import all_scenes, scene_systems
 from pinjoint.editor.scenes.files import FileScene
@@ -55,10 +55,11 @@ from pinjoint.systems.input.actions import (
     FILES,
     FORMS,
     LIVE,
+    PAUSE,
+    SIMULATION,
     TEXT,
     help_lines,
     key_named,
-    only_in_pause,
 )
 from pinjoint.systems.run.simulation import Simulation
 from pinjoint.systems.run.system import Time
@@ -85,6 +86,8 @@ class Session(Context):
     -28.3428
     """
 
+    course: Course | None
+
     def __init__(
         self,
         model: Model,
@@ -93,7 +96,7 @@ class Session(Context):
         file: ModelFile = ModelFile(),  # noqa: B008 (it cannot be changed)
     ) -> None:
         pull, scenes = Pull(), all_scenes()
-        ours = [Actions(), ShowView(), Time(), *scene_systems(), *step_systems(), pull]
+        ours = [Exaggerate(), Actions(), ShowView(), Time(), *scene_systems(), *step_systems(), pull]
         schedule = Schedule(
             [*ours, *(make() for make in EXTENSIONS.systems), *systems],
             wanted={scene.name: scene.systems for scene in scenes},
@@ -102,7 +105,6 @@ class Session(Context):
         # Called with every press and after every change of size; set by a recorder.
         self.on_press: Callable[[str, Vector | None], None] | None = None
         self.on_resize: Callable[[], None] | None = None
-        self.course: Course | None = None
         self._clicked: Layer | None = None  # what took the last press, if that was a click
         self.extent = (
             self.view.camera.viewport.width,
@@ -437,8 +439,8 @@ class Session(Context):
             left = self._left_for_tools() if for_tools(self, key, pixel) else ""
             if name != left:  # the tool that opens a scene closes it, too
                 self.act(name, at)
-        elif title := only_in_pause(self.scene, key):
-            self.notice = tr("{action}: press Space to pause first.", action=begun(tr(title)))
+        elif self.scene == SIMULATION and (found := ACTIONS.at(PAUSE, key)) and not ACTIONS.at(self.scene, key):
+            self.notice = tr("{action}: press Space to pause first.", action=begun(tr(found[1].title)))
 
     def _left_for_tools(self) -> str:
         """Leave a scene in which tools do not act, for the one in which they do; returns its name, or ""."""
@@ -565,11 +567,8 @@ class Session(Context):
         """One frame, `elapsed` s after the last: input, edit, step, events and render. Raises ValueError."""
         frame = Frame(self, _forward("elapsed", elapsed))
         try:
-            try:
-                self.exaggerate()
-            finally:
-                for phase in Phase:
-                    self.schedule.run(phase, frame)
+            for phase in Phase:
+                self.schedule.run(phase, frame)
         except Exception as error:
             if not blamed_on_mod(error):
                 raise
