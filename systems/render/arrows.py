@@ -8,7 +8,6 @@ import math
 import numpy as np
 from numpy.typing import NDArray
 
-from pinjoint.components import written
 from pinjoint.components.bent import distributed_shares
 from pinjoint.components.language import tr
 from pinjoint.components.model import Model
@@ -22,7 +21,16 @@ from pinjoint.systems.render.sheet import DIRECTIONS, Rows, Sheet
 from pinjoint.systems.render.supports import NO_SUPPORT, crowding
 from pinjoint.systems.render.symbols import SUPPORT_DEPTH
 from pinjoint.systems.render.theme import Colour
-from pinjoint.systems.render.values import FEW_VALUES, FIRST, GAP, SMALLEST, half_sizes, most_important, write
+from pinjoint.systems.render.values import (
+    FEW_VALUES,
+    FIRST,
+    GAP,
+    SMALLEST,
+    half_sizes,
+    most_important,
+    said,
+    write,
+)
 
 MOST = 100  # particles, above which arrows would hide one another
 LONGEST, SHORTEST = 46.0, 13.0  # points: of the largest of its kind, and of any that is drawn
@@ -312,7 +320,7 @@ def _write_forces(
     few = len(value) <= FEW_VALUES
     shown, worth = most_important(sheet, field, which, value, np.flatnonzero(sheet.sees(middle)))
     sizes = np.abs(value[shown]).tolist()
-    texts = [(written.force if few else written.number)(size, nothing=SMALLEST) for size in sizes]
+    texts = [said(sheet, size, "kN" if few else "") for size in sizes]
     font, out = sheet.font(12.0 if few else 11.0), outward[shown]
     half = half_sizes(sheet, texts, font)
     places = _places_by_arrows(middle[shown], length[shown], out, pulls[shown], half, sheet.unit)

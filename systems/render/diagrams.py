@@ -12,7 +12,6 @@ from typing import Literal
 import numpy as np
 from numpy.typing import NDArray
 
-from pinjoint.components import written
 from pinjoint.components.bent import (
     AXIAL,
     MOMENT,
@@ -46,6 +45,7 @@ from pinjoint.systems.render.values import (
     in_rows,
     most_important,
     reach,
+    said,
     write,
 )
 
@@ -416,7 +416,7 @@ def _write(sheet: Sheet, diagram: _Diagram) -> None:
     few = len(seen) <= FEW_VALUES
     size, which, number, value = sheet.font(12.0 if few else 11.0), which[shown], number[shown], value[shown]
     nothing = SMALLEST if diagram.is_straight else max(_NOTHING * diagram.largest, SMALLEST)
-    texts = [_written(quantity, each, nothing, few) for each in value.tolist()]
+    texts = [_written(sheet, quantity, each, nothing, few) for each in value.tolist()]
     lines: Literal["cover", "spare"] = "spare" if few else "cover"
     half, height = half_sizes(sheet, texts, size), diagram.scale * np.abs(value)
     at, normal = diagram.at(which, shares[shown])
@@ -448,11 +448,11 @@ def _colour_of(sheet: Sheet, quantity: str, value: float) -> Colour:
     return _colour(sheet, sign)
 
 
-def _written(quantity: str, value: float, nothing: float, few: bool) -> str:
+def _written(sheet: Sheet, quantity: str, value: float, nothing: float, few: bool) -> str:
     """A value as it is told: moments without sign, since their side says it; shear with both."""
-    text = written.number(abs(value) if quantity == MOMENT else value, nothing=nothing)
-    sign = "+" if quantity == SHEAR and value > 0.0 and text != "0" else ""
-    return f"{sign}{text}{f' {_UNITS[quantity]}' if few else ''}"
+    size = abs(value) if quantity == MOMENT else value
+    sign = "+" if quantity == SHEAR and value > nothing else ""
+    return f"{sign}{said(sheet, size, _UNITS[quantity] if few else '', nothing)}"
 
 
 def _told(sheet: Sheet, diagram: _Diagram) -> tuple[Rows, Rows, Values, Values]:

@@ -17,7 +17,7 @@ from pinjoint.systems.render.occupancy import STRONG
 from pinjoint.systems.render.sheet import Rows, Sheet
 from pinjoint.systems.render.symbols import RIM
 from pinjoint.systems.render.theme import Colour
-from pinjoint.systems.render.values import FIRST, SMALLEST, half_sizes, off, write
+from pinjoint.systems.render.values import FIRST, SMALLEST, half_sizes, off, said, write
 
 _HINGE = 3.5  # points, radius of a hinge beside a joint
 _SHORTEST = 5.0  # times its radius: the shortest rod at which a hinge is drawn
@@ -190,7 +190,7 @@ def _draw_moments(sheet: Sheet, name: str, moment: Values) -> None:
     for at, size, row, value in zip(
         sheet.centres[rows], radius.tolist(), rows.tolist(), moment[rows].tolist(), strict=True
     ):
-        text = written.moment(abs(value)) if name == "reaction" else ""
+        text = said(sheet, abs(value), "kN·m") if name == "reaction" else ""
         write_moment(sheet, at, size, value, colour, (key, row), text)
 
 
@@ -243,7 +243,7 @@ def write_moment(
     text: str = "",
 ) -> None:
     """Write the size of a moment outside its arrow; text: in place of the number as a person gave it."""
-    text = text or f"{written.given(abs(moment), written.DIGITS)} kN·m"
+    text = text or f"{written.given(abs(moment), written.DIGITS)}{' kN·m' if sheet.view.has_units else ''}"
     angle = np.radians([90.0, 52.5, 127.5, 15.0, 165.0, 0.0, 180.0, -40.0, 220.0])  # first corners of the arrow
     out = np.stack([np.cos(angle), -np.sin(angle)], axis=1)
     near = off(at, out, radius + 2.0 * sheet.unit, half_sizes(sheet, [text]))

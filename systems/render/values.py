@@ -8,6 +8,7 @@ from typing import Literal
 import numpy as np
 from numpy.typing import NDArray
 
+from pinjoint.components import written
 from pinjoint.systems.render.labels import Key, Label, half_size
 from pinjoint.systems.render.marks import Owner, Points
 from pinjoint.systems.render.sheet import Rows, Sheet
@@ -28,6 +29,15 @@ def half_sizes(sheet: Sheet, texts: Iterable[str], size: int = 0) -> Points:
     """Half the width and height of each text as a label of that font size, else the usual one, (n, 2)."""
     size = size or sheet.font(12.0)
     return np.array([half_size(text, size, "semibold", sheet.unit) for text in texts]).reshape(-1, 2)
+
+
+def said(sheet: Sheet, value: float, unit: str, nothing: float = SMALLEST) -> str:
+    """A computed value with its unit, "kN" or "kN·m", if any; as short as it is where the view wants none: "1", "0.7071"."""
+    if not sheet.view.has_units:
+        return written.given(value if abs(value) > nothing else 0.0, written.DIGITS)
+    if not unit:
+        return written.number(value, nothing=nothing)
+    return (written.force if unit == "kN" else written.moment)(value, nothing=nothing)
 
 
 def reach(way: Points, half: Points) -> Values:
