@@ -52,11 +52,10 @@ Values = NDArray[np.float64]
 
 
 def full_load(model: Model) -> Values:
-    """The force (kN) on each particle, its loads at full size included, (n, 2)."""
-    force: Values = model.particles.force.copy()
-    for axis in (0, 1):
-        force[:, axis] += np.bincount(model.loads.on, model.loads.force[:, axis], len(force))
-    return force
+    """The force (kN) and the moment (kN·m) on each particle, its loads at full size included, (n, 3)."""
+    found: Values = np.column_stack([model.particles.force, model.particles.moment])
+    np.add.at(found, model.loads.on, np.column_stack([model.loads.force, model.loads.moment]))
+    return found
 
 
 def whose(model: Model, rows: Rows, *, loads_only: bool = False) -> list[Owner]:
@@ -96,7 +95,7 @@ def steady(sheet: Sheet, key: tuple[str, int], largest: float) -> float:
 def draw_loads(sheet: Sheet) -> None:
     """The force on each particle, its loads at full size included, where no diagram shows it."""
     model = sheet.model
-    force = full_load(model)
+    force = full_load(model)[:, :2]
     loaded = (force[:, 0] != 0.0) | (force[:, 1] != 0.0)
     loaded[sheet.tagged(DiagramShown, "particles")] = False
     rows = sheet.particles[loaded[sheet.particles]]
@@ -224,7 +223,7 @@ def draw_particle_diagrams(sheet: Sheet, sides: NDArray[np.int64]) -> None:
 def largest_force(model: Model, view: View) -> float:
     """The largest force (kN) that an arrow may show: of loads at full size, and in diagrams of their parts and reactions."""
     particles = model.particles
-    largest = float(np.hypot(*full_load(model).T).max(initial=SMALLEST))
+    largest = float(np.hypot(*full_load(model)[:, :2].T).max(initial=SMALLEST))
     if view.forces_known and (view.all_diagrams or model.any_tagged(DiagramShown)):
         for forces in (particles.applied_force, particles.reaction):
             largest = max(largest, float(np.abs(forces).max(initial=0.0)))

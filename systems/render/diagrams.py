@@ -138,7 +138,8 @@ def draw_diagrams(sheet: Sheet) -> None:
     if not shown.any():
         return
     rows, start, end = sheet.rods[shown], sheet.start[shown], sheet.end[shown]
-    quantity, force = sheet.view.quantity if sheet.is_frame else AXIAL, _forces(sheet)
+    quantity = sheet.view.quantity if sheet.is_frame else AXIAL
+    force = np.nan_to_num(sheet.model.rods.axial_force)
     if typical_length(start, end) < _SHORTEST * sheet.unit:
         if quantity == AXIAL:
             sheet.pulled, sheet.pushed = rows[force[rows] > SMALLEST], rows[force[rows] < -SMALLEST]
@@ -155,12 +156,6 @@ def draw_diagrams(sheet: Sheet) -> None:
         _draw(sheet, diagram)
         _mark_zeros(sheet, diagram)
         _write(sheet, diagram)
-
-
-def _forces(sheet: Sheet) -> Values:
-    """Axial forces (kN) of all rods."""
-    force: Values = np.nan_to_num(sheet.model.rods.axial_force)
-    return force
 
 
 # --- rectangles, where none bends --------------------------------------------------------------------
@@ -434,18 +429,12 @@ def _write(sheet: Sheet, diagram: _Diagram) -> None:
         worth = worth + np.where(np.abs(value) > _GREAT * diagram.largest, 2e9, 0.0)  # before arrows
     for k, row in enumerate(diagram.rows[which].tolist()):
         of, key, rank = ("rods", row), (field, int(keys[shown[k]])), -float(worth[k])
-        colour = _colour_of(sheet, quantity, float(value[k]))
+        sign = "zero" if abs(value[k]) <= SMALLEST else "tension" if value[k] > 0.0 else "compression"
+        colour = _colour(sheet, sign) if quantity == AXIAL else sheet.theme.text
         leads = anchors[k], normal[k]
         write(
             sheet, texts[k], places[k], colour, key, of, rank=rank, own=of, leads=leads, size=size, lines=lines
         )
-
-
-def _colour_of(sheet: Sheet, quantity: str, value: float) -> Colour:
-    if quantity != AXIAL:
-        return sheet.theme.text
-    sign = "zero" if abs(value) <= SMALLEST else "tension" if value > 0.0 else "compression"
-    return _colour(sheet, sign)
 
 
 def _written(sheet: Sheet, quantity: str, value: float, nothing: float, few: bool) -> str:

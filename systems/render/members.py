@@ -7,10 +7,9 @@ from numpy.typing import NDArray
 
 from pinjoint.components import written
 from pinjoint.components.bent import axes
-from pinjoint.components.model import Model
 from pinjoint.components.rod import rigid_joints
 from pinjoint.components.tags import DiagramShown
-from pinjoint.systems.render.arrows import MOST, draw_arrows, head_length
+from pinjoint.systems.render.arrows import MOST, draw_arrows, full_load, head_length
 from pinjoint.systems.render.leaders import ANCHORS
 from pinjoint.systems.render.marks import Discs, Fills, Owners, Points, Strokes
 from pinjoint.systems.render.occupancy import STRONG
@@ -151,14 +150,6 @@ def _label_row(sheet: Sheet, row: int, tails: Points, along: Points, size: float
 # --- moments -----------------------------------------------------------------------------------------
 
 
-def full_moment(model: Model) -> Values:
-    """The moment (kN·m) on each particle, its loads at full size included, (n,)."""
-    moment: Values = model.particles.moment + np.bincount(
-        model.loads.on, model.loads.moment, model.particles.count
-    )
-    return moment
-
-
 def draw_moments(sheet: Sheet) -> None:
     """Curved arrows of the moments on joints that can bear them: of loads, and in diagrams of reactions."""
     model = sheet.model
@@ -168,7 +159,7 @@ def draw_moments(sheet: Sheet) -> None:
     if sheet.view.forces_known:
         shown[sheet.tagged(DiagramShown, "particles")] = True
         shown |= sheet.view.all_diagrams
-    applied = full_moment(model)
+    applied = full_load(model)[:, 2]
     if shown.any():
         applied = np.where(shown, model.particles.applied_moment, applied)
         _draw_moments(sheet, "reaction", np.where(shown, model.particles.reaction_moment, 0.0))
