@@ -59,7 +59,14 @@ def in_rows(at: Points, way: Points, across: Sequence[Values], along: Points, sl
     return places
 
 
-def beside(sheet: Sheet, text: str, start: Points, end: Points, shares: Sequence[float], gap: float) -> Points:
+def beside(
+    sheet: Sheet,
+    text: str,
+    start: Points,
+    end: Points,
+    shares: Sequence[float] = (0.5, 0.75, 0.3, 1.0),
+    gap: float = 4.0,
+) -> Points:
     """Where a value may stand beside a line, so many points off, at shares of it: right as drawn, then left, (n, 2)."""
     way = end - start
     right = np.array([-way[1], way[0]]) / max(float(np.hypot(*way)), 1e-9)
