@@ -16,7 +16,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pinjoint.components.field import FieldError
-from pinjoint.components.language import tr
 
 Floats = NDArray[np.float64]
 Pairs = NDArray[np.int64]
@@ -106,11 +105,9 @@ def check_collision_state(value: Any, where: str) -> CollisionState:
             raise ValueError
     except (TypeError, ValueError, KeyError, OverflowError):
         raise FieldError(
-            tr(
-                "{where}: this is not what Pinjoint saves here. Remove it: the run then goes on with"
-                " differences of round-off only.",
-                where=where,
-            )
+            "{where}: this is not what Pinjoint saves here. Remove it: the run then goes on with"
+            " differences of round-off only.",
+            where=where,
         ) from None
     return found
 

@@ -10,8 +10,10 @@ from collections.abc import Callable, Iterator, Sequence
 from typing import ClassVar
 
 from pinjoint.components.camera import Viewport
+from pinjoint.components.extensions import EXTENSIONS
 from pinjoint.components.field import Vector
 from pinjoint.components.language import listed, marked, tr
+from pinjoint.components.mistake import NotFound, WrongValue
 from pinjoint.components.model import Model
 from pinjoint.components.rod import bends
 from pinjoint.components.settings import NO_DIAGRAMS, Settings
@@ -45,7 +47,7 @@ def action(name: str, *, while_drawing: bool = False) -> Callable[[Action], Acti
 
     def register(function: Action) -> Action:
         if name in ACTIONS:
-            raise ValueError(tr("There is an action '{name}' already.", name=name))
+            raise WrongValue("There is an action '{name}' already.", name=name)
         ACTIONS[name] = function
         if while_drawing:
             WHILE_DRAWING.add(name)
@@ -87,10 +89,6 @@ class Gesture:
 
 # The systems that let time pass, for scenes that want what happens in a simulation.
 PHYSICS = ("run.*", "physics.*", "plasticity.*", "loads.*", "collision.*", "edit.pull")
-
-
-class SceneError(ValueError):
-    """A transition that does not exist; the message says from where to where, and what does."""
 
 
 class Scene:
@@ -176,11 +174,9 @@ class Scene:
 
     def click_box(self, context: Context, title: str) -> None:
         """Select the box with that title. Raises LookupError."""
-        raise LookupError(
-            tr(
-                "In the scene '{scene}' there are no boxes; go to 'properties', 'save' or 'load' first.",
-                scene=self.name,
-            )
+        raise NotFound(
+            "In the scene '{scene}' there are no boxes; go to 'properties', 'save' or 'load' first.",
+            scene=self.name,
         )
 
     @property
@@ -214,23 +210,19 @@ class Scenes:
         return tuple(self._by_name)
 
     def request(self, *names: str) -> None:
-        """Ask for a transition, or a chain of them. Raises SceneError if one is not legal."""
+        """Ask for a transition, or a chain of them. Raises WrongValue if one is not legal."""
         here = self._by_name[self._requested[-1]] if self._requested else self.active
         for name in names:
             if name not in self._by_name:
                 known = ", ".join(self._by_name)
-                raise SceneError(
-                    tr("There is no scene '{scene}'; choose from {names}.", scene=name, names=known)
-                )
+                raise WrongValue("There is no scene '{scene}'; choose from {names}.", scene=name, names=known)
             if name not in here.targets and here.name not in self._by_name[name].sources:
                 targets = ", ".join(here.targets)
-                raise SceneError(
-                    tr(
-                        "From the scene '{here}' one cannot go to '{scene}', only to {scenes}.",
-                        here=here.name,
-                        scene=name,
-                        scenes=targets,
-                    )
+                raise WrongValue(
+                    "From the scene '{here}' one cannot go to '{scene}', only to {scenes}.",
+                    here=here.name,
+                    scene=name,
+                    scenes=targets,
                 )
             here = self._by_name[name]
         self._requested.extend(names)
@@ -245,16 +237,14 @@ class Scenes:
             self.active = self._by_name[name]
             self.active.enter(context)
             if context.time_passes:
-                context.history.begin_run()
+                context.document.history.begin_run()
             else:
-                context.history.end_run()
+                context.document.history.end_run()
 
 
 # --- the context -----------------------------------------------------------------------------------------
 
 _TIME = Time()
-FAULTS: list[str] = []  # sentences about mods that failed while the program ran, the oldest first
-PANELS: list[Callable[[Context], Sequence[Readout]]] = []  # panels of mods beside the model
 
 
 class Context(Workspace):
@@ -278,7 +268,7 @@ class Context(Workspace):
         self.lesson: Script | None = None
         self.course: Course | None = None
         self.beside: View | None = None
-        self.faults_seen = len(FAULTS)
+        self.faults_seen = len(EXTENSIONS.faults)
 
     # --- documents ---------------------------------------------------------------------------------
 
@@ -314,7 +304,7 @@ class Context(Workspace):
     @property
     def fault(self) -> str:
         """The mod that failed last and why, until Escape is pressed; "" if none did."""
-        return FAULTS[-1] if len(FAULTS) > self.faults_seen else ""
+        return EXTENSIONS.faults[-1] if len(EXTENSIONS.faults) > self.faults_seen else ""
 
     # --- time --------------------------------------------------------------------------------------
 
@@ -341,17 +331,17 @@ class Context(Workspace):
         self.document.note_beginning()
         if not self.has_program(self.simulation):
             return False
-        self.history.end_run()
-        self.history.begin_run(single=True)
+        self.document.history.end_run()
+        self.document.history.begin_run(single=True)
         try:
             self.get_ready()  # so that there is a checkpoint to step back to
             if steps >= 0:
-                with self.timeline.recording():
+                with self.document.timeline.recording():
                     self.simulation.advance(steps)
             else:
-                self.timeline.go_to(max(target, self.timeline.first))
+                self.document.timeline.go_to(max(target, self.document.timeline.first))
         finally:
-            self.history.end_run()
+            self.document.history.end_run()
             self._go_on()
             self.document.chronicle.look()
         return bool(self.model.clock.steps == target)
@@ -359,7 +349,7 @@ class Context(Workspace):
     def _go_on(self) -> None:
         """Begin a new run in the log, if time passes in this scene."""
         if self.time_passes:
-            self.history.begin_run()
+            self.document.history.begin_run()
 
     def act_in_scene(self) -> None:
         """Let time pass under the systems of the active scene; where time stands still, under those of simulation."""
@@ -379,7 +369,7 @@ class Context(Workspace):
         self.document.note_beginning()
         if self.simulation.halted or not self.has_program(self.simulation):
             return
-        with self.timeline.recording():
+        with self.document.timeline.recording():
             self.document.live.frame(elapsed)
         self.document.chronicle.look()
 
@@ -387,11 +377,19 @@ class Context(Workspace):
 
     def undo(self) -> str:
         """Take back the last edit or run, or the opening of the document; returns what it was, or ""."""
-        return self._through_log(self.history.undo()) if self.history.can_undo else self._to_document(-1)
+        return (
+            self._through_log(self.document.history.undo())
+            if self.document.history.can_undo
+            else self._to_document(-1)
+        )
 
     def redo(self) -> str:
         """Repeat what was taken back; returns what it was, "" if there is nothing."""
-        return self._through_log(self.history.redo()) if self.history.can_redo else self._to_document(1)
+        return (
+            self._through_log(self.document.history.redo())
+            if self.document.history.can_redo
+            else self._to_document(1)
+        )
 
     def _through_log(self, title: str) -> str:
         self._go_on()
@@ -457,7 +455,7 @@ class Context(Workspace):
 
     def panels(self) -> Iterator[Readout]:
         """The panels of mods beside the model."""
-        return (readout for panel in PANELS for readout in panel(self))
+        return (readout for panel in EXTENSIONS.panels for readout in panel(self))
 
     def exaggerate(self) -> None:
         """Let the automatic displacement scale suit the model, but not in the middle of a drag."""

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
+from pinjoint.components.extensions import EXTENSIONS
 from pinjoint.components.field import Vector
 from pinjoint.components.language import begun, marked, tr
 from pinjoint.components.menu import Menu
@@ -14,7 +15,7 @@ from pinjoint.editor.toolbar import tool
 from pinjoint.systems.edit.dividing import DIVISIONS
 from pinjoint.systems.edit.rods import is_rigid, share_at
 from pinjoint.systems.forms.properties import heading
-from pinjoint.systems.input.bindings import ADDED_BUTTONS, ADDED_TOOLS, FORCE_METHOD, LIVE, offers, toolbar
+from pinjoint.systems.input.bindings import FORCE_METHOD, LIVE, offers, toolbar
 
 Entry = str | tuple[str, str]  # an action, or an action and the title that suits the place
 Groups = Sequence[Sequence[Entry]]
@@ -123,14 +124,14 @@ def _of_canvas(context: Context) -> Groups:
             ("place", marked("new particle here")),
             "rod",
             "rigid",
-            *ADDED_TOOLS,
+            *EXTENSIONS.tools,
             ("paste", marked("paste here")),
             "select all",
         ],
         ["toggle run", "restart", "settle"],
         ["toggle diagrams", "toggle free bodies", "toggle utilisation"],
         ["toggle theory", "toggle energy", "toggle events", "next shape"],
-        [binding.action for binding in ADDED_BUTTONS],
+        [binding.action for binding in EXTENSIONS.buttons],
         ["fit", "zoom in", "zoom out", "new grid", "next grid", "toggle legend", "next theme", "next language"],
         ["environment", "toggle full screen", "toggle help"],
         ["screenshot", "picture as svg", "picture as pdf"],

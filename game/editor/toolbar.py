@@ -18,7 +18,7 @@ from pinjoint.systems.edit.dividing import DIVISIONS
 from pinjoint.systems.edit.rods import is_rigid
 from pinjoint.systems.edit.supports import SUPPORTS, Held, held
 from pinjoint.systems.input.bindings import Binding, offers, toolbar
-from pinjoint.systems.render.bending_diagrams import NAMES
+from pinjoint.systems.render.diagrams import NAMES
 
 Condition = Callable[[Context], bool]
 
@@ -117,7 +117,7 @@ _NEEDS: dict[str, Condition] = {
     "undo": lambda context: context.can_undo,
     "redo": lambda context: context.can_redo,
     **dict.fromkeys(("copy", "duplicate", "delete"), lambda context: context.has_selected),
-    "step back": lambda context: context.timeline.first < context.model.clock.steps,
+    "step back": lambda context: context.document.timeline.first < context.model.clock.steps,
     "restart": lambda context: not context.document.is_undeformed,
     **dict.fromkeys(
         ("settle", "support", "force", "moment", "velocity"),

@@ -14,8 +14,6 @@ from pinjoint.components.tags import Selected
 from pinjoint.documents import models
 from pinjoint.documents.autosave import Autosave
 from pinjoint.documents.chronicle import Happening
-from pinjoint.documents.history.history import History
-from pinjoint.documents.history.timeline import Timeline
 from pinjoint.documents.open_documents import ModelFile, OpenDocument, OpenDocuments
 from pinjoint.editor.clipboard import Part
 from pinjoint.editor.host import ProgramPreparation, Waiting, Window
@@ -23,10 +21,8 @@ from pinjoint.systems.collision.impacts import Impacts
 from pinjoint.systems.edit.pull import Pull
 from pinjoint.systems.physics.pace import natural_pace
 from pinjoint.systems.run.energy import Energy
-from pinjoint.systems.run.real_time import TimeScale
 from pinjoint.systems.run.simulation import Simulation
 from pinjoint.systems.schedule import Schedule
-from pinjoint.systems.statics.events import Event
 
 H = TypeVar("H", bound=Handle)
 
@@ -58,11 +54,6 @@ class Workspace:
         """The document that is open, with its run, its log and its file."""
         return self.documents.current
 
-    @property
-    def file(self) -> ModelFile:
-        """Where the model is saved again, and its name."""
-        return self.document.file
-
     def save(self, path: str | Path) -> None:
         """Write the model, with its present state, to a file."""
         self.simulation.account_for_edits()
@@ -87,16 +78,6 @@ class Workspace:
         return self.document.simulation
 
     @property
-    def timeline(self) -> Timeline:
-        """The checkpoints of the run, to step back through."""
-        return self.document.timeline
-
-    @property
-    def history(self) -> History:
-        """The undo log of the open document."""
-        return self.document.history
-
-    @property
     def settings(self) -> Settings:
         """How the model is computed and drawn."""
         return self.model.settings
@@ -105,11 +86,6 @@ class Workspace:
     def time(self) -> float:
         """Simulated time (s)."""
         return self.model.clock.time
-
-    @property
-    def clock(self) -> TimeScale:
-        """How fast time passes in the window."""
-        return self.document.live.clock
 
     @property
     def energy(self) -> Energy:
@@ -122,21 +98,11 @@ class Workspace:
         return self.simulation.impacts
 
     @property
-    def remarks(self) -> tuple[Event, ...]:
-        """Events of the run, once it is at rest, that a slowly growing load would not have caused."""
-        return self.document.assessment.remarks
-
-    @property
     def events(self) -> tuple[Happening, ...]:
         """What happened in the run so far, in order of time: rods that yield, cables that go slack, collapse, rest."""
         return self.document.chronicle.happenings
 
     # --- time --------------------------------------------------------------------------------------
-
-    @property
-    def at_beginning(self) -> bool:
-        """True if no time has passed, or restarting took it back."""
-        return self.document.at_beginning
 
     @property
     def pace(self) -> float:
@@ -167,12 +133,12 @@ class Workspace:
     @property
     def can_undo(self) -> bool:
         """True if there is something to take back."""
-        return self.history.can_undo or self.documents.can_move(-1)
+        return self.document.history.can_undo or self.documents.can_move(-1)
 
     @property
     def can_redo(self) -> bool:
         """True if there is something to repeat."""
-        return self.history.can_redo or self.documents.can_move(1)
+        return self.document.history.can_redo or self.documents.can_move(1)
 
     @property
     def selected(self) -> list[Handle]:

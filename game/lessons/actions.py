@@ -5,7 +5,6 @@ from __future__ import annotations
 from typing import Any
 
 from pinjoint.components.field import Vector
-from pinjoint.components.language import tr
 from pinjoint.editor.context import action
 from pinjoint.lessons.course import Course
 from pinjoint.lessons.shelf import after
@@ -20,7 +19,7 @@ Session = Any  # pinjoint.session.Session, which holds the lesson
 def _course(session: Session) -> Course:
     """The lesson that a person is in. Raises Refusal."""
     if session.course is None:
-        raise Refusal(tr("There is no lesson now: D opens the start page, where lessons stand at the top."))
+        raise Refusal("There is no lesson now: D opens the start page, where lessons stand at the top.")
     course: Course = session.course
     return course
 

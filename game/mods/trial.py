@@ -8,14 +8,15 @@ from pathlib import Path
 from typing import Any
 
 from pinjoint.checks import EVERYTHING, FRAME, STEPS, run_frames
+from pinjoint.components.extensions import EXTENSIONS
 from pinjoint.components.field import MADE, Field, FieldError
 from pinjoint.components.language import joined, marked, tr
 from pinjoint.components.load import HISTORIES
-from pinjoint.components.model import ADDED, Model
+from pinjoint.components.mistake import WrongValue
+from pinjoint.components.model import Model
 from pinjoint.components.suggestions import missing
 from pinjoint.documents import models
 from pinjoint.documents.library import data_apart
-from pinjoint.editor.context import FAULTS
 from pinjoint.editor.frame import Frame
 from pinjoint.editor.scenes import all_scenes
 from pinjoint.interrupts import is_persons
@@ -50,14 +51,14 @@ class _Trial:
     def __init__(self, mod: Mod) -> None:
         self.mod = mod
         self.found: list[str] = []
-        heard, known, patience = LOG.disabled, len(FAULTS), Patience.seconds
+        heard, known, patience = LOG.disabled, len(EXTENSIONS.faults), Patience.seconds
         LOG.disabled, Patience.seconds = True, PATIENCE
         try:
             with data_apart():
                 self._try_all()
         finally:
             LOG.disabled, Patience.seconds = heard, patience
-            del FAULTS[known:]
+            del EXTENSIONS.faults[known:]
 
     def _try_all(self) -> None:
         systems = [s for s in (*all_systems(), *INTEGRATORS.values()) if s.mod is self.mod]
@@ -81,7 +82,7 @@ class _Trial:
                 self._run(integrator)
         with self._part():
             self._run("velocity_verlet")
-        for folder in models.FOLDERS:
+        for folder in EXTENSIONS.folders:
             for file in sorted(folder.glob("*.json")) if self._owns(folder) else ():
                 with self._part():
                     models.load(file)
@@ -214,11 +215,8 @@ def _way_to(session: Session, scene: str) -> list[str]:
                 ways[name] = [*ways[here], name]
                 pending.append(name)
     if scene not in ways:
-        raise ValueError(
-            tr(
-                "The scene '{name}' cannot be reached; list the scenes that lead to it in its sources",
-                name=scene,
-            )
+        raise WrongValue(
+            "The scene '{name}' cannot be reached; list the scenes that lead to it in its sources", name=scene
         )
     return ways[scene]
 
@@ -226,7 +224,7 @@ def _way_to(session: Session, scene: str) -> list[str]:
 def _sample(mod: Mod) -> Model:
     """A model with everything that Pinjoint has, and with the Fields, elements and histories of a mod."""
     model = models.load(EVERYTHING)
-    for called, kind in ADDED.items():
+    for called, kind in EXTENSIONS.kinds.items():
         if called.partition(".")[0] == mod.name:
             places = {point: (0.3 * n, -0.5) for n, point in enumerate(kind.points)}
             model.create(kind, 1, **places)

@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
-from functools import cache
 
+from pinjoint.components.extensions import EXTENSIONS
 from pinjoint.components.language import marked, tr
 from pinjoint.components.suggestions import missing
 
@@ -245,9 +245,7 @@ TOOLBAR: tuple[tuple[str, ...], ...] = (
     ("screenshot", "toggle full screen", "next theme", "toggle help"),
 )
 
-ADDED_TOOLS: list[str] = []  # drawing actions of mods, at the end of the group of PLACE
-PLACE = "place"
-ADDED_BUTTONS: list[Binding] = []  # other actions of mods, in a group of their own; a button needs no key
+PLACE = "place"  # the tools of mods stand at the end of its group, their other buttons in a group of their own
 
 _BY_KEY = {(scene, binding.key): binding for binding in BINDINGS for scene in binding.scenes}
 
@@ -260,35 +258,6 @@ def add_binding(binding: Binding) -> list[Binding]:
         BINDINGS.append(replace(binding, scenes=free))
         _index()
     return list(dict.fromkeys(taken.values()))
-
-
-def _forget_offers() -> None:
-    offers.cache_clear()
-    toolbar.cache_clear()
-
-
-def add_tool(action: str) -> None:
-    """Let the toolbar offer an action of a mod that draws, beside those of ours."""
-    ADDED_TOOLS.append(action)
-    _forget_offers()
-
-
-def remove_tool(action: str) -> None:
-    """Take back what `add_tool` did."""
-    ADDED_TOOLS.remove(action)
-    _forget_offers()
-
-
-def add_button(binding: Binding) -> None:
-    """Let the toolbar offer an action of a mod in some scenes, by a key that performs it there, or without one."""
-    ADDED_BUTTONS.append(replace(binding, key=""))
-    _forget_offers()
-
-
-def remove_button(action: str) -> None:
-    """Take back what `add_button` did."""
-    ADDED_BUTTONS[:] = [binding for binding in ADDED_BUTTONS if binding.action != action]
-    _forget_offers()
 
 
 def remove_binding(binding: Binding) -> None:
@@ -314,7 +283,6 @@ def prefer(scene: str, key: str, action: str) -> None:
 def _index() -> None:
     _BY_KEY.clear()
     _BY_KEY.update({(scene, binding.key): binding for binding in BINDINGS for scene in binding.scenes})
-    _forget_offers()
 
 
 def _binding(scene: str, key: str) -> Binding | None:
@@ -363,24 +331,22 @@ def repeats(scene: str, key: str) -> bool:
     return binding is not None and binding.repeats
 
 
-@cache
 def offers(scene: str) -> dict[str, Binding]:
     """By action: the binding by which the toolbar and menus offer it; the same while time passes as in pause.
 
     Keys that perform it in the scene come first, then those of the other, then no key.
     """
     scenes = set(LIVE if scene in LIVE else (scene,))
-    found = [b for b in (*BINDINGS, *WITHOUT_KEY, *ADDED_BUTTONS) if scenes & set(b.scenes)]
+    found = [b for b in (*BINDINGS, *WITHOUT_KEY, *EXTENSIONS.buttons) if scenes & set(b.scenes)]
     found.sort(key=lambda binding: (scene not in binding.scenes, not binding.key))
     return {binding.action: binding for binding in reversed(found)}
 
 
-@cache
 def toolbar(scene: str) -> tuple[tuple[Binding, ...], ...]:
     """Groups of bindings of the toolbar in a scene: the same while time passes as in pause; none in forms."""
     offered = {} if scene in FORMS else offers(scene)
-    wanted = [[*group, *(ADDED_TOOLS if PLACE in group else ())] for group in TOOLBAR]
-    wanted.insert(-1, [binding.action for binding in ADDED_BUTTONS])  # the last group stands at the bottom
+    wanted = [[*group, *(EXTENSIONS.tools if PLACE in group else ())] for group in TOOLBAR]
+    wanted.insert(-1, [binding.action for binding in EXTENSIONS.buttons])  # the last group stands at the bottom
     groups = (tuple(offered[action] for action in group if action in offered) for group in wanted)
     return tuple(group for group in groups if group)
 

@@ -17,7 +17,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pinjoint.components.derived import with_full_turns
-from pinjoint.components.language import tr
+from pinjoint.components.mistake import WrongValue
 from pinjoint.components.model import Model
 from pinjoint.components.rod import bends
 from pinjoint.components.table import flags
@@ -99,7 +99,7 @@ class Structure:
     def of(cls, model: Model, geometry: str = "exact") -> Structure:
         """The structure of a model in "exact" or "linear" geometry; without plasticity no rod yields."""
         if geometry not in ("exact", "linear"):
-            raise ValueError(tr("Geometry is '{geometry}'; it must be 'exact' or 'linear'.", geometry=geometry))
+            raise WrongValue("Geometry is '{geometry}'; it must be 'exact' or 'linear'.", geometry=geometry)
         particles, rods = model.particles, model.rods
         yields = bool(model.settings.plasticity)
         ends = rods.between.astype(np.intp)

@@ -12,7 +12,6 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from pinjoint.components.language import tr
 from pinjoint.components.model import Model
 from pinjoint.components.numeric_range import incomputable
 from pinjoint.systems.statics.equations import Array
@@ -78,11 +77,9 @@ def solve(model: Model, unknowns: Sequence[Unknown]) -> Solution:
         raise ForceMethodError(problem)
     if model.rods.tension_only.any():
         raise ForceMethodError(
-            tr(
-                "{cables} in tension only, and superposition needs rods that bear compression as well. Make cables that"
-                " stay taut ordinary rods, and delete those that go slack.",
-                cables=cables_named(model),
-            )
+            "{cables} in tension only, and superposition needs rods that bear compression as well. Make cables that"
+            " stay taut ordinary rods, and delete those that go slack.",
+            cables=cables_named(model),
         )
     refuse_unsuited(model, unknowns)
     load = external_forces(model).at(1.0)

@@ -8,6 +8,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from pinjoint.components.language import tr
+from pinjoint.components.mistake import WrongValue
 from pinjoint.components.model import Model
 from pinjoint.systems.statics.equations import ROUND_OFF, Array, Structure, largest, normalised
 from pinjoint.systems.statics.events import NoEquilibrium
@@ -257,12 +258,10 @@ def influence_on_reaction(model: Model, particle: int, axis: int) -> Array:
     """Reaction of a constrained direction (row, 0 or 1; of a clamp 2) per unit force on each particle, (n, …)."""
     structure = Structure.of(model, "linear")
     if not structure.fixed[particle, axis]:
-        raise ValueError(
-            tr(
-                "No support holds {particle} along {axis}, so there is no reaction.",
-                particle=model.particles[particle].name,
-                axis=("x", "y", "rotation")[axis],
-            )
+        raise WrongValue(
+            "No support holds {particle} along {axis}, so there is no reaction.",
+            particle=model.particles[particle].name,
+            axis=("x", "y", "rotation")[axis],
         )
     unit = _unit(structure, particle, axis)
     return _deflection(model, structure, structure.resistance(unit)) - unit

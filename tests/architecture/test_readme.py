@@ -13,8 +13,8 @@ from pathlib import Path
 
 import pytest
 
-from pinjoint.commands import COMMANDS
 from pinjoint.commands.command_line import main
+from pinjoint.components.extensions import EXTENSIONS
 from pinjoint.documents import models
 from pinjoint.systems.input.bindings import BINDINGS
 
@@ -191,14 +191,14 @@ def test_every_link_leads_somewhere(page: Path) -> None:
 def test_every_command_exists(page: Path) -> None:
     for block in blocks("sh", page.read_text(encoding="utf-8")):
         for word in re.findall(r"(?:^|bin/)pinjoint ([\w-]+)", block, flags=re.MULTILINE):
-            assert word.isupper() or word in COMMANDS or word in models.bundled(), word
+            assert word.isupper() or word in EXTENSIONS.commands or word in models.bundled(), word
 
 
 LONG = ("open", "bench", "sweep", "play")  # or with a window, or tried elsewhere
 WITHOUT_WINDOW = [
     words
     for line in re.findall(r"^pinjoint (.*)$", "".join(blocks("sh")), flags=re.MULTILINE)
-    if (words := shlex.split(line, comments=True))[0] in set(COMMANDS) - set(LONG) and len(words) > 1
+    if (words := shlex.split(line, comments=True))[0] in set(EXTENSIONS.commands) - set(LONG) and len(words) > 1
 ]
 
 

@@ -113,7 +113,7 @@ class Fuzz:
 
     def _note_desk(self) -> None:
         document = self.session.document
-        if document not in self.starts and not self.session.history.can_undo:  # F7 opens a task and does it
+        if document not in self.starts and not document.history.can_undo:  # F7 opens a task and does it
             self.starts[document] = contents(document.model)
 
     # --- doing ---------------------------------------------------------------------------------------
@@ -230,7 +230,7 @@ class Fuzz:
             pass
         end, entries = contents(session.model), 0
         while True:
-            if not session.history.can_undo and session.document in self.starts:
+            if not session.document.history.can_undo and session.document in self.starts:
                 assert _same(contents(session.model), self.starts[session.document])
             if not session.undo():
                 break

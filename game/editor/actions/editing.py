@@ -41,7 +41,7 @@ def _place(context: Context, pixel: Vector) -> None:
 def _delete(context: Context, pixel: Vector) -> None:
     doomed = context.selected
     if not doomed:
-        raise Refusal(tr("Nothing is selected; first click what you want to delete."))
+        raise Refusal("Nothing is selected; first click what you want to delete.")
     before = {table.name: table.count for table in context.model.tables.values()}
     named = context.name(doomed[0])
     delete(context.model, doomed)
@@ -82,7 +82,7 @@ def nudge(context: Context, direction: Vector, *, far: bool) -> bool:
         return False
     positions = nudged(model, context.view, chosen.positions, direction, far=far)
     moved = [*chosen.particles, *chosen.others]
-    with context.history.as_one(("nudge", *(handle.entity for handle in moved))):
+    with context.document.history.as_one(("nudge", *(handle.entity for handle in moved))):
         chosen.place(positions)
     place = written.place(positions[0], written.DIGITS)
     context.notice = tr("{element}: {value}", element=all_of(context, moved), value=place)

@@ -46,7 +46,7 @@ def _next_part(context: Context, pixel: Vector) -> None:
 def _pick_unknown(context: Context, pixel: Vector) -> None:
     guide = _guide(context)
     if guide is not None and guide.part == 1:
-        raise Refusal(tr("Press K first: part 2 asks which rod or support to release."))
+        raise Refusal("Press K first: part 2 asks which rod or support to release.")
     if guide is not None and guide.part == 2:
         model, view = context.focus
         hit = pick(model, view, pixel) if view.camera.viewport.contains(pixel) else None
@@ -75,7 +75,7 @@ def _release_another(context: Context, pixel: Vector) -> None:
 def _pick_axis(context: Context, axis: int) -> None:
     guide = _guide(context)
     if guide is not None and axis == 2 and not guide.clamp_wanted:
-        raise Refusal(tr("Click a clamped support first; then M releases its moment."))
+        raise Refusal("Click a clamped support first; then M releases its moment.")
     if guide is not None:
         _work(context, tr("Releasing it and solving anew"), lambda: guide.pick_axis(axis))
 
@@ -107,7 +107,7 @@ def _report(context: Context, pixel: Vector) -> None:
     """Write the whole solution to a PDF beside the model (part 7)."""
     guide = _guide(context)
     if guide is None or guide.part < PARTS or guide.solution is None:
-        raise Refusal(tr("Go through all parts first, with K; then P writes the report."))
+        raise Refusal("Go through all parts first, with K; then P writes the report.")
     if context.window is None:
         return
     from pinjoint.force_method.report import report  # it imports reportlab
@@ -117,9 +117,6 @@ def _report(context: Context, pixel: Vector) -> None:
     except OSError as error:
         reason = {"file": error.filename, "reason": error.strerror}
         raise Refusal(
-            tr(
-                "No report was saved: {file}: {reason}. Start Pinjoint in a folder where you may write.",
-                **reason,
-            )
+            "No report was saved: {file}: {reason}. Start Pinjoint in a folder where you may write.", **reason
         ) from None
     context.notice = tr("Report saved: {file}", file=path)

@@ -58,7 +58,7 @@ def _hinge(context: Context, pixel: Vector) -> None:
         context.notice = tr("{element}: {value}", element=context.name(end.rod), value=tr(made))
     elif view.tool == "hinge" and not view.covers(pixel):
         raise Refusal(
-            tr("Click near the end of a rod, where a ring appears, or on a joint. Esc puts the tool away.")
+            "Click near the end of a rod, where a ring appears, or on a joint. Esc puts the tool away."
         )
     else:
         context.take_up("hinge")
@@ -100,7 +100,7 @@ def _split(context: Context, pixel: Vector) -> None:
     """Divide the rod under the pointer there, at a line of the grid if one is near."""
     rod = pick_rod(context.model, context.view, pixel)
     if rod is None:
-        raise Refusal(tr("There is no rod under the pointer; point at one."))
+        raise Refusal("There is no rod under the pointer; point at one.")
     name, point = context.name(rod), snapped(context.model, context.view, context.view.camera.to_model(pixel))
     parts = divide_at(context.model, rod, [round(share_at(rod, point), 6)])
     context.select(parts[0].ends[1])
@@ -116,5 +116,5 @@ def _weight_along(context: Context, pixel: Vector) -> None:
 def _selected(context: Context) -> list[Rod]:
     rods = context.selected_of(Rod)
     if not rods:
-        raise Refusal(tr("No rod is selected; click one first."))
+        raise Refusal("No rod is selected; click one first.")
     return rods

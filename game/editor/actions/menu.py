@@ -103,7 +103,7 @@ def _hold(wanted: Held) -> Action:
     def act(context: Context, pixel: Vector) -> None:
         particles = context.selected_of(Particle)
         if not particles:
-            raise Refusal(tr("No particle is selected; click one first."))
+            raise Refusal("No particle is selected; click one first.")
         named = support(context.model, particles, wanted)
         context.notice = tr("{element}: {value}", element=all_of(context, particles), value=tr(named))
 
@@ -119,7 +119,7 @@ def _toggle_cable(context: Context, pixel: Vector) -> None:
     """Let the selected rods bear tension only, or if all do so, compression as well."""
     rods = context.selected_of(Rod)
     if not rods:
-        raise Refusal(tr("No rod is selected; click one first."))
+        raise Refusal("No rod is selected; click one first.")
     cable = not all(rod.tension_only for rod in rods)
     context.model.assign(rods, "tension_only", cable)
     bears = tr("tension only, as a cable") if cable else tr("tension and compression")
@@ -131,7 +131,7 @@ def _release(context: Context, pixel: Vector) -> None:
     """Begin the force method with the selected rod as the static unknown."""
     rods, scene = context.selected_of(Rod), context.scenes["force method"]
     if len(rods) != 1:
-        raise Refusal(tr("Select one rod only: the one that is to be released."))
+        raise Refusal("Select one rod only: the one that is to be released.")
     assert isinstance(scene, ForceMethod)
     scene.first_unknown = rods[0].name
     context.scenes.request("force method")

@@ -7,9 +7,10 @@ from dataclasses import replace
 
 from pinjoint.components.field import Vector
 from pinjoint.components.language import tr
+from pinjoint.components.mistake import WrongValue
 from pinjoint.documents.models import ModelError
 from pinjoint.documents.open_documents import stamp_of
-from pinjoint.editor.context import Action, Context, SceneError, action
+from pinjoint.editor.context import Action, Context, action
 from pinjoint.editor.scenes.form import FormScene
 from pinjoint.editor.scenes.properties import Properties
 from pinjoint.systems.edit import Refusal
@@ -52,7 +53,7 @@ def _escape(context: Context, pixel: Vector) -> None:
 @action("force method")
 def _force_method(context: Context, pixel: Vector) -> None:
     if context.model.particles.count == 0:
-        raise Refusal(tr("There is nothing to solve yet; draw a structure with P and L, or open one with D."))
+        raise Refusal("There is nothing to solve yet; draw a structure with P and L, or open one with D.")
     context.scenes.request("force method")
 
 
@@ -62,7 +63,7 @@ def _force_method(context: Context, pixel: Vector) -> None:
 @action("save again")
 def _save_again(context: Context, pixel: Vector) -> None:
     """Save to the same file; a model without one is named first, and a file that was changed since is asked about."""
-    file = context.file
+    file = context.document.file
     if file.path is None:
         _to_pause_and(context, "save")
         return
@@ -70,11 +71,9 @@ def _save_again(context: Context, pixel: Vector) -> None:
     if there not in ((), file.stamp):
         context.document.file = replace(file, stamp=there)
         raise Refusal(
-            tr(
-                "Another window or program has changed '{file}'. Press Ctrl+S again to replace it, or S to save under"
-                " another name.",
-                file=file.name,
-            )
+            "Another window or program has changed '{file}'. Press Ctrl+S again to replace it, or S to save under"
+            " another name.",
+            file=file.name,
         )
     try:
         context.save_as(file.path)
@@ -97,11 +96,9 @@ def _properties(context: Context, pixel: Vector) -> None:
 def _form_scene(context: Context) -> FormScene:
     scene = context.scenes.active
     if not isinstance(scene, FormScene):
-        raise SceneError(
-            tr(
-                "In the scene '{scene}' there are no boxes; go to 'properties', 'save' or 'load' first.",
-                scene=scene.name,
-            )
+        raise WrongValue(
+            "In the scene '{scene}' there are no boxes; go to 'properties', 'save' or 'load' first.",
+            scene=scene.name,
         )
     return scene
 

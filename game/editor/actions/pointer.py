@@ -13,7 +13,7 @@ from pinjoint.editor.gestures.drawing import TOOLS, Drawing, DrawSupport
 from pinjoint.editor.gestures.moving import BoxSelect, Move, MovePoint, PullParticle
 from pinjoint.systems.edit import Refusal
 from pinjoint.systems.edit.picking import everything, pick, pick_grid, pick_line, pick_particle, pick_point
-from pinjoint.systems.render.bending_diagrams import NAMES
+from pinjoint.systems.render.diagrams import NAMES
 
 
 @action("drag", while_drawing=True)
@@ -68,7 +68,7 @@ def _draw(context: Context, tool: str, pixel: Vector) -> None:
     if begun is not None:
         context.gesture = begun
     elif context.gesture is None:
-        raise Refusal(tr("Begin at a particle. P makes a new particle, Esc puts the tool away."))
+        raise Refusal("Begin at a particle. P makes a new particle, Esc puts the tool away.")
 
 
 for _kind in TOOLS.values():

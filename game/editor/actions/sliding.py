@@ -66,7 +66,7 @@ def _step(by: float) -> Action:
         if place is None or place.control.share is None:
             return
         value = slider_of(context, place.control.key).value_at(place.control.share + by)
-        with context.history.as_one(("slider", place.control.key)):
+        with context.document.history.as_one(("slider", place.control.key)):
             move_to(context, place.control.key, value)
 
     return act
@@ -78,7 +78,7 @@ def _slider_of_box(context: Context, pixel: Vector) -> None:
     scene = context.scenes.active
     box = scene.form.selected if isinstance(scene, FormScene) else None
     if box is None:
-        raise Refusal(tr("Click the box with the number first; then Ctrl+L makes a slider for it."))
+        raise Refusal("Click the box with the number first; then Ctrl+L makes a slider for it.")
     add_slider_for(context, box)
 
 

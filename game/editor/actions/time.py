@@ -23,16 +23,14 @@ def _arrow(direction: Vector, steps: int, *, far: bool) -> Action:
     """The action of an arrow key: once there is a run, right is forward in time; before, it moves what is selected."""
 
     def act(context: Context, pixel: Vector) -> None:
-        if context.at_beginning and nudge(context, direction, far=far):
+        if context.document.at_beginning and nudge(context, direction, far=far):
             return
         if steps:
             _step(context, steps * (_far(context) if far else 1))
         elif context.has_selected:
             raise Refusal(
-                tr(
-                    "Once a run has begun, arrow keys step through time. Ctrl with an arrow moves the selection; R goes back"
-                    " to the beginning."
-                )
+                "Once a run has begun, arrow keys step through time. Ctrl with an arrow moves the selection; R goes back"
+                " to the beginning."
             )
 
     return act
@@ -43,7 +41,7 @@ def _move(direction: Vector, *, far: bool) -> Action:
 
     def act(context: Context, pixel: Vector) -> None:
         if not nudge(context, direction, far=far):
-            raise Refusal(tr("Nothing that can be moved is selected; click a particle or a rod first."))
+            raise Refusal("Nothing that can be moved is selected; click a particle or a rod first.")
 
     return act
 
@@ -103,15 +101,17 @@ def _step(context: Context, steps: int) -> None:
 
 action("step")(lambda context, pixel: _step(context, 1))
 action("step back")(lambda context, pixel: _step(context, -1))
-action("faster", while_drawing=True)(lambda context, pixel: context.clock.faster(PACE_STEP))
-action("slower", while_drawing=True)(lambda context, pixel: context.clock.faster(1.0 / PACE_STEP))
-action("natural pace", while_drawing=True)(lambda context, pixel: setattr(context.clock, "factor", 1.0))
+action("faster", while_drawing=True)(lambda context, pixel: context.document.live.clock.faster(PACE_STEP))
+action("slower", while_drawing=True)(lambda context, pixel: context.document.live.clock.faster(1.0 / PACE_STEP))
+action("natural pace", while_drawing=True)(
+    lambda context, pixel: setattr(context.document.live.clock, "factor", 1.0)
+)
 
 
 @action("restart")
 def _restart(context: Context, pixel: Vector) -> None:
     if context.document.is_undeformed:
-        raise Refusal(tr("This is the beginning already: no time has passed. Ctrl+Z undoes edits."))
+        raise Refusal("This is the beginning already: no time has passed. Ctrl+Z undoes edits.")
     known = context.document.undeformed is not None
     context.restart()
     begun_at_rest = tr(

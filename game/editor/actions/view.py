@@ -65,9 +65,7 @@ def _toggle_utilisation(context: Context, pixel: Vector) -> None:
     view = context.view
     if not view.utilisation and not has_strength(context.model):
         raise Refusal(
-            tr(
-                "No rod has a strength yet. Select rods, press Return, and type in a tensile or compressive strength."
-            )
+            "No rod has a strength yet. Select rods, press Return, and type in a tensile or compressive strength."
         )
     view.utilisation = view.put_together() or not view.utilisation
 
@@ -127,11 +125,9 @@ def _picture(suffix: str) -> Action:
             context.notice = tr("Picture saved: {file}", file=context.window.screenshot(suffix))
         except OSError as error:
             raise Refusal(
-                tr(
-                    "No picture was saved: {file}: {reason}. Start Pinjoint in a folder where you may write.",
-                    file=error.filename,
-                    reason=error.strerror,
-                )
+                "No picture was saved: {file}: {reason}. Start Pinjoint in a folder where you may write.",
+                file=error.filename,
+                reason=error.strerror,
             ) from None
 
     return act

@@ -78,7 +78,7 @@ class Drawing(Gesture):
 def start_of(context: Context, particle: Particle) -> Vector:
     """Where a particle from which something is drawn is drawn (m). Raises Refusal if it was deleted."""
     if not particle.exists:
-        raise Refusal(tr("The particle where this began has been deleted; begin at another one."))
+        raise Refusal("The particle where this began has been deleted; begin at another one.")
     return drawn_at(context, particle)
 
 
@@ -274,11 +274,9 @@ class DrawMoment(DrawFromParticle):
     def __init__(self, context: Context, particle: Particle) -> None:
         if not rigid_joints(context.model)[particle.row]:
             raise Refusal(
-                tr(
-                    "A moment cannot act on {particle}, where no rod is rigidly joined. Ctrl+J makes the end of a rod"
-                    " rigid.",
-                    particle=particle.name,
-                )
+                "A moment cannot act on {particle}, where no rod is rigidly joined. Ctrl+J makes the end of a rod"
+                " rigid.",
+                particle=particle.name,
             )
         super().__init__(context, particle)
         self.hint = tr(
@@ -319,10 +317,7 @@ class DrawVelocity(DrawArrow):
     def __init__(self, context: Context, particle: Particle) -> None:
         if all(particle.fixed):
             raise Refusal(
-                tr(
-                    "{particle} is held in x and y and cannot move; C changes its support.",
-                    particle=particle.name,
-                )
+                "{particle} is held in x and y and cannot move; C changes its support.", particle=particle.name
             )
         super().__init__(context, particle)
 
@@ -356,10 +351,8 @@ class DrawElement(Drawing):
         end = snapped_to_points(context.model, context.view, pixel)
         if end == self.from_:
             raise Refusal(
-                tr(
-                    "The {element} would begin and end at the same point; click another point.",
-                    element=tr(self.kind.noun),
-                )
+                "The {element} would begin and end at the same point; click another point.",
+                element=tr(self.kind.noun),
             )
         first, last = self.kind.points
         [made] = context.model.create(self.kind, 1, **{first: [self.from_], last: [end]})

@@ -304,9 +304,9 @@ def pull(session: Session, name: str, anchors: list[tuple[float, float]], steps:
     session.simulation.advance(0)
     hand = hand_on(session.model, session.view, session.particles[name], lambda: session.pace)
     for anchor in anchors:
-        session.timeline.hold(hand.at(anchor))
+        session.document.timeline.hold(hand.at(anchor))
         session.run(steps=steps)
-    session.timeline.hold(None)
+    session.document.timeline.hold(None)
 
 
 def sinking(session: Session) -> float:
@@ -371,11 +371,11 @@ def test_stepping_back_replays_what_a_hand_did_with_the_same_bits() -> None:
     hand = hand_on(session.model, session.view, session.particles["p7"], lambda: session.pace)
     states = {}
     for anchor in ((0.2, 0.1), (-0.1, 0.2)):
-        session.timeline.hold(hand.at(anchor))
+        session.document.timeline.hold(hand.at(anchor))
         for _ in range(15):
             session.run(steps=1)
             states[session.model.clock.steps] = state(session)
-    session.timeline.hold(None)
+    session.document.timeline.hold(None)
     session.run(steps=10)
     for _ in range(12):
         assert session.step(-3)
