@@ -139,6 +139,16 @@ class Structure:
             bending = replace(bending, initial_slopes=share * bending.initial_slopes)
         return replace(self, misfit=share * self.misfit, bending=bending)
 
+    def released(self, bars: Flags, hinges: Flags, supports: Flags) -> Structure:
+        """The same structure without some bars (rods,) and supports (n, …), and with hinges at some rigid ends (rods, 2)."""
+        return replace(
+            self,
+            stiffness=np.where(bars, 0.0, self.stiffness),
+            bending=None if self.bending is None else self.bending.hinged(hinges),
+            fixed=self.fixed & ~supports,
+            unknown=self.unknown | supports,
+        )
+
     # --- unknowns ----------------------------------------------------------------------------------
 
     @cached_property
@@ -342,7 +352,9 @@ class Structure:
             axis=axis,
             elastic_force=elastic,
             axial_force=force,
-            plastic_strain=np.where(flowing, strain - force / self.stiffness, plastic_strain),
+            plastic_strain=np.where(
+                flowing, strain - force / np.where(flowing, self.stiffness, 1.0), plastic_strain
+            ),
             flowing=flowing,
             slack=slack,
             round_off=self._round_off_of_forces(displacement, plastic_strain, bent),

@@ -170,5 +170,5 @@ def _deltas(model: Model, unknowns: Sequence[Unknown], states: Iterable[SetState
         found[of_clamps] = state.rotation[rows[of_clamps]]
         if of_ends.any():
             kink = state.kink if len(state.kink) else np.zeros((model.rods.count, 2))
-            found[of_ends] = (kink[rows, axes] * np.where(axes == 0, 1.0, -1.0))[of_ends]
+            found[of_ends] = kink[rows[of_ends], axes[of_ends]] * np.where(axes[of_ends] == 0, 1.0, -1.0)
         yield found

@@ -21,7 +21,7 @@ MOST = {
     "public names": 2_445,
     "numbers": 1_569,  # other than 0, 1 and 2, in constants and defaults
     "registers": 50,  # containers that fill while the program runs, and caches of functions
-    "lines of tests": 52_805,
+    "lines of tests": 52_816,
 }
 
 
