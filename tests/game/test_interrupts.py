@@ -127,7 +127,7 @@ COMMANDS = (
 
 @pytest.mark.parametrize(
     ("command", "number"),
-    zip(COMMANDS, itertools.cycle([signal.SIGINT, signal.SIGTERM])),
+    list(zip(COMMANDS, itertools.cycle([signal.SIGINT, signal.SIGTERM]), strict=False)),
     ids=[command[:8] for command in COMMANDS],
 )
 def test_anything_ends_when_it_is_told_to(command: str, number: signal.Signals, tmp_path: Path) -> None:
