@@ -17,8 +17,7 @@ class Extensions:
     catalogues: by mod, its folder of translations. kinds: of elements, as files call them: "walls.Wall". obstacles: by kind
     of elements, what tells the Pieces with which particles collide. histories: kinds of histories of loads, by name.
     integrators: by the name that models use. systems, scenes: what makes one for every session. below, above: layers that
-    draw below and above the elements. tools: actions that draw and have a button; buttons: Bindings of
-    other actions that have one. icons: the parts of each, by action. panels: what reads a panel beside the model.
+    draw below and above the elements. icons: the parts of each, by action. panels: what reads a panel beside the model.
     commands: of the command line, by name. folders: with models that are opened by name. versions: of the mods whose data
     files hold. upgrades: by mod, what brings such data up to date.
 
@@ -35,8 +34,6 @@ class Extensions:
     scenes: list[Callable[[], Any]] = field(default_factory=list)
     below: list[Callable[[Any], Any]] = field(default_factory=list)
     above: list[Callable[[Any], Any]] = field(default_factory=list)
-    tools: list[str] = field(default_factory=list)
-    buttons: list[Any] = field(default_factory=list)
     icons: dict[str, Any] = field(default_factory=dict)
     panels: list[Callable[[Any], Any]] = field(default_factory=list)
     commands: dict[str, Any] = field(default_factory=dict)

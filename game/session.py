@@ -10,6 +10,8 @@ from typing import TYPE_CHECKING, Any, NoReturn
 
 import numpy as np
 
+import pinjoint.editor.actions
+import pinjoint.lessons.actions  # noqa: F401 (they register them)
 from pinjoint.components.camera import Viewport
 from pinjoint.components.card import share_of
 from pinjoint.components.environment import Environment
@@ -28,18 +30,15 @@ from pinjoint.components.wording import quoted
 from pinjoint.documents import models
 from pinjoint.documents.format import ModelError
 from pinjoint.documents.open_documents import ModelFile, Source, file_of
-from pinjoint.editor.actions import ACTIONS, WHILE_DRAWING
 from pinjoint.editor.context import Context
 from pinjoint.editor.dropping import open_dropped
-from pinjoint.editor.frame import Actions, Frame, HeadlessFrame, ShowView
-from pinjoint.editor.menu import IN_MENU
+from pinjoint.editor.frame import Actions, Exaggerate, Frame, HeadlessFrame, ShowView
 from pinjoint.editor.routing import Layer, for_tools, layer, meaning
 from pinjoint.editor.scenes import all_scenes, scene_systems
 from pinjoint.editor.scenes.files import FileScene
 from pinjoint.editor.sliders import slider_stack, sliders_of
 from pinjoint.editor.toolbar import toolbar_of
 from pinjoint.editor.view_model import follows, show
-from pinjoint.lessons import actions  # noqa: F401 (it registers them)
 from pinjoint.lessons.course import Course
 from pinjoint.lessons.tasks import Lesson
 from pinjoint.mods import load_all
@@ -51,7 +50,7 @@ from pinjoint.systems.catalogue import step_systems
 from pinjoint.systems.edit import Refusal
 from pinjoint.systems.edit.dividing import divide
 from pinjoint.systems.edit.pull import Pull
-from pinjoint.systems.input.bindings import FILES, FORMS, LIVE, TEXT, key_named, only_in_pause
+from pinjoint.systems.input.actions import ACTIONS, FILES, FORMS, LIVE, TEXT, key_named, only_in_pause
 from pinjoint.systems.render.picture import Stage
 from pinjoint.systems.run.simulation import Simulation
 from pinjoint.systems.run.system import Time
@@ -78,6 +77,8 @@ class Session(Context):
     -28.3428
     """
 
+    course: Course | None
+
     def __init__(
         self,
         model: Model,
@@ -86,7 +87,7 @@ class Session(Context):
         file: ModelFile = ModelFile(),  # noqa: B008 (it cannot be changed)
     ) -> None:
         pull, scenes = Pull(), all_scenes()
-        ours = [Actions(), ShowView(), Time(), *scene_systems(), *step_systems(), pull]
+        ours = [Exaggerate(), Actions(), ShowView(), Time(), *scene_systems(), *step_systems(), pull]
         schedule = Schedule(
             [*ours, *(make() for make in EXTENSIONS.systems), *systems],
             wanted={scene.name: scene.systems for scene in scenes},
@@ -95,7 +96,6 @@ class Session(Context):
         # Called with every press and after every change of size; set by a recorder.
         self.on_press: Callable[[str, Vector | None], None] | None = None
         self.on_resize: Callable[[], None] | None = None
-        self.course: Course | None = None
         self._clicked: Layer | None = None  # what took the last press, if that was a click
         self._blank = Model()  # what the footer and the card of a lesson are drawn over
         self.extent = (
@@ -362,13 +362,14 @@ class Session(Context):
         """Perform a named action with the pointer at a pixel; what it refuses is said in `notice`."""
         if name not in ACTIONS:
             raise ValueError(missing(marked("actions"), name, ACTIONS))
-        if name not in WHILE_DRAWING:
+        action = ACTIONS[name]
+        if not action.while_drawing:
             self.leave_gesture()
-        if name not in IN_MENU:
+        if not action.in_menu:
             self.view.menu = None
         self.exaggerate()
         try:
-            ACTIONS[name](self, pixel if pixel is not None else self.pointer)
+            action.perform(self, pixel if pixel is not None else self.pointer)
         except (Refusal, FieldError) as error:
             self.notice = str(error)
         self.scenes.apply(self)
@@ -556,11 +557,8 @@ class Session(Context):
         """One frame, `elapsed` s after the last: input, edit, step, events and render. Raises ValueError."""
         frame = Frame(self, _forward("elapsed", elapsed))
         try:
-            try:
-                self.exaggerate()
-            finally:
-                for phase in Phase:
-                    self.schedule.run(phase, frame)
+            for phase in Phase:
+                self.schedule.run(phase, frame)
         except Exception as error:
             if not blamed_on_mod(error):
                 raise

@@ -182,10 +182,6 @@ def _migrated(document: Any) -> Mapping[str, Any]:
                 newest=VERSION,
             )
         migrated = MIGRATIONS[old](migrated)
-    state = migrated.get("state")
-    if isinstance(state, Mapping) and "paths" in state and "collision_state" not in state:  # its earlier name
-        renamed = {("collision_state" if key == "paths" else key): value for key, value in state.items()}
-        migrated["state"] = renamed
     return migrated
 
 

@@ -1,4 +1,4 @@
-"""Context: what actions, gestures and scenes read and change; the base of gestures and scenes, and the table of actions.
+"""Context: what actions, gestures and scenes read and change; the base of gestures and scenes.
 
 `pinjoint.session.Session` is the context that scripts drive.
 """
@@ -6,55 +6,39 @@
 from __future__ import annotations
 
 import operator
-from collections.abc import Callable, Iterator, Sequence
-from typing import ClassVar
+from collections.abc import Iterator, Sequence
+from pathlib import Path
+from typing import Any, ClassVar, TypeVar
 
 from pinjoint.components.camera import Viewport
 from pinjoint.components.extensions import EXTENSIONS
 from pinjoint.components.field import Vector
-from pinjoint.components.language import listed, marked, tr
+from pinjoint.components.handle import Handle
+from pinjoint.components.language import begun, listed, marked, tr
 from pinjoint.components.mistake import NotFound, WrongValue
 from pinjoint.components.model import Model
 from pinjoint.components.rod import bends
 from pinjoint.components.settings import NO_DIAGRAMS, Settings
 from pinjoint.components.slider import Place, under
+from pinjoint.components.tags import Selected
 from pinjoint.components.view import Preview, Readout, View
 from pinjoint.documents import models
+from pinjoint.documents.autosave import Autosave
+from pinjoint.documents.chronicle import Happening
 from pinjoint.documents.format import missing_mods
-from pinjoint.documents.open_documents import ModelFile, Source, file_of
-from pinjoint.editor.host import Course
-from pinjoint.editor.workspace import Workspace
+from pinjoint.documents.open_documents import ModelFile, OpenDocument, OpenDocuments, Source, file_of
+from pinjoint.editor.clipboard import Part
+from pinjoint.editor.host import ProgramPreparation, Waiting, Window
 from pinjoint.scripts.script import Script
 from pinjoint.systems.base import Mod
+from pinjoint.systems.collision.impacts import Impacts
 from pinjoint.systems.edit.pull import Pull
+from pinjoint.systems.physics.pace import natural_pace
 from pinjoint.systems.render.picture import Stage
+from pinjoint.systems.run.energy import Energy
+from pinjoint.systems.run.simulation import Simulation
 from pinjoint.systems.run.system import Time
 from pinjoint.systems.schedule import Schedule
-
-# --- actions ---------------------------------------------------------------------------------------------
-
-Action = Callable[["Context", Vector], object]
-
-ACTIONS: dict[str, Action] = {}
-WHILE_DRAWING: set[str] = set()  # names of actions during which a gesture goes on
-
-
-def action(name: str, *, while_drawing: bool = False) -> Callable[[Action], Action]:
-    """Register a function(context, pixel) as a named action; `pixel` is where the pointer is.
-
-    while_drawing: the action belongs to a gesture or only looks; all others end the gesture first.
-    """
-
-    def register(function: Action) -> Action:
-        if name in ACTIONS:
-            raise WrongValue("There is an action '{name}' already.", name=name)
-        ACTIONS[name] = function
-        if while_drawing:
-            WHILE_DRAWING.add(name)
-        return function
-
-    return register
-
 
 # --- gestures --------------------------------------------------------------------------------------------
 
@@ -92,7 +76,7 @@ PHYSICS = ("run.*", "physics.*", "plasticity.*", "loads.*", "collision.*", "edit
 
 
 class Scene:
-    """One mode. Systems say by their `scenes` in which they are active; keys are in input/bindings.py.
+    """One mode. Systems say by their `scenes` in which they are active; their keys stand at the actions.
 
     heading: the word shown top left. targets: scenes that may follow. sources: further scenes that
     this one may follow, which need not know it. systems: names, or patterns such as "physics.*", of systems that
@@ -227,6 +211,10 @@ class Scenes:
             here = self._by_name[name]
         self._requested.extend(names)
 
+    def request_from_pause(self, name: str) -> None:
+        """Ask for a scene that is entered from pause, through it where time passes."""
+        self.request(*(("pause", name) if self.active.name == "simulation" else (name,)))
+
     def apply(self, context: Context) -> None:
         """Make the requested transitions: exit, then enter. From a scene of a mod that is switched off, to pause."""
         if self.active.mod is not None and self.active.mod.off and not self._requested:
@@ -245,32 +233,98 @@ class Scenes:
 # --- the context -----------------------------------------------------------------------------------------
 
 _TIME = Time()
+H = TypeVar("H", bound=Handle)
 
 
-class Context(Workspace):
-    """The open documents, what is seen of them, and what a person is doing with them.
+class Context:
+    """The open documents with their runs, logs and files, what is seen of them, and what a person is doing with them.
 
+    schedule: all systems. notice: the last sentence said. copied: what was put on the clipboard last, as text and as
+    data. window, autosave, preparation: what a window gives, see host.py; None without one. awaited: the simulation that
+    is too large to go on before its step program is compiled.
     scenes: the mode, and its transitions. gesture: what is being drawn or dragged. performing: a script is shown in the
     window, so input is not for the scenes and no time passes by itself. footer: the strip below the picture meanwhile.
-    lesson: the script that a person asked for. course: the lesson with tasks that a person is in; beside: its card, in the
-    part of the window that it takes. faults_seen: how many faults of mods were shown and taken away.
+    lesson: the script that a person asked for. course: the lessons.course.Course that a person is in; beside: its card, in
+    the part of the window that it takes. faults_seen: how many faults of mods were shown and taken away.
     """
 
     def __init__(
         self, model: Model, schedule: Schedule, pull: Pull, scenes: Sequence[Scene], view: View, file: ModelFile
     ) -> None:
-        super().__init__(model, schedule, pull, file)
+        self.schedule = schedule
+        self.pull = pull
+        self.documents = OpenDocuments(model, schedule, pull, file)
+        self._clipboard = ""
+        self.copied: tuple[str, Part] | None = None
+        self.notice = ""
+        self.window: Window | None = None
+        self.autosave: Autosave | None = None
+        self.preparation: ProgramPreparation | None = None
+        self.awaited: Simulation | None = None
         self.scenes = Scenes(scenes)
         self.view = view
         self.gesture: Gesture | None = None
         self.performing = False
         self.footer: View | None = None
         self.lesson: Script | None = None
-        self.course: Course | None = None
+        self.course: Any = None
         self.beside: View | None = None
         self.faults_seen = len(EXTENSIONS.faults)
 
     # --- documents ---------------------------------------------------------------------------------
+
+    @property
+    def document(self) -> OpenDocument:
+        """The document that is open, with its run, its log and its file."""
+        return self.documents.current
+
+    def save(self, path: str | Path) -> None:
+        """Write the model, with its present state, to a file."""
+        self.simulation.account_for_edits()
+        models.save(self.model, Path(path))
+
+    def save_as(self, path: str | Path) -> None:
+        """Write the model to a file that is its own from now on. Raises ModelError."""
+        path = Path(path)
+        self.save(path)
+        self.document.file, self.document.practice = ModelFile.at(path), False
+        self.document.saved = self.model.revision
+        self.notice = tr("Saved as '{name}'.", name=path.stem)
+
+    @property
+    def model(self) -> Model:
+        """The model that is open."""
+        return self.document.model
+
+    @property
+    def simulation(self) -> Simulation:
+        """The run of the open document."""
+        return self.document.simulation
+
+    @property
+    def settings(self) -> Settings:
+        """How the model is computed and drawn."""
+        return self.model.settings
+
+    @property
+    def time(self) -> float:
+        """Simulated time (s)."""
+        return self.model.clock.time
+
+    @property
+    def energy(self) -> Energy:
+        """The energy account of the run."""
+        return self.simulation.energy
+
+    @property
+    def impacts(self) -> Impacts:
+        """The impacts of the run so far, in columns."""
+        return self.simulation.impacts
+
+    @property
+    def events(self) -> tuple[Happening, ...]:
+        """What happened in the run so far, in order of time: rods that yield, cables that go slack, collapse, rest."""
+        return self.document.chronicle.happenings
 
     def open_here(self, source: Source | None) -> None:
         """Open another model, an empty one if None; undo goes back to this one. Raises ModelError."""
@@ -307,6 +361,30 @@ class Context(Workspace):
         return EXTENSIONS.faults[-1] if len(EXTENSIONS.faults) > self.faults_seen else ""
 
     # --- time --------------------------------------------------------------------------------------
+
+    @property
+    def pace(self) -> float:
+        """Simulated seconds per second shown that suit the model as it is now, whatever a person chose."""
+        return natural_pace(self.model)  # found anew: the clock's may be from any earlier frame
+
+    def settle(self, factors: Sequence[float] | float = (1.0,)) -> str:
+        """Go to the static equilibrium at each load factor in turn, without letting time pass.
+
+        Can be undone. Returns "equilibrium", "neutral equilibrium" or "unstable equilibrium"; or "mechanism",
+        "collapse" or "limit reached" with the last good state; `message` says more. Time moves on to the end of the
+        last load history. Raises ValueError.
+        """
+        status, self.notice = self.document.settle(factors)
+        return status
+
+    def has_program(self, simulation: Simulation) -> bool:
+        """False while a large model waits for another process to compile its step program (see `awaited`)."""
+        self.awaited = None if self.waited_for(simulation) is None else simulation
+        return self.awaited is None
+
+    def waited_for(self, simulation: Simulation) -> Waiting | None:
+        """What a simulation waits for; None if it can go on."""
+        return self.preparation.waits_for(simulation) if self.preparation is not None else None
 
     @property
     def time_passes(self) -> bool:
@@ -374,6 +452,49 @@ class Context(Workspace):
         self.document.chronicle.look()
 
     # --- editing -----------------------------------------------------------------------------------
+
+    @property
+    def can_undo(self) -> bool:
+        """True if there is something to take back."""
+        return self.document.history.can_undo or self.documents.can_move(-1)
+
+    @property
+    def can_redo(self) -> bool:
+        """True if there is something to repeat."""
+        return self.document.history.can_redo or self.documents.can_move(1)
+
+    @property
+    def selected(self) -> list[Handle]:
+        """The selected elements, in order of creation."""
+        return self.model.tagged(Selected)
+
+    def selected_of(self, *kinds: type[H]) -> list[H]:
+        """Those of the selected elements that are of these kinds."""
+        return [handle for handle in self.selected if isinstance(handle, kinds)]
+
+    @property
+    def has_selected(self) -> bool:
+        """True if anything is selected."""
+        return self.model.any_tagged(Selected)
+
+    def select(self, *handles: Handle) -> None:
+        """Select exactly these elements; none: deselect."""
+        self.model.tag_only(handles, Selected)
+
+    def name(self, handle: Handle) -> str:
+        """An element as a sentence begins with it, such as "Rod AB"."""
+        return begun(self.model.describe(handle))
+
+    @property
+    def clipboard(self) -> str:
+        """The text that was copied last, here or, with a window, in any program."""
+        return self.window.copied() if self.window is not None else self._clipboard
+
+    @clipboard.setter
+    def clipboard(self, text: str) -> None:
+        self._clipboard = text
+        if self.window is not None:
+            self.window.copy(text)
 
     def undo(self) -> str:
         """Take back the last edit or run, or the opening of the document; returns what it was, or ""."""

@@ -9,14 +9,14 @@ from pinjoint.components.field import Vector
 from pinjoint.components.model import Model
 from pinjoint.editor.context import Context
 from pinjoint.systems.base import Phase, System
-from pinjoint.systems.input.bindings import TEXT
+from pinjoint.systems.input.actions import TEXT
 
 
 @dataclass
 class Frame:
     """One frame: the session, the seconds since the last frame, and what was pressed.
 
-    pressed: (key or button, pixel) in the order in which a person pressed them; see input/bindings.py.
+    pressed: (key or button, pixel) in the order in which a person pressed them; see input/actions.py.
     """
 
     session: Context
@@ -41,6 +41,20 @@ class HeadlessFrame(Frame):
     def scene(self) -> str:
         """The scene whose systems act in the run."""
         return self.session.simulation.programs.scene
+
+
+class Exaggerate(System):
+    """Lets the automatic displacement scale suit the model before anything is done to it."""
+
+    name = "edit.scale"
+    phase = Phase.EDIT
+    before = ("edit.actions",)
+    reads = ("document", "state")
+    writes = ("scale",)
+
+    def process(self, frame: Any) -> None:
+        """Choose the scale anew where the model was edited, or has come to a stand."""
+        frame.session.exaggerate()
 
 
 class Actions(System):

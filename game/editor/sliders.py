@@ -22,7 +22,7 @@ from pinjoint.documents.sliders import unmovable
 from pinjoint.editor.context import Context
 from pinjoint.systems.edit import Refusal
 from pinjoint.systems.edit.arrows import extent, usual_force
-from pinjoint.systems.input.bindings import LIVE
+from pinjoint.systems.input.actions import LIVE
 
 SCALE = -1  # the key of the control of the displacement scale
 SCALES = Slider((), 1.0, 1000.0, logarithmic=True)  # of displacements, unless the model needs more

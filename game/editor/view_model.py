@@ -18,7 +18,7 @@ from pinjoint.editor.readouts import own_readouts
 from pinjoint.systems.base import StopReason
 from pinjoint.systems.edit import Refusal
 from pinjoint.systems.forms.results import told
-from pinjoint.systems.input.bindings import LIVE, help_lines
+from pinjoint.systems.input.actions import LIVE, help_lines
 from pinjoint.systems.render.help import help_pages
 from pinjoint.systems.render.overlays import BAR
 

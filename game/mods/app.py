@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import inspect
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, MutableMapping, Sequence
 from functools import partial
 from pathlib import Path
 from typing import Any
@@ -20,8 +20,7 @@ from pinjoint.components.obstacles import Shape
 from pinjoint.components.table import fields_of
 from pinjoint.documents import models
 from pinjoint.documents.mod_data import Upgrade
-from pinjoint.editor.actions import ACTIONS, WHILE_DRAWING, Action, action
-from pinjoint.editor.gestures.drawing import TOOL_HINTS, TOOLS, drawing_of
+from pinjoint.editor.gestures.drawing import drawing_of
 from pinjoint.editor.scenes import Scene, all_scenes
 from pinjoint.mods.declared import checks_arguments
 from pinjoint.mods.guard import (
@@ -41,13 +40,7 @@ from pinjoint.mods.interface import (
 )
 from pinjoint.mods.mod import INCLUDED, Mod, ModError
 from pinjoint.systems.base import Integrator, System
-from pinjoint.systems.input.bindings import (
-    LIVE,
-    Binding,
-    add_binding,
-    key_named,
-    remove_binding,
-)
+from pinjoint.systems.input.actions import ACTIONS, LIVE, Action, Binding, Perform, key_named
 from pinjoint.systems.physics.integrators import INTEGRATORS
 from pinjoint.systems.render.icons import Part, check_icon
 from pinjoint.systems.render.sheet import Layer
@@ -127,22 +120,16 @@ class App:
                 count=len(kind.points),
             )
         name = f"{self.name}.{kind.noun}"
-        TOOLS[name] = drawing_of(kind, name, key)
-        TOOL_HINTS[name] = tr(
+        drawing = drawing_of(kind, name, key)
+        hint = tr(
             "{table}: click two points, or drag from one to the other     {key} or Esc done",
             table=tr(kind.table),
             key=key.upper(),
         )
-        self._undo += [lambda: TOOLS.pop(name), lambda: TOOL_HINTS.pop(name)]
-        self.action(
-            name,
-            key=key,
-            title=title or tr("{kind}, from point to point", kind=tr(kind.noun)),
-            while_drawing=True,
-        )(TOOLS[name].use)
-        if icon:
-            self._icon(name, icon)
-            self._add(EXTENSIONS.tools, name)
+        act = guarded_action(self._mod, name, drawing.use)
+        self._act(Action(name, act, while_drawing=True, draws=drawing, hint=hint))
+        self.key(key, name, title=title or tr("{kind}, from point to point", kind=tr(kind.noun)))
+        self._icon(name, icon)
 
     def shape(self, kind: type[Handle], shape: Shape) -> None:
         """Let particles collide with elements of a kind: `shape(table)` returns the Pieces that they are."""
@@ -216,7 +203,7 @@ class App:
         title: str = "",
         while_drawing: bool = False,
         icon: Sequence[Part] = (),
-    ) -> Callable[[Action], Action]:
+    ) -> Callable[[Perform], Perform]:
         """Register a function(session, pixel) as a named action, and perhaps a key and a button for it.
 
         Everything that it changes in the model is one step of undo, dropped whole if it raises. icon: of its button
@@ -224,19 +211,21 @@ class App:
         """
         self._check_prefix("action", name)
 
-        def register(function: Action) -> Action:
-            if name in ACTIONS:
-                raise ModError("There is an action '{name}' already; give this one another name.", name=name)
-            action(name, while_drawing=while_drawing)(guarded_action(self._mod, name, function))
-            self._undo += [lambda: ACTIONS.pop(name), lambda: WHILE_DRAWING.discard(name)]
+        def register(function: Perform) -> Perform:
+            act = guarded_action(self._mod, name, function)
+            offered = (Binding("", tuple(scenes), title or name),) if icon else ()
+            self._act(Action(name, act, offered, while_drawing=while_drawing))
             if key:
                 self.key(key, name, scenes, title)
-            if icon:
-                self._icon(name, icon)
-                self._add(EXTENSIONS.buttons, Binding("", name, tuple(scenes), title or name))
+            self._icon(name, icon)
             return function
 
         return register
+
+    def _act(self, action: Action) -> None:
+        if action.name in ACTIONS:
+            raise ModError("There is an action '{name}' already; give this one another name.", name=action.name)
+        self._put(ACTIONS, action.name, action)
 
     def key(self, key: str, name: str, scenes: Sequence[str] = LIVE, title: str = "") -> None:
         """Let a key, such as "w" or "ctrl+w", perform a named action in some scenes.
@@ -251,18 +240,18 @@ class App:
                 name=name,
             )
         key = _checked_key(key)
-        binding = Binding(key, name, tuple(scenes), title or name)
-        self._undo.append(lambda: remove_binding(binding))
-        for other in add_binding(binding):
+        before = ACTIONS[name]
+        self._undo.append(lambda: ACTIONS.__setitem__(name, before))
+        for other, taken in ACTIONS.bind(name, Binding(key, tuple(scenes), title or name)):
             self._mod.notes.append(
                 tr(
                     "The key '{key}' for {name} already does '{other}' in {scenes}; to change that, write {form} in the"
                     " settings file.",
                     key=key,
                     name=name,
-                    other=other.action,
-                    scenes=", ".join(other.scenes),
-                    form=f'{{"keys": {{"{other.scenes[0]}": {{"{key}": "{name}"}}}}}}',
+                    other=other.name,
+                    scenes=", ".join(taken.scenes),
+                    form=f'{{"keys": {{"{taken.scenes[0]}": {{"{key}": "{name}"}}}}}}',
                 )
             )
 
@@ -297,6 +286,8 @@ class App:
         self._undo += [lambda: speak(language()), lambda: EXTENSIONS.catalogues.pop(self.name)]
 
     def _icon(self, name: str, icon: Sequence[Part]) -> None:
+        if not icon:
+            return
         try:
             check_icon(icon)
         except ValueError as error:
@@ -315,7 +306,7 @@ class App:
         while self._undo:
             self._undo.pop()()
 
-    def _put(self, entries: dict[Any, Any], key: Any, entry: Any) -> None:
+    def _put(self, entries: MutableMapping[Any, Any], key: Any, entry: Any) -> None:
         entries[key] = entry
         self._undo.append(lambda: entries.pop(key))
 

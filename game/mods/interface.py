@@ -15,13 +15,13 @@ from pinjoint.components.mistake import WrongValue
 from pinjoint.components.view import Plot, Readout, View
 from pinjoint.components.wording import printable
 from pinjoint.documents import models
-from pinjoint.editor.actions import Action
-from pinjoint.editor.context import ACTIONS, Context, Scene
+from pinjoint.editor.context import Context, Scene
 from pinjoint.mods.declared import as_declared, result_of
 from pinjoint.mods.guard import check_view, interruptible, view_kept
 from pinjoint.mods.mod import INCLUDED, PATIENCE, Mod
 from pinjoint.paths import PathError
 from pinjoint.systems.edit import Refusal
+from pinjoint.systems.input.actions import ACTIONS, Perform
 from pinjoint.systems.render.framing import framed
 from pinjoint.systems.render.marks import Mark
 from pinjoint.systems.render.sheet import Layer, Sheet
@@ -35,7 +35,7 @@ LONGEST = 400  # characters of a text in the window
 # --- what is done ----------------------------------------------------------------------------------------
 
 
-def guarded_action(mod: Mod, name: str, function: Action) -> Action:
+def guarded_action(mod: Mod, name: str, function: Perform) -> Perform:
     """An action of a mod: one step of undo, dropped whole if it fails."""
     what = tr("the action '{name}'", name=name)
 

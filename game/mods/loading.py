@@ -20,7 +20,7 @@ from pinjoint.mods.finding import in_order, required
 from pinjoint.mods.mod import MANIFEST, Mod, ModError
 from pinjoint.mods.surroundings import Surroundings
 from pinjoint.systems.catalogue import all_systems
-from pinjoint.systems.input.bindings import prefer
+from pinjoint.systems.input.actions import ACTIONS
 from pinjoint.systems.schedule import Schedule
 from pinjoint.version import __version__
 
@@ -51,7 +51,7 @@ def load(folders: Iterable[str | Path] = (), *, installed: bool = False) -> list
         if mod.off
     )
     for scene, key, action in preferred_keys() if new else ():
-        prefer(scene, key, action)
+        ACTIONS.prefer(scene, key, action)
     return [known.get(mod.folder, mod) for mod in found]
 
 

@@ -24,7 +24,7 @@ from pinjoint.mods.mod import LOG, Mod
 from pinjoint.session import Session
 from pinjoint.systems.base import Commit, Event, Integrator, Law, StepSystem, System
 from pinjoint.systems.catalogue import all_systems
-from pinjoint.systems.input.bindings import BINDINGS, PAUSE, SIMULATION
+from pinjoint.systems.input.actions import ACTIONS, PAUSE, SIMULATION
 from pinjoint.systems.physics.integrators import INTEGRATORS
 from pinjoint.systems.program.binding import KERNELS, ProgramError, bind
 from pinjoint.systems.program.endless import Patience
@@ -73,8 +73,8 @@ class _Trial:
         for scene in (PAUSE, SIMULATION, *(scene.name for scene in all_scenes() if scene.mod is self.mod)):
             with self._part():
                 self._live_in(scene)
-        for binding in BINDINGS:
-            for scene in binding.scenes if binding.action.startswith(f"{self.mod.name}.") else ():
+        for action, binding in ACTIONS.bound():
+            for scene in binding.scenes if action.name.startswith(f"{self.mod.name}.") else ():
                 with self._part():
                     self._press(binding.key, scene)
         for integrator in (s.key for s in systems if isinstance(s, Integrator)):
@@ -131,14 +131,14 @@ class _Trial:
 
     def _check_keys(self) -> None:
         group, scenes = marked("scenes"), {scene.name for scene in all_scenes()}
-        for binding in BINDINGS:
-            if binding.action.startswith(f"{self.mod.name}."):
+        for action, binding in ACTIONS.bound():
+            if action.name.startswith(f"{self.mod.name}."):
                 for scene in sorted(set(binding.scenes) - scenes):
                     problem = missing(group, scene, scenes)
                     sentence = tr(
                         "The key '{key}' for {action}: {problem}",
                         key=binding.key,
-                        action=binding.action,
+                        action=action.name,
                         problem=problem,
                     )
                     self._note(sentence)

@@ -8,15 +8,14 @@ from pathlib import Path
 import pytest
 
 from pinjoint import Session
-from pinjoint.components.extensions import EXTENSIONS
 from pinjoint.components.menu import Menu
 from pinjoint.components.tags import DiagramShown
 from pinjoint.documents import library, models
 from pinjoint.editor.scenes.form import FormScene
 from pinjoint.editor.scenes.properties import Properties
+from pinjoint.editor.toolbar import of_mods
 from pinjoint.scripts.playing import Recorder, play, session_of
 from pinjoint.scripts.script import Script
-from pinjoint.systems.input.bindings import TOOLBAR, offers
 from pinjoint.systems.render.menu import MenuLayout, menu_of
 from tests.reference import bits
 
@@ -239,8 +238,8 @@ def test_menus_offer_all_that_the_toolbar_has_where_it_is_hidden(session: Sessio
     session.press("tab")
     session.press("right click", session.view.camera.middle)
     offered = {entry.action for entry in menu(session).menu.entries}
-    bar = {action for group in TOOLBAR for action in group if action in offers("pause")}
-    assert {*bar, *EXTENSIONS.tools, "toggle legend"} <= offered
+    bar = {tool.action for group in session.view.toolbar.groups for tool in group}
+    assert {*bar, *of_mods(draw=True), "toggle legend"} <= offered
     choose(session, "toggle legend")
     assert session.view.legend
 

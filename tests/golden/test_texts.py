@@ -18,7 +18,7 @@ from pinjoint.components.language import spoken
 from pinjoint.documents.library import data_apart
 from pinjoint.documents.models import bundled
 from pinjoint.editor.scenes.form import FormScene
-from pinjoint.systems.input.bindings import BINDINGS, help_lines
+from pinjoint.systems.input.actions import ACTIONS, help_lines
 from pinjoint.systems.render.marks import Panel, Picture, Text
 from pinjoint.systems.render.typography import capital_height
 from tests.golden.scenes import SCENES, WINDOWS, Scene, Window, composed, opened, pressed
@@ -131,7 +131,7 @@ _WORD = re.compile(r"(?<![^\W_])[A-Za-z]{3,}(?![^\W_])")
 _PATH = re.compile(r"\S*/\S*")
 _UNITS = {"MPa", "GPa", "mrad", "rad", "kNm"}
 _PROPER = {"Pinjoint", "English", "IPE", "HEA", "HEB", "CHS", "SHS", "Lee", "Euler", "Williams", "Rayleigh"}
-_KEYS = {part.capitalize() for binding in BINDINGS for part in re.split(r"[+ ]", binding.key)}
+_KEYS = {part.capitalize() for _, binding in ACTIONS.bound() for part in re.split(r"[+ ]", binding.key)}
 _TYPED = re.findall("[A-Za-z]+", 3 * LONG_NAME)  # a box shows the end
 _GIVEN = {"isostatik", "bridge", "Wall", *(word[n:] for word in _TYPED for n in range(len(word)))}
 IN_ENGLISH = {  # written so in the scenes

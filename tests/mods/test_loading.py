@@ -13,8 +13,7 @@ from pinjoint import Session, mods
 from pinjoint.commands.command_line import main
 from pinjoint.components import Particle
 from pinjoint.components.extensions import EXTENSIONS
-from pinjoint.editor.actions import ACTIONS
-from pinjoint.systems.input.bindings import BINDINGS, action_for
+from pinjoint.systems.input.actions import ACTIONS, action_for
 from pinjoint.systems.physics.integrators import VelocityVerlet
 from tests.mods.conftest import Write
 
@@ -203,9 +202,9 @@ def test_of_a_plugin_that_raises_nothing_stays(tmp_path: Path, write_mod: Write)
             raise RuntimeError("at last")
         """,
     )
-    before = len(BINDINGS), set(ACTIONS), set(EXTENSIONS.commands), set(vars(Particle))
+    before = dict(ACTIONS), set(EXTENSIONS.commands), set(vars(Particle))
     assert "at last" in load(tmp_path)["apple"].problem
-    assert (len(BINDINGS), set(ACTIONS), set(EXTENSIONS.commands), set(vars(Particle))) == before
+    assert (dict(ACTIONS), set(EXTENSIONS.commands), set(vars(Particle))) == before
     session = Session.open(BALL)
     with pytest.raises(KeyError):
         session.scenes["show"]
@@ -408,12 +407,13 @@ def test_a_name_that_python_reads_as_another_one_is_refused(write_mod: Write) ->
     assert "must be a Python name" in found.problem
 
 
-def test_a_mod_that_closes_standard_output_is_left_out(
-    write_mod: Write, monkeypatch: pytest.MonkeyPatch
+def test_a_mod_that_closes_standard_output_is_left_out_and_what_others_write_arrives(
+    write_mod: Write, capfd: pytest.CaptureFixture[str]
 ) -> None:
-    monkeypatch.setattr(sys, "stdout", io.StringIO())
     folder = write_mod("apple", "import sys\ndef plugin(app):\n    sys.stdout.close()\n")
-    (mod,) = mods.load([folder])
-    assert mod.problem == "It closed sys.stdout, which the program needs; leave it open."
-    print("swallowed")
-    sys.stdout.close()
+    with pytest.MonkeyPatch.context() as patched:
+        patched.setattr(sys, "stdout", io.StringIO())
+        (mod,) = mods.load([folder])
+        assert mod.problem == "It closed sys.stdout, which the program needs; leave it open."
+        print("arrives", flush=True)
+    assert capfd.readouterr().out == "arrives\n"

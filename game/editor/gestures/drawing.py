@@ -28,6 +28,7 @@ from pinjoint.systems.edit.placing import place, place_at, snapped, snapped_to_p
 from pinjoint.systems.edit.rods import check_ends, distance, is_rigid, join
 from pinjoint.systems.edit.supports import NAMES, Held, next_support, support, support_towards
 from pinjoint.systems.forms.properties import heading
+from pinjoint.systems.input.actions import ACTIONS
 
 CLAMPED_BEYOND = 60.0  # points from a particle to its ground, which then holds its rotation, too
 HINGES = "hinge"  # the tool by which clicks hinge ends of rods; its action acts at once
@@ -452,7 +453,12 @@ def hint_of_tool(context: Context) -> str:
     if tool == DrawRod.tool:
         steps = tr("rods: click from place to place, or drag"), kind_of_rods(context)
         return joined([*steps, tr("double click ends the chain     Esc done")], BETWEEN)
-    return tr(TOOL_HINTS.get(tool, ""))
+    return tr(ACTIONS[tool].hint) if tool else ""
+
+
+def tool_in_hand(context: Context) -> str:
+    """The tool with which clicks draw, or ""."""
+    return context.gesture.tool if isinstance(context.gesture, Drawing) else context.view.tool
 
 
 def end_pointed_at(context: Context, pixel: Vector) -> Preview | None:
@@ -470,18 +476,3 @@ def end_pointed_at(context: Context, pixel: Vector) -> Preview | None:
         else tr("make {rod} rigid at {particle}", rod=rod, particle=particle)
     )
     return Preview("hinge", at, at, label)
-
-
-# By tool: the status line while clicks use it, and what it draws ("place" draws nothing, "support" has an action).
-# That of rods names the kind of rods, too.
-TOOL_HINTS = {
-    "place": marked("click where you want particles     Esc done"),
-    "support": marked("supports: drag from a particle to its ground, or click for the next kind     Esc done"),
-    HINGES: marked("click near a rod's end: hinged or rigid     at a joint: all rods there     Esc done"),
-    "force": marked(
-        "loads: drag an arrow from a particle     from a rod: a distributed load     F or Esc done"
-    ),
-    "moment": marked("moments: drag from a particle, to the left for counter-clockwise     Esc done"),
-    "velocity": marked("velocities: drag an arrow from a particle     V or Esc done"),
-}
-TOOLS: dict[str, type[Drawing]] = {kind.tool: kind for kind in (DrawRod, DrawForce, DrawMoment, DrawVelocity)}

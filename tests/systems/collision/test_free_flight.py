@@ -9,7 +9,6 @@ import pytest
 
 from pinjoint import Session
 from pinjoint.commands.command_line import main
-from pinjoint.components.collision_state import FreeFlightState, PersistentContacts
 from pinjoint.documents.models import document
 from pinjoint.systems.collision.driven.neighbours import NeighbourList
 from pinjoint.systems.edit.pull import hand_on
@@ -195,33 +194,6 @@ def test_saved_and_continued_gives_the_same_bits(document: dict[str, Any], tmp_p
         one.run(steps=400)
     assert state(again) == state(session)
     assert again.energy == session.energy
-
-
-@pytest.mark.parametrize("name", ["free_discs", "resting_ball"])
-def test_runs_saved_before_the_collision_state_was_split_go_on_to_the_bit(name: str, tmp_path: Path) -> None:
-    """Files of an earlier program, whose `state.paths` held both kinds; saved anew, they have the present form."""
-    file = Path(__file__).parent / "saved_paths" / f"{name}.json"
-    old = json.loads(file.read_text())["state"]["paths"]
-    session = Session.open(file)
-    found = session.model.clock.collision_state
-    if isinstance(found, FreeFlightState):
-        assert name == "free_discs"
-        assert [found[key] for key in ("motion", "contacts", "forces", "pile")] == [
-            old[key] for key in ("motion", "contacts", "forces", "crowd")
-        ]
-    else:
-        assert isinstance(found, PersistentContacts)
-        assert (name, old["motion"], [found.longest_step]) == ("resting_ball", [], old["crowd"])
-        assert (found["pairs"], found["forces"]) == (old["contacts"], old["forces"])
-    session.save(tmp_path / "saved.json")
-    saved = json.loads((tmp_path / "saved.json").read_text())["state"]
-    assert "paths" not in saved
-    assert saved["collision_state"] == dict(found)
-    again = Session.open(tmp_path / "saved.json")
-    assert again.model.clock.collision_state == found
-    for one in (session, again):
-        one.run(time=0.05)
-    assert state(again) == state(session)
 
 
 @pytest.mark.parametrize(

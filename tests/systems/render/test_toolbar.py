@@ -11,8 +11,8 @@ from pinjoint.components.extensions import EXTENSIONS
 from pinjoint.components.tags import DiagramShown
 from pinjoint.components.toolbar import Button, Tool
 from pinjoint.components.view import drawn_positions
-from pinjoint.editor.actions import ACTIONS
-from pinjoint.systems.input.bindings import BINDINGS, TOOLBAR
+from pinjoint.editor.toolbar import TOOLBAR, of_mods
+from pinjoint.systems.input.actions import ACTIONS
 from pinjoint.systems.render.icons import icon, icons
 from pinjoint.systems.render.marks import Panel, Stamps, Text
 from pinjoint.systems.render.menu import menu_of
@@ -51,15 +51,14 @@ def tool(session: Session, action: str) -> Tool:
 
 
 def test_every_tool_is_an_action_with_a_key_and_an_icon() -> None:
-    offered = [*(action for group in TOOLBAR for action in group), *EXTENSIONS.tools]
+    offered = [*(action for group in TOOLBAR for action in group), *of_mods(draw=True)]
     assert len(offered) == len(set(offered))
     for action in offered:
-        assert action in ACTIONS
         assert icon(action)
-        assert any(binding.action == action and binding.title for binding in BINDINGS)
+        assert any(binding.key and binding.title for binding in ACTIONS[action].bindings)
     assert {*icons(), *EXTENSIONS.icons} == {
         *offered,
-        *(binding.action for binding in EXTENSIONS.buttons),
+        *of_mods(draw=False),
         "pause",
         "more tools",
         *(f"diagram {quantity}" for quantity in QUANTITIES),
