@@ -32,6 +32,7 @@ from pinjoint.systems.run.energy import Account, Energy
 from pinjoint.systems.run.policy import (
     at_rest_since,
     begin_steps,
+    contact_warning,
     energy_warning,
     is_sleep_review,
     overlap_warning,
@@ -398,7 +399,7 @@ class Simulation:
     def _recover(self, reason: StopReason) -> None:
         """Return to the last good state and go on without a mod or with shorter steps, or give up."""
         unresolved = reason is StopReason.UNRESOLVED
-        if self._recovery.without_mod():
+        if self._recovery.without_mod(unresolved=unresolved):
             self.before_change()  # what is lost with the mod counts as an edit
         elif unresolved or not self._recovery.with_shorter_steps():
             self.reason, self.message = (
@@ -549,7 +550,8 @@ class Simulation:
         if told:
             warning = joined([told, self.step_size.remedy(clock.step_size)])
         flying = self.programs.flying
-        return joined([warning, overlap_warning(flying.deepest) if flying is not None else "", self.note])
+        overlap = overlap_warning(flying.deepest) if flying is not None else ""
+        return joined([warning, overlap, contact_warning(*self._driven_collisions.unclosed), self.note])
 
     @property
     def said(self) -> str:
