@@ -24,7 +24,7 @@ from pinjoint.systems.render.marks import Text
 from pinjoint.systems.render.picture import compose, compose_all
 from pinjoint.systems.render.theme import load_theme
 from tests.golden.scenes import Window
-from tests.golden.test_layout import problems
+from tests.golden.test_texts import problems
 from tests.reference.hits import hits_for, push
 
 

@@ -369,21 +369,6 @@ def test_restart_before_any_run_does_nothing(session: Session) -> None:
     assert not session.can_undo
 
 
-@pytest.mark.parametrize("scene_keys", [(), ("space",), ("k",), ("return",), ("s",), ("d",)])
-def test_the_help_says_everything_in_full_at_640_by_480(scene_keys: tuple[str, ...]) -> None:
-    session = Session.open("hyperstatic")
-    session.resize(640, 480)
-    for key in (*scene_keys, "f1"):
-        session.press(key)
-    texts, titles = set[str](), {title for _, title in session.view.keys}
-    while session.view.help:
-        texts |= {
-            text for shown, view in session.stages for text in compose(shown, view, load_theme("light")).texts
-        }
-        session.press("f1")
-    assert titles <= texts, titles - texts
-
-
 def test_the_pages_of_keys_are_turned_by_wheel_and_click_and_each_says_which_it_is() -> None:
     session = Session.open("hyperstatic")
     session.resize(640, 480)
