@@ -186,9 +186,11 @@ def _migrated(document: Any) -> Mapping[str, Any]:
             )
         migrated = MIGRATIONS[old](migrated)
     state = migrated.get("state")
-    if isinstance(state, Mapping) and "paths" in state and "collision_state" not in state:  # its earlier name
-        renamed = {("collision_state" if key == "paths" else key): value for key, value in state.items()}
-        migrated["state"] = renamed
+    if isinstance(state, Mapping):
+        state = {key: value for key, value in state.items() if key not in ("largest_rotation", "largest_spin")}
+        if "paths" in state and "collision_state" not in state:  # its earlier name
+            state["collision_state"] = state.pop("paths")
+        migrated["state"] = state
     return migrated
 
 

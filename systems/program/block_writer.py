@@ -17,7 +17,7 @@ from pinjoint.systems.program.writer import Writer, accounts_of
 _RODS = "block_rods[block], block_rods[block + 1]"
 _PARTICLES = "first, last"
 _LIMITS = ("first = np.uint64(block_particles[block])", "last = np.uint64(block_particles[block + 1])")
-_COMPLETED = f"{TRIAL_STATE}, *foreseen"
+_COMPLETED = f"{TRIAL_STATE}, predicted"
 _MOVED = f"{_COMPLETED}, ending"
 _PARALLEL = """\
 from pinjoint.systems.kernels import prange, shared

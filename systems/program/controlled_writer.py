@@ -42,8 +42,7 @@ class ControlledWriter(Writer):
 
     @property
     def scratch(self) -> tuple[str, ...]:
-        blocks = ("work", "turns") if self.bends else ("work",)
-        return ("search", *blocks, "rod_work", "marks", "power", "gained", "stage_power")
+        return ("search", "work", "rod_work", "marks", "power", "gained", "stage_power")
 
     def _values(self) -> dict[str, Any]:
         located = bool(self.branches or self.events)
@@ -62,9 +61,9 @@ class ControlledWriter(Writer):
 
     def _driven_steps(self) -> dict[str, Sequence[str]]:
         return {
-            "evaluate": fragment(driven.evaluate_controlled, **self.second_block),
+            "evaluate": fragment(driven.evaluate_controlled),
             "take": fragment(driven.take_controlled),
-            "pushed": fragment(driven.pushed, **self.second_block),
+            "pushed": fragment(driven.pushed),
         }
 
     @property
@@ -77,7 +76,7 @@ class ControlledWriter(Writer):
         return pasted(forces.remember, "compiled", history=self._with_losses(self.commits, loop))
 
     def _commit(self) -> str:
-        return pasted(forces.commit, "entered", history="remember(time, dt, *placed, account, *columns)")
+        return pasted(forces.commit, "entered", history="remember(time, dt, displacement, account, *columns)")
 
     def _evaluate(self) -> str:
         lines = [
@@ -149,8 +148,10 @@ class ControlledWriter(Writer):
             bending=self._tangent_of_ends() if self.bends else [],
         )
         loop = RodLoop(self.shift | self.drift, [*self.geometry(), *tangent])
-        inserts: dict[str, str | list[str]] = {"particles": particles, "rods": loop.one_by_one()}
-        return pasted(implicit.tangent, "compiled", "", **(inserts | self.second_block))
+        return pasted(implicit.tangent, "compiled", particles=particles, rods=loop.one_by_one(), mass=self.mass)
+
+    def _of_bending(self) -> dict[str, list[str]]:
+        return {name: fragment(getattr(implicit, name)) if self.bends else [] for name in ("bend", "stiffen")}
 
     def _tangent_of_ends(self) -> list[str]:
         return fragment(

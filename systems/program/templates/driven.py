@@ -16,7 +16,7 @@ added last of all (`unpushed` is the sum without them), so that others can be tr
 def push():
     """Add the contact forces to all others."""
     for i in range(displacement.shape[0]):
-        for d in range(2):
+        for d in range(D):
             unpushed[i, d] = force[i, d]
             force[i, d] += support[i, d]
 
@@ -110,7 +110,7 @@ def drive(
 def keep():
     """Keep what a step changes besides the state of the particles, the clock and the account."""
     for i in range(force.shape[0]):
-        for d in range(2):
+        for d in range(D):
             kept_force[i, d] = unpushed[i, d]
             kept_resisting[i, d] = resisting[i, d]
     for k in range(power.shape[0]):
@@ -121,22 +121,12 @@ def keep():
 def put_back():
     """Put back what was kept."""
     for i in range(force.shape[0]):
-        for d in range(2):
+        for d in range(D):
             unpushed[i, d] = kept_force[i, d]
             resisting[i, d] = kept_resisting[i, d]
     for k in range(power.shape[0]):
         power[k] = kept_power[k]
     insert(others)
-
-
-def copy():
-    for r in range(insert(of).shape[0]):
-        insert(to)[r] = insert(of)[r]
-
-
-def copy_turned():
-    for r in range(insert(of).shape[0]):
-        insert(to)[r, 0] = insert(of)[r, 0]
 
 
 # --- integrators with fixed steps --------------------------------------------------------------------
@@ -161,7 +151,7 @@ def take_fixed():
         dt = real[Real.END] - began
         age = min(total - whole[Whole.SINCE], CHECK_INTERVAL)
         if is_check_due(total + 1, age + 1):
-            measure(*placed, *moving, *pulled, *resisted, measures, *columns)
+            measure(displacement, velocity, force, resisting, measures, *columns)
             account[Account.GUARD_ENERGY] = conserved(measures, account, dt, SHADOW)
         taken, reason = advance(
             1,
@@ -182,7 +172,7 @@ def take_fixed():
         control[Control.TIME] = real[Real.END]
         real[Real.ORIGIN] = real[Real.END] - age * size
         whole[Whole.SINCE] = total + taken - age
-        measure(*placed, *moving, *unpressed, *resisted, measures, *columns)
+        measure(displacement, velocity, unpushed, resisting, measures, *columns)
         account[Account.GUARD_ENERGY] = conserved(measures, account, size, SHADOW)
     else:
         steps = whole[Whole.WANTED] if alone else whole[Whole.STEPS]
@@ -219,13 +209,11 @@ def evaluate_controlled():
     """The forces of the present state."""
     evaluate(control[Control.TIME], control[Control.STEP_SIZE], *state, power, *columns)
     accelerate(force, resisting, work[0], particles_mobility)
-    insert(begin_turns)
 
 
 def pushed():
     """The accelerations by other contact forces, or in a state that was put back."""
     accelerate(force, resisting, work[0], particles_mobility)
-    insert(begin_turns)
 
 
 def take_controlled():

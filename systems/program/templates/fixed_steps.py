@@ -1,9 +1,9 @@
 """Integrators with fixed steps.
 
-Such an integrator says what becomes of each particle `i` as a step begins (`…_begins`), and as it ends (`…_ends`), once
-the forces at the new displacement and the predicted velocity are known. In between, `velocity` holds its mean over the
-step: with it the work of loads, mean force times displacement, makes the energy that Verlet conserves exact. Any other
-integrator is a function in place of `integrate`.
+Such an integrator says what becomes of each particle `i` along each coordinate `d` as a step begins (`…_begins`), and as
+it ends (`…_ends`), once the forces at the new displacement and the predicted velocity are known. In between, `velocity`
+holds its mean over the step: with it the work of loads, mean force times displacement, makes the energy that Verlet
+conserves exact. Any other integrator is a function in place of `integrate`.
 """
 
 # ruff: noqa: F821, F841
@@ -11,68 +11,50 @@ integrator is a function in place of `integrate`.
 
 
 def total_force():
-    """ax, ay: the force on a particle with dampers and drag (kN)."""
-    ax = force[i, 0]
-    ay = force[i, 1]
+    """The force on a particle with dampers and drag (kN), along one of its coordinates."""
+    total = force[i, d]
     if RATES:
-        ax += resisting[i, 0]
-        ay += resisting[i, 1]
+        total += resisting[i, d]
 
 
 def verlet_begins(i, dt, state, predicted, *columns):
     """x₊ = x + h v + h²/2 a; v* = v + h a; half of the way to v₊."""
     insert(total_force)
-    ax *= particles_mobility[i, 0]
-    ay *= particles_mobility[i, 1]
-    vx = velocity[i, 0]
-    vy = velocity[i, 1]
-    hx = vx + 0.5 * dt * ax
-    hy = vy + 0.5 * dt * ay
-    displacement[i, 0] += dt * hx
-    displacement[i, 1] += dt * hy
-    velocity[i, 0] = hx
-    velocity[i, 1] = hy
+    total *= particles_mobility[i, d]
+    present = velocity[i, d]
+    velocity[i, d] = present + 0.5 * dt * total
+    displacement[i, d] += dt * velocity[i, d]
     if RATES:
-        predicted[i, 0] = vx + dt * ax
-        predicted[i, 1] = vy + dt * ay
+        predicted[i, d] = present + dt * total
 
 
 def verlet_ends(i, dt, state, predicted, *columns):
     """v₊ = v + h/2 (a + a*), a* = a(x₊, v*); dampers and drag are then evaluated at v₊."""
     insert(total_force)
-    velocity[i, 0] += 0.5 * dt * (ax * particles_mobility[i, 0])
-    velocity[i, 1] += 0.5 * dt * (ay * particles_mobility[i, 1])
+    velocity[i, d] += 0.5 * dt * (total * particles_mobility[i, d])
 
 
 def taylor2_begins(i, dt, state, predicted, *columns):
     """The thesis' x₊ = x + v h + a h²/2; v₊ = v + a h."""
     insert(total_force)
-    gain_x = 0.5 * dt * (ax * particles_mobility[i, 0])
-    gain_y = 0.5 * dt * (ay * particles_mobility[i, 1])
-    velocity[i, 0] += gain_x
-    velocity[i, 1] += gain_y
-    displacement[i, 0] += dt * velocity[i, 0]
-    displacement[i, 1] += dt * velocity[i, 1]
-    predicted[i, 0] = velocity[i, 0] + gain_x
-    predicted[i, 1] = velocity[i, 1] + gain_y
+    gain = 0.5 * dt * (total * particles_mobility[i, d])
+    velocity[i, d] += gain
+    displacement[i, d] += dt * velocity[i, d]
+    predicted[i, d] = velocity[i, d] + gain
 
 
 def taylor2_ends(i, dt, state, predicted, *columns):
     """v₊ as predicted; until now v was the mean of the step."""
-    velocity[i, 0] = predicted[i, 0]
-    velocity[i, 1] = predicted[i, 1]
+    velocity[i, d] = predicted[i, d]
 
 
 def euler_begins(i, dt, state, predicted, *columns):
     """v₊ = v + h a(x, v); x₊ = x + h v₊."""
     insert(total_force)
-    velocity[i, 0] += dt * (ax * particles_mobility[i, 0])
-    velocity[i, 1] += dt * (ay * particles_mobility[i, 1])
-    displacement[i, 0] += dt * velocity[i, 0]
-    displacement[i, 1] += dt * velocity[i, 1]
+    velocity[i, d] += dt * (total * particles_mobility[i, d])
+    displacement[i, d] += dt * velocity[i, d]
     if RATES:
-        predicted[i, 0] = velocity[i, 0]
-        predicted[i, 1] = velocity[i, 1]
+        predicted[i, d] = velocity[i, d]
 
 
 def euler_ends(i, dt, state, predicted, *columns):
@@ -92,8 +74,8 @@ def integrate(steps, first, origin, dt, state, scratch, account, *columns):
 def work():
     """The work of varying loads in a step: their mean force times the displacement."""
     began = origin + (first + step - 1) * dt
-    before = load_power(began, *moving, *columns)
-    after = load_power(time, *moving, *columns)
+    before = load_power(began, velocity, *columns)
+    after = load_power(time, velocity, *columns)
     account[Account.WORK] += 500.0 * dt * (before + after)
 
 
@@ -107,7 +89,7 @@ def powers():
 def push(dt, velocity, force, resisting, predicted, particles_mobility):
     """predicted ← the velocities to which the present forces lead in a step."""
     for i in range(velocity.shape[0]):
-        for d in range(2):
+        for d in range(D):
             total = force[i, d] + resisting[i, d] if RATES else force[i, d]
             predicted[i, d] = velocity[i, d] + dt * total * particles_mobility[i, d]
 
@@ -142,7 +124,7 @@ def advance(
     if not fresh:
         forces(time, dt, *state, *columns)
         if POWERS:
-            resist(time, dt, *placed, *moving, *resisted, direction, power, *columns)
+            resist(time, dt, displacement, velocity, resisting, direction, power, *columns)
     taken = 0
     coming = 0
     while taken < steps:
@@ -169,15 +151,14 @@ def advance(
             continue
         taken += done
         age += done
-        happening = STOPS and happened(*placed, *moving, *scratch, *columns)
+        happening = STOPS and happened(displacement, velocity, *scratch, *columns)
         # The early checks guard whole steps: the energy that Euler conserves is another one in a piece.
         if is_check_due(total + taken, age if after >= 0 else CHECK_INTERVAL):
-            measure(*placed, *moving, *pulled, *resisted, measures, *columns)
+            measure(displacement, velocity, force, resisting, measures, *columns)
             ahead = 0.0
             if LOADS:
                 push(dt, velocity, force, resisting, predicted, particles_mobility)
-                insert(push_turns)
-                ahead = 1000.0 * dt * abs(load_power(time, *foreseen, *columns))
+                ahead = 1000.0 * dt * abs(load_power(time, predicted, *columns))
             reason = judge(measures, account, dt, SHADOW, ahead, time >= loads_end)
             if reason != StopReason.DONE:
                 return taken, reason.value

@@ -1,7 +1,7 @@
 """Runge–Kutta integrators: one loop with error control and events for every tableau.
 
 Constants besides those of every template: the tableau's, STAGES, NODES, … (systems/physics/tableaus.py), and the loop's
-(systems/physics/integrators.py). `work` has rows of shape (particles, 2): the accelerations of the stages, the
+(systems/physics/integrators.py). `work` has rows of shape (particles, D): the accelerations of the stages, the
 displacement and velocity at a stage and then of the result, and what implicit stages need. `marks` has a row for
 each rod. The function that computes the stages is called `stages` in the program.
 """
@@ -13,14 +13,11 @@ each rod. The function that computes the stages is called `stages` in the progra
 def explicit_stages(time, dt, allowed, state, scratch, *columns):
     """Accelerations of the stages after the first; returns True: they can always be computed."""
     trial, speed = work[STAGES], work[STAGES + 1]
-    insert(trial_turns)
     for s in range(1, STAGES):
         extrapolate(s, dt, displacement, velocity, work, trial, speed)
-        insert(extrapolate_turns)
         at = time + NODES[s] * dt
-        evaluate(at, dt, *tried, *forces, stage_power, *columns)
+        evaluate(at, dt, trial, speed, *forces, stage_power, *columns)
         accelerate(force, resisting, work[s], particles_mobility)
-        insert(accelerate_turns)
         if POWERS or LOADS:
             for k in range(gained.shape[0]):
                 gained[k] += RESULT_V[0, s] * stage_power[k]
@@ -30,7 +27,7 @@ def explicit_stages(time, dt, allowed, state, scratch, *columns):
 def extrapolate(s, dt, displacement, velocity, work, trial, speed):
     """trial, speed ← displacement and velocity at stage `s`, from the accelerations of the stages before it."""
     for i in range(displacement.shape[0]):
-        for d in range(2):
+        for d in range(D):
             p = 0.0
             q = 0.0
             for j in range(s):
@@ -44,13 +41,9 @@ def extrapolate(s, dt, displacement, velocity, work, trial, speed):
 def accelerate(force, resisting, acceleration, particles_mobility):
     """acceleration ← that of the particles under the forces of a state (m/s²)."""
     for i in range(force.shape[0]):
-        fx = force[i, 0]
-        fy = force[i, 1]
-        if RATES:
-            fx += resisting[i, 0]
-            fy += resisting[i, 1]
-        acceleration[i, 0] = fx * particles_mobility[i, 0]
-        acceleration[i, 1] = fy * particles_mobility[i, 1]
+        for d in range(D):
+            total = force[i, d] + resisting[i, d] if RATES else force[i, d]
+            acceleration[i, d] = total * particles_mobility[i, d]
 
 
 def combine(dt, tolerance, displacement, velocity, work, control, search):
@@ -70,7 +63,7 @@ def combine(dt, tolerance, displacement, velocity, work, control, search):
     also_x = 0.0
     also_v = 0.0
     for i in range(displacement.shape[0]):
-        for d in range(2):
+        for d in range(D):
             p = 0.0
             q = 0.0
             for j in range(STAGES):
@@ -97,8 +90,8 @@ def combine(dt, tolerance, displacement, velocity, work, control, search):
                     q += RESULT_X[2, j] * work[j, i, d]
                 also_x += q * q
                 also_v += p * p
-    search[Search.LARGEST_DISPLACEMENT] = max(control[Control.LARGEST_DISPLACEMENT], insert(norm_x))
-    search[Search.LARGEST_SPEED] = max(control[Control.LARGEST_SPEED], insert(norm_v))
+    search[Search.LARGEST_DISPLACEMENT] = max(control[Control.LARGEST_DISPLACEMENT], math.sqrt(size_x))
+    search[Search.LARGEST_SPEED] = max(control[Control.LARGEST_SPEED], math.sqrt(size_v))
     return error_of(
         dt,
         tolerance,
@@ -183,7 +176,7 @@ def attempt(time, end, tolerance, smallest, control, state, scratch, *columns):
     gap = 0.0
     rejected = False
     if EVENTS:
-        gap = mark(h, *placed, *moving, marks, *columns)
+        gap = mark(h, displacement, velocity, marks, *columns)
         begin_search(search, h, gap)
     while h >= smallest:
         ahead = end
@@ -193,15 +186,13 @@ def attempt(time, end, tolerance, smallest, control, state, scratch, *columns):
         for k in range(gained.shape[0]):
             gained[k] = RESULT_V[0, 0] * power[k]
         allowed = (tolerance if tolerance > 0.0 else FIXED_TOLERANCE) * control[Control.LARGEST_SPEED]
-        insert(allow_turns)
         solved = stages(time, h, allowed, *state, *scratch, *columns)
         error = combine(h, tolerance, displacement, velocity, work, control, search)
-        insert(combine_turns)
         if not solved or not error < math.inf:
             error = BEYOND
         elif EVENTS and search[Search.ENDED] == 0.0:
             first = search[Search.FAR] == 0.0
-            wanted = narrow(search, h, passed(h, *reached, marks, first, *columns))
+            wanted = narrow(search, h, passed(h, work[STAGES], work[STAGES + 1], marks, first, *columns))
             if wanted < smallest:  # the event is where the step begins
                 search[Search.ENDED] = 1.0
                 wanted = search[Search.LENGTH]
@@ -252,27 +243,24 @@ def controlled(steps, first, origin, tolerance, limit, bounds, control, state, s
             return taken, StopReason.UNRESOLVED.value
         time = ahead
         for i in range(displacement.shape[0]):
-            for d in range(2):
+            for d in range(D):
                 displacement[i, d] = work[STAGES, i, d]
                 velocity[i, d] = work[STAGES + 1, i, d]
-        insert(accept_turns)
         if POWERS or LOADS:
             for k in range(gained.shape[0]):
                 account[k] += 1000.0 * h * gained[k]
         if COMMITS:
-            remember(time, h, *placed, account, *columns)
+            remember(time, h, displacement, account, *columns)
         evaluate(time, h, *state, power, *columns)
         accelerate(force, resisting, work[0], particles_mobility)
-        insert(begin_turns)
         control[Control.LARGEST_DISPLACEMENT] = search[Search.LARGEST_DISPLACEMENT]
         control[Control.LARGEST_SPEED] = search[Search.LARGEST_SPEED]
-        insert(largest_turns)
         if tolerance > 0.0:
             taken += 1
             follow(control, h, limit, error, rejected)
         elif time >= goal or time == landing:
             taken += 1
-        if STOPS and happened(*placed, *moving, *scratch, *columns):
+        if STOPS and happened(displacement, velocity, *scratch, *columns):
             control[Control.TIME] = time
             return taken, StopReason.EVENT.value
     control[Control.TIME] = time
@@ -334,7 +322,6 @@ def advance(
     if not fresh:
         evaluate(control[Control.TIME], control[Control.STEP_SIZE], *state, power, *columns)
         accelerate(force, resisting, work[0], particles_mobility)
-        insert(begin_turns)
     taken = 0
     while taken < steps:
         wanted = min(steps - taken, steps_to_check(total + taken, total + taken))
@@ -356,7 +343,7 @@ def advance(
             return taken, ended
         now = total + taken
         if done > 0 and is_check_due(now, now):
-            measure(*placed, *moving, *pulled, *resisted, measures, *columns)
+            measure(displacement, velocity, force, resisting, measures, *columns)
             reason = judge(
                 measures, account, control[Control.STEP_SIZE], SHADOW, 0.0, control[Control.TIME] >= loads_end
             )

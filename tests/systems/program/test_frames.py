@@ -23,7 +23,7 @@ from tests.reference import frames
 
 FORMS = (FEW, MANY, VERY_MANY)
 OF_TURNING = re.compile(
-    r"\b(rotation|angular_velocity|twisting|particles_turning|slope_start|bow_start|lever|turn_a)\b"
+    r"\b(rotation|angular_velocity|twisting|particles_turning|slope_start|bow_start|lever|per_arm|turn_a)\b"
 )
 
 
