@@ -24,7 +24,6 @@ def main() -> int:
             from pinjoint.commands.language import speak_as_asked
 
             words = speak_as_asked(sys.argv[1:])
-            from pinjoint import included  # noqa: F401 (registers what is written as mods are)
             from pinjoint.commands import command_line
             from pinjoint.commands.progress import told
         except Mistake as error:  # of --language, or of a variable of the environment

@@ -154,7 +154,7 @@ def started(jobs: Mapping[Job, bytes], urgent: bool) -> subprocess.Popen[str]:
     documents = list(dict.fromkeys(jobs.values()))
     mods = [str(mod.folder) for mod in MODS if mod.loaded and mod.folder]
     asked = [(job, documents.index(document)) for job, document in jobs.items()]
-    task = Task(language(), mods, not urgent, asked, documents)
+    task = Task(os.getpid(), language(), mods, not urgent, asked, documents)
     priority = "BELOW_NORMAL_PRIORITY_CLASS" if urgent else "IDLE_PRIORITY_CLASS"  # as Windows has it
     with tempfile.TemporaryFile() as given:
         given.write(msgspec.msgpack.encode(task))

@@ -42,10 +42,11 @@ Job = tuple[str, ...]  # the name of a unit, or a step program: integrator, form
 
 
 class Task(msgspec.Struct, frozen=True):
-    """Jobs, each with the document of the model that they are of. mods: their folders. later: nobody waits for it."""
+    """Jobs, each with the document of its model. asker: the process that wants them. later: nobody waits for it."""
 
+    asker: int
     language: str
-    mods: list[str]
+    mods: list[str]  # their folders
     later: bool
     jobs: list[tuple[Job, int]]
     documents: list[bytes]
@@ -54,8 +55,8 @@ class Task(msgspec.Struct, frozen=True):
 def main() -> None:
     """Compile jobs into the cache."""
     signal.signal(signal.SIGINT, signal.SIG_DFL)  # a compiler hears of nothing else
-    threading.Thread(target=_end_after, args=(os.getppid(),), daemon=True).start()
     task = msgspec.msgpack.decode(sys.stdin.buffer.read(), type=Task)
+    threading.Thread(target=_end_after, args=(task.asker,), daemon=True).start()
     if hasattr(os, "nice"):  # to what runs at the same time, the window above all
         os.nice(19 if task.later else 5)
     gc.disable()  # looking through all that the compiler makes would take a fifth of the time

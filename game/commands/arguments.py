@@ -7,7 +7,7 @@ import itertools
 import math
 import os
 import re
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from pathlib import Path
 from typing import Any, NoReturn
 
@@ -60,7 +60,12 @@ class Parser(argparse.ArgumentParser):
     def parse_args(self, *args: Any, **options: Any) -> Any:
         """The options. Raises UsageError, also if what is to be written would replace what is read."""
         found = super().parse_args(*args, **options)
-        files = [(name, path) for name, value in vars(found).items() for path in _paths(value)]
+        self.keep(vars(found))
+        return found
+
+    def keep(self, options: Mapping[str, Any]) -> None:
+        """Raise UsageError if a file that options write is one that they, or others of these names, read."""
+        files = [(name, path) for name, value in options.items() for path in _paths(value)]
         for (name, path), (other, same) in itertools.permutations(files, 2):
             if name in OUTPUTS and (other not in OUTPUTS or name < other) and _is_one_file(path, same):
                 self.error(
@@ -71,7 +76,6 @@ class Parser(argparse.ArgumentParser):
                         other=same,
                     )
                 )
-        return found
 
     def exit(self, status: int = 0, message: str | None = None) -> NoReturn:
         """End the program once what was printed is written. Raises OSError if it cannot be."""
@@ -91,9 +95,10 @@ def _paths(value: Any) -> list[Path]:
 def _is_one_file(one: Path, other: Path) -> bool:
     """True if two names are of one file, by links, too, or will be."""
     try:
-        return one.samefile(other)
-    except (OSError, ValueError):
-        return os.path.realpath(one) == os.path.realpath(other)
+        there = one.exists() and other.exists()
+        return one.samefile(other) if there else os.path.realpath(one) == os.path.realpath(other)
+    except (OSError, ValueError):  # names that no file can have
+        return False
 
 
 def positive(text: str) -> float:

@@ -12,6 +12,7 @@ from pinjoint.commands.arguments import BAD_INPUT
 from pinjoint.commands.options import ANSWERED, NOT_ANSWERED, STOPPED, use_cores_as_asked
 from pinjoint.commands.output import write
 from pinjoint.commands.with_mods import load_as_asked
+from pinjoint.completion import complete
 from pinjoint.components.language import marked, tr
 from pinjoint.components.mistake import Mistake
 from pinjoint.mods.heeding import switched_off
@@ -22,6 +23,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
     """Run the command line; returns the exit status."""
     os.environ.setdefault("PYGAME_HIDE_SUPPORT_PROMPT", "1")  # standard output is for results
     words = list(sys.argv[1:] if arguments is None else arguments)
+    complete()
     try:
         words = load_as_asked(use_cores_as_asked(words))
         command = words[0] if words and words[0] in COMMANDS else "open"

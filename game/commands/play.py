@@ -50,6 +50,7 @@ def command(words: Sequence[str]) -> int:
     add_output(parser)
     options = parser.parse_args(words)
     loaded = script.Script(options.script)
+    parser.keep({**vars(options), "model": loaded.source})
     with ExitStack() as kept:
         if options.data is not None:
             kept.enter_context(library.data_in(options.data))

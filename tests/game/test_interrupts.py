@@ -13,8 +13,10 @@ from pathlib import Path
 import pytest
 
 import pinjoint
+from pinjoint import elsewhere
 from pinjoint.documents.library import DATA_VARIABLE
 from pinjoint.interrupts import CLOSING, closed_by_signals, quietly_interrupted
+from pinjoint.systems.program.writer import FEW
 
 ROOT = Path(pinjoint.__file__).parents[1]
 PROGRAM = ["/usr/bin/pinjoint", "-m", str(Path(pinjoint.__file__).parent / "__main__.py")]
@@ -106,9 +108,11 @@ def test_a_program_that_does_not_heed_a_signal_is_ended() -> None:
     assert done.returncode == 128 + signal.SIGINT
 
 
-def test_what_compiles_ends_with_the_window() -> None:
-    code = "import os; from pinjoint.prepare import _end_after; _end_after(os.getppid() + 1)"
-    assert subprocess.run([sys.executable, "-c", code], cwd=ROOT, timeout=60).returncode == 1
+def test_what_compiles_ends_with_the_window_also_before_it_has_begun(monkeypatch: pytest.MonkeyPatch) -> None:
+    with monkeypatch.context() as patched:
+        patched.setattr(os, "getpid", lambda: os.getppid())  # as if what started it were gone
+        process = elsewhere.started({("dop853", FEW, ""): b""}, urgent=True)
+    assert (process.communicate(timeout=60)[0], process.returncode) == ("", 1)
 
 
 COMMANDS = (

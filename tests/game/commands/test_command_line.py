@@ -265,6 +265,7 @@ def test_no_command_writes_where_it_cannot(command: str, capsys: pytest.CaptureF
         "plot {model} --of time --until 0.001 --output {file}",
         "{model} --record {file}",
         "shake isostatic {model} --output {file}",
+        "play {script} --output {file}",
     ],
 )
 def test_no_command_replaces_what_it_reads(
@@ -274,6 +275,8 @@ def test_no_command_replaces_what_it_reads(
     content = (ROOT / "assets" / "models" / "isostatic.json").read_bytes()
     model.write_bytes(content)
     record.write_text("0,0\n1,1\n", encoding="utf-8")
+    script = tmp_path / "script.jsonl"
+    script.write_text('{"format": "pinjoint session", "version": 1, "model": "model.csv"}\n', encoding="utf-8")
     file = tmp_path / "other.csv"
     if same == "a link":
         file.symlink_to(model)
@@ -281,7 +284,7 @@ def test_no_command_replaces_what_it_reads(
         file.hardlink_to(model)
     else:
         file = model if same == "itself" else Path(f"{tmp_path}/../{tmp_path.name}/model.csv")
-    assert main(command.format(model=model, record=record, file=file).split()) == 2
+    assert main(command.format(model=model, record=record, script=script, file=file).split()) == 2
     assert "which would be lost; choose another file" in capsys.readouterr().err
     assert model.read_bytes() == content
 
