@@ -627,7 +627,7 @@ class Writer:
     def _particles(self, where: str, span: str = EVERY) -> list[str]:
         """A loop in which the integrator moves every particle."""
         lines = fragment(find(where, self.integrator), total_force=fragment(fixed_steps.total_force))
-        return [f"for i in range({span}):", "    for d in range(D):", *indented(lines, 2)] if lines else []
+        return [f"for i in range({span}):", *indented(lines)] if lines else []
 
     def _gains(self, resist: str, given: str) -> list[str]:
         """The lines by which each account gains in the step that ends here."""

@@ -1,9 +1,8 @@
 """Integrators with fixed steps.
 
-Such an integrator says what becomes of each particle `i` along each coordinate `d` as a step begins (`…_begins`), and as
-it ends (`…_ends`), once the forces at the new displacement and the predicted velocity are known. In between, `velocity`
-holds its mean over the step: with it the work of loads, mean force times displacement, makes the energy that Verlet
-conserves exact. Any other integrator is a function in place of `integrate`.
+Such an integrator says what becomes of each particle `i` as a step begins (`…_begins`), and as it ends (`…_ends`), once
+the forces at the new displacement and the predicted velocity are known. In between, `velocity` holds its mean over the
+step: with it the work of loads, mean force times displacement, makes the energy that Verlet conserves exact.
 """
 
 # ruff: noqa: F821, F841
@@ -19,42 +18,47 @@ def total_force():
 
 def verlet_begins(i, dt, state, predicted, *columns):
     """x₊ = x + h v + h²/2 a; v* = v + h a; half of the way to v₊."""
-    insert(total_force)
-    total *= particles_mobility[i, d]
-    present = velocity[i, d]
-    velocity[i, d] = present + 0.5 * dt * total
-    displacement[i, d] += dt * velocity[i, d]
-    if RATES:
-        predicted[i, d] = present + dt * total
+    for d in range(D):
+        insert(total_force)
+        total *= particles_mobility[i, d]
+        present = velocity[i, d]
+        velocity[i, d] = present + 0.5 * dt * total
+        displacement[i, d] += dt * velocity[i, d]
+        if RATES:
+            predicted[i, d] = present + dt * total
 
 
 def verlet_ends(i, dt, state, predicted, *columns):
     """v₊ = v + h/2 (a + a*), a* = a(x₊, v*); dampers and drag are then evaluated at v₊."""
-    insert(total_force)
-    velocity[i, d] += 0.5 * dt * (total * particles_mobility[i, d])
+    for d in range(D):
+        insert(total_force)
+        velocity[i, d] += 0.5 * dt * (total * particles_mobility[i, d])
 
 
 def taylor2_begins(i, dt, state, predicted, *columns):
     """The thesis' x₊ = x + v h + a h²/2; v₊ = v + a h."""
-    insert(total_force)
-    gain = 0.5 * dt * (total * particles_mobility[i, d])
-    velocity[i, d] += gain
-    displacement[i, d] += dt * velocity[i, d]
-    predicted[i, d] = velocity[i, d] + gain
+    for d in range(D):
+        insert(total_force)
+        gain = 0.5 * dt * (total * particles_mobility[i, d])
+        velocity[i, d] += gain
+        displacement[i, d] += dt * velocity[i, d]
+        predicted[i, d] = velocity[i, d] + gain
 
 
 def taylor2_ends(i, dt, state, predicted, *columns):
     """v₊ as predicted; until now v was the mean of the step."""
-    velocity[i, d] = predicted[i, d]
+    for d in range(D):
+        velocity[i, d] = predicted[i, d]
 
 
 def euler_begins(i, dt, state, predicted, *columns):
     """v₊ = v + h a(x, v); x₊ = x + h v₊."""
-    insert(total_force)
-    velocity[i, d] += dt * (total * particles_mobility[i, d])
-    displacement[i, d] += dt * velocity[i, d]
-    if RATES:
-        predicted[i, d] = velocity[i, d]
+    for d in range(D):
+        insert(total_force)
+        velocity[i, d] += dt * (total * particles_mobility[i, d])
+        displacement[i, d] += dt * velocity[i, d]
+        if RATES:
+            predicted[i, d] = velocity[i, d]
 
 
 def euler_ends(i, dt, state, predicted, *columns):
