@@ -65,7 +65,8 @@ class RestMeasure:
         bending = np.abs(rods.end_moment).max(axis=1, initial=0.0) / rods.rest_length
         return RestMeasure(
             residual=np.maximum(self.residual, np.abs(turning) * free * lever),
-            kinetic=self.kinetic + 0.5 * particles.inertia * np.where(free, particles.angular_velocity, 0.0) ** 2,
+            kinetic=self.kinetic
+            + 0.5 * particles.inertia * np.where(free, particles.angular_velocity, 0.0) ** 2,
             load=np.maximum(self.load, np.abs(particles.constant_moment) * lever),
             pull=np.maximum(self.pull, bending),
             elastic=self.elastic + 1000.0 * bending_energy(model),

@@ -10,9 +10,9 @@ from pinjoint.systems.base import Integrator, StepSystem
 from pinjoint.systems.entries import Mark
 from pinjoint.systems.program.binding import Bound, StepRole, bind
 from pinjoint.systems.program.loops import RodLoop
-from pinjoint.systems.program.names import NO_POWER, POWER_RETURNED, TRIAL_STATE
+from pinjoint.systems.program.names import NO_POWER, NOW, POWER_RETURNED, TRIAL_STATE
 from pinjoint.systems.program.pasting import fragment, pasted
-from pinjoint.systems.program.templates import driven, events, forces, implicit, rods
+from pinjoint.systems.program.templates import events, forces, implicit, rods, runge_kutta
 from pinjoint.systems.program.writer import Writer, sides_of
 
 _AHEAD = 1e-3  # of a step, over which the slope of a margin is taken
@@ -55,16 +55,19 @@ class ControlledWriter(Writer):
         parts += self._happened()
         return [*parts, self._tangent()] if self.integrator.rod_rows else parts
 
-    @property
-    def _limits(self) -> tuple[str, ...]:
-        return ("tolerance", "limit")
-
-    def _driven_steps(self) -> dict[str, Sequence[str]]:
+    def _steps(self) -> dict[str, list[str]]:
         return {
-            "evaluate": fragment(driven.evaluate_controlled),
-            "take": fragment(driven.take_controlled),
-            "pushed": fragment(driven.pushed),
+            "evaluate": self._evaluated(),
+            "begin": ["search[Search.LIMIT] = limit"],
+            "step": fragment(runge_kutta.step),
+            **{name: [] for name in ("finish", "look_ahead", "settle")},
         }
+
+    def _pushed(self) -> list[str]:
+        return ["accelerate(force, resisting, work[0], particles_mobility)"]
+
+    def _evaluated(self) -> list[str]:
+        return [f"{self._evaluation.replace('time, dt', NOW)}", *self._pushed()]
 
     @property
     def _evaluation(self) -> str:

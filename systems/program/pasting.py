@@ -16,7 +16,7 @@ _LINE = re.compile(r"( *)insert\((\w+)\)")
 _EXPRESSION = re.compile(r"insert\((\w+)\)")
 _ON_LINES = re.compile(r"\(\n((?:[^()]|\([^()]*\))*\*columns),?\s*\)")
 _WIDTH = 112
-_GROUPS = "state|forces|scratch|bounds|limits|kept|observed"
+_GROUPS = "state|forces|scratch|bounds|kept|observed"
 
 
 @cache

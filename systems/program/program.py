@@ -424,8 +424,7 @@ class Program:
     def advance(self, steps: int, until: float = math.inf, landing: float = math.inf) -> tuple[int, StopReason]:
         """Take up to `steps` steps; returns how many, and why it stopped.
 
-        An integrator that controls its steps takes none that would end after `until` (s), and one that would
-        pass `landing` (s) is cut to end there; for others the steps are clock.step_size long.
+        None ends after `until` (s), and one that would pass `landing` (s) is cut to end there.
         """
         self._load()
         try:
@@ -461,37 +460,31 @@ class Program:
     def _take(self, steps: int, until: float, landing: float) -> tuple[int, StopReason]:
         """Take up to `steps` steps, in one call."""
         self._catch_up()
-        controlled, (time, size) = self.integrator.controlled, self._control[:2].tolist()
-        if until < math.inf and not controlled:
-            steps = min(steps, max(int((until - time) / size * (1.0 + 1e-12)), 0))
-            if steps == 0:
-                return 0, StopReason.DONE
         if self.between is not None:
             real = self._idle[0].real
             real[Real.UNTIL], real[Real.END] = until, landing
             return self._enter(self._idle, steps, alone=True)
         origin, limit = self._origin.tolist()
         total, since = self._counts.tolist()
-        chosen = (self.tolerance, limit or math.inf) if controlled else (size,)
-        bounds = (float(until), float(landing)) if controlled else ()
+        time = self._control.item(0)
         taken, reason = self.module.form.advance(
             steps,
             self._is_fresh,
             total,
             total - since,
             origin,
-            *chosen,
+            self.tolerance,
+            limit or math.inf,
             self._breaks,
-            *bounds,
+            float(until),
+            float(landing),
             self.changes_end,
             *self._arguments,
         )
-        if taken and not controlled:
-            self._control[0] = origin + (total - since + taken) * size
         now = self._control.item(0)
         if taken or now > time:
             self._counts[0] = total + taken
-            if controlled and (self.tolerance or now == landing):
+            if self.tolerance or now == landing:
                 self._origin[0], self._counts[1] = now, total + taken
             self._mark_changes()
         self._state_revision = self.model.newest(Role.STATE)
@@ -541,7 +534,8 @@ class Program:
             *self.between.functions(compiled=form.is_machine),
             *arrays,
             *self._motion,
-            *((self.tolerance, limit) if self.integrator.controlled else ()),
+            self.tolerance,
+            limit,
             self._breaks,
             self.changes_end,
             *self._arguments,

@@ -66,6 +66,7 @@ from pinjoint.systems.program.templates import (
     observing,
     pairs,
     rods,
+    steps,
 )
 
 ROUND_OFF = 2.220446049250313e-16  # of forces, relative to stiffness × displacement
@@ -228,8 +229,8 @@ class Writer:
         parts = [
             self._head(),
             *([self._drive()] if self.collides else []),
-            self._pasted(f"{self.integrator.entry}=advance", "compiled" if self.collides else "entered"),
-            self._integrate(),
+            pasted(steps.advance, "compiled" if self.collides else "entered", **self._steps()),
+            *(pasted(part, "inlined") for part in (steps.aim, steps.is_check_due)),
             *(self._pasted(part, "inlined") for part in reversed(self.integrator.parts)),
             *self._of_steps(),
             *(pasted(template, "compiled") for template in (_OF_PAIRS if self.pairs else ())),
@@ -249,7 +250,6 @@ class Writer:
             "forces": STATE[2:],
             "scratch": self.scratch,
             "bounds": ("breaks", "until", "landing"),
-            "limits": self._limits,
             "kept": (*KEPT, *(f"kept_{name}" for name in self.kept)),
             "observed": (*OBSERVED, *(["rods_end_moment"] if self.bends else [])),
             "columns": self.columns,
@@ -270,11 +270,6 @@ class Writer:
         """What steps change by row: columns that commits write, the sides of events, and the state where it turns."""
         return [*self.written, *map(sides_of, self.events), *(STATE[:2] if self.bends else ())]
 
-    @property
-    def _limits(self) -> tuple[str, ...]:
-        """What `drive` takes that bounds its steps."""
-        return ()
-
     def _drive(self) -> str:
         """The function by which steps are entered where particles may meet."""
         return pasted(
@@ -283,7 +278,9 @@ class Writer:
             "",
             keep=self._copies(driven.keep, "kept_{0}", "{0}"),
             put_back=self._copies(driven.put_back, "{0}", "kept_{0}"),
-            **self._driven_steps(),
+            evaluate=self._evaluated(),
+            take=fragment(driven.take),
+            pushed=self._pushed(),
         )
 
     def _copies(self, template: Callable[[], None], to: str, of: str) -> list[str]:
@@ -294,15 +291,15 @@ class Writer:
             lines.append(f"    {to.format(name)}[{row}] = {of.format(name)}[{row}]")
         return fragment(template, others=lines)
 
-    def _driven_steps(self) -> dict[str, Sequence[str]]:
-        """How `drive` evaluates forces, takes steps, and what follows from other contact forces."""
-        resist = [f"resist({RESISTED}, power, *columns)"] if self.powers else []
-        resist = [line.replace("time, dt", NOW) for line in resist]
-        return {
-            "evaluate": fragment(driven.evaluate_fixed, resist=resist),
-            "take": fragment(driven.take_fixed),
-            "pushed": [],
-        }
+    def _pushed(self) -> list[str]:
+        """What follows from other contact forces."""
+        return []
+
+    def _evaluated(self) -> list[str]:
+        """The forces of the present state."""
+        calls = [f"forces({TRIAL_STATE}, *columns)"]
+        calls += [f"resist({RESISTED}, power, *columns)"] if self.powers else []
+        return [call.replace("time, dt", NOW) for call in calls]
 
     def _pushes(self) -> list[str]:
         """The lines by which contact forces are added to all others."""
@@ -320,6 +317,8 @@ class Writer:
             "POWERS": self.powers,
             "LOADS": bool(self.of[StepRole.LOAD]),
             "STOPS": bool(self.events),
+            "EVENTS": False,
+            "SLACK": 1e-12,  # share of the time to go by which the end of a fixed step may be late
             "SHADOW": float(self.integrator.guard),
             "CHECK_INTERVAL": self.integrator.check_interval,
             "REVIEW_INTERVAL": REVIEW_INTERVAL,
@@ -596,32 +595,38 @@ class Writer:
 
     # --- steps ------------------------------------------------------------------------------------
 
-    def _integrate(self) -> str:
-        """The integrator's own function, or steps as it says that they begin and end for each particle.
+    def _steps(self) -> dict[str, list[str]]:
+        """What the loop over steps does with this integrator."""
+        force = "unpushed" if self.collides else "force"
+        return {
+            "evaluate": self._evaluated(),
+            "begin": ["inside = False", *self._begin()],
+            "step": fragment(
+                fixed_steps.step,
+                complete=self._complete("not whole"),
+                displacement=self._move(),
+                work=fragment(fixed_steps.work) if self.of[StepRole.LOAD] else [],
+                velocity=self._accelerate(),
+            ),
+            "finish": self._complete(""),
+            "look_ahead": fragment(fixed_steps.look_ahead),
+            "settle": fragment(fixed_steps.settle, force=force),
+        }
 
-        Inlined where it is called, once, the columns stay in registers.
-        """
-        if self.integrator.kernel:
-            return self._pasted(f"{self.integrator.kernel}=integrate", "inlined")
-        return pasted(
-            fixed_steps.integrate,
-            "inlined",
-            displacement=self._move(),
-            work=fragment(fixed_steps.work) if self.of[StepRole.LOAD] else [],
-            velocity=self._complete(),
-            rest=self._finish(),
-        )
+    def _begin(self) -> list[str]:
+        """The lines before the first step."""
+        return []
 
     def _move(self) -> list[str]:
-        """To the next displacement; its forces."""
+        """The lines that lead to the next displacement, and give its forces."""
         return [*self._particles(self.integrator.begins), f"accept({PREDICTED}, account, *columns)"]
 
-    def _complete(self) -> list[str]:
-        """To the next velocity; what resists it."""
+    def _accelerate(self) -> list[str]:
+        """The lines that lead to the next velocity, and give what resists it."""
         return [*self._particles(self.integrator.ends), *self._gains("resist", RESISTED)]
 
-    def _finish(self) -> list[str]:
-        """The lines after the last of many steps."""
+    def _complete(self, condition: str) -> list[str]:
+        """The lines that complete a step which waits for the next one, under a condition."""
         return []
 
     def _particles(self, where: str, span: str = EVERY) -> list[str]:
@@ -745,7 +750,7 @@ class Writer:
 def read_sources(integrators: Iterable[Integrator]) -> None:
     """Find the sources of integrators ahead of need; those of one take some frames."""
     for one in integrators:
-        for part in (one.kernel, one.begins, one.ends, one.entry, *one.parts):
+        for part in (one.begins, one.ends, *one.parts):
             if isinstance(part, str) and part:
                 source_of(find(part.partition("=")[0], one))
 

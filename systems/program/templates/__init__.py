@@ -9,7 +9,6 @@ program. It runs only there.
     *scratch    predicted, power, gained; of an integrator that controls its steps
                 search, work, rod_work, marks, power, gained, stage_power
     *bounds     breaks, until, landing
-    *limits     tolerance, limit; where steps are controlled
     *kept       what driven.py puts back
     *observed   rods_axial_force, rods_length, rods_strain, yielding; fixed, tension, compression, yields
     insert(x)   the lines, or the expression, that the writer made for `x`
@@ -37,8 +36,9 @@ CHECK_INTERVAL and REVIEW_INTERVAL (steps); of one that controls its steps also 
 rods has branches), COMMITS (something has a history) and those of its integrator.
 
     driven.py        steps among particles that may meet
-    fixed_steps.py   integrators whose steps are all alike, and when a state is checked
-    runge_kutta.py   integrators that control their steps: one loop for every tableau
+    steps.py         the loop over steps of every integrator, and when a state is checked
+    fixed_steps.py   one step of integrators whose steps are all alike
+    runge_kutta.py   one step of integrators that control their steps, by any tableau
     implicit.py      the stages of implicit ones
     forces.py        forces, history, and what they do per second
     pairs.py         pairs of particles that are near each other

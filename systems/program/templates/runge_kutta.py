@@ -1,4 +1,4 @@
-"""Runge–Kutta integrators: one loop with error control and events for every tableau.
+"""Runge–Kutta integrators: one step with error control and events for every tableau.
 
 Constants besides those of every template: the tableau's, STAGES, NODES, … (systems/physics/tableaus.py), and the loop's
 (systems/physics/integrators.py). `work` has rows of shape (particles, D): the accelerations of the stages, the
@@ -6,7 +6,7 @@ displacement and velocity at a stage and then of the result, and what implicit s
 each rod. The function that computes the stages is called `stages` in the program.
 """
 
-# ruff: noqa: F821
+# ruff: noqa: F821, F841
 # mypy: ignore-errors
 
 
@@ -213,67 +213,29 @@ def attempt(time, end, tolerance, smallest, control, state, scratch, *columns):
     return 0.0, time, 0.0, True
 
 
-def controlled(steps, first, origin, tolerance, limit, bounds, control, state, scratch, account, *columns):
-    """Take up to `steps` steps that end by `until` (s); returns (steps taken, StopReason).
-
-    tolerance: relative, of one step; 0: all steps have the length control[Control.STEP_SIZE]. breaks: times that
-    no step passes, ascending, the last one infinite. landing: another such time (s), after which steps of fixed
-    length are counted from there. A fixed step that breaks interrupt goes on to its end in pieces; none of them is taken
-    where that end is after `until`.
-    """
-    time = control[Control.TIME]
-    search[Search.LIMIT] = limit
-    taken = 0
-    coming = 0
-    while taken < steps:
-        step = control[Control.STEP_SIZE]
-        goal, reach = aim(time, step, origin, first + taken, tolerance)
-        while breaks[coming] <= time:
-            coming += 1
-        stop = breaks[coming]
-        if time < landing < stop:
-            stop = landing
-        end = stop if reach >= stop else goal
-        if end > until or (tolerance == 0.0 and min(goal, landing) > until):
-            break
-        least = max(SMALLEST_SHARE * min(step, end - time), np.nextafter(time, math.inf) - time)
-        h, ahead, error, rejected = attempt(time, end, tolerance, least, control, *state, *scratch, *columns)
-        if h == 0.0:
-            control[Control.TIME] = time
-            return taken, StopReason.UNRESOLVED.value
-        time = ahead
-        for i in range(displacement.shape[0]):
-            for d in range(D):
-                displacement[i, d] = work[STAGES, i, d]
-                velocity[i, d] = work[STAGES + 1, i, d]
-        if POWERS or LOADS:
-            for k in range(gained.shape[0]):
-                account[k] += 1000.0 * h * gained[k]
-        if COMMITS:
-            remember(time, h, displacement, account, *columns)
-        evaluate(time, h, *state, power, *columns)
-        accelerate(force, resisting, work[0], particles_mobility)
-        control[Control.LARGEST_DISPLACEMENT] = search[Search.LARGEST_DISPLACEMENT]
-        control[Control.LARGEST_SPEED] = search[Search.LARGEST_SPEED]
-        if tolerance > 0.0:
-            taken += 1
-            follow(control, h, limit, error, rejected)
-        elif time >= goal or time == landing:
-            taken += 1
-        if STOPS and happened(displacement, velocity, *scratch, *columns):
-            control[Control.TIME] = time
-            return taken, StopReason.EVENT.value
-    control[Control.TIME] = time
-    return taken, StopReason.DONE.value
-
-
-def aim(time, step, origin, age, tolerance):
-    """When a step would end, and up to when a break ends it instead: no step of a sliver is left before the break."""
+def step():
+    """A step that meets the tolerance and passes no event."""
+    least = max(SMALLEST_SHARE * min(size, end - time), np.nextafter(time, math.inf) - time)
+    h, time, error, rejected = attempt(time, end, tolerance, least, control, *state, *scratch, *columns)
+    if h == 0.0:
+        return taken, StopReason.UNRESOLVED.value
+    for i in range(displacement.shape[0]):
+        for d in range(D):
+            displacement[i, d] = work[STAGES, i, d]
+            velocity[i, d] = work[STAGES + 1, i, d]
+    if POWERS or LOADS:
+        for k in range(gained.shape[0]):
+            account[k] += 1000.0 * h * gained[k]
+    if COMMITS:
+        remember(time, h, displacement, account, *columns)
+    evaluate(time, h, *state, power, *columns)
+    accelerate(force, resisting, work[0], particles_mobility)
+    control[Control.LARGEST_DISPLACEMENT] = search[Search.LARGEST_DISPLACEMENT]
+    control[Control.LARGEST_SPEED] = search[Search.LARGEST_SPEED]
     if tolerance > 0.0:
-        goal = time + step
-        return goal, goal + 0.01 * step
-    goal = origin + (age + 1) * step
-    return goal, goal
+        follow(control, h, limit, error, rejected)
+    counted = total + taken + 1
+    compared = control[Control.STEP_SIZE]
 
 
 def follow(control, h, limit, error, rejected):
@@ -294,65 +256,3 @@ def follow(control, h, limit, error, rejected):
     else:
         control[Control.STEP_SIZE] = min(max(h * factor, step if h < step else 0.0), limit)
     control[Control.STEP_ERROR] = max(error, LEAST_ERROR)
-
-
-def advance(
-    steps,
-    fresh,
-    total,
-    first,
-    origin,
-    tolerance,
-    limit,
-    bounds,
-    loads_end,
-    control,
-    state,
-    scratch,
-    account,
-    measures,
-    *columns,
-):
-    """Take up to `steps` steps that end by `until` (s); returns (steps taken, StopReason).
-
-    fresh: the forces are still those of the present state. total: all steps so far. first: steps since the time origin,
-    which moves with every step whose size is controlled. Checks happen after 1, 2, 4, … steps in all, and whenever the
-    total is a multiple of CHECK_INTERVAL: at counts that do not depend on how the steps are divided into calls.
-    """
-    if not fresh:
-        evaluate(control[Control.TIME], control[Control.STEP_SIZE], *state, power, *columns)
-        accelerate(force, resisting, work[0], particles_mobility)
-    taken = 0
-    while taken < steps:
-        wanted = min(steps - taken, steps_to_check(total + taken, total + taken))
-        done, ended = integrate(
-            wanted,
-            first + taken,
-            origin,
-            tolerance,
-            limit,
-            *bounds,
-            control,
-            *state,
-            *scratch,
-            account,
-            *columns,
-        )
-        taken += done
-        if ended == StopReason.UNRESOLVED:
-            return taken, ended
-        now = total + taken
-        if done > 0 and is_check_due(now, now):
-            measure(displacement, velocity, force, resisting, measures, *columns)
-            reason = judge(
-                measures, account, control[Control.STEP_SIZE], SHADOW, 0.0, control[Control.TIME] >= loads_end
-            )
-            if reason != StopReason.DONE:
-                return taken, reason.value
-        if done > 0 and now % REVIEW_INTERVAL == 0:
-            return taken, StopReason.REVIEW.value
-        if ended == StopReason.EVENT:
-            return taken, ended
-        if done < wanted:
-            break
-    return taken, StopReason.DONE.value
