@@ -9,7 +9,6 @@ from pinjoint.components.collision_state import CollisionState, check_collision_
 from pinjoint.components.departure import Departure, check_departure
 from pinjoint.components.field import Field, FieldError, state
 from pinjoint.components.handle import Handle
-from pinjoint.components.language import tr
 
 
 def check_events(value: Any, where: str) -> Mapping[str, tuple[str, ...]]:
@@ -19,10 +18,8 @@ def check_events(value: Any, where: str) -> Mapping[str, tuple[str, ...]]:
         if all(isinstance(name, str) for names in found.values() for name in names):
             return found
     raise FieldError(
-        tr(
-            '{where}: write a list of names of elements for each event, such as {{"mymod.breaking": ["AB"]}}.',
-            where=where,
-        )
+        '{where}: write a list of names of elements for each event, such as {{"mymod.breaking": ["AB"]}}.',
+        where=where,
     )
 
 

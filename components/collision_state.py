@@ -2,7 +2,7 @@
 
 Of a model whose particles fly free it is a FreeFlightState, of one whose particles an integrator moves it is a
 PersistentContacts; a model has at most one of them, in the clock's column `collision_state`. Both are mappings: what a
-model file holds. Files written before the two were told apart hold one mapping for both, under the key `paths`.
+model file holds.
 """
 
 from __future__ import annotations
@@ -16,7 +16,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pinjoint.components.field import FieldError
-from pinjoint.components.language import tr
 
 Floats = NDArray[np.float64]
 Pairs = NDArray[np.int64]
@@ -98,7 +97,7 @@ def check_collision_state(value: Any, where: str) -> CollisionState:
     if isinstance(value, FreeFlightState | PersistentContacts):
         return value
     try:
-        entries = dict(value) if "kind" in value else _from_paths(**value)
+        entries = dict(value)
         kind = _KINDS[entries.pop("kind")]
         found = kind(**{key: _read(key, entry) for key, entry in entries.items()})
         count = len(found.contacts if isinstance(found, FreeFlightState) else found.pairs)
@@ -106,21 +105,11 @@ def check_collision_state(value: Any, where: str) -> CollisionState:
             raise ValueError
     except (TypeError, ValueError, KeyError, OverflowError):
         raise FieldError(
-            tr(
-                "{where}: this is not what Pinjoint saves here. Remove it: the run then goes on with"
-                " differences of round-off only.",
-                where=where,
-            )
+            "{where}: this is not what Pinjoint saves here. Remove it: the run then goes on with"
+            " differences of round-off only.",
+            where=where,
         ) from None
     return found
-
-
-def _from_paths(motion: Any, contacts: Any, forces: Any, crowd: Any) -> dict[str, Any]:
-    """The entries of files of earlier programs: `crowd` is the pile, or without motion at most the longest step."""
-    if len(motion):
-        return {"kind": "free flight", "motion": motion, "contacts": contacts, "forces": forces, "pile": crowd}
-    (longest,) = crowd or [None]
-    return {"kind": "persistent contacts", "pairs": contacts, "forces": forces, "longest_step": longest}
 
 
 def _read(key: str, value: Any) -> Any:

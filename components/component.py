@@ -6,7 +6,7 @@ from typing import ClassVar
 
 from pinjoint.components.field import Role
 from pinjoint.components.handle import Handle
-from pinjoint.components.language import tr
+from pinjoint.components.mistake import WrongValue
 from pinjoint.components.table import fields_of
 
 
@@ -32,22 +32,18 @@ def add_component(mod: str, component: type[Component]) -> list[str]:
     names = [f"{mod}_{field.name.removeprefix(f'{mod}_')}" for field in fields]
     for field, name in zip(fields, names, strict=True):
         if hasattr(kind, name):
-            raise ValueError(
-                tr(
-                    "{component}: {table} have a '{name}' already; give this Field another name.",
-                    component=component.__name__,
-                    table=kind.table,
-                    name=name,
-                )
+            raise WrongValue(
+                "{component}: {table} have a '{name}' already; give this Field another name.",
+                component=component.__name__,
+                table=kind.table,
+                name=name,
             )
         if field.references is not None or field.role is Role.DERIVED:
-            raise ValueError(
-                tr(
-                    "{component}.{field}: a mod cannot add references or derived columns, only Fields with values of"
-                    " their own (document or state).",
-                    component=component.__name__,
-                    field=field.name,
-                )
+            raise WrongValue(
+                "{component}.{field}: a mod cannot add references or derived columns, only Fields with values of"
+                " their own (document or state).",
+                component=component.__name__,
+                field=field.name,
             )
         field.check_default(component.__name__)
     for field, name in zip(fields, names, strict=True):

@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 from pinjoint.components.field import FieldError, Role
-from pinjoint.components.language import marked, tr
+from pinjoint.components.language import marked
 from pinjoint.components.snapshot import Snapshot
 from pinjoint.components.world import World
 
@@ -39,11 +39,11 @@ class Departure(Mapping[str, Any]):
             for field in table.fields_in(Role.STATE):
                 column, key = field.allocate(table.count), f"{name}.{field.name}"
                 if key in saved and field.checker is check_departure:
-                    raise FieldError(tr(_REFUSAL, where=f"{where}.{key}"))
+                    raise FieldError(_REFUSAL, where=f"{where}.{key}")
                 if key in saved:
                     values = saved[key]
                     if not isinstance(values, list | tuple) or len(values) != table.count:
-                        raise FieldError(tr(_REFUSAL, where=f"{where}.{key}"))
+                        raise FieldError(_REFUSAL, where=f"{where}.{key}")
                     column = field.check_column(list(values), table.count, partial(_path, f"{where}.{key}"))
                 layout.append((name, (field.name,)))
                 arrays.append(column)
@@ -88,4 +88,4 @@ def check_departure(value: Any, where: str) -> Mapping[str, Any]:
     """A departure, or what a model file holds of one, until `of_file` makes it one. Raises FieldError."""
     if isinstance(value, Mapping):
         return value
-    raise FieldError(tr(_REFUSAL, where=where))
+    raise FieldError(_REFUSAL, where=where)

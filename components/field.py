@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pinjoint.components.language import decimals, joined, marked, tr
-from pinjoint.components.mistake import Mistake
+from pinjoint.components.mistake import Mistake, WrongValue
 from pinjoint.components.wording import is_broken, quoted
 
 T = TypeVar("T")
@@ -127,11 +127,9 @@ class Field(Generic[T]):
 
     def __post_init__(self) -> None:
         if self.nullable and (self.shape or self.dtype in (int, bool, "reference")):
-            raise ValueError(
-                tr(
-                    "A Field that can be None must be one float, text or object ('{field}' is not).",
-                    field=self.title or self.doc,
-                )
+            raise WrongValue(
+                "A Field that can be None must be one float, text or object ('{field}' is not).",
+                field=self.title or self.doc,
             )
         if self.dtype == "reference":
             self.minimum, self.maximum = 0, _LARGEST_REFERENCE
@@ -238,7 +236,7 @@ class Field(Generic[T]):
         return joined([tr(self.title), tr(axis) if axis else ""])
 
     def _refusal(self, message: str, where: str, value: Any, axis: str = "", **more: Any) -> FieldError:
-        return FieldError(tr(message, where=where, title=self.named(axis), value=quoted(value), **more))
+        return FieldError(message, where=where, title=self.named(axis), value=quoted(value), **more)
 
     def unit_of(self, axis: str) -> str:
         """The unit of the part called so, "" being the whole; where parts have several, they stand in order: "kN·m, m"."""
@@ -336,12 +334,10 @@ class Field(Generic[T]):
         items = values if isinstance(values, list | tuple) else [values] * rows
         if len(items) != rows:
             raise FieldError(
-                tr(
-                    "{title}: {count} values for {rows} elements; give one value for each element, or one for all.",
-                    title=self.named(),
-                    count=len(items),
-                    rows=rows,
-                )
+                "{title}: {count} values for {rows} elements; give one value for each element, or one for all.",
+                title=self.named(),
+                count=len(items),
+                rows=rows,
             )
         any_text = self.dtype is str and self.choices is None and self.checker is None
         if any_text and set(map(type, items)) == {str} and not is_broken("".join(items)):

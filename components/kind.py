@@ -8,82 +8,68 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from pinjoint.components.extensions import EXTENSIONS
 from pinjoint.components.field import Role
 from pinjoint.components.handle import Handle
-from pinjoint.components.language import tr
-from pinjoint.components.model import ADDED, KINDS, Model
+from pinjoint.components.mistake import WrongValue
+from pinjoint.components.model import KINDS, Model
 from pinjoint.components.table import Table, fields_of
 from pinjoint.components.wording import is_identifier
 
 
-def add_kind(mod: str, kind: type[Handle]) -> str:
-    """Let all models made from now on have a table of a mod's kind; returns what files call it.
+def checked_kind(mod: str, kind: type[Handle]) -> str:
+    """What files call a mod's kind of elements.
 
     Raises ValueError if a model has such elements already, or a Field is none that a mod can add.
     """
-    others = [*KINDS, *ADDED.values()]
+    others = [*KINDS, *EXTENSIONS.kinds.values()]
     fields = {field.name: field for field in fields_of(kind)}
     for part in ("table", "noun"):
         word = getattr(kind, part, "")
         if not word or word in [getattr(other, part) for other in others]:
-            raise ValueError(
-                tr(
-                    "{name}: its {part} '{word}' is missing or already used; give it another.",
-                    name=kind.__name__,
-                    part=part,
-                    word=word,
-                )
+            raise WrongValue(
+                "{name}: its {part} '{word}' is missing or already used; give it another.",
+                name=kind.__name__,
+                part=part,
+                word=word,
             )
     if not is_identifier(kind.table) or hasattr(Model, kind.table):
-        raise ValueError(
-            tr(
-                "{name}: '{table}' cannot be the name of a table; use another word.",
-                name=kind.__name__,
-                table=kind.table,
-            )
+        raise WrongValue(
+            "{name}: '{table}' cannot be the name of a table; use another word.",
+            name=kind.__name__,
+            table=kind.table,
         )
     if kind.single:
-        raise ValueError(
-            tr(
-                "{name}: a mod's kind cannot be `single`. For facts about the whole model, add a component of"
-                " Settings or Environment.",
-                name=kind.__name__,
-            )
+        raise WrongValue(
+            "{name}: a mod's kind cannot be `single`. For facts about the whole model, add a component of"
+            " Settings or Environment.",
+            name=kind.__name__,
         )
     if "name" not in fields or fields["name"].dtype is not str:
-        raise ValueError(
-            tr(
-                "{name} needs a Field 'name' of dtype str, by which people tell its elements apart.",
-                name=kind.__name__,
-            )
+        raise WrongValue(
+            "{name} needs a Field 'name' of dtype str, by which people tell its elements apart.",
+            name=kind.__name__,
         )
     for field in fields.values():
         if field.role is Role.DERIVED:
-            raise ValueError(
-                tr(
-                    "{name}.{field}: a mod cannot add derived columns.",
-                    name=kind.__name__,
-                    field=field.name,
-                )
+            raise WrongValue(
+                "{name}.{field}: a mod cannot add derived columns.", name=kind.__name__, field=field.name
             )
         field.check_default(kind.__name__)
     for point in kind.points:
         if point not in fields or fields[point].shape != (2,) or fields[point].role is not Role.DOCUMENT:
-            raise ValueError(
-                tr(
-                    "{name}: its point '{point}' must be one of its Fields, of shape (2,) and with the role DOCUMENT.",
-                    name=kind.__name__,
-                    point=point,
-                )
+            raise WrongValue(
+                "{name}: its point '{point}' must be one of its Fields, of shape (2,) and with the role DOCUMENT.",
+                name=kind.__name__,
+                point=point,
             )
     called = f"{mod}.{kind.__name__}"
-    ADDED[called] = kind
     return called
 
 
 def outlines(model: Model) -> Iterator[tuple[Table[Any], NDArray[np.float64]]]:
     """The tables of mods' kinds that have points and elements, with those points (m), shape (n, points, 2)."""
-    for kind in ADDED.values():
+    for kind in EXTENSIONS.kinds.values():
         table = model.tables.get(kind.table)
         if table is not None and table.count and kind.points:
             yield table, np.stack([table.column(point) for point in kind.points], axis=1)

@@ -5,18 +5,21 @@ Sentences are written in English where they are said, with names for what is fil
 >>> tr("{rod} carries {force:.1f} kN.", rod="AB", force=-70.71)
 'AB carries -70.7 kN.'
 
-What is kept until it is shown, such as the titles of a table, is `marked` there and translated where it is shown.
+What is kept until it is shown, such as the titles of a table, is `marked` there and translated where it is shown. What
+was said before, such as the title of an edit, `tr` says anew if the language has changed since.
 Files, scripts and names of elements are the same in every language.
 """
 
 from __future__ import annotations
 
 import gettext
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from contextlib import contextmanager
 from pathlib import Path
 from string import Formatter
 from typing import Any
+
+from pinjoint.components.extensions import EXTENSIONS
 
 DOMAIN = "pinjoint"
 LOCALE = Path(__file__).parents[1] / "assets" / "locale"
@@ -26,14 +29,23 @@ _COMMA = ("pt",)  # languages that write 0,5
 
 
 class Said(str):
-    """A sentence in another language than English, and the same in English, which scripts compare."""
+    """A sentence in the language whose code it holds, and the same in English, which scripts compare.
 
-    __slots__ = ("english",)
+    made: what says it again: a function, its arguments, and the values that are filled in; None if nothing does.
+    """
+
+    __slots__ = ("code", "english", "made")
+    code: str
     english: str
+    made: tuple[Callable[..., str], tuple[Any, ...], dict[str, Any]] | None
 
     def __str__(self) -> str:
         """The sentence itself: errors and text streams pass it on with its English."""
         return self
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        """Copies, also those of other processes, are not said anew: the values may be of a model."""
+        return in_both, (str.__str__(self), self.english)
 
 
 class _Spoken:
@@ -45,7 +57,6 @@ class _Spoken:
 
 
 _SPOKEN = _Spoken()
-_OF_MODS: dict[str, Path] = {}  # their folders of catalogues, by domain
 
 
 def language() -> str:
@@ -66,7 +77,7 @@ def speak(code: str) -> None:
     catalogue = gettext.NullTranslations()
     if code != ENGLISH:
         catalogue = gettext.translation(DOMAIN, LOCALE, languages=[code])
-        for domain, folder in _OF_MODS.items():
+        for domain, folder in EXTENSIONS.catalogues.items():
             catalogue.add_fallback(gettext.translation(domain, folder, languages=[code], fallback=True))
     _SPOKEN.code, _SPOKEN.catalogue = code, catalogue
 
@@ -84,13 +95,7 @@ def add_catalogues(domain: str, folder: Path) -> None:
             raise ValueError(
                 tr("The catalogue {file} cannot be read; compile it again.", file=place)
             ) from error
-    _OF_MODS[domain] = folder
-    speak(_SPOKEN.code)
-
-
-def remove_catalogues(domain: str) -> None:
-    """Take back what `add_catalogues` did."""
-    del _OF_MODS[domain]
+    EXTENSIONS.catalogues[domain] = folder
     speak(_SPOKEN.code)
 
 
@@ -114,39 +119,46 @@ def marked(message: str) -> str:
 def tr(message: str, /, **values: Any) -> str:
     """A message in the present language, with values filled in as by `str.format`; without values, braces stay.
 
-    A text that was translated before stays as it is.
+    A text that was said before is said anew.
     """
     if not message or isinstance(message, Said):  # of "" catalogues hold their own heading
-        return message
-    return _filled(message, _SPOKEN.catalogue.gettext(message), values)
+        anew: str = _anew(message)
+        return anew
+    return _filled(message, _SPOKEN.catalogue.gettext(message), values, (tr, (message,), values))
 
 
 def tr_in(context: str, message: str, /, **values: Any) -> str:
     """As `tr`, for a word that has several meanings: the context, such as "support", tells them apart."""
-    return _filled(message, _SPOKEN.catalogue.pgettext(context, message), values)
+    shown = _SPOKEN.catalogue.pgettext(context, message)
+    return _filled(message, shown, values, (tr_in, (context, message), values))
 
 
 def plural(one: str, many: str, count: int, /, **values: Any) -> str:
     """As `tr`, of two messages that which suits a number; {count} is filled in, too."""
     shown = _SPOKEN.catalogue.ngettext(one, many, count)
-    return _filled(one if count == 1 else many, shown, {"count": count, **values})
+    known = {"count": count, **values}
+    return _filled(one if count == 1 else many, shown, known, (plural, (one, many, count), values))
 
 
 def english(said: object) -> Any:
     """What was said, or an error says, in English, as scripts read it; other values as they are."""
-    return getattr(str(said) if isinstance(said, BaseException) else said, "english", said)
+    said = str(said) if isinstance(said, BaseException) else said
+    return getattr(said, "english", said)
 
 
 def joined(parts: Iterable[str], separator: str = " ") -> str:
     """Sentences that are said one after the other, without those that are empty."""
     known = [part for part in parts if part]
-    return in_both(separator.join(known), separator.join(map(english, known)))
+    if len(known) < 2:
+        return known[0] if known else ""
+    same = separator.join(map(english, known))
+    return in_both(separator.join(known), same, (joined, (known, separator), {}))
 
 
 def begun(text: str) -> str:
     """A text as a sentence begins with it: "Rod AB"."""
     same = str(english(text))
-    return in_both(text[:1].upper() + text[1:], same[:1].upper() + same[1:])
+    return in_both(text[:1].upper() + text[1:], same[:1].upper() + same[1:], (begun, (text,), {}))
 
 
 def listed(names: Sequence[str]) -> str:
@@ -179,22 +191,31 @@ class _Filling(Formatter):
         return decimals(text) if isinstance(value, float) else text
 
 
-_FILLING = _Filling()
-
-
-def in_both(shown: str, same: str) -> str:
-    """What is shown, with what it is in English unless that is the same."""
-    if shown == same:
+def in_both(shown: str, same: str, made: Any = None) -> str:
+    """What is shown, with what it is in English unless that is the same; made: what says it again, as in Said."""
+    if shown == same and made is None:
         return same
     said = Said(shown)
-    said.english = same
+    said.code, said.english, said.made = _SPOKEN.code, same, made
     return said
 
 
-def _filled(message: str, shown: str, values: dict[str, Any]) -> str:
+def _filled(message: str, shown: str, values: dict[str, Any], made: Any) -> str:
     if _SPOKEN.code == ENGLISH:
-        return message.format(**values) if values else message
-    same = {name: english(value) for name, value in values.items()}
-    said = Said(_FILLING.vformat(shown, (), values) if values else shown)
-    said.english = message.format(**same) if values else message
-    return said
+        shown = same = message.format(**values) if values else message
+    else:
+        shown = _Filling().vformat(shown, (), values) if values else shown
+        same = message.format(**{name: english(value) for name, value in values.items()}) if values else message
+    return in_both(shown, same, made)
+
+
+def _anew(value: Any) -> Any:
+    """What was said in another language than the present one is said again in this; other values stay as they are."""
+    if isinstance(value, list):
+        return list(map(_anew, value))
+    if _SPOKEN.code == ENGLISH:
+        return english(value)
+    if not isinstance(value, Said) or value.code == _SPOKEN.code or value.made is None:
+        return value
+    say, parts, values = value.made
+    return say(*map(_anew, parts), **{name: _anew(part) for name, part in values.items()})

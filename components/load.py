@@ -11,6 +11,7 @@ from typing import Any
 
 import numpy as np
 
+from pinjoint.components.extensions import EXTENSIONS
 from pinjoint.components.field import LARGEST, Field, FieldError, Vector
 from pinjoint.components.handle import Handle
 from pinjoint.components.language import tr
@@ -44,48 +45,33 @@ class HistoryKind:
     breaks: Callable[[History], Iterable[float]] = lambda history: ()
 
 
-HISTORIES: dict[str, HistoryKind] = {}
-
-
-def register_history(kind: HistoryKind) -> None:
-    """Make a kind of history known to model files, loads and statics."""
-    if kind.name in HISTORIES:
-        raise ValueError(
-            tr("There is a kind of history '{name}' already; give this one another name.", name=kind.name)
-        )
-    HISTORIES[kind.name] = kind
+HISTORIES: dict[str, HistoryKind] = EXTENSIONS.histories  # ours below, then those of mods
 
 
 def check_history(value: Any, where: str) -> History:
     """A history with all its parameters, or FieldError."""
     if not isinstance(value, Mapping) or not isinstance(value.get("kind"), str):
         raise FieldError(
-            tr(
-                '{where}: history is {value}; it must be like {{"kind": "ramp", "duration": 0.5}}.',
-                where=where,
-                value=quoted(value),
-            )
+            '{where}: history is {value}; it must be like {{"kind": "ramp", "duration": 0.5}}.',
+            where=where,
+            value=quoted(value),
         )
     kind = HISTORIES.get(value["kind"])
     if kind is None:
         raise FieldError(
-            tr(
-                "{where}: there is no kind of history '{kind}'; choose one of {known}.",
-                where=where,
-                kind=cut(value["kind"]),
-                known=", ".join(sorted(HISTORIES)),
-            )
+            "{where}: there is no kind of history '{kind}'; choose one of {known}.",
+            where=where,
+            kind=cut(value["kind"]),
+            known=", ".join(sorted(HISTORIES)),
         )
     unknown = sorted(map(str, set(value) - {"kind", *kind.parameters}))
     if unknown:
         raise FieldError(
-            tr(
-                "{where}: a history of the kind '{kind}' has no '{unknown}'; it takes only: {allowed}.",
-                where=where,
-                kind=kind.name,
-                unknown=cut(unknown[0]),
-                allowed=", ".join(["kind", *kind.parameters]),
-            )
+            "{where}: a history of the kind '{kind}' has no '{unknown}'; it takes only: {allowed}.",
+            where=where,
+            kind=kind.name,
+            unknown=cut(unknown[0]),
+            allowed=", ".join(["kind", *kind.parameters]),
         )
     full = {"kind": kind.name} | {
         name: _check_parameter(value.get(name, default), default, name, where)
@@ -101,24 +87,20 @@ def _check_parameter(value: Any, default: Any, name: str, where: str) -> Any:
             value = value.tolist()
         if not isinstance(value, list | tuple):
             raise FieldError(
-                tr(
-                    "{where}: {name} of the history is {value}; it must be a list of numbers.",
-                    where=where,
-                    name=name,
-                    value=quoted(value),
-                )
+                "{where}: {name} of the history is {value}; it must be a list of numbers.",
+                where=where,
+                name=name,
+                value=quoted(value),
             )
         return tuple(_check_parameter(item, 0.0, name, where) for item in value)
     is_number = isinstance(value, int | float | np.integer | np.floating) and not isinstance(value, bool)
     if not is_number or not abs(value) <= LARGEST:
         raise FieldError(
-            tr(
-                "{where}: {name} of the history is {value}; it must be a number between -{largest:g} and {largest:g}.",
-                where=where,
-                name=name,
-                value=quoted(value),
-                largest=LARGEST,
-            )
+            "{where}: {name} of the history is {value}; it must be a number between -{largest:g} and {largest:g}.",
+            where=where,
+            name=name,
+            value=quoted(value),
+            largest=LARGEST,
         )
     return float(value)
 
@@ -126,29 +108,23 @@ def _check_parameter(value: Any, default: Any, name: str, where: str) -> Any:
 def _check_ramp(history: History, where: str) -> None:
     if history["duration"] < 0.0:
         raise FieldError(
-            tr(
-                "{where}: duration of the history is {duration:g} s; it must be at least 0 s.",
-                where=where,
-                duration=history["duration"],
-            )
+            "{where}: duration of the history is {duration:g} s; it must be at least 0 s.",
+            where=where,
+            duration=history["duration"],
         )
 
 
-register_history(
-    HistoryKind(
-        "constant", {}, "pinjoint.systems.loads.kernels:constant", static=1.0, ends=lambda history: -math.inf
-    )
+HISTORIES["constant"] = HistoryKind(
+    "constant", {}, "pinjoint.systems.loads.kernels:constant", static=1.0, ends=lambda history: -math.inf
 )
-register_history(
-    HistoryKind(
-        "ramp",
-        {"start": 0.0, "duration": 1.0},
-        "pinjoint.systems.loads.kernels:ramp",
-        static=1.0,
-        ends=lambda history: float(history["start"] + history["duration"]),
-        breaks=lambda history: (history["start"], history["start"] + history["duration"]),
-        check=_check_ramp,
-    )
+HISTORIES["ramp"] = HistoryKind(
+    "ramp",
+    {"start": 0.0, "duration": 1.0},
+    "pinjoint.systems.loads.kernels:ramp",
+    static=1.0,
+    ends=lambda history: float(history["start"] + history["duration"]),
+    breaks=lambda history: (history["start"], history["start"] + history["duration"]),
+    check=_check_ramp,
 )
 
 CONSTANT = check_history({"kind": "constant"}, "load")

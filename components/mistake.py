@@ -1,8 +1,35 @@
-"""Mistake: what a person can put right."""
+"""Errors whose sentences are for the person: where the mistake is, what it is, and the remedy."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from pinjoint.components.language import tr
 
 
-class Mistake(Exception):
-    """An error whose sentence is for the person: where the mistake is, what it is, and the remedy.
+class Explained(Exception):
+    """An error that says a sentence, filled in with values, in the language that is present when it is shown.
+
+    The sentence is one of the catalogues, which find it by the name of the class: see [tool.babel] in pyproject.toml.
+    """
+
+    def __init__(self, message: str, /, **values: Any) -> None:
+        super().__init__(tr(message, **values))
+
+    def __str__(self) -> str:
+        return tr(self.args[0])
+
+
+class Mistake(Explained):
+    """What a person can put right.
 
     The command line says it as it is; anything else that is raised is a fault of the program.
     """
+
+
+class WrongValue(Explained, ValueError):
+    """A value that cannot be taken."""
+
+
+class NotFound(Explained, LookupError):
+    """Something that is asked for and is not there."""

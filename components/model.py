@@ -7,8 +7,8 @@ from typing import Any
 from pinjoint.components.clock import Clock
 from pinjoint.components.derived import DERIVATIONS
 from pinjoint.components.environment import Environment
+from pinjoint.components.extensions import EXTENSIONS
 from pinjoint.components.grid import Grid
-from pinjoint.components.handle import Handle
 from pinjoint.components.load import Load
 from pinjoint.components.particle import Particle
 from pinjoint.components.rod import Rod
@@ -18,14 +18,13 @@ from pinjoint.components.table import Table
 from pinjoint.components.world import World
 
 KINDS = (Environment, Settings, Clock, Particle, Rod, Load, Grid)
-ADDED: dict[str, type[Handle]] = {}  # kinds of mods, as files call them: "walls.Wall"
 
 
 class Model(World):
     """A world with the tables every Pinjoint document has.
 
     foreign: by entity, what its element of the model file held for mods' components, kept verbatim.
-    foreign_kinds: the elements of kinds of mods that are not loaded, as in ADDED, kept likewise.
+    foreign_kinds: the elements of kinds of mods that are not loaded, as in EXTENSIONS.kinds, kept likewise.
     foreign_versions: the versions of the mods that wrote what the file held, by name.
     sliders: what can be moved on the canvas; the command SetSliders changes them.
     """
@@ -44,7 +43,7 @@ class Model(World):
     )
 
     def __init__(self) -> None:
-        super().__init__((*KINDS, *ADDED.values()), DERIVATIONS)
+        super().__init__((*KINDS, *EXTENSIONS.kinds.values()), DERIVATIONS)
         self.particles: Table[Particle] = self.tables["particles"]
         self.rods: Table[Rod] = self.tables["rods"]
         self.loads: Table[Load] = self.tables["loads"]

@@ -10,9 +10,10 @@ from weakref import WeakKeyDictionary
 import numpy as np
 from numpy.typing import NDArray
 
+from pinjoint.components.extensions import EXTENSIONS
 from pinjoint.components.field import Role
-from pinjoint.components.handle import Handle
 from pinjoint.components.language import tr
+from pinjoint.components.mistake import WrongValue
 from pinjoint.components.model import Model
 from pinjoint.components.table import Table
 from pinjoint.components.wording import quoted
@@ -59,35 +60,29 @@ def check_pieces(table: Table[Any], pieces: Pieces, source: str) -> Pieces:
         )
     ends, owner, count = np.asarray(pieces.ends, dtype=np.float64), np.asarray(pieces.owner), len(pieces.owner)
     if ends.shape != (count, 2, 2):
-        raise ValueError(
-            tr(
-                "{source}: `ends` has the shape {shape} for {count} pieces; give each piece two points [x, y].",
-                source=source,
-                shape=ends.shape,
-                count=count,
-            )
+        raise WrongValue(
+            "{source}: `ends` has the shape {shape} for {count} pieces; give each piece two points [x, y].",
+            source=source,
+            shape=ends.shape,
+            count=count,
         )
     radius, restitution = (np.broadcast_to(values, count) for values in (pieces.radius, pieces.restitution))
     if not np.isfinite(ends).all() or not (radius >= 0.0).all() or not np.isfinite(radius).all():
-        raise ValueError(
-            tr("{source}: an end or a radius is not finite, or a radius is below 0; correct it.", source=source)
+        raise WrongValue(
+            "{source}: an end or a radius is not finite, or a radius is below 0; correct it.", source=source
         )
     if ((restitution < 0.0) | (restitution > 1.0)).any():
-        raise ValueError(
-            tr(
-                "{source}: a restitution is not between 0 and 1; give such a number, or NaN for that of the settings.",
-                source=source,
-            )
+        raise WrongValue(
+            "{source}: a restitution is not between 0 and 1; give such a number, or NaN for that of the settings.",
+            source=source,
         )
     for row in owner[(owner < 0) | (owner >= table.count)][:1].tolist():
-        raise ValueError(
-            tr(
-                "{source}: a piece belongs to row {row}, but there are only {count} {table}; rows count from 0.",
-                source=source,
-                row=row,
-                count=table.count,
-                table=tr(table.name),
-            )
+        raise WrongValue(
+            "{source}: a piece belongs to row {row}, but there are only {count} {table}; rows count from 0.",
+            source=source,
+            row=row,
+            count=table.count,
+            table=tr(table.name),
         )
     return pieces
 
@@ -96,16 +91,15 @@ NO_OBSTACLES = Obstacles(np.zeros((0, 2)), np.zeros((0, 2)), np.zeros(0), np.zer
 
 Shape = Callable[[Table[Any]], Pieces]
 
-SHAPES: dict[type[Handle], Shape] = {}  # the kinds of elements with which particles collide
 
 _known: WeakKeyDictionary[Model, tuple[tuple[Any, ...], Obstacles]] = WeakKeyDictionary()  # with their versions
 
 
 def obstacles(model: Model) -> Obstacles:
-    """The pieces of all elements of the kinds in SHAPES, with the restitution of the settings where none is given."""
+    """The pieces of all elements with which particles collide, with the restitution of the settings where none is given."""
     if not any_obstacles(model):
         return NO_OBSTACLES
-    versions = model.newest(Role.DOCUMENT), *SHAPES.values()
+    versions = model.newest(Role.DOCUMENT), *EXTENSIONS.obstacles.values()
     known = _known.get(model)
     if known is None or known[0] != versions:
         known = _known[model] = versions, _found(model)
@@ -113,7 +107,11 @@ def obstacles(model: Model) -> Obstacles:
 
 
 def _found(model: Model) -> Obstacles:
-    parts = [(model.tables[kind.table], shape) for kind, shape in SHAPES.items() if kind.table in model.tables]
+    parts = [
+        (model.tables[kind.table], shape)
+        for kind, shape in EXTENSIONS.obstacles.items()
+        if kind.table in model.tables
+    ]
     found = [(table, shape(table)) for table, shape in parts if table.count]
     ends = np.concatenate([np.zeros((0, 2, 2)), *(pieces.ends for _, pieces in found)])
     restitution = _joined(found, "restitution")
@@ -133,4 +131,4 @@ def _joined(found: list[tuple[Table[Any], Pieces]], name: str) -> Floats:
 
 def any_obstacles(model: Model) -> bool:
     """True if there is anything of a kind with which particles collide."""
-    return any(model.tables[kind.table].count for kind in SHAPES if kind.table in model.tables)
+    return any(model.tables[kind.table].count for kind in EXTENSIONS.obstacles if kind.table in model.tables)

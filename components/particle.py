@@ -10,7 +10,6 @@ from numpy.typing import NDArray
 
 from pinjoint.components.field import CM, Field, FieldError, Vector, derived, state
 from pinjoint.components.handle import Handle
-from pinjoint.components.language import tr
 from pinjoint.components.table import Store, Table, flags
 
 DEFAULT_MASS = 1.0  # kg, of a particle without rods
@@ -151,25 +150,21 @@ def check_velocities(where: str, fixed: tuple[bool, bool], velocity: Vector) -> 
     for axis, held, speed in zip("xy", fixed, velocity, strict=True):
         if held and speed != 0.0:
             raise FieldError(
-                tr(
-                    "{where}: velocity {axis} is {speed:g} m/s, but a support holds it along {axis}; set the velocity to 0"
-                    " or free the direction.",
-                    where=where,
-                    axis=axis,
-                    speed=speed,
-                )
+                "{where}: velocity {axis} is {speed:g} m/s, but a support holds it along {axis}; set the velocity to 0"
+                " or free the direction.",
+                where=where,
+                axis=axis,
+                speed=speed,
             )
 
 
 def check_spin(where: str, angular_velocity: float) -> None:
     """Raise FieldError for the angular velocity of a clamped particle."""
     raise FieldError(
-        tr(
-            "{where}: angular velocity is {angular_velocity:g} rad/s, but it is clamped; set the angular velocity to 0"
-            " or free the rotation.",
-            where=where,
-            angular_velocity=angular_velocity,
-        )
+        "{where}: angular velocity is {angular_velocity:g} rad/s, but it is clamped; set the angular velocity to 0"
+        " or free the rotation.",
+        where=where,
+        angular_velocity=angular_velocity,
     )
 
 
@@ -183,12 +178,10 @@ def _check_rods(table: Table[Any], rows: NDArray[np.intp]) -> None:
         first, second = ends[row].tolist()
         particle = table[first if moved[first] else second]
         raise FieldError(
-            tr(
-                "{particle}: at this position {rod} would have no length; place the particle elsewhere or give the rod a"
-                " rest length.",
-                particle=world.describe(particle),
-                rod=world.describe(world.tables["rods"][row]),
-            )
+            "{particle}: at this position {rod} would have no length; place the particle elsewhere or give the rod a"
+            " rest length.",
+            particle=world.describe(particle),
+            rod=world.describe(world.tables["rods"][row]),
         )
 
 

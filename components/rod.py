@@ -318,10 +318,8 @@ class Rod(Handle):
         if "between" in changed or "prescribed_rest_length" in changed:
             for row in rods_without_length(table.world, rows)[:1].tolist():
                 raise FieldError(
-                    tr(
-                        "{rod}: its ends are at the same place; move one of them or give it a rest length above 0.",
-                        rod=table.world.describe(table[row]),
-                    )
+                    "{rod}: its ends are at the same place; move one of them or give it a rest length above 0.",
+                    rod=table.world.describe(table[row]),
                 )
         if "section" in changed or not _NUMBERS_OF_NAMES.isdisjoint(changed):
             _heed_names(table, rows, changed)
@@ -350,14 +348,12 @@ def _heed_names(table: Table[Any], rows: NDArray[np.intp], changed: Collection[s
                 field, value = table.fields[number], getattr(rod, number)
                 unit, factor = field.shown
                 raise FieldError(
-                    tr(
-                        "{rod}: {title} is {value:.6g} {unit}, but {name} has another value; leave out one of the two.",
-                        rod=world.describe(rod),
-                        title=field.named(),
-                        value=value * factor,
-                        unit=unit,
-                        name=getattr(rod, name),
-                    )
+                    "{rod}: {title} is {value:.6g} {unit}, but {name} has another value; leave out one of the two.",
+                    rod=world.describe(rod),
+                    title=field.named(),
+                    value=value * factor,
+                    unit=unit,
+                    name=getattr(rod, name),
                 )
             world.assign([rod], name, None)
 
@@ -393,12 +389,10 @@ def _check_warmth(table: Table[Any], rows: NDArray[np.intp]) -> None:
     for row in rows[strain <= -1.0][:1].tolist():
         change = table.temperature_change[row]
         raise FieldError(
-            tr(
-                "{rod}: a temperature change of {change:g} K would leave it no length; cool it less or lower its"
-                " thermal expansion.",
-                rod=table.world.describe(table[row]),
-                change=change,
-            )
+            "{rod}: a temperature change of {change:g} K would leave it no length; cool it less or lower its"
+            " thermal expansion.",
+            rod=table.world.describe(table[row]),
+            change=change,
         )
 
 
@@ -412,17 +406,15 @@ def _check_ends(table: Table[Any], rows: NDArray[np.intp]) -> None:
     names = table.world.tables["particles"].column("name")
     ends = table.between[rows]
     for row in ends[ends[:, 0] == ends[:, 1], 0][:1].tolist():
-        raise FieldError(tr("A rod needs two different particles; both ends are {name}.", name=names[row]))
+        raise FieldError("A rod needs two different particles; both ends are {name}.", name=names[row])
     first, second = table.between.astype(np.uint64).T
     codes = np.sort((np.minimum(first, second) << np.uint64(32)) | np.maximum(first, second))
     for code in codes[1:][codes[1:] == codes[:-1]][:1].tolist():
         one, other = names[[code >> 32, code & 0xFFFFFFFF]]
         raise FieldError(
-            tr(
-                "There is a rod between {one} and {other} already; two particles share at most one.",
-                one=one,
-                other=other,
-            )
+            "There is a rod between {one} and {other} already; two particles share at most one.",
+            one=one,
+            other=other,
         )
 
 

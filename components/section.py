@@ -179,22 +179,18 @@ def check_section(value: Any, where: str) -> str:
     sizes = [name.removeprefix(f"{family} ") for name in SECTIONS if name.startswith(f"{family} ")]
     if sizes:
         raise FieldError(
-            tr(
-                "{where}: there is no section '{value}'; {family} sections have these sizes: {sizes}.",
-                where=where,
-                value=cut(value),
-                family=family,
-                sizes=", ".join(sizes),
-            )
-        )
-    raise FieldError(
-        tr(
-            "{where}: there is no section '{value}'; write it like IPE 200, HEA 200, HEB 200, CHS 60.3×4,"
-            " SHS 100×5 or {rectangle} (mm).",
+            "{where}: there is no section '{value}'; {family} sections have these sizes: {sizes}.",
             where=where,
             value=cut(value),
-            rectangle=RECTANGLE,
+            family=family,
+            sizes=", ".join(sizes),
         )
+    raise FieldError(
+        "{where}: there is no section '{value}'; write it like IPE 200, HEA 200, HEB 200, CHS 60.3×4,"
+        " SHS 100×5 or {rectangle} (mm).",
+        where=where,
+        value=cut(value),
+        rectangle=RECTANGLE,
     )
 
 
@@ -210,12 +206,7 @@ def check_material(value: Any, where: str) -> str:
 def _text(value: Any, where: str, what: str) -> str:
     if not isinstance(value, str):
         raise FieldError(
-            tr(
-                "{where}: {title} is {value}; it must be a name.",
-                where=where,
-                title=tr(what),
-                value=quoted(value),
-            )
+            "{where}: {title} is {value}; it must be a name.", where=where, title=tr(what), value=quoted(value)
         )
     return str(value)
 

@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+from collections import ChainMap
+
+from pinjoint.components.extensions import EXTENSIONS
 from pinjoint.components.field import Field, derived, look
 from pinjoint.components.handle import Handle
-from pinjoint.components.language import marked
 
 AUTOMATIC = "automatic"
 NO_DIAGRAMS = "none"
@@ -13,7 +15,7 @@ DIAGRAMS = (
     "M",
     "V",
 )  # of axial forces, bending moments and shears, in the order in which they follow one another
-INTEGRATORS: dict[str, str] = {AUTOMATIC: marked("chosen for the model by a fixed rule")}
+INTEGRATORS = ChainMap(EXTENSIONS.integrators, {AUTOMATIC: None})  # the names of all there are at any time
 
 
 class Settings(Handle):

@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 
 from pinjoint.components.field import Column, Field, Role
 from pinjoint.components.language import tr
+from pinjoint.components.mistake import NotFound, WrongValue
 from pinjoint.components.suggestions import missing
 
 _SMALLEST_CAPACITY = 8
@@ -112,17 +113,13 @@ class Table(Generic[H]):
     def add_column(self, field: Field[Any]) -> None:
         """Add a column that holds the field's default in every row."""
         if field.name in self.fields:
-            raise ValueError(
-                tr("Table {table} already has a column '{name}'.", table=self.name, name=field.name)
-            )
+            raise WrongValue("Table {table} already has a column '{name}'.", table=self.name, name=field.name)
         earlier = itertools.takewhile(self.name.__ne__, self.world.tables)
         if field.references is not None and field.references not in earlier:
-            raise ValueError(
-                tr(
-                    "{table}.{name} must refer to a table declared before {table}.",
-                    table=self.name,
-                    name=field.name,
-                )
+            raise WrongValue(
+                "{table}.{name} must refer to a table declared before {table}.",
+                table=self.name,
+                name=field.name,
             )
         self.fields[field.name] = field
         self.world.forget_layouts()
@@ -238,12 +235,8 @@ class Table(Generic[H]):
             first = known.index(names[0]) if names[0] in known else len(known)
             if known[first : first + len(names)] == tuple(names):
                 return block[first : first + len(names)]
-        raise ValueError(
-            tr(
-                "{names} of {name} are not declared one after the other.",
-                names=", ".join(names),
-                name=self.name,
-            )
+        raise WrongValue(
+            "{names} of {name} are not declared one after the other.", names=", ".join(names), name=self.name
         )
 
     def mark(self, names: Iterable[str], role: Role) -> None:
@@ -397,11 +390,8 @@ def _spread(column: Column, where: NDArray[np.bool_]) -> Column:
 
 def refuse_orphans(elements: str) -> NoReturn:
     """Raise LookupError, since the world of some elements, which do not keep it alive, is gone."""
-    raise LookupError(
-        tr(
-            "The model of {elements} is gone; keep the model while you use its elements.",
-            elements=elements,
-        )
+    raise NotFound(
+        "The model of {elements} is gone; keep the model while you use its elements.", elements=elements
     )
 
 

@@ -18,6 +18,7 @@ from pinjoint.components.commands import Assign, Command, Create, Custom, Delete
 from pinjoint.components.field import MADE, Column, Field, FieldError, Role, same
 from pinjoint.components.handle import Handle, set_entity
 from pinjoint.components.language import joined, tr
+from pinjoint.components.mistake import NotFound, WrongValue
 from pinjoint.components.suggestions import missing
 from pinjoint.components.table import Table, flags, grown
 from pinjoint.components.tags import Rare
@@ -139,7 +140,7 @@ class World:
         """The row of a handle. Raises LookupError if its entity is deleted."""
         row: int = self.row_of_entity.item(handle.entity)
         if row < 0:
-            raise LookupError(tr("This {noun} was deleted; undo brings it back.", noun=tr(handle.noun)))
+            raise NotFound("This {noun} was deleted; undo brings it back.", noun=tr(handle.noun))
         return row
 
     def _ids(self, handles: Collection[Handle]) -> list[int]:
@@ -147,12 +148,10 @@ class World:
         ids = [handle.entity for handle in handles if handle._world() is self]
         if len(ids) < len(handles):
             other = next(handle for handle in handles if handle._world() is not self)
-            raise LookupError(
-                tr(
-                    "{element} belongs to another model; use the {noun} of this one.",
-                    element=repr(other),
-                    noun=tr(other.noun),
-                )
+            raise NotFound(
+                "{element} belongs to another model; use the {noun} of this one.",
+                element=repr(other),
+                noun=tr(other.noun),
             )
         return ids
 
@@ -202,7 +201,7 @@ class World:
             return field
         if field.overridden_by is None:
             raise FieldError(
-                tr("{where}: {title} is computed and cannot be set.", where=where, title=field.named())
+                "{where}: {title} is computed and cannot be set.", where=where, title=field.named()
             )
         return table.fields[field.overridden_by]
 
@@ -213,14 +212,12 @@ class World:
             there = self.tables[field.references].count
             for row, *_ in np.argwhere(column >= there)[:1].tolist():
                 raise FieldError(
-                    tr(
-                        "{where}: {title} is row {row} of the {table}, but there are only {count}; rows count from 0.",
-                        where=where(row),
-                        title=field.named(),
-                        row=int(column[row].max()),
-                        table=tr(field.references),
-                        count=there,
-                    )
+                    "{where}: {title} is row {row} of the {table}, but there are only {count}; rows count from 0.",
+                    where=where(row),
+                    title=field.named(),
+                    row=int(column[row].max()),
+                    table=tr(field.references),
+                    count=there,
                 )
         return column
 
@@ -233,16 +230,10 @@ class World:
             return
         for name in names:
             if not name.strip():
-                raise FieldError(
-                    tr("The name of a {noun} is empty; type at least one character.", noun=tr(noun))
-                )
+                raise FieldError("The name of a {noun} is empty; type at least one character.", noun=tr(noun))
             if name in given or (name in table and name not in free):
                 raise FieldError(
-                    tr(
-                        "There is a {noun} '{name}' already; choose another name.",
-                        noun=tr(noun),
-                        name=cut(name),
-                    )
+                    "There is a {noun} '{name}' already; choose another name.", noun=tr(noun), name=cut(name)
                 )
             given.add(name)
 
@@ -264,7 +255,7 @@ class World:
         """A state or derived column as a writable view, marked as changed. Documents change by commands."""
         table, field = name.split(".")
         if self.tables[table].fields[field].role in MADE:
-            raise ValueError(tr("Column {name} is part of the document; change it by a command.", name=name))
+            raise WrongValue("Column {name} is part of the document; change it by a command.", name=name)
         return self.tables[table].writable(field)
 
     def derive(self, derivation: Derivation) -> None:
@@ -272,11 +263,9 @@ class World:
         replaced = {self._derivations[target] for target in derivation.targets if target in self._derivations}
         for other in replaced:
             if not set(other.targets) <= set(derivation.targets):
-                raise ValueError(
-                    tr(
-                        "Columns {targets} are derived together; derive all of them.",
-                        targets=", ".join(other.targets),
-                    )
+                raise WrongValue(
+                    "Columns {targets} are derived together; derive all of them.",
+                    targets=", ".join(other.targets),
                 )
         for other in replaced:
             del self._derived_at[other]
@@ -319,7 +308,7 @@ class World:
         """
         table = self.tables[kind.table]
         if kind.single:
-            raise ValueError(tr("A model has exactly one {noun}; change that one.", noun=tr(kind.noun)))
+            raise WrongValue("A model has exactly one {noun}; change that one.", noun=tr(kind.noun))
         if count == 0:
             return []
         checked: dict[str, Column] = {}
@@ -330,12 +319,10 @@ class World:
         for field in table.fields.values():
             if field.references is not None and field.name not in columns:
                 raise FieldError(
-                    tr(
-                        "A new {noun} needs '{name}': rows of the {table}.",
-                        noun=tr(kind.noun),
-                        name=field.name,
-                        table=tr(field.references),
-                    )
+                    "A new {noun} needs '{name}': rows of the {table}.",
+                    noun=tr(kind.noun),
+                    name=field.name,
+                    table=tr(field.references),
                 )
         names = columns.pop("name", None) if "name" in table.fields else None
         if "name" in table.fields:
@@ -365,8 +352,8 @@ class World:
         for name, rows in self.rows_of(handles).items():
             table = self.tables[name]
             if table.kind.single and len(rows):
-                raise ValueError(
-                    tr("A model has exactly one {noun}; it cannot be deleted.", noun=tr(table.kind.noun))
+                raise WrongValue(
+                    "A model has exactly one {noun}; it cannot be deleted.", noun=tr(table.kind.noun)
                 )
             doomed += table.entities[rows].tolist()
         if doomed:
@@ -396,7 +383,10 @@ class World:
 
     @contextmanager
     def transaction(self, title: str) -> Iterator[None]:
-        """Make all commands inside one entry of the log; if one raises, none of them happened."""
+        """Make all commands inside one entry of the log; if one raises, none of them happened.
+
+        title: said by `tr`, or marked: it is shown in the language that is present then.
+        """
         inverses: list[Command] = []
         outer, self._open = self._open, inverses
         try:
@@ -488,8 +478,8 @@ class World:
         table = self.tables[command.table]
         rows = self.row_of_entity[np.array(command.entities, dtype=np.int64)]
         if (rows < 0).any():
-            raise LookupError(
-                tr("A {noun} that is to be changed was deleted; undo brings it back.", noun=tr(table.kind.noun))
+            raise NotFound(
+                "A {noun} that is to be changed was deleted; undo brings it back.", noun=tr(table.kind.noun)
             )
         column = table.writable(command.field)
         old = column[rows]
@@ -512,10 +502,8 @@ class World:
         for entity in range(1, last + 1):  # esper numbers them in order
             esper.create_entity(*([handles[entity]] if entity in handles else []))
         self.tags_revision = self.next_revision()
-        raise LookupError(
-            tr(
-                "Elements were deleted through esper, so they were restored. Use model.delete(handles), which can be undone."
-            )
+        raise NotFound(
+            "Elements were deleted through esper, so they were restored. Use model.delete(handles), which can be undone."
         )
 
     # --- tags ------------------------------------------------------------------------------------------

@@ -20,6 +20,7 @@ from pinjoint.boundary import Boundary
 from pinjoint.components.camera import Viewport
 from pinjoint.components.field import Vector
 from pinjoint.components.language import language, tr
+from pinjoint.components.mistake import Explained
 from pinjoint.components.model import Model
 from pinjoint.components.view import MAGNIFICATIONS, View, magnified
 from pinjoint.documents import library, models
@@ -66,7 +67,7 @@ Points = NDArray[np.float64]
 Colours = NDArray[np.uint8]
 
 
-class NoDisplay(RuntimeError):
+class NoDisplay(Explained, RuntimeError):
     """There is nowhere to open a window; the message is the reason."""
 
 
@@ -122,11 +123,11 @@ def _find_display() -> None:
     """Get ready for a window that somebody can see, or one as SDL_VIDEODRIVER says. Raises NoDisplay, pygame.error."""
     chosen = "SDL_VIDEODRIVER" in os.environ
     if not chosen and sys.platform.startswith("linux") and not any(map(os.environ.get, DISPLAYS)):
-        raise NoDisplay(tr("neither {first} nor {second} is set", first=DISPLAYS[0], second=DISPLAYS[1]))
+        raise NoDisplay("neither {first} nor {second} is set", first=DISPLAYS[0], second=DISPLAYS[1])
     pygame.display.init()
     if not chosen and pygame.display.get_driver() in UNSEEN:  # the last resort of SDL
         pygame.display.quit()
-        raise NoDisplay(tr("the display cannot be reached"))
+        raise NoDisplay("the display cannot be reached")
 
 
 def place_on(
@@ -332,7 +333,7 @@ class App:
     def _follow_title(self) -> None:
         """Let the window's title name the model, after a dot while there is unsaved work."""
         session = self.session
-        name = session.file.name or (tr("Untitled") if session.document.unsaved else "")
+        name = session.document.file.name or (tr("Untitled") if session.document.unsaved else "")
         title = f"{'• ' if session.document.unsaved else ''}{name} – Pinjoint" if name else "Pinjoint"
         if title != self.window.title:
             self.window.title = title

@@ -12,7 +12,8 @@ from typing import Any
 import numpy as np
 
 from pinjoint.components.field import SAVED, Column, Role, same
-from pinjoint.components.language import marked, tr
+from pinjoint.components.language import marked
+from pinjoint.components.mistake import Explained
 from pinjoint.components.model import Model
 from pinjoint.components.suggestions import missing
 from pinjoint.documents import models
@@ -21,7 +22,7 @@ from pinjoint.mods.loading import load_all
 from pinjoint.session import Session
 from pinjoint.systems.base import Commit, Integrator, Law, StepSystem, StopReason, System
 from pinjoint.systems.catalogue import all_systems
-from pinjoint.systems.physics.integrators import INTEGRATORS, register_integrator, remove_integrator
+from pinjoint.systems.physics.integrators import INTEGRATORS
 from pinjoint.systems.program.binding import ProgramError, bind
 from pinjoint.systems.program.program import MOTION, TURNING
 from pinjoint.systems.program.reference_laws import KernelRows
@@ -72,7 +73,7 @@ MODELS: tuple[Any, ...] = (EVERYTHING, ELASTIC, BODIES)
 Source = Any  # a model's name or document, or a function that returns a Model
 
 
-class SystemCheckError(AssertionError):
+class SystemCheckError(Explained, AssertionError):
     """A system that breaks its declarations; the message says how."""
 
 
@@ -112,10 +113,10 @@ def check_system(
     if not needed:
         if drives:
             raise SystemCheckError(
-                tr("No model uses {name}; give check_system models=[…] with rods or drag.", name=name)
+                "No model uses {name}; give check_system models=[…] with rods or drag.", name=name
             )
         raise SystemCheckError(
-            tr("No model needs {name}; give check_system models=[…] for which needs() is true.", name=name)
+            "No model needs {name}; give check_system models=[…] for which needs() is true.", name=name
         )
     check = _check_steps if isinstance(system(), StepSystem) else _check_frames
     cost = max(check(system, source) for source in needed)
@@ -143,10 +144,7 @@ def _is_needed(system: Callable[[], System], source: Source) -> bool:
     compare(system().name, before, columns_of(model), set(), undeclared)
     if len(answers) > 1:
         raise SystemCheckError(
-            tr(
-                "{name}: needs(model) is sometimes true and sometimes false for the same model.",
-                name=system().name,
-            )
+            "{name}: needs(model) is sometimes true and sometimes false for the same model.", name=system().name
         )
     return answers.pop()
 
@@ -178,7 +176,7 @@ def compare(
     for column, old in before.items():
         if column in allowed or column.partition(".")[0] in allowed or same(old, after[column]):
             continue
-        raise SystemCheckError(tr(refusal, name=name, column=column))
+        raise SystemCheckError(refusal, name=name, column=column)
 
 
 # --- laws, commits and integrators ---------------------------------------------------------------------------
@@ -220,10 +218,8 @@ def _check_pairs(law: Law, model: Model) -> None:
     force = KernelRows(model).of(bound)
     if not np.allclose(force, -KernelRows(model, turned=True).of(bound), rtol=1e-9, atol=0.0):
         raise SystemCheckError(
-            tr(
-                "{name}: the forces on two particles change if the two are swapped; they must be opposite in any order.",
-                name=law.name,
-            )
+            "{name}: the forces on two particles change if the two are swapped; they must be opposite in any order.",
+            name=law.name,
         )
     if not law.potential:
         return
@@ -238,14 +234,12 @@ def _check_pairs(law: Law, model: Model) -> None:
         if wrong.any():
             row = int(np.argmax(wrong))
             raise SystemCheckError(
-                tr(
-                    "{name}: at a distance of {distance:g} m the slope of its potential is {slope:g} kN, but the force"
-                    " on the first particle along the same axis is {force:g} kN; they must be equal.",
-                    name=law.name,
-                    distance=float(apart[row]),
-                    slope=float(slope[row]),
-                    force=float(force[row, axis]),
-                )
+                "{name}: at a distance of {distance:g} m the slope of its potential is {slope:g} kN, but the force"
+                " on the first particle along the same axis is {force:g} kN; they must be equal.",
+                name=law.name,
+                distance=float(apart[row]),
+                slope=float(slope[row]),
+                force=float(force[row, axis]),
             )
 
 
@@ -260,11 +254,9 @@ def _run(system: System, source: Source, *, backwards: bool) -> Model:
         raise SystemCheckError(str(error)) from None
     if simulation.reason is StopReason.DIVERGED:
         raise SystemCheckError(
-            tr(
-                "{name}: in a run with it, numbers grow without limit. {message}",
-                name=system.name,
-                message=simulation.message,
-            )
+            "{name}: in a run with it, numbers grow without limit. {message}",
+            name=system.name,
+            message=simulation.message,
         )
     return model
 
@@ -275,16 +267,14 @@ def _driven_by(system: System, simulation: Simulation) -> Iterator[None]:
     if not isinstance(system, Integrator):
         yield
         return
-    former = INTEGRATORS.get(system.key)
-    register_integrator(system)
+    former = dict(INTEGRATORS)
+    INTEGRATORS[system.key] = system
     try:
         simulation.model.settings.integrator = system.key
         yield
     finally:
-        if former is None:
-            remove_integrator(system.key)
-        else:
-            register_integrator(former)
+        INTEGRATORS.clear()
+        INTEGRATORS.update(former)
 
 
 def _check_finite(name: str, model: Model) -> None:
@@ -293,19 +283,17 @@ def _check_finite(name: str, model: Model) -> None:
             if field.dtype is float and not field.nullable and not np.isfinite(table.column(field.name)).all():
                 column = f"{table.name}.{field.name}"
                 raise SystemCheckError(
-                    tr(
-                        "{name}: after {count} steps with it, {column} is not finite.",
-                        name=name,
-                        count=STEPS,
-                        column=column,
-                    )
+                    "{name}: after {count} steps with it, {column} is not finite.",
+                    name=name,
+                    count=STEPS,
+                    column=column,
                 )
 
 
 def _check_alike(name: str, one: Mapping[str, Column], other: Mapping[str, Column], refusal: str) -> None:
     for column, values in one.items():
         if not same(values, other[column]):
-            raise SystemCheckError(tr(refusal, name=name, column=column))
+            raise SystemCheckError(refusal, name=name, column=column)
 
 
 # --- frame systems -----------------------------------------------------------------------------------------
@@ -334,7 +322,7 @@ def run_frames(system: System, session: Session) -> float:
             system.process(Frame(session, FRAME))
         except Exception as error:
             told = {"name": system.name, "kind": type(error).__name__, "error": error}
-            raise SystemCheckError(tr("{name} raises {kind}: {error}", **told)) from error
+            raise SystemCheckError("{name} raises {kind}: {error}", **told) from error
     seconds, declared = time.perf_counter() - started, {*system.writes, *system.adds}
     compare(system.name, before, columns_of(session.model), declared, UNDECLARED)
     return seconds

@@ -13,8 +13,8 @@ from pathlib import Path
 
 import msgspec
 
+from pinjoint.components.extensions import EXTENSIONS
 from pinjoint.components.language import language, tr
-from pinjoint.mods import MODS
 from pinjoint.prepare import START, UNITS, Job, Task
 from pinjoint.systems.physics.integrators import INTEGRATORS
 from pinjoint.systems.program.compiler import GeneratedModule, interpreted_here, tell
@@ -152,7 +152,7 @@ def started(jobs: Mapping[Job, bytes], urgent: bool) -> subprocess.Popen[str]:
     It imports from where this one does, but never from the folder that somebody happens to be in.
     """
     documents = list(dict.fromkeys(jobs.values()))
-    mods = [str(mod.folder) for mod in MODS if mod.loaded and mod.folder]
+    mods = [str(mod.folder) for mod in EXTENSIONS.mods if mod.loaded and mod.folder]
     asked = [(job, documents.index(document)) for job, document in jobs.items()]
     task = Task(os.getpid(), language(), mods, not urgent, asked, documents)
     priority = "BELOW_NORMAL_PRIORITY_CLASS" if urgent else "IDLE_PRIORITY_CLASS"  # as Windows has it
@@ -169,6 +169,7 @@ def started(jobs: Mapping[Job, bytes], urgent: bool) -> subprocess.Popen[str]:
             encoding="utf-8",
             errors="replace",
             creationflags=getattr(subprocess, priority, 0),
+            start_new_session=True,  # Ctrl+C in a terminal is for the window, which then ends it
         )
 
 

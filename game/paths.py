@@ -105,8 +105,8 @@ def locate(model: Model, text: str, keys: Keys) -> tuple[Target, str]:
         told = {"field": field.title, "part": cut(axis), "key": key}
         if field.shape:
             parts = _parts(key, field)
-            raise PathError(tr("{field} has no part '{part}'; write one of {parts}.", parts=parts, **told))
-        raise PathError(tr("{field} has no parts, such as '{part}'; write {key}.", **told))
+            raise PathError("{field} has no part '{part}'; write one of {parts}.", parts=parts, **told)
+        raise PathError("{field} has no parts, such as '{part}'; write {key}.", **told)
     return Target(table, handles, element, field, key, axis), rest[len(path) :]
 
 
@@ -120,12 +120,10 @@ def locate_one(model: Model, path: str, keys: Keys = readable) -> Target:
     with _quoted(path):
         target, rest = locate(model, path, keys)
         if rest:
-            raise PathError(tr("'{rest}' does not belong to the path; leave it out.", rest=cut(rest)))
+            raise PathError("'{rest}' does not belong to the path; leave it out.", rest=cut(rest))
         if target.element == EVERY:
             kind = tr(target.table.kind.noun)
-            raise PathError(
-                tr("it names every {kind}; write a name in place of {star}.", kind=kind, star=EVERY)
-            )
+            raise PathError("it names every {kind}; write a name in place of {star}.", kind=kind, star=EVERY)
     return target
 
 
@@ -145,7 +143,7 @@ def _quoted(text: str) -> Iterator[None]:
 
 def _known(name: str, names: Collection[str], refusal: str) -> str:
     if name not in names:
-        raise PathError(tr(refusal, name=cut(name), remedy=remedy(name, names)))
+        raise PathError(refusal, name=cut(name), remedy=remedy(name, names))
     return name
 
 
@@ -172,12 +170,10 @@ def _refuse_name(table: Table[Any], rest: str) -> None:
     name = ".".join(parts[: -2 if parts[-1] in ("x", "y", *ENDS) else -1])
     if not name:
         raise PathError(
-            tr(
-                "the name of the {kind} is missing; write {form}, or {star} for every name.",
-                kind=tr(table.kind.noun),
-                form=f"{table.name}.NAME.{rest or 'KEY'}",
-                star=EVERY,
-            )
+            "the name of the {kind} is missing; write {form}, or {star} for every name.",
+            kind=tr(table.kind.noun),
+            form=f"{table.name}.NAME.{rest or 'KEY'}",
+            star=EVERY,
         )
     raise PathError(missing(table.name, name, table.names))
 
@@ -186,11 +182,9 @@ def _refuse_unsettable(table: Table[Any], key: str, known: Mapping[str, Any]) ->
     if key not in known and key in table.fields:
         keys = ", ".join(known)
         if table.fields[key].role is Role.DERIVED:
-            raise PathError(
-                tr("'{key}' is computed and cannot be set; choose one of {keys}.", key=key, keys=keys)
-            )
+            raise PathError("'{key}' is computed and cannot be set; choose one of {keys}.", key=key, keys=keys)
         raise PathError(
-            tr("'{key}' names other elements and cannot be set here; choose one of {keys}.", key=key, keys=keys)
+            "'{key}' names other elements and cannot be set here; choose one of {keys}.", key=key, keys=keys
         )
 
 
@@ -209,10 +203,10 @@ def apply_override(model: Model, override: str) -> None:
     with _quoted(override):
         target, rest = locate(model, override, settable)
         if not rest.startswith("="):
-            raise PathError(tr("it has no value; {form}.", form=tr(OVERRIDE_FORM)))
+            raise PathError("it has no value; {form}.", form=tr(OVERRIDE_FORM))
         if not target.handles:
             raise PathError(
-                tr("the model has no {table}; add some, or leave this out.", table=tr(target.table.name))
+                "the model has no {table}; add some, or leave this out.", table=tr(target.table.name)
             )
         model.assign(target.handles, target.field.name, _values(target, rest[1:].strip()))
 
@@ -295,11 +289,11 @@ def quantity(model: Model, path: str) -> Quantity:
             name = energy_named(rest)
         return Quantity(path, name.replace("_", " "), "J", lambda session: session.energy.as_dict()[name])
     if table not in model.tables or not rest:
-        raise PathError(tr("There is no quantity '{path}'; {form}.", path=cut(path), form=tr(QUANTITY_FORM)))
+        raise PathError("There is no quantity '{path}'; {form}.", path=cut(path), form=tr(QUANTITY_FORM))
     target = locate_one(model, path, _numbers)
     if target.field.shape and not target.axis:
         parts = _parts(target.key, target.field)
-        raise PathError(tr("{path}: write one of {parts}.", path=path, parts=parts))
+        raise PathError("{path}: write one of {parts}.", path=path, parts=parts)
     return _of_element(path, target)
 
 

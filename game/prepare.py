@@ -9,7 +9,6 @@ from __future__ import annotations
 import gc
 import importlib
 import os
-import signal
 import sys
 import threading
 import time
@@ -54,7 +53,6 @@ class Task(msgspec.Struct, frozen=True):
 
 def main() -> None:
     """Compile jobs into the cache."""
-    signal.signal(signal.SIGINT, signal.SIG_DFL)  # a compiler hears of nothing else
     task = msgspec.msgpack.decode(sys.stdin.buffer.read(), type=Task)
     threading.Thread(target=_end_after, args=(task.asker,), daemon=True).start()
     if hasattr(os, "nice"):  # to what runs at the same time, the window above all

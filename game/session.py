@@ -10,12 +10,16 @@ from typing import TYPE_CHECKING, Any, NoReturn
 
 import numpy as np
 
+import pinjoint.editor.actions
+import pinjoint.lessons.actions  # noqa: F401 (they register them)
 from pinjoint.components.camera import Viewport
 from pinjoint.components.card import share_of
 from pinjoint.components.environment import Environment
+from pinjoint.components.extensions import EXTENSIONS
 from pinjoint.components.field import FieldError, Vector
 from pinjoint.components.language import begun, joined, listed, marked, tr
 from pinjoint.components.load import Load
+from pinjoint.components.mistake import WrongValue
 from pinjoint.components.model import Model
 from pinjoint.components.particle import Particle
 from pinjoint.components.rod import Rod
@@ -26,18 +30,15 @@ from pinjoint.components.wording import quoted
 from pinjoint.documents import models
 from pinjoint.documents.format import ModelError
 from pinjoint.documents.open_documents import ModelFile, Source, file_of
-from pinjoint.editor.actions import ACTIONS, WHILE_DRAWING
-from pinjoint.editor.context import FAULTS, Context
+from pinjoint.editor.context import Context
 from pinjoint.editor.dropping import open_dropped
 from pinjoint.editor.frame import Actions, Frame, HeadlessFrame, ShowView
-from pinjoint.editor.menu import IN_MENU
 from pinjoint.editor.routing import Layer, for_tools, layer, meaning
 from pinjoint.editor.scenes import all_scenes, scene_systems
 from pinjoint.editor.scenes.files import FileScene
 from pinjoint.editor.sliders import slider_stack, sliders_of
 from pinjoint.editor.toolbar import toolbar_of
 from pinjoint.editor.view_model import follows, show
-from pinjoint.lessons import actions  # noqa: F401 (it registers them)
 from pinjoint.lessons.course import Course
 from pinjoint.lessons.tasks import Lesson
 from pinjoint.mods import load_all
@@ -45,11 +46,11 @@ from pinjoint.mods.heeding import blamed_on_mod, heeding_mods
 from pinjoint.scripts.expectation import expect
 from pinjoint.scripts.script import Script, ScriptError
 from pinjoint.systems.base import EVENT_INTERVAL, Phase, StopReason, System
-from pinjoint.systems.catalogue import SYSTEMS, step_systems
+from pinjoint.systems.catalogue import step_systems
 from pinjoint.systems.edit import Refusal
 from pinjoint.systems.edit.dividing import divide
 from pinjoint.systems.edit.pull import Pull
-from pinjoint.systems.input.bindings import FILES, FORMS, LIVE, TEXT, key_named, only_in_pause
+from pinjoint.systems.input.actions import ACTIONS, FILES, FORMS, LIVE, TEXT, key_named, only_in_pause
 from pinjoint.systems.render.picture import Stage
 from pinjoint.systems.run.simulation import Simulation
 from pinjoint.systems.run.system import Time
@@ -86,7 +87,7 @@ class Session(Context):
         pull, scenes = Pull(), all_scenes()
         ours = [Actions(), ShowView(), Time(), *scene_systems(), *step_systems(), pull]
         schedule = Schedule(
-            [*ours, *(make() for make in SYSTEMS), *systems],
+            [*ours, *(make() for make in EXTENSIONS.systems), *systems],
             wanted={scene.name: scene.systems for scene in scenes},
         )
         super().__init__(model, schedule, pull, scenes, view or View(), file)
@@ -120,7 +121,7 @@ class Session(Context):
         )
 
     def __repr__(self) -> str:
-        name, model = self.file.name or "untitled", self.model
+        name, model = self.document.file.name or "untitled", self.model
         size = f"{model.particles.count} particles, {model.rods.count} rods"
         return f"<Session '{name}': {size}, {self.scene}, t = {self.time:.6g} s>"
 
@@ -160,7 +161,7 @@ class Session(Context):
         remarks on a run at rest.
         """
         said = self.fault or self.scenes.active.message or self.simulation.said or self.notice
-        return joined([said, *(remark.message for remark in self.remarks)])
+        return joined([said, *(remark.message for remark in self.document.assessment.remarks)])
 
     # --- time --------------------------------------------------------------------------------------
 
@@ -181,7 +182,7 @@ class Session(Context):
         interrupt (Ctrl+C) leaves the state after a step shortly before, from which a further run goes on.
         """
         if sum(option is not None for option in (until, time, steps)) != 1 or until not in (None, "rest"):
-            raise ValueError(tr('Say how far to run: until="rest", time=SECONDS or steps=NUMBER, one of them.'))
+            raise WrongValue('Say how far to run: until="rest", time=SECONDS or steps=NUMBER, one of them.')
         limit = _forward("limit", limit)
         time = None if time is None else _forward("time", time)
         steps = None if steps is None else int(_forward("steps", steps, whole=True))
@@ -264,7 +265,7 @@ class Session(Context):
         from pinjoint.systems.statics.path import goal_of, load_path
 
         if points < 2:
-            raise ValueError(tr("points is {points}; a curve has at least 2.", points=points))
+            raise WrongValue("points is {points}; a curve has at least 2.", points=points)
         return load_path(self.model, goal_of(self.model, factor, until), points=points, branch=branch)
 
     def buckling(self, modes: int = 5) -> Buckling:
@@ -277,7 +278,7 @@ class Session(Context):
         from pinjoint.systems.statics.buckling import buckling
 
         if modes < 1:
-            raise ValueError(tr("modes is {modes}; ask for at least 1.", modes=modes))
+            raise WrongValue("modes is {modes}; ask for at least 1.", modes=modes)
         return buckling(self.model, modes)
 
     # --- editing -----------------------------------------------------------------------------------
@@ -323,7 +324,7 @@ class Session(Context):
     def answer(self, value: Any) -> None:
         """Answer the task of a lesson: names of elements to select, a number, or the text of a choice."""
         if self.course is None:
-            raise ValueError(tr("There is no lesson to answer; begin one from the start page."))
+            raise WrongValue("There is no lesson to answer; begin one from the start page.")
         self.course.answer(value)
 
     def take_up_lesson(self) -> None:
@@ -360,13 +361,14 @@ class Session(Context):
         """Perform a named action with the pointer at a pixel; what it refuses is said in `notice`."""
         if name not in ACTIONS:
             raise ValueError(missing(marked("actions"), name, ACTIONS))
-        if name not in WHILE_DRAWING:
+        action = ACTIONS[name]
+        if not action.while_drawing:
             self.leave_gesture()
-        if name not in IN_MENU:
+        if not action.in_menu:
             self.view.menu = None
         self.exaggerate()
         try:
-            ACTIONS[name](self, pixel if pixel is not None else self.pointer)
+            action.perform(self, pixel if pixel is not None else self.pointer)
         except (Refusal, FieldError) as error:
             self.notice = str(error)
         self.scenes.apply(self)
@@ -415,7 +417,7 @@ class Session(Context):
             return  # its first click led here, and the second is not meant for what is here
         (name, at), pressed = meaning(self, key, pixel), pixel
         if key == "escape" and self.fault and self.scene not in FORMS:
-            self.faults_seen = len(FAULTS)
+            self.faults_seen = len(EXTENSIONS.faults)
         elif name is not None:
             self.notice, self._clicked = "", here if key == "click" else None
             if self.on_press is not None:
@@ -469,16 +471,14 @@ class Session(Context):
         if not (
             1 <= width <= LARGEST_SIDE and 1 <= height <= LARGEST_SIDE and 0.0 < pixel_ratio <= LARGEST_RATIO
         ):
-            raise ValueError(
-                tr(
-                    "The size is {width:g} × {height:g} pixels, {ratio:g} to a point; give sides from 1 to {most}, and at"
-                    " most {largest:g} to a point.",
-                    width=width,
-                    height=height,
-                    ratio=pixel_ratio,
-                    most=LARGEST_SIDE,
-                    largest=LARGEST_RATIO,
-                )
+            raise WrongValue(
+                "The size is {width:g} × {height:g} pixels, {ratio:g} to a point; give sides from 1 to {most}, and at"
+                " most {largest:g} to a point.",
+                width=width,
+                height=height,
+                ratio=pixel_ratio,
+                most=LARGEST_SIDE,
+                largest=LARGEST_RATIO,
             )
         self.extent = width, height
         taken_right, taken_below = share_of(width, height, pixel_ratio) if self.beside is not None else (0, 0)
@@ -504,7 +504,7 @@ class Session(Context):
         self.scenes.apply(self)
 
     def expect(self, text: str) -> None:
-        """Raise ExpectationError, an AssertionError, unless a text such as "scene = pause" is true.
+        """Raise AssertionError unless a text such as "scene = pause" is true.
 
         Also "rods.AB.axial_force ≈ -28.34 ± 0.01", "energy.imbalance < 1"; see game/scripts/script.py.
         """
@@ -522,7 +522,7 @@ class Session(Context):
     def point(self, x: float, y: float) -> Vector:
         """Move the pointer to a point of the model (m); returns its pixel. Raises ValueError."""
         if not (math.isfinite(x) and math.isfinite(y)):
-            raise ValueError(tr("The point is ({x}, {y}); give finite coordinates, in m.", x=x, y=y))
+            raise WrongValue("The point is ({x}, {y}); give finite coordinates, in m.", x=x, y=y)
         self.scenes.active.finish()
         x, y = _near(self.focus[1].camera.to_pixels((x, y)).tolist())
         self.focus[1].pointer = x, y
@@ -586,8 +586,8 @@ def _near(pixel: Sequence[float]) -> Vector:
     """A pixel at a distance from the window that computes. Raises ValueError."""
     x, y = pixel
     if not (abs(x) <= FARTHEST and abs(y) <= FARTHEST):
-        raise ValueError(
-            tr("The pixel ({x:g}, {y:g}) is too far from what is shown; take a nearer place.", x=x, y=y)
+        raise WrongValue(
+            "The pixel ({x:g}, {y:g}) is too far from what is shown; take a nearer place.", x=x, y=y
         )
     return x, y
 
@@ -603,9 +603,9 @@ def _forward(name: str, value: float, *, whole: bool = False) -> float:
             else tr("{name} is {value}; it must be a finite number.", name=name, value=given)
         )
     if value >= 2**63:
-        raise ValueError(tr("{name} is {value}; it must be below 2^63.", name=name, value=value))
+        raise WrongValue("{name} is {value}; it must be below 2^63.", name=name, value=value)
     if value < 0:
-        raise ValueError(
-            tr("{name} is {value}; time only runs forward: undo or restart goes back.", name=name, value=value)
+        raise WrongValue(
+            "{name} is {value}; time only runs forward: undo or restart goes back.", name=name, value=value
         )
     return float(value)

@@ -28,6 +28,17 @@ def nearest(line: Floats, span: Floats) -> Floats:
     return found
 
 
+def distance_to_segments(points: Floats, start: Floats, end: Floats) -> Floats:
+    """How far points are from the segments from `start` to `end`, all (…, 2)."""
+    x, y = (start[..., axis] - points[..., axis] for axis in (0, 1))
+    along_x, along_y = (end[..., axis] - start[..., axis] for axis in (0, 1))
+    squared = along_x * along_x + along_y * along_y
+    share = -(x * along_x + y * along_y) / np.where(squared > 0.0, squared, 1.0)
+    share = np.minimum(np.maximum(share, 0.0), 1.0)  # np.clip takes a multiple of the time for a few
+    found: Floats = np.hypot(x + share * along_x, y + share * along_y)
+    return found
+
+
 def near_pairs(place: Floats, reach: Floats, obstacles: Obstacles = NO_OBSTACLES) -> Rows:
     """Pairs i < j whose centres are at most reach[i] + reach[j] apart, in ascending order, shape (k, 2).
 

@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
-
+from pinjoint.components.extensions import EXTENSIONS
 from pinjoint.systems.base import StepSystem, System
 from pinjoint.systems.collision.system import Collision
 from pinjoint.systems.loads.system import varying_loads
@@ -20,8 +19,6 @@ from pinjoint.systems.physics.system import (
     TurningDrag,
 )
 from pinjoint.systems.plasticity.system import FirstYield, Strength, Yielding
-
-SYSTEMS: list[Callable[[], System]] = []  # that mods add; made anew for every session
 
 
 def step_systems() -> list[StepSystem]:
@@ -47,4 +44,4 @@ def step_systems() -> list[StepSystem]:
 
 def all_systems() -> list[System]:
     """The step systems of Pinjoint, then the systems of mods, frame systems among them."""
-    return [*step_systems(), *(make() for make in SYSTEMS)]
+    return [*step_systems(), *(make() for make in EXTENSIONS.systems)]

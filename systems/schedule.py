@@ -20,12 +20,13 @@ from graphlib import CycleError, TopologicalSorter
 from typing import Any, Protocol
 
 from pinjoint.components.language import tr
+from pinjoint.components.mistake import Explained
 from pinjoint.components.model import Model
 from pinjoint.components.suggestions import remedy
 from pinjoint.systems.base import Commit, Event, Integrator, Law, Phase, StepSystem, System
 
 
-class ScheduleError(ValueError):
+class ScheduleError(Explained, ValueError):
     """Systems that cannot be put in order; the message names them and says what to declare."""
 
 
@@ -81,11 +82,11 @@ class Schedule:
         for system in self._systems:
             if not system.name:
                 raise ScheduleError(
-                    tr("{system} has no name; give it one like 'mymod.wind'.", system=type(system).__name__)
+                    "{system} has no name; give it one like 'mymod.wind'.", system=type(system).__name__
                 )
             if names.count(system.name) > 1:
                 raise ScheduleError(
-                    tr("Two systems are called {name}; give one of them another name.", name=system.name)
+                    "Two systems are called {name}; give one of them another name.", name=system.name
                 )
 
     def _find_replacing(self) -> dict[System, tuple[System, ...]]:
@@ -96,12 +97,10 @@ class Schedule:
                 others = [s for s in self._systems if s is not system and _is_called(s, name)]
                 if not others:
                     raise ScheduleError(
-                        tr(
-                            "{system} replaces '{name}', but there is no such system; {remedy}",
-                            system=system.name,
-                            name=name,
-                            remedy=remedy(name, [s.name for s in self._systems]),
-                        )
+                        "{system} replaces '{name}', but there is no such system; {remedy}",
+                        system=system.name,
+                        name=name,
+                        remedy=remedy(name, [s.name for s in self._systems]),
                     )
                 for other in others:
                     found.setdefault(other, []).append(system)
@@ -110,7 +109,7 @@ class Schedule:
         except CycleError as error:
             chain = " → ".join(error.args[1])
             raise ScheduleError(
-                tr("These systems replace each other: {chain}; remove one `replaces`.", chain=chain)
+                "These systems replace each other: {chain}; remove one `replaces`.", chain=chain
             ) from None
         return {system: tuple(some) for system, some in found.items()}
 
@@ -135,13 +134,11 @@ class Schedule:
             elsewhere = [s for s in self._systems if s.name == other and other not in phase_systems]
             if elsewhere:
                 raise ScheduleError(
-                    tr(
-                        "{system} names {other} in `before` or `after`, but that runs in another phase ({phase}). Remove it:"
-                        " phases follow one another in a fixed order.",
-                        system=system.name,
-                        other=other,
-                        phase=elsewhere[0].phase.value,
-                    )
+                    "{system} names {other} in `before` or `after`, but that runs in another phase ({phase}). Remove it:"
+                    " phases follow one another in a fixed order.",
+                    system=system.name,
+                    other=other,
+                    phase=elsewhere[0].phase.value,
                 )
         return [other for other in others if other in phase_systems]
 
@@ -155,11 +152,9 @@ class Schedule:
         except CycleError as error:
             chain = " → ".join(error.args[1])
             raise ScheduleError(
-                tr(
-                    "In phase {phase} these systems wait for each other: {chain}; remove one `before` or `after`.",
-                    phase=phase.value,
-                    chain=chain,
-                )
+                "In phase {phase} these systems wait for each other: {chain}; remove one `before` or `after`.",
+                phase=phase.value,
+                chain=chain,
             ) from None
         ready: list[str] = list(sorter.get_ready())
         ordered: list[System] = []
@@ -184,13 +179,11 @@ class Schedule:
                     continue
                 for column in _contested(earlier, later):
                     raise ScheduleError(
-                        tr(
-                            "{one} and {other} both use {column}, and at least one writes it, but nothing says which comes"
-                            " first; declare before=('{other}',) or after=(…) on one.",
-                            one=earlier.name,
-                            other=later.name,
-                            column=column,
-                        )
+                        "{one} and {other} both use {column}, and at least one writes it, but nothing says which comes"
+                        " first; declare before=('{other}',) or after=(…) on one.",
+                        one=earlier.name,
+                        other=later.name,
+                        column=column,
                     )
 
     # --- plans -----------------------------------------------------------------------------------

@@ -17,7 +17,7 @@ from pathlib import Path
 from typing import IO, Any
 
 from babel.messages.catalog import Catalog, Message
-from babel.messages.extract import extract_from_dir, extract_python
+from babel.messages.extract import extract_from_dir
 from babel.messages.frontend import parse_keywords
 from babel.messages.mofile import write_mo
 from babel.messages.pofile import read_po, write_po
@@ -26,6 +26,10 @@ from pinjoint.components.language import DOMAIN, ENGLISH, LANGUAGES, LOCALE
 
 ROOT = Path(__file__).parents[1]
 MODS = ROOT / "assets" / "mods"
+SETTINGS = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))["tool"]["babel"]
+KEYWORDS = parse_keywords(
+    SETTINGS["keywords"]
+)  # names of functions whose arguments are sentences, and which of them are
 NO_DATE = datetime(2000, 1, 1, tzinfo=UTC)  # a date would make every update a change
 _HEADER = """\
 msgid ""
@@ -39,11 +43,23 @@ msgstr ""
 """
 
 
+def sentences(
+    file: IO[bytes], keywords: Iterable[str], comment_tags: object, options: object
+) -> Iterator[tuple[int, str | None, Any, list[str]]]:
+    """The sentences of a module in Python, as Babel asks for them, whose own way passes over some calls within calls."""
+    for node in ast.walk(ast.parse(file.read())):
+        match node:
+            case ast.Call(func=ast.Name(name) | ast.Attribute(attr=name), args=[_, *_]) if name in keywords:
+                said = [part.value if isinstance(part, ast.Constant) else None for part in node.args]
+                texts = tuple(part if isinstance(part, str) else None for part in said)
+                yield node.lineno, name, texts if len(texts) > 1 else texts[0], []
+
+
 def kinds(
-    file: IO[bytes], keywords: Any, tags: Any, options: Any
+    file: IO[bytes], keywords: Iterable[str], comment_tags: object, options: object
 ) -> Iterator[tuple[int, str | None, Any, list[str]]]:
     """The sentences of a module in Python, as Babel asks for them, and what people call its kinds and their Fields."""
-    yield from extract_python(file, keywords, tags, options)
+    yield from sentences(file, keywords, comment_tags, options)
     file.seek(0)
     for node in ast.walk(ast.parse(file.read())):
         match node:
@@ -98,11 +114,10 @@ def folders() -> dict[str, tuple[Path, Path]]:
 
 def extracted(domain: str) -> Catalog:
     """The sentences of the sources of a domain."""
-    settings = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))["tool"]["babel"]
     if domain == DOMAIN:
         mappings = [
             (pattern, mapping["method"], mapping)
-            for mapping in settings["mappings"]
+            for mapping in SETTINGS["mappings"]
             for pattern in mapping["patterns"]
         ]
     else:
@@ -112,8 +127,7 @@ def extracted(domain: str) -> Catalog:
         folders()[domain][0],
         [(pattern, method) for pattern, method, _ in mappings],
         {pattern: options for pattern, _, options in mappings},
-        parse_keywords(settings["keywords"]),
-        settings["comment_tags"],
+        KEYWORDS,
     )
     for file, line, message, comments, context in places:
         found.add(message, None, [(file, line)], auto_comments=comments, context=context)

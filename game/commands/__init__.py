@@ -9,6 +9,3 @@ class Command(NamedTuple):
 
     run: Callable[[list[str]], int]
     about: str
-
-
-COMMANDS: dict[str, Command] = {}  # by name; Pinjoint's own, which command_line adds, and those of mods

@@ -22,8 +22,8 @@ OUTPUTS = ("output", "events", "report", "record", "plot")  # options of all com
 class UsageError(Mistake):
     """Bad usage or a bad model: one sentence for the person, and the exit status."""
 
-    def __init__(self, sentence: str, status: int = BAD_INPUT) -> None:
-        super().__init__(sentence)
+    def __init__(self, message: str, status: int = BAD_INPUT, /, **values: Any) -> None:
+        super().__init__(message, **values)
         self.status = status
 
 
@@ -84,7 +84,7 @@ class Parser(argparse.ArgumentParser):
 
     def error(self, message: str) -> NoReturn:
         sentence = message[:1].upper() + message[1:]
-        raise UsageError(tr("{sentence}. See: {program} --help", sentence=sentence, program=self.prog))
+        raise UsageError("{sentence}. See: {program} --help", sentence=sentence, program=self.prog)
 
 
 def _paths(value: Any) -> list[Path]:
@@ -137,7 +137,7 @@ def numbers(option: str, text: str) -> tuple[float, ...]:
         )
         raise UsageError(message) from None
     if not all(map(math.isfinite, found)):
-        raise UsageError(tr("{option} {text}: write finite numbers.", option=option, text=text))
+        raise UsageError("{option} {text}: write finite numbers.", option=option, text=text)
     return found
 
 
@@ -146,6 +146,6 @@ def times(text: str) -> tuple[float, ...]:
     found = numbers("--at", text)
     if found[0] < 0.0 or list(found) != sorted(found):
         raise UsageError(
-            tr("--at {text}: write the times in ascending order, each at least 0 (in seconds).", text=text)
+            "--at {text}: write the times in ascending order, each at least 0 (in seconds).", text=text
         )
     return found

@@ -49,14 +49,12 @@ def command(words: Sequence[str]) -> int:
     for name in options.names:
         if name not in NAMES:
             raise UsageError(
-                tr("There is no benchmark '{name}'; choose from {names}.", name=name, names=", ".join(NAMES))
+                "There is no benchmark '{name}'; choose from {names}.", name=name, names=", ".join(NAMES)
             )
     if options.seed is not None and (options.names != [NUMBERED] or options.seed < 0):
         raise UsageError(
-            tr(
-                "--seed takes a whole number of at least 0 and works with one benchmark only: {name}.",
-                name=NUMBERED,
-            )
+            "--seed takes a whole number of at least 0 and works with one benchmark only: {name}.",
+            name=NUMBERED,
         )
     chosen = {"quick": options.quick} | ({} if options.seed is None else {"seed": options.seed})
     measured: dict[str, Tables] = {}
@@ -77,10 +75,8 @@ def run(name: str, **options: Any) -> Tables:
     """The tables of one benchmark, whose report takes the options. Raises UsageError outside a source checkout."""
     if not (CHECKOUT / "tests" / "benchmarks").is_dir():
         raise UsageError(
-            tr(
-                "The benchmarks are part of the source code, not of the installed package. Clone the repository and"
-                ' install it with: pip install -e ".[bench]"'
-            )
+            "The benchmarks are part of the source code, not of the installed package. Clone the repository and"
+            ' install it with: pip install -e ".[bench]"'
         )
     if str(CHECKOUT) not in sys.path:
         sys.path.insert(0, str(CHECKOUT))

@@ -7,12 +7,13 @@ import sys
 from collections.abc import Callable, Sequence
 from importlib import import_module
 
-from pinjoint.commands import COMMANDS, Command
+from pinjoint.commands import Command
 from pinjoint.commands.arguments import BAD_INPUT
 from pinjoint.commands.options import ANSWERED, NOT_ANSWERED, STOPPED, use_cores_as_asked
 from pinjoint.commands.output import write
 from pinjoint.commands.with_mods import load_as_asked
 from pinjoint.completion import complete
+from pinjoint.components.extensions import EXTENSIONS
 from pinjoint.components.language import marked, tr
 from pinjoint.components.mistake import Mistake
 from pinjoint.mods.heeding import switched_off
@@ -60,6 +61,7 @@ def _of(module: str) -> Callable[[list[str]], int]:
     return run
 
 
+COMMANDS: dict[str, Command] = EXTENSIONS.commands
 COMMANDS |= {
     "open": Command(_of("window"), marked("open a model in the window; the word may be left out")),
     "run": Command(_of("run"), marked("compute a model without a window, and print the result")),

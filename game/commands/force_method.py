@@ -66,7 +66,7 @@ def command(words: Sequence[str]) -> int:
     add_output(parser, default="json")
     options = parser.parse_args(words)
     if options.report is not None and not options.report.lower().endswith(".pdf"):
-        raise UsageError(tr("--report {file}: write a file that ends with .pdf.", file=options.report))
+        raise UsageError("--report {file}: write a file that ends with .pdf.", file=options.report)
     session = session_of(options)
     from pinjoint.force_method.tables import Tables
     from pinjoint.systems.statics.unknowns import ForceMethodError
@@ -77,11 +77,9 @@ def command(words: Sequence[str]) -> int:
         raise UsageError(str(error)) from None
     if options.report is not None and not solution.unknowns:
         raise UsageError(
-            tr(
-                "{model} is statically determinate: there is nothing to release, and nothing to report. Equilibrium alone"
-                " gives its forces: pinjoint run {model} --static.",
-                model=options.model,
-            )
+            "{model} is statically determinate: there is nothing to release, and nothing to report. Equilibrium alone"
+            " gives its forces: pinjoint run {model} --static.",
+            model=options.model,
         )
     tables = Tables.of(session.model, solution)
     laws = session.schedule.left_out_of_statics(session.model)

@@ -7,7 +7,7 @@ import os
 from collections.abc import Iterable, Sequence
 
 from pinjoint.commands.arguments import Parser, UsageError
-from pinjoint.components.language import ENGLISH, LANGUAGES, speak, tr
+from pinjoint.components.language import ENGLISH, LANGUAGES, speak
 from pinjoint.documents.preferences import preferred_language
 
 VARIABLE = "PINJOINT_LANGUAGE"
@@ -26,11 +26,9 @@ def speak_as_asked(words: Sequence[str]) -> list[str]:
     if options.language is not None:
         if not (code := _known([options.language])):
             raise UsageError(
-                tr(
-                    "--language {code}: there is no such language; write one of {languages}.",
-                    code=options.language,
-                    languages=", ".join(LANGUAGES),
-                )
+                "--language {code}: there is no such language; write one of {languages}.",
+                code=options.language,
+                languages=", ".join(LANGUAGES),
             )
         os.environ[VARIABLE] = code  # for this process and those that it starts
         speak(code)

@@ -9,9 +9,10 @@ from typing import Any
 from pinjoint.commands.arguments import Parser
 from pinjoint.commands.options import ANSWERED, NOT_ANSWERED
 from pinjoint.commands.output import Row, add_output, write_result
+from pinjoint.components.extensions import EXTENSIONS
 from pinjoint.components.language import tr
 from pinjoint.mods.finding import mods_folder
-from pinjoint.mods.loading import MODS, load
+from pinjoint.mods.loading import load
 from pinjoint.mods.mod import INCLUDED, Mod, ModError
 from pinjoint.mods.skeleton import write_skeleton
 from pinjoint.mods.trial import mistakes_of
@@ -37,9 +38,9 @@ def command(words: Sequence[str]) -> int:
     if options.command == "new":
         return _new(options.name, Path(options.into))
     if options.command == "list":
-        found = [_described(mod) for mod in MODS]
+        found = [_described(mod) for mod in EXTENSIONS.mods]
         write_result(options, found, _rows, _lines_of_list)
-        return NOT_ANSWERED if any(mod.off for mod in MODS) else ANSWERED
+        return NOT_ANSWERED if any(mod.off for mod in EXTENSIONS.mods) else ANSWERED
     found = _checked(Path(options.folder))
     write_result(options, found, _rows, _lines_of_check)
     return NOT_ANSWERED if any(mod["problems"] for mod in found) else ANSWERED
@@ -72,12 +73,10 @@ def _described(mod: Mod) -> dict[str, Any]:
 def _checked(folder: Path) -> list[dict[str, Any]]:
     """The mods in a folder, each with its problems. Raises ModError if there is none."""
     if not folder.is_dir():
-        raise ModError(tr("There is no folder {folder}; check its name.", folder=folder))
+        raise ModError("There is no folder {folder}; check its name.", folder=folder)
     found = load([folder])
     if not found:
-        raise ModError(
-            tr("There is no mod in {folder}; to write one, use: pinjoint mods new NAME", folder=folder)
-        )
+        raise ModError("There is no mod in {folder}; to write one, use: pinjoint mods new NAME", folder=folder)
     return [_described(mod) | ({} if mod.off else {"problems": mistakes_of(mod)}) for mod in found]
 
 

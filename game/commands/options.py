@@ -92,7 +92,7 @@ def analysis_of(options: argparse.Namespace) -> Analysis:
     """The analysis of `add_analysis`. Raises UsageError."""
     factors = numbers("--load-factors", options.load_factors) if options.load_factors is not None else None
     if factors is not None and not options.static:
-        raise UsageError(tr("--load-factors works only together with --static; add it."))
+        raise UsageError("--load-factors works only together with --static; add it.")
     return Analysis(
         load_factors=(factors or (1.0,)) if options.static else None,
         times=times(options.at) if options.at is not None else None,

@@ -162,11 +162,7 @@ def plain(value: Any, where: str, *, as_said: bool = False) -> Any:
         value = value.tolist()
     if isinstance(value, float) and not math.isfinite(value):
         raise ResultError(
-            tr(
-                "{where} is {value}, not a finite number; report an earlier state.",
-                where=where,
-                value=str(value),
-            )
+            "{where} is {value}, not a finite number; report an earlier state.", where=where, value=str(value)
         )
     if isinstance(value, Said):
         return value if as_said else value.english

@@ -41,11 +41,9 @@ def plan(session: Session, scene: str) -> dict[str, Any]:
     """The plan of a session, as names: {"scene", "phases": {phase: […]}, "left_out": {name: why}}."""
     if scene not in session.scenes.names:
         raise UsageError(
-            tr(
-                "There is no scene '{scene}'; choose from {names}.",
-                scene=scene,
-                names=", ".join(session.scenes.names),
-            )
+            "There is no scene '{scene}'; choose from {names}.",
+            scene=scene,
+            names=", ".join(session.scenes.names),
         )
     found = session.plan(scene)
     return {

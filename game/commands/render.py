@@ -29,11 +29,9 @@ def command(words: Sequence[str]) -> int:
     width, height = _size(options.size)
     if Path(options.output).suffix.lower() not in _PICTURES:
         raise UsageError(
-            tr(
-                "{file}: choose a file that ends with one of {endings}.",
-                file=f"--output {options.output}",
-                endings=", ".join(_PICTURES),
-            )
+            "{file}: choose a file that ends with one of {endings}.",
+            file=f"--output {options.output}",
+            endings=", ".join(_PICTURES),
         )
     _check_background(options)
     session = session_of(options)
@@ -109,25 +107,19 @@ def _check_background(options: argparse.Namespace) -> None:
     background, suffix = options.background, Path(options.output).suffix.lower()
     if background != "theme" and suffix == ".gif":
         raise UsageError(
-            tr(
-                "--background {background}: a .gif always has the background of its theme; leave out --background.",
-                background=background,
-            )
+            "--background {background}: a .gif always has the background of its theme; leave out --background.",
+            background=background,
         )
     if background == "transparent" and suffix not in _CLEAR:
         raise UsageError(
-            tr(
-                "--background transparent: a {ending} cannot be transparent; choose one of {endings}.",
-                ending=suffix,
-                endings=", ".join(_CLEAR),
-            )
+            "--background transparent: a {ending} cannot be transparent; choose one of {endings}.",
+            ending=suffix,
+            endings=", ".join(_CLEAR),
         )
     if background == "white" and max(load_theme(options.theme).background[:3]) < _LIGHT:
         raise UsageError(
-            tr(
-                "--background white: the theme {theme} has light text, which cannot be read on white; choose a light theme.",
-                theme=options.theme,
-            )
+            "--background white: the theme {theme} has light text, which cannot be read on white; choose a light theme.",
+            theme=options.theme,
         )
 
 
@@ -162,9 +154,6 @@ def _size(text: str) -> tuple[int, int]:
     width, height = map(int, found.groups()) if found else (0, 0)
     if not (16 <= width <= 16384 and 16 <= height <= 16384):
         raise UsageError(
-            tr(
-                "--size {size}: write width x height in pixels, such as 1280x800, each from 16 to 16384.",
-                size=text,
-            )
+            "--size {size}: write width x height in pixels, such as 1280x800, each from 16 to 16384.", size=text
         )
     return width, height

@@ -8,11 +8,11 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
-from pinjoint.commands import COMMANDS
 from pinjoint.commands.arguments import Parser, UsageError
 from pinjoint.commands.options import ANSWERED, NO_DISPLAY
 from pinjoint.commands.output import writable, writing
 from pinjoint.commands.with_mods import in_use
+from pinjoint.components.extensions import EXTENSIONS
 from pinjoint.components.language import LANGUAGES, tr
 from pinjoint.components.model import Model
 from pinjoint.components.suggestions import nearest
@@ -26,14 +26,14 @@ from pinjoint.version import __version__
 
 def _refuse_misspelt(word: str) -> None:
     """Raise UsageError for a word that is not a model but nearly a command."""
-    near = nearest(word, COMMANDS, cutoff=0.75)
+    near = nearest(word, EXTENSIONS.commands, cutoff=0.75)
     if near and word not in models.bundled() and not Path(word).exists():
-        raise UsageError(tr("There is no command '{word}'; did you mean '{near}'?", word=word, near=near))
+        raise UsageError("There is no command '{word}'; did you mean '{near}'?", word=word, near=near)
 
 
 def _epilog() -> str:
     """The commands, the options that all have, and the bundled models."""
-    width = max(map(len, COMMANDS))
+    width = max(map(len, EXTENSIONS.commands))
     paragraphs = [
         tr(
             "Every command also takes --mods DIR, to load the mods in a folder; --no-mods, to leave out your mods;"
@@ -45,7 +45,10 @@ def _epilog() -> str:
     return "\n".join(
         [
             tr("commands (each with --help):"),
-            *(f"  {name.ljust(width)}  {tr(COMMANDS[name].about)}".rstrip() for name in sorted(COMMANDS)),
+            *(
+                f"  {name.ljust(width)}  {tr(EXTENSIONS.commands[name].about)}".rstrip()
+                for name in sorted(EXTENSIONS.commands)
+            ),
             *(f"\n{textwrap.fill(paragraph, 78)}" for paragraph in paragraphs),
         ]
     )
@@ -95,10 +98,8 @@ def in_window(model: Model, file: ModelFile, theme: str | None = None, **further
             return open_window(model, file, theme, **further)
     except NoDisplay as error:
         raise UsageError(
-            tr(
-                "No window can be opened: {error}. Without a display, use: pinjoint run MODEL,"
-                " or pinjoint play SCRIPT without --window.",
-                error=error,
-            ),
+            "No window can be opened: {error}. Without a display, use: pinjoint run MODEL,"
+            " or pinjoint play SCRIPT without --window.",
             NO_DISPLAY,
+            error=error,
         ) from None

@@ -8,13 +8,12 @@ from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from pathlib import Path
 
-from pinjoint.commands import COMMANDS
 from pinjoint.commands.arguments import Parser
+from pinjoint.components.extensions import EXTENSIONS
 from pinjoint.components.language import marked, tr
 from pinjoint.documents.library import data_folder
 from pinjoint.documents.locks import lock_file
-from pinjoint.editor.context import FAULTS
-from pinjoint.mods.loading import MODS, load
+from pinjoint.mods.loading import load
 from pinjoint.mods.mod import INCLUDED, LOG, ModError
 from pinjoint.streams import tell
 
@@ -37,18 +36,16 @@ def load_as_asked(words: Sequence[str]) -> list[str]:
     options, others = parser.parse_known_args(list(words))
     for folder in options.mods:
         if not Path(folder).is_dir():
-            raise ModError(tr("--mods {folder}: there is no such folder; check its name.", folder=folder))
-    unsafe = not options.no_mods and others[:1] not in [[name] for name in COMMANDS] and crashed()
+            raise ModError("--mods {folder}: there is no such folder; check its name.", folder=folder)
+    unsafe = not options.no_mods and others[:1] not in [[name] for name in EXTENSIONS.commands] and crashed()
     if unsafe:
-        FAULTS.append(tr(LEFT_OUT))
+        EXTENSIONS.faults.append(tr(LEFT_OUT))
     named = {Path(folder).resolve() for folder in options.mods}
-    computes = set(others[:1]) & set(COMMANDS) - {"open"}
+    computes = set(others[:1]) & set(EXTENSIONS.commands) - {"open"}
     for mod in load(options.mods, installed=not (options.no_mods or unsafe)):
         if mod.off and others[:1] != ["mods"]:
             if computes and mod.folder is not None and {mod.folder, mod.folder.parent} & named:
-                raise ModError(
-                    tr("The mod '{name}' cannot be used: {problem}", name=mod.name, problem=mod.problem)
-                )
+                raise ModError("The mod '{name}' cannot be used: {problem}", name=mod.name, problem=mod.problem)
             tell(tr("The mod '{name}' was left out: {problem}", name=mod.name, problem=mod.problem))
     return others
 
@@ -68,7 +65,7 @@ def crashed() -> bool:
 @contextmanager
 def in_use() -> Iterator[None]:
     """Keep a log and a lock file while a window is open with a person's mods; only a crash leaves the file behind."""
-    if not any(mod.loaded and mod.source != INCLUDED for mod in MODS):
+    if not any(mod.loaded and mod.source != INCLUDED for mod in EXTENSIONS.mods):
         yield
         return
     path = data_folder() / "running" / f"{uuid.uuid4().hex}.lock"

@@ -14,11 +14,12 @@ import numpy as np
 from pinjoint.completion import complete
 from pinjoint.components.commands import Assign
 from pinjoint.components.departure import Departure
+from pinjoint.components.extensions import EXTENSIONS
 from pinjoint.components.field import Column, Field, FieldError
 from pinjoint.components.grid import Grid
 from pinjoint.components.handle import Handle
 from pinjoint.components.language import joined, marked, tr
-from pinjoint.components.model import ADDED, Model
+from pinjoint.components.model import Model
 from pinjoint.components.particle import Particle, check_spin, check_velocities
 from pinjoint.components.rod import Rod
 from pinjoint.components.section import NAMES, given_by
@@ -57,8 +58,8 @@ def parse(document: Mapping[str, Any], source: str = "") -> Model:
         return _parsed(document)
     except RecursionError:
         if not source:
-            raise ModelError(tr("The document is nested too deeply to be a model.")) from None
-        raise ModelError(tr("{source} is nested too deeply to be a model.", source=source)) from None
+            raise ModelError("The document is nested too deeply to be a model.") from None
+        raise ModelError("{source} is nested too deeply to be a model.", source=source) from None
     except (ModelError, FieldError) as error:
         raise ModelError(joined([f"{source}:", str(error)]) if source else str(error)) from None
 
@@ -129,14 +130,14 @@ def _read_added(model: Model, kinds: Any) -> None:
     """Read the elements of mods' kinds; those of mods that are not loaded are kept as they are."""
     path = f"$.{FOREIGN}"
     if not isinstance(kinds, Mapping):
-        fail(path, tr("it must be an object, not {found}.", found=_kind_of(kinds)))
+        fail(path, "it must be an object, not {found}.", found=_kind_of(kinds))
     for name, elements in kinds.items():
         if not isinstance(name, str) or "." not in name or not isinstance(elements, list | tuple):
-            fail(path, tr("{name} must have the form {form}.", name=quoted(name), form='"mod.Kind": […]'))
-        if name not in ADDED:
-            _refuse_misspelt(name, ADDED, path)
+            fail(path, "{name} must have the form {form}.", name=quoted(name), form='"mod.Kind": […]')
+        if name not in EXTENSIONS.kinds:
+            _refuse_misspelt(name, EXTENSIONS.kinds, path)
             model.foreign_kinds[name] = copied(elements, f"{path}.{name}")
-    for name, kind in ADDED.items():  # kinds that refer to others come after them
+    for name, kind in EXTENSIONS.kinds.items():  # kinds that refer to others come after them
         if name in kinds:
             _read(model, _section(f"{path}.{name}", kind, kinds[name]))
 
@@ -149,69 +150,62 @@ def _by_elements(document: Any) -> Any:
     try:
         return spread(msgspec.convert(document, Gathered))
     except (msgspec.ValidationError, ValueError, IndexError, TypeError, AttributeError) as error:
-        fail("$", tr("its columns do not fit together ({error}); copy the model again.", error=error))
+        fail("$", "its columns do not fit together ({error}); copy the model again.", error=error)
 
 
 def _migrated(document: Any) -> Mapping[str, Any]:
     """The document in the present version of the format."""
     if not isinstance(document, Mapping):
-        fail("$", tr("it must be an object with the key 'format', not {found}.", found=_kind_of(document)))
+        fail("$", "it must be an object with the key 'format', not {found}.", found=_kind_of(document))
     stated = document.get("format")
     if not isinstance(stated, str) or stated != FORMAT:
         form = f'"format": "{FORMAT}"'
-        fail("$.format", tr("it is {value}; a model file has {form}.", value=quoted(stated), form=form))
+        fail("$.format", "it is {value}; a model file has {form}.", value=quoted(stated), form=form)
     version = document.get("version")
     if isinstance(version, bool) or not isinstance(version, int):
         form, value = f'"version": {VERSION}', quoted(version)
-        fail("$.version", tr("it is {value}; write a whole number, at present {form}.", value=value, form=form))
+        fail("$.version", "it is {value}; write a whole number, at present {form}.", value=value, form=form)
     if version > VERSION:
         fail(
             "$.version",
-            tr(
-                "it is {version}, but this program reads versions up to {newest} only; update Pinjoint.",
-                version=version,
-                newest=VERSION,
-            ),
+            "it is {version}, but this program reads versions up to {newest} only; update Pinjoint.",
+            version=version,
+            newest=VERSION,
         )
     migrated = dict(document)
     for old in range(version, VERSION):
         if old not in MIGRATIONS:
             fail(
                 "$.version",
-                tr(
-                    "there is no version {version}; the present one is {newest}.",
-                    version=version,
-                    newest=VERSION,
-                ),
+                "there is no version {version}; the present one is {newest}.",
+                version=version,
+                newest=VERSION,
             )
         migrated = MIGRATIONS[old](migrated)
     state = migrated.get("state")
-    if isinstance(state, Mapping):
-        state = {key: value for key, value in state.items() if key not in ("largest_rotation", "largest_spin")}
-        if "paths" in state and "collision_state" not in state:  # its earlier name
-            state["collision_state"] = state.pop("paths")
-        migrated["state"] = state
+    if isinstance(state, Mapping):  # where it is of when rotations had scales of their own
+        migrated["state"] = {k: v for k, v in state.items() if k not in ("largest_rotation", "largest_spin")}
     return migrated
 
 
 def _text(document: Mapping[str, Any], key: str) -> str:
     text = document.get(key, "")
     if not isinstance(text, str):
-        fail(f"$.{key}", tr("it is {value}; it must be a text.", value=quoted(text)))
+        fail(f"$.{key}", "it is {value}; it must be a text.", value=quoted(text))
     if is_broken(text):
-        fail(f"$.{key}", tr("it is {text!a}; one of its characters is damaged. Type it again.", text=text))
+        fail(f"$.{key}", "it is {text!a}; one of its characters is damaged. Type it again.", text=text)
     return text
 
 
 def _section(path: str, kind: type[Handle], value: Any) -> _Section:
     """The section at a path once its shape and all its keys are checked."""
     if not kind.single and not isinstance(value, list | tuple):
-        fail(path, tr("it must be a list, not {found}.", found=_kind_of(value)))
+        fail(path, "it must be a list, not {found}.", found=_kind_of(value))
     elements = [value] if kind.single else value
     for row, element in enumerate(elements):
         if not isinstance(element, Mapping):
             place = path if kind.single else f"{path}[{row}]"
-            fail(place, tr("it must be an object, not {found}.", found=_kind_of(element)))
+            fail(place, "it must be an object, not {found}.", found=_kind_of(element))
     section = _Section(path, kind, elements, set().union(*elements))
     known = [*(field.key for field in saved_fields(kind) if not field.component), FOREIGN]
     if not section.keys <= set(known):
@@ -243,16 +237,16 @@ def _refuse_unknown(
         if kind is not None and key in {field.key for field in fields_of(kind) if not field.component}:
             fail(
                 where,
-                tr(
-                    "'{key}' is computed by the program and does not belong in a model file; remove it.",
-                    key=key,
-                ),
+                "'{key}' is computed by the program and does not belong in a model file; remove it.",
+                key=key,
             )
-        if added := [name for name, of in ADDED.items() if kind is None and str(key) in (name, of.table)]:
+        if added := [
+            name for name, of in EXTENSIONS.kinds.items() if kind is None and str(key) in (name, of.table)
+        ]:
             form = f'"{FOREIGN}": {{"{added[0]}": […]}}'
-            fail(where, tr("there is no key '{key}' here; write {form}.", key=key, form=form))
+            fail(where, "there is no key '{key}' here; write {form}.", key=key, form=form)
         key = str(key)
-        fail(where, tr("there is no key '{key}' here; {remedy}", key=cut(key), remedy=remedy(key, keys)))
+        fail(where, "there is no key '{key}' here; {remedy}", key=cut(key), remedy=remedy(key, keys))
 
 
 def _kind_of(value: Any) -> str:
@@ -358,7 +352,7 @@ def _rows_by_name(model: Model, section: _Section, field: Field[Any]) -> Column:
                 message = marked('it is {value}; it must be the names of two particles, such as ["A", "B"].')
             else:
                 message = marked("it is {value}; it must be the name of a particle.")
-            fail(section.where(row, field.key), tr(message, value=quoted(value)))
+            fail(section.where(row, field.key), message, value=quoted(value))
         for name in names:
             if name not in row_of:
                 fail(section.where(row, field.key), missing(target.name, name, row_of))
@@ -385,7 +379,8 @@ def _check_rods(model: Model, section: _Section, columns: Columns) -> None:
         particle = model.particles.names[ends[row, 0]]
         fail(
             section.where(row, "between"),
-            tr("both ends are '{particle}'; a rod needs two different particles.", particle=particle),
+            "both ends are '{particle}'; a rod needs two different particles.",
+            particle=particle,
         )
     pairs = ends[:, 0] * model.particles.count + ends[:, 1]
     _, first, pair = np.unique(pairs, return_index=True, return_inverse=True)
@@ -410,11 +405,9 @@ def _check_grids(model: Model, section: _Section, columns: Columns) -> None:
     if len(shown) > 1:
         fail(
             section.where(shown[1], "shown"),
-            tr(
-                "{first} is shown already; only one grid can be shown, give the others {form}.",
-                first=section.where(shown[0]),
-                form='"shown": false',
-            ),
+            "{first} is shown already; only one grid can be shown, give the others {form}.",
+            first=section.where(shown[0]),
+            form='"shown": false',
         )
 
 
@@ -434,11 +427,11 @@ def _check_components(section: _Section) -> None:
             continue
         where, components = section.where(row, FOREIGN), element[FOREIGN]
         if not isinstance(components, Mapping):
-            fail(where, tr("it must be an object, not {found}.", found=_kind_of(components)))
+            fail(where, "it must be an object, not {found}.", found=_kind_of(components))
         for name, values in components.items():
             if not isinstance(name, str) or "." not in name or not isinstance(values, Mapping):
                 form = '"mod.Component": {…}'
-                fail(where, tr("{name} must have the form {form}.", name=quoted(name), form=form))
+                fail(where, "{name} must have the form {form}.", name=quoted(name), form=form)
             if name not in known:
                 _refuse_misspelt(name, known, where)
             if name in known:
@@ -447,17 +440,17 @@ def _check_components(section: _Section) -> None:
 
 def _refuse_misspelt(name: str, known: Collection[str], where: str) -> None:
     """Refuse unknown components of a loaded mod; those of other mods are kept unread. Raises ModelError."""
-    components = itertools.chain.from_iterable(map(_components, (*SECTIONS.values(), *ADDED.values())))
+    components = itertools.chain.from_iterable(
+        map(_components, (*SECTIONS.values(), *EXTENSIONS.kinds.values()))
+    )
     mod = name.partition(".")[0]
-    if mod in {loaded.partition(".")[0] for loaded in (*ADDED, *components)}:
+    if mod in {loaded.partition(".")[0] for loaded in (*EXTENSIONS.kinds, *components)}:
         fail(
             where,
-            tr(
-                "the mod '{mod}' has no '{name}' here; {remedy}",
-                mod=mod,
-                name=cut(name),
-                remedy=remedy(name, known),
-            ),
+            "the mod '{mod}' has no '{name}' here; {remedy}",
+            mod=mod,
+            name=cut(name),
+            remedy=remedy(name, known),
         )
 
 

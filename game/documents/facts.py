@@ -10,10 +10,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pinjoint.components.clock import Clock
+from pinjoint.components.extensions import EXTENSIONS
 from pinjoint.components.field import MADE, Column, Field
 from pinjoint.components.handle import Handle
-from pinjoint.components.language import tr
-from pinjoint.components.model import ADDED, Model
+from pinjoint.components.model import Model
 from pinjoint.components.table import Table
 from pinjoint.documents.format import (
     BY_COLUMNS,
@@ -77,7 +77,7 @@ class Gathered(msgspec.Struct, frozen=True, tag_field="format", tag=BY_COLUMNS):
 def gathered(model: Model, sliders: list[Any] | None = None) -> Gathered:
     """The same document by facts, which `parse` takes, too. Raises ModelError. sliders: as the document holds them."""
     sections = {name: _parts(model, kind) for name, kind in SECTIONS.items()}
-    added = {name: _parts(model, kind) for name, kind in ADDED.items() if kind.table in model.tables}
+    added = {name: _parts(model, kind) for name, kind in EXTENSIONS.kinds.items() if kind.table in model.tables}
     versions = known_versions(model.foreign_versions)
     sliders = slider_entries(model) if sliders is None else sliders
     title, description = model.title, model.description
@@ -88,7 +88,7 @@ def document_of(model: Model, parts: Mapping[type[Handle], NDArray[np.int64]]) -
     """The document of some rows alone, by kind, among them those that they refer to. Raises ModelError."""
     made: dict[str, Any] = {"format": FORMAT, "version": VERSION}
     elements = {kind: _elements(*_parts(model, kind, rows)) for kind, rows in parts.items() if len(rows)}
-    added = {name: elements.pop(kind) for name, kind in ADDED.items() if kind in elements}
+    added = {name: elements.pop(kind) for name, kind in EXTENSIONS.kinds.items() if kind in elements}
     made |= {kind.table: found for kind, found in elements.items()}
     return _with_versions(made | ({FOREIGN: added} if added else {}), known_versions(model.foreign_versions))
 
@@ -194,10 +194,8 @@ def _refuse_non_finite(
     for row in np.argwhere(~finite)[:1, 0].tolist():
         element, value = table.handles[rows[row]], field.loaded(column, row)
         raise ModelError(
-            tr(
-                "{element}: {field} is {value}, which no file can hold; undo, or go back to the beginning.",
-                element=model.describe(element),
-                field=field.title,
-                value=str(value),
-            )
+            "{element}: {field} is {value}, which no file can hold; undo, or go back to the beginning.",
+            element=model.describe(element),
+            field=field.title,
+            value=str(value),
         )

@@ -9,13 +9,14 @@ from typing import Any, NoReturn
 
 from pinjoint.components.clock import Clock
 from pinjoint.components.environment import Environment
+from pinjoint.components.extensions import EXTENSIONS
 from pinjoint.components.field import SAVED, Field
 from pinjoint.components.grid import Grid
 from pinjoint.components.handle import Handle
 from pinjoint.components.language import joined, tr
 from pinjoint.components.load import Load
 from pinjoint.components.mistake import Mistake
-from pinjoint.components.model import ADDED, Model
+from pinjoint.components.model import Model
 from pinjoint.components.particle import Particle
 from pinjoint.components.rod import Rod
 from pinjoint.components.settings import Settings
@@ -45,13 +46,13 @@ class ModelError(Mistake, ValueError):
     """A model that cannot be read or written; the message says where, what is wrong and the remedy."""
 
 
-def fail(path: str, problem: str) -> NoReturn:
-    raise ModelError(joined([f"{path}:", problem]))
+def fail(path: str, problem: str, /, **values: Any) -> NoReturn:
+    raise ModelError(joined([f"{path}:", tr(problem, **values)]))
 
 
 def required(kind: type[Handle]) -> Sequence[str]:
     """The keys that every element of a kind must have."""
-    if kind.table in REQUIRED or kind not in ADDED.values():
+    if kind.table in REQUIRED or kind not in EXTENSIONS.kinds.values():
         return REQUIRED.get(kind.table, ())
     return [field.key for field in fields_of(kind) if field.name in kind.points or field.references]
 
@@ -67,10 +68,10 @@ def copied(value: Any, where: str) -> Any:
     if isinstance(value, list | tuple):
         return [copied(item, where) for item in value]
     if isinstance(value, str) and is_broken(value):
-        fail(where, tr("{value!a} contains a damaged character, which a file cannot hold.", value=value))
+        fail(where, "{value!a} contains a damaged character, which a file cannot hold.", value=value)
     if value is None or isinstance(value, str | int) or (isinstance(value, float) and math.isfinite(value)):
         return value
-    fail(where, tr("a model file cannot hold {value}.", value=quoted(value)))
+    fail(where, "a model file cannot hold {value}.", value=quoted(value))
 
 
 def missing_mods(model: Model) -> list[str]:

@@ -15,6 +15,7 @@ from platformdirs import user_data_path
 from pinjoint.components import suggestions
 from pinjoint.components.box import fits_file_names
 from pinjoint.components.language import plural, tr
+from pinjoint.components.mistake import Explained
 from pinjoint.documents import models
 
 DATA_VARIABLE = "PINJOINT_DATA"  # names another folder than the system's own
@@ -29,7 +30,7 @@ _KEPT_BY_WINDOWS = {
 }
 
 
-class NameRefused(ValueError):
+class NameRefused(Explained, ValueError):
     """A name that no file can have on every system; the message says why and what helps."""
 
 
@@ -70,29 +71,24 @@ def path_of(name: str) -> Path:
     name = unicodedata.normalize("NFC", name.strip())  # the way to write é that all systems find
     wrong = sorted({character for character in name if not fits_file_names(character)})
     if not name:
-        raise NameRefused(tr("The name is empty; type at least one character."))
+        raise NameRefused("The name is empty; type at least one character.")
     if wrong:
         raise NameRefused(
-            tr(
-                "A name cannot contain {character!r}; use letters, digits, spaces, - and _.",
-                character=wrong[0],
-            )
+            "A name cannot contain {character!r}; use letters, digits, spaces, - and _.", character=wrong[0]
         )
     if name.startswith(".") or name.endswith("."):
-        raise NameRefused(tr("A name cannot begin or end with a dot; remove it."))
+        raise NameRefused("A name cannot begin or end with a dot; remove it.")
     if name.partition(".")[0].rstrip().lower() in _KEPT_BY_WINDOWS:
-        raise NameRefused(tr("Windows cannot have files called '{name}'; choose another name.", name=name))
+        raise NameRefused("Windows cannot have files called '{name}'; choose another name.", name=name)
     if len(name) > LONGEST_NAME:
         raise NameRefused(
-            tr("The name has {count} characters; use at most {most}.", count=len(name), most=LONGEST_NAME)
+            "The name has {count} characters; use at most {most}.", count=len(name), most=LONGEST_NAME
         )
     if len(name.encode()) > MOST_BYTES:
         raise NameRefused(
-            tr(
-                "The name takes {count} bytes in a file system; use at most {most}.",
-                count=len(name.encode()),
-                most=MOST_BYTES,
-            )
+            "The name takes {count} bytes in a file system; use at most {most}.",
+            count=len(name.encode()),
+            most=MOST_BYTES,
         )
     return models_folder() / f"{name}.json"
 

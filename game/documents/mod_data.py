@@ -6,7 +6,8 @@ import copy
 from collections.abc import Callable, Iterator, Mapping
 from typing import Any
 
-from pinjoint.components.language import tr
+from pinjoint.components.extensions import EXTENSIONS
+from pinjoint.components.mistake import WrongValue
 from pinjoint.components.wording import quoted
 
 DATA = "components"  # the key of the data of mods, at elements and in the document
@@ -15,13 +16,10 @@ MODS = "mods"  # the key of the versions of the mods whose data a document holds
 # Changes a document; given the version of the mod that wrote it.
 Upgrade = Callable[[dict[str, Any], str], None]
 
-VERSIONS: dict[str, str] = {}  # of the mods that add components or kinds, by name
-UPGRADES: dict[str, Upgrade] = {}  # by mod
-
 
 def known_versions(kept: Mapping[str, str]) -> dict[str, str]:
     """The versions of mods that are loaded, and those `kept` of mods that are not."""
-    return {**kept, **VERSIONS}
+    return {**kept, **EXTENSIONS.versions}
 
 
 def versions_in(document: Mapping[str, Any], known: Mapping[str, str]) -> dict[str, str]:
@@ -37,7 +35,11 @@ def upgraded(document: Mapping[str, Any]) -> Mapping[str, Any]:
     """
     stated = document.get(MODS, {})
     _check(stated)
-    waiting = [name for name in UPGRADES if _is_older(stated.get(name, ""), VERSIONS.get(name, ""))]
+    waiting = [
+        name
+        for name in EXTENSIONS.upgrades
+        if _is_older(stated.get(name, ""), EXTENSIONS.versions.get(name, ""))
+    ]
     if not waiting:
         return document
     present = _mods_in(document)
@@ -45,7 +47,7 @@ def upgraded(document: Mapping[str, Any]) -> Mapping[str, Any]:
     for name in waiting:
         if name in present:
             made = copy.deepcopy(dict(document)) if made is None else made
-            UPGRADES[name](made, stated.get(name, ""))
+            EXTENSIONS.upgrades[name](made, stated.get(name, ""))
     return document if made is None else made
 
 
@@ -63,15 +65,11 @@ def _data_in(document: Mapping[str, Any]) -> Iterator[Mapping[Any, Any]]:
 
 def _check(stated: Any) -> None:
     if not isinstance(stated, Mapping):
-        raise ValueError(tr("it must be an object such as {form}.", form='{"wind": "1.0"}'))
+        raise WrongValue("it must be an object such as {form}.", form='{"wind": "1.0"}')
     for name, version in stated.items():
         if not isinstance(version, str) or not _is_version(version):
-            raise ValueError(
-                tr(
-                    'the version of {name} is {version}; write it like "1.0".',
-                    name=name,
-                    version=quoted(version),
-                )
+            raise WrongValue(
+                'the version of {name} is {version}; write it like "1.0".', name=name, version=quoted(version)
             )
 
 

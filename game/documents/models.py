@@ -22,6 +22,7 @@ from typing import Any, NoReturn
 
 import msgspec
 
+from pinjoint.components.extensions import EXTENSIONS
 from pinjoint.components.language import joined, marked, tr
 from pinjoint.components.model import Model
 from pinjoint.components.suggestions import nearest
@@ -47,9 +48,6 @@ __all__ = [
 ]
 
 
-FOLDERS: list[Path] = []  # of mods, with models that are opened by name
-
-
 def bundled() -> list[str]:
     """Names of the models that come with the program and its mods, in alphabetical order."""
     return sorted(_bundled_files())
@@ -58,7 +56,9 @@ def bundled() -> list[str]:
 def _bundled_files() -> dict[str, Traversable]:
     """The files of these models by name."""
     entries = (
-        entry for folder in (*FOLDERS, files("pinjoint.assets") / "models") for entry in folder.iterdir()
+        entry
+        for folder in (*EXTENSIONS.folders, files("pinjoint.assets") / "models")
+        for entry in folder.iterdir()
     )
     return {entry.name.removesuffix(".json"): entry for entry in entries if entry.name.endswith(".json")}
 
@@ -98,24 +98,20 @@ def load(source: str | Path | Mapping[str, Any]) -> Model:
         return parse(source)
     if not isinstance(source, str | os.PathLike):
         raise ModelError(
-            tr(
-                "{source} is not a model; give a file, the name of a bundled model, or a document.",
-                source=quoted(source),
-            )
+            "{source} is not a model; give a file, the name of a bundled model, or a document.",
+            source=quoted(source),
         )
     try:
         raw = _found(source).read_bytes()
     except IsADirectoryError:
-        raise ModelError(tr("'{source}' is a folder; name a model file in it.", source=source)) from None
+        raise ModelError("'{source}' is a folder; name a model file in it.", source=source) from None
     except FileNotFoundError:
         raise _missing(source) from None
     except (OSError, ValueError) as error:
         raise ModelError(
-            tr(
-                "{source} cannot be read: {reason}. Check its path and permissions.",
-                source=source,
-                reason=_reason(error),
-            )
+            "{source} cannot be read: {reason}. Check its path and permissions.",
+            source=source,
+            reason=_reason(error),
         ) from None
     with _nothing_collected():
         return parse(_decoded(raw, str(source)), str(source))
@@ -172,7 +168,7 @@ def _decoded(raw: bytes, source: str) -> Any:
         _decoded_strictly(raw, source)  # names the line
         raise _not_json(source, error) from None
     except RecursionError:
-        raise ModelError(tr("{source} is nested too deeply to be a model.", source=source)) from None
+        raise ModelError("{source} is nested too deeply to be a model.", source=source) from None
     return content
 
 
@@ -188,7 +184,7 @@ class _Pairs(list[tuple[str, Any]]):
 def _decoded_strictly(raw: bytes, source: str) -> Any:
     def refuse(constant: str) -> NoReturn:
         raise ModelError(
-            tr("{source} contains {number}; every number must be finite.", source=source, number=constant)
+            "{source} contains {number}; every number must be finite.", source=source, number=constant
         )
 
     def finite(number: str) -> float:
@@ -205,11 +201,9 @@ def _decoded_strictly(raw: bytes, source: str) -> Any:
     except UnicodeDecodeError as error:
         line = 1 + raw[: error.start].count(b"\n")
         raise ModelError(
-            tr(
-                "{source}: line {line} has a character that is not UTF-8; save the file in UTF-8.",
-                source=source,
-                line=line,
-            )
+            "{source}: line {line} has a character that is not UTF-8; save the file in UTF-8.",
+            source=source,
+            line=line,
         ) from None
     except json.JSONDecodeError as error:
         raise _not_json(source, error) from None
@@ -217,20 +211,18 @@ def _decoded_strictly(raw: bytes, source: str) -> Any:
 
 def _not_json(source: str, error: Exception) -> ModelError:
     return ModelError(
-        tr(
-            "{source} is not a JSON file ({error}); correct it, or save the model again.",
-            source=source,
-            error=error,
-        )
+        "{source} is not a JSON file ({error}); correct it, or save the model again.",
+        source=source,
+        error=error,
     )
 
 
 def _check_encoding(raw: bytes, source: str) -> None:
     """Raise ModelError for what editors and shells write besides UTF-8, or if there is nothing."""
     if raw.startswith((codecs.BOM_UTF16_LE, codecs.BOM_UTF16_BE)):
-        raise ModelError(tr("{source} is written in UTF-16; save it in UTF-8.", source=source))
+        raise ModelError("{source} is written in UTF-16; save it in UTF-8.", source=source)
     if not raw.strip():
-        raise ModelError(tr("{source} is empty; save the model again.", source=source))
+        raise ModelError("{source} is empty; save the model again.", source=source)
 
 
 def _refuse_repeated_keys(value: Any, path: str) -> None:
@@ -239,10 +231,7 @@ def _refuse_repeated_keys(value: Any, path: str) -> None:
         for key, item in value:
             if key in keys:
                 raise ModelError(
-                    tr(
-                        "{path}: this key stands twice in one object; keep one of the two.",
-                        path=f"{path}.{key}",
-                    )
+                    "{path}: this key stands twice in one object; keep one of the two.", path=f"{path}.{key}"
                 )
             keys.add(key)
             _refuse_repeated_keys(item, f"{path}.{key}")
@@ -261,11 +250,9 @@ def save(model: Model, path: str | Path) -> None:
         replace(path, laid_out(content, depth=2).encode() + b"\n")
     except (OSError, ValueError) as error:
         raise ModelError(
-            tr(
-                "{path} was not saved: {reason}. The file is as it was before; choose another folder or name.",
-                path=path,
-                reason=_reason(error),
-            )
+            "{path} was not saved: {reason}. The file is as it was before; choose another folder or name.",
+            path=path,
+            reason=_reason(error),
         ) from None
 
 

@@ -83,16 +83,12 @@ class Shapes:
 def _first_ones(model: Model) -> list[Shape]:
     if model.rods.count > LARGEST:
         raise NoShape(
-            tr(
-                "This takes long for more than {count} rods; use the command: pinjoint render --mode 1",
-                count=LARGEST,
-            )
+            "This takes long for more than {count} rods; use the command: pinjoint render --mode 1",
+            count=LARGEST,
         )
     found = [*mechanism_shapes(model, LOWEST), *_meant(model), *mode_shapes(model, LOWEST)]
     if not found:
-        raise NoShape(
-            tr("There are no mechanisms and no modes, because no rod has an end that is free to move.")
-        )
+        raise NoShape("There are no mechanisms and no modes, because no rod has an end that is free to move.")
     return found
 
 
@@ -208,16 +204,14 @@ def numbered(model: Model, kind: str, number: int) -> Shape:
     found = find[kind](model)
     if not found:
         if kind == "mechanism":
-            raise NoShape(tr("There is no mechanism: every motion stretches a rod."))
-        raise NoShape(tr("There is no mode: nothing can vibrate."))
+            raise NoShape("There is no mechanism: every motion stretches a rod.")
+        raise NoShape("There is no mode: nothing can vibrate.")
     if not 1 <= number <= len(found):
         raise NoShape(
-            tr(
-                "There is no {kind} {number}; choose a number from 1 to {count}.",
-                kind=tr(kind),
-                number=number,
-                count=len(found),
-            )
+            "There is no {kind} {number}; choose a number from 1 to {count}.",
+            kind=tr(kind),
+            number=number,
+            count=len(found),
         )
     return found[number - 1]
 

@@ -22,20 +22,20 @@ KEYS = ("of", "from", "to", "logarithmic", "title")
 def read_sliders(model: Model, entries: Any) -> tuple[Slider, ...]:
     """The sliders that a document describes, of a model that has all elements. Raises ModelError."""
     if not isinstance(entries, list | tuple):
-        fail(f"$.{KEY}", tr("it is {value}; it must be a list.", value=quoted(entries)))
+        fail(f"$.{KEY}", "it is {value}; it must be a list.", value=quoted(entries))
     return tuple(_read(model, entry, f"$.{KEY}[{place}]") for place, entry in enumerate(entries))
 
 
 def _read(model: Model, entry: Any, where: str) -> Slider:
     if not isinstance(entry, Mapping):
         form = '{"of": "PATH", "from": 0, "to": 1}'
-        fail(where, tr("it is {value}; write it like {form}.", value=quoted(entry), form=form))
+        fail(where, "it is {value}; write it like {form}.", value=quoted(entry), form=form)
     for key in map(str, entry):
         if key not in KEYS:
-            fail(where, tr("there is no key '{key}' here; {remedy}", key=cut(key), remedy=remedy(key, KEYS)))
+            fail(where, "there is no key '{key}' here; {remedy}", key=cut(key), remedy=remedy(key, KEYS))
     for key in KEYS[:3]:
         if key not in entry:
-            fail(where, tr("its '{key}' is missing; every {kind} needs one.", key=key, kind=tr("slider")))
+            fail(where, "its '{key}' is missing; every {kind} needs one.", key=key, kind=tr("slider"))
     paths = entry["of"] if isinstance(entry["of"], list | tuple) else [entry["of"]]
     if not paths or not all(isinstance(path, str) for path in paths):
         said = tr("it is {value}; it must be a path or a list of paths.", value=quoted(entry["of"]))
@@ -45,7 +45,7 @@ def _read(model: Model, entry: Any, where: str) -> Slider:
         said = tr("it is {value}; it must be true or false.", value=quoted(logarithmic))
         fail(f"{where}.logarithmic", said)
     if not isinstance(title, str) or is_broken(title):
-        fail(f"{where}.title", tr("it is {value}; it must be a text.", value=f"{title!a:.60}"))
+        fail(f"{where}.title", "it is {value}; it must be a text.", value=f"{title!a:.60}")
     fields, aims = zip(*(_aim(model, path, f"{where}.of") for path in paths), strict=True)
     ends = [_end(entry[key], fields, f"{where}.{key}") for key in ("from", "to")]
     if ends[0] == ends[1]:
@@ -65,7 +65,7 @@ def _aim(model: Model, path: str, where: str) -> tuple[Field[Any], Aim]:
     except (PathError, FieldError) as error:
         fail(where, str(error))
     if rest:
-        fail(where, tr("'{rest}' does not belong to the path; leave it out.", rest=cut(rest)))
+        fail(where, "'{rest}' does not belong to the path; leave it out.", rest=cut(rest))
     if problem := unmovable(target.field, target.axis):
         fail(where, problem)
     every = target.element == EVERY
@@ -86,18 +86,16 @@ def unmovable(field: Field[Any], axis: str) -> str:
 def _end(value: Any, fields: tuple[Field[Any], ...], where: str) -> float:
     number = isinstance(value, int | float) and not isinstance(value, bool) and math.isfinite(value)
     if not number:
-        fail(where, tr("it is {value}; it must be a finite number.", value=quoted(value)))
+        fail(where, "it is {value}; it must be a finite number.", value=quoted(value))
     for field in fields:
         if problem := field.limit_broken_by(float(value)):
             amount = decimals(f"{float(value):g}")
             raise ModelError(
-                tr(
-                    "{where}: {title} is {amount}; it must be {limit}.",
-                    where=where,
-                    title=field.named(),
-                    amount=amount,
-                    limit=problem,
-                )
+                "{where}: {title} is {amount}; it must be {limit}.",
+                where=where,
+                title=field.named(),
+                amount=amount,
+                limit=problem,
             )
     return float(value)
 

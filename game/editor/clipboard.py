@@ -10,11 +10,12 @@ import msgspec
 import numpy as np
 from numpy.typing import NDArray
 
+from pinjoint.components.extensions import EXTENSIONS
 from pinjoint.components.field import SAVED, Vector
 from pinjoint.components.handle import Handle
-from pinjoint.components.language import marked, tr
+from pinjoint.components.language import marked
 from pinjoint.components.load import Load
-from pinjoint.components.model import ADDED, Model
+from pinjoint.components.model import Model
 from pinjoint.components.particle import Particle
 from pinjoint.components.rod import Rod
 from pinjoint.components.table import Table, fields_of
@@ -60,7 +61,7 @@ def selected_rows(model: Model) -> RowsByKind:
     particles = moving_rows(model, rows)
     others = {kind: rows[kind.table] for kind in _added() if len(rows[kind.table])}
     if not len(particles) and not others:
-        raise Refusal(tr("Nothing that can be copied is selected; click a particle or a rod first."))
+        raise Refusal("Nothing that can be copied is selected; click a particle or a rod first.")
     loads = np.flatnonzero(np.isin(model.loads.on, particles))
     return {Particle: particles, Rod: rows["rods"], Load: loads, **others}
 
@@ -70,7 +71,7 @@ def as_text(model: Model, rows: RowsByKind) -> str:
     try:
         return laid_out(document_of(model, rows), depth=2, spaced=False)
     except ModelError as error:
-        raise Refusal(tr("This cannot be copied: {error}", error=error)) from None
+        raise Refusal("This cannot be copied: {error}", error=error) from None
 
 
 def part_in(text: str) -> Part:
@@ -83,7 +84,7 @@ def part_in(text: str) -> Part:
     rows = {kind: np.arange(source.tables[kind.table].count) for kind in kinds}
     part = part_of(source, rows)
     if not len(part.position):
-        raise Refusal(tr("The clipboard holds no particles or rods; select some and copy them with Ctrl+C."))
+        raise Refusal("The clipboard holds no particles or rods; select some and copy them with Ctrl+C.")
     return part
 
 
@@ -125,7 +126,11 @@ def _points(kind: Kind) -> tuple[str, ...]:
 
 def _added() -> list[Kind]:
     """The kinds of mods that can be copied: they have points, and refer to no other elements."""
-    return [kind for kind in ADDED.values() if kind.points and not any(f.references for f in fields_of(kind))]
+    return [
+        kind
+        for kind in EXTENSIONS.kinds.values()
+        if kind.points and not any(f.references for f in fields_of(kind))
+    ]
 
 
 def _columns(model: Model, kind: Kind, rows: Rows, place: Rows) -> dict[str, Any]:

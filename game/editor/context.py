@@ -1,4 +1,4 @@
-"""Context: what actions, gestures and scenes read and change; the base of gestures and scenes, and the table of actions.
+"""Context: what actions, gestures and scenes read and change; the base of gestures and scenes.
 
 `pinjoint.session.Session` is the context that scripts drive.
 """
@@ -6,53 +6,39 @@
 from __future__ import annotations
 
 import operator
-from collections.abc import Callable, Iterator, Sequence
-from typing import ClassVar
+from collections.abc import Iterator, Sequence
+from pathlib import Path
+from typing import ClassVar, TypeVar
 
 from pinjoint.components.camera import Viewport
+from pinjoint.components.extensions import EXTENSIONS
 from pinjoint.components.field import Vector
-from pinjoint.components.language import listed, marked, tr
+from pinjoint.components.handle import Handle
+from pinjoint.components.language import begun, listed, marked, tr
+from pinjoint.components.mistake import NotFound, WrongValue
 from pinjoint.components.model import Model
 from pinjoint.components.rod import bends
 from pinjoint.components.settings import NO_DIAGRAMS, Settings
 from pinjoint.components.slider import Place, under
+from pinjoint.components.tags import Selected
 from pinjoint.components.view import Preview, Readout, View
 from pinjoint.documents import models
+from pinjoint.documents.autosave import Autosave
+from pinjoint.documents.chronicle import Happening
 from pinjoint.documents.format import missing_mods
-from pinjoint.documents.open_documents import ModelFile, Source, file_of
-from pinjoint.editor.host import Course
-from pinjoint.editor.workspace import Workspace
+from pinjoint.documents.open_documents import ModelFile, OpenDocument, OpenDocuments, Source, file_of
+from pinjoint.editor.clipboard import Part
+from pinjoint.editor.host import Course, ProgramPreparation, Waiting, Window
 from pinjoint.scripts.script import Script
 from pinjoint.systems.base import Mod
+from pinjoint.systems.collision.impacts import Impacts
 from pinjoint.systems.edit.pull import Pull
+from pinjoint.systems.physics.pace import natural_pace
 from pinjoint.systems.render.picture import Stage
+from pinjoint.systems.run.energy import Energy
+from pinjoint.systems.run.simulation import Simulation
 from pinjoint.systems.run.system import Time
 from pinjoint.systems.schedule import Schedule
-
-# --- actions ---------------------------------------------------------------------------------------------
-
-Action = Callable[["Context", Vector], object]
-
-ACTIONS: dict[str, Action] = {}
-WHILE_DRAWING: set[str] = set()  # names of actions during which a gesture goes on
-
-
-def action(name: str, *, while_drawing: bool = False) -> Callable[[Action], Action]:
-    """Register a function(context, pixel) as a named action; `pixel` is where the pointer is.
-
-    while_drawing: the action belongs to a gesture or only looks; all others end the gesture first.
-    """
-
-    def register(function: Action) -> Action:
-        if name in ACTIONS:
-            raise ValueError(tr("There is an action '{name}' already.", name=name))
-        ACTIONS[name] = function
-        if while_drawing:
-            WHILE_DRAWING.add(name)
-        return function
-
-    return register
-
 
 # --- gestures --------------------------------------------------------------------------------------------
 
@@ -89,12 +75,8 @@ class Gesture:
 PHYSICS = ("run.*", "physics.*", "plasticity.*", "loads.*", "collision.*", "edit.pull")
 
 
-class SceneError(ValueError):
-    """A transition that does not exist; the message says from where to where, and what does."""
-
-
 class Scene:
-    """One mode. Systems say by their `scenes` in which they are active; keys are in input/bindings.py.
+    """One mode. Systems say by their `scenes` in which they are active; their keys stand at the actions.
 
     heading: the word shown top left. targets: scenes that may follow. sources: further scenes that
     this one may follow, which need not know it. systems: names, or patterns such as "physics.*", of systems that
@@ -176,11 +158,9 @@ class Scene:
 
     def click_box(self, context: Context, title: str) -> None:
         """Select the box with that title. Raises LookupError."""
-        raise LookupError(
-            tr(
-                "In the scene '{scene}' there are no boxes; go to 'properties', 'save' or 'load' first.",
-                scene=self.name,
-            )
+        raise NotFound(
+            "In the scene '{scene}' there are no boxes; go to 'properties', 'save' or 'load' first.",
+            scene=self.name,
         )
 
     @property
@@ -214,26 +194,26 @@ class Scenes:
         return tuple(self._by_name)
 
     def request(self, *names: str) -> None:
-        """Ask for a transition, or a chain of them. Raises SceneError if one is not legal."""
+        """Ask for a transition, or a chain of them. Raises WrongValue if one is not legal."""
         here = self._by_name[self._requested[-1]] if self._requested else self.active
         for name in names:
             if name not in self._by_name:
                 known = ", ".join(self._by_name)
-                raise SceneError(
-                    tr("There is no scene '{scene}'; choose from {names}.", scene=name, names=known)
-                )
+                raise WrongValue("There is no scene '{scene}'; choose from {names}.", scene=name, names=known)
             if name not in here.targets and here.name not in self._by_name[name].sources:
                 targets = ", ".join(here.targets)
-                raise SceneError(
-                    tr(
-                        "From the scene '{here}' one cannot go to '{scene}', only to {scenes}.",
-                        here=here.name,
-                        scene=name,
-                        scenes=targets,
-                    )
+                raise WrongValue(
+                    "From the scene '{here}' one cannot go to '{scene}', only to {scenes}.",
+                    here=here.name,
+                    scene=name,
+                    scenes=targets,
                 )
             here = self._by_name[name]
         self._requested.extend(names)
+
+    def request_from_pause(self, name: str) -> None:
+        """Ask for a scene that is entered from pause, through it where time passes."""
+        self.request(*(("pause", name) if self.active.name == "simulation" else (name,)))
 
     def apply(self, context: Context) -> None:
         """Make the requested transitions: exit, then enter. From a scene of a mod that is switched off, to pause."""
@@ -245,21 +225,23 @@ class Scenes:
             self.active = self._by_name[name]
             self.active.enter(context)
             if context.time_passes:
-                context.history.begin_run()
+                context.document.history.begin_run()
             else:
-                context.history.end_run()
+                context.document.history.end_run()
 
 
 # --- the context -----------------------------------------------------------------------------------------
 
 _TIME = Time()
-FAULTS: list[str] = []  # sentences about mods that failed while the program ran, the oldest first
-PANELS: list[Callable[[Context], Sequence[Readout]]] = []  # panels of mods beside the model
+H = TypeVar("H", bound=Handle)
 
 
-class Context(Workspace):
-    """The open documents, what is seen of them, and what a person is doing with them.
+class Context:
+    """The open documents with their runs, logs and files, what is seen of them, and what a person is doing with them.
 
+    schedule: all systems. notice: the last sentence said. copied: what was put on the clipboard last, as text and as
+    data. window, autosave, preparation: what a window gives, see host.py; None without one. awaited: the simulation that
+    is too large to go on before its step program is compiled.
     scenes: the mode, and its transitions. gesture: what is being drawn or dragged. performing: a script is shown in the
     window, so input is not for the scenes and no time passes by itself. footer: the strip below the picture meanwhile.
     lesson: the script that a person asked for. course: the lesson with tasks that a person is in; beside: its card, in the
@@ -269,7 +251,16 @@ class Context(Workspace):
     def __init__(
         self, model: Model, schedule: Schedule, pull: Pull, scenes: Sequence[Scene], view: View, file: ModelFile
     ) -> None:
-        super().__init__(model, schedule, pull, file)
+        self.schedule = schedule
+        self.pull = pull
+        self.documents = OpenDocuments(model, schedule, pull, file)
+        self._clipboard = ""
+        self.copied: tuple[str, Part] | None = None
+        self.notice = ""
+        self.window: Window | None = None
+        self.autosave: Autosave | None = None
+        self.preparation: ProgramPreparation | None = None
+        self.awaited: Simulation | None = None
         self.scenes = Scenes(scenes)
         self.view = view
         self.gesture: Gesture | None = None
@@ -278,9 +269,62 @@ class Context(Workspace):
         self.lesson: Script | None = None
         self.course: Course | None = None
         self.beside: View | None = None
-        self.faults_seen = len(FAULTS)
+        self.faults_seen = len(EXTENSIONS.faults)
 
     # --- documents ---------------------------------------------------------------------------------
+
+    @property
+    def document(self) -> OpenDocument:
+        """The document that is open, with its run, its log and its file."""
+        return self.documents.current
+
+    def save(self, path: str | Path) -> None:
+        """Write the model, with its present state, to a file."""
+        self.simulation.account_for_edits()
+        models.save(self.model, Path(path))
+
+    def save_as(self, path: str | Path) -> None:
+        """Write the model to a file that is its own from now on. Raises ModelError."""
+        path = Path(path)
+        self.save(path)
+        self.document.file, self.document.practice = ModelFile.at(path), False
+        self.document.saved = self.model.revision
+        self.notice = tr("Saved as '{name}'.", name=path.stem)
+
+    @property
+    def model(self) -> Model:
+        """The model that is open."""
+        return self.document.model
+
+    @property
+    def simulation(self) -> Simulation:
+        """The run of the open document."""
+        return self.document.simulation
+
+    @property
+    def settings(self) -> Settings:
+        """How the model is computed and drawn."""
+        return self.model.settings
+
+    @property
+    def time(self) -> float:
+        """Simulated time (s)."""
+        return self.model.clock.time
+
+    @property
+    def energy(self) -> Energy:
+        """The energy account of the run."""
+        return self.simulation.energy
+
+    @property
+    def impacts(self) -> Impacts:
+        """The impacts of the run so far, in columns."""
+        return self.simulation.impacts
+
+    @property
+    def events(self) -> tuple[Happening, ...]:
+        """What happened in the run so far, in order of time: rods that yield, cables that go slack, collapse, rest."""
+        return self.document.chronicle.happenings
 
     def open_here(self, source: Source | None) -> None:
         """Open another model, an empty one if None; undo goes back to this one. Raises ModelError."""
@@ -314,9 +358,33 @@ class Context(Workspace):
     @property
     def fault(self) -> str:
         """The mod that failed last and why, until Escape is pressed; "" if none did."""
-        return FAULTS[-1] if len(FAULTS) > self.faults_seen else ""
+        return EXTENSIONS.faults[-1] if len(EXTENSIONS.faults) > self.faults_seen else ""
 
     # --- time --------------------------------------------------------------------------------------
+
+    @property
+    def pace(self) -> float:
+        """Simulated seconds per second shown that suit the model as it is now, whatever a person chose."""
+        return natural_pace(self.model)  # found anew: the clock's may be from any earlier frame
+
+    def settle(self, factors: Sequence[float] | float = (1.0,)) -> str:
+        """Go to the static equilibrium at each load factor in turn, without letting time pass.
+
+        Can be undone. Returns "equilibrium", "neutral equilibrium" or "unstable equilibrium"; or "mechanism",
+        "collapse" or "limit reached" with the last good state; `message` says more. Time moves on to the end of the
+        last load history. Raises ValueError.
+        """
+        status, self.notice = self.document.settle(factors)
+        return status
+
+    def has_program(self, simulation: Simulation) -> bool:
+        """False while a large model waits for another process to compile its step program (see `awaited`)."""
+        self.awaited = None if self.waited_for(simulation) is None else simulation
+        return self.awaited is None
+
+    def waited_for(self, simulation: Simulation) -> Waiting | None:
+        """What a simulation waits for; None if it can go on."""
+        return self.preparation.waits_for(simulation) if self.preparation is not None else None
 
     @property
     def time_passes(self) -> bool:
@@ -341,17 +409,17 @@ class Context(Workspace):
         self.document.note_beginning()
         if not self.has_program(self.simulation):
             return False
-        self.history.end_run()
-        self.history.begin_run(single=True)
+        self.document.history.end_run()
+        self.document.history.begin_run(single=True)
         try:
             self.get_ready()  # so that there is a checkpoint to step back to
             if steps >= 0:
-                with self.timeline.recording():
+                with self.document.timeline.recording():
                     self.simulation.advance(steps)
             else:
-                self.timeline.go_to(max(target, self.timeline.first))
+                self.document.timeline.go_to(max(target, self.document.timeline.first))
         finally:
-            self.history.end_run()
+            self.document.history.end_run()
             self._go_on()
             self.document.chronicle.look()
         return bool(self.model.clock.steps == target)
@@ -359,7 +427,7 @@ class Context(Workspace):
     def _go_on(self) -> None:
         """Begin a new run in the log, if time passes in this scene."""
         if self.time_passes:
-            self.history.begin_run()
+            self.document.history.begin_run()
 
     def act_in_scene(self) -> None:
         """Let time pass under the systems of the active scene; where time stands still, under those of simulation."""
@@ -379,19 +447,70 @@ class Context(Workspace):
         self.document.note_beginning()
         if self.simulation.halted or not self.has_program(self.simulation):
             return
-        with self.timeline.recording():
+        with self.document.timeline.recording():
             self.document.live.frame(elapsed)
         self.document.chronicle.look()
 
     # --- editing -----------------------------------------------------------------------------------
 
+    @property
+    def can_undo(self) -> bool:
+        """True if there is something to take back."""
+        return self.document.history.can_undo or self.documents.can_move(-1)
+
+    @property
+    def can_redo(self) -> bool:
+        """True if there is something to repeat."""
+        return self.document.history.can_redo or self.documents.can_move(1)
+
+    @property
+    def selected(self) -> list[Handle]:
+        """The selected elements, in order of creation."""
+        return self.model.tagged(Selected)
+
+    def selected_of(self, *kinds: type[H]) -> list[H]:
+        """Those of the selected elements that are of these kinds."""
+        return [handle for handle in self.selected if isinstance(handle, kinds)]
+
+    @property
+    def has_selected(self) -> bool:
+        """True if anything is selected."""
+        return self.model.any_tagged(Selected)
+
+    def select(self, *handles: Handle) -> None:
+        """Select exactly these elements; none: deselect."""
+        self.model.tag_only(handles, Selected)
+
+    def name(self, handle: Handle) -> str:
+        """An element as a sentence begins with it, such as "Rod AB"."""
+        return begun(self.model.describe(handle))
+
+    @property
+    def clipboard(self) -> str:
+        """The text that was copied last, here or, with a window, in any program."""
+        return self.window.copied() if self.window is not None else self._clipboard
+
+    @clipboard.setter
+    def clipboard(self, text: str) -> None:
+        self._clipboard = text
+        if self.window is not None:
+            self.window.copy(text)
+
     def undo(self) -> str:
         """Take back the last edit or run, or the opening of the document; returns what it was, or ""."""
-        return self._through_log(self.history.undo()) if self.history.can_undo else self._to_document(-1)
+        return (
+            self._through_log(self.document.history.undo())
+            if self.document.history.can_undo
+            else self._to_document(-1)
+        )
 
     def redo(self) -> str:
         """Repeat what was taken back; returns what it was, "" if there is nothing."""
-        return self._through_log(self.history.redo()) if self.history.can_redo else self._to_document(1)
+        return (
+            self._through_log(self.document.history.redo())
+            if self.document.history.can_redo
+            else self._to_document(1)
+        )
 
     def _through_log(self, title: str) -> str:
         self._go_on()
@@ -457,7 +576,7 @@ class Context(Workspace):
 
     def panels(self) -> Iterator[Readout]:
         """The panels of mods beside the model."""
-        return (readout for panel in PANELS for readout in panel(self))
+        return (readout for panel in EXTENSIONS.panels for readout in panel(self))
 
     def exaggerate(self) -> None:
         """Let the automatic displacement scale suit the model, but not in the middle of a drag."""

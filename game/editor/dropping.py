@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from pinjoint.components.language import tr
 from pinjoint.documents import models
 from pinjoint.documents.format import ModelError
 from pinjoint.documents.open_documents import file_of
@@ -20,15 +19,13 @@ def open_dropped(context: Context, path: Path) -> None:
     The document in use stays open unless it is empty.
     """
     if path.is_dir():
-        raise ModelError(tr("'{name}' is a folder; drop the model files that are in it.", name=path.name))
+        raise ModelError("'{name}' is a folder; drop the model files that are in it.", name=path.name)
     if path.suffix.lower() not in (MODEL, SCRIPT):
         raise ModelError(
-            tr(
-                "'{name}' is not a model: Pinjoint opens model files ({model}) and recorded sessions ({script}).",
-                name=path.name,
-                model=MODEL,
-                script=SCRIPT,
-            )
+            "'{name}' is not a model: Pinjoint opens model files ({model}) and recorded sessions ({script}).",
+            name=path.name,
+            model=MODEL,
+            script=SCRIPT,
         )
     script = Script(path) if path.suffix.lower() == SCRIPT else None
     if script is not None and script.has_tasks:

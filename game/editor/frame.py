@@ -9,14 +9,14 @@ from pinjoint.components.field import Vector
 from pinjoint.components.model import Model
 from pinjoint.editor.context import Context
 from pinjoint.systems.base import Phase, System
-from pinjoint.systems.input.bindings import TEXT
+from pinjoint.systems.input.actions import TEXT
 
 
 @dataclass
 class Frame:
     """One frame: the session, the seconds since the last frame, and what was pressed.
 
-    pressed: (key or button, pixel) in the order in which a person pressed them; see input/bindings.py.
+    pressed: (key or button, pixel) in the order in which a person pressed them; see input/actions.py.
     """
 
     session: Context

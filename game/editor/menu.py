@@ -1,4 +1,4 @@
-"""Menu: what can be done with the selected elements, or at a place of the canvas, from the table of keys."""
+"""Menu: what can be done with the selected elements, or at a place of the canvas, from the records of actions."""
 
 from __future__ import annotations
 
@@ -10,22 +10,14 @@ from pinjoint.components.menu import Menu
 from pinjoint.components.particle import Particle
 from pinjoint.components.rod import Rod, rigid_joints
 from pinjoint.editor.context import Context
-from pinjoint.editor.toolbar import tool
+from pinjoint.editor.toolbar import actions_of_toolbar, of_mods, tool
 from pinjoint.systems.edit.dividing import DIVISIONS
 from pinjoint.systems.edit.rods import is_rigid, share_at
 from pinjoint.systems.forms.properties import heading
-from pinjoint.systems.input.bindings import ADDED_BUTTONS, ADDED_TOOLS, FORCE_METHOD, LIVE, offers, toolbar
+from pinjoint.systems.input.actions import FORCE_METHOD, LIVE
 
 Entry = str | tuple[str, str]  # an action, or an action and the title that suits the place
 Groups = Sequence[Sequence[Entry]]
-
-# They keep it open.
-IN_MENU = (
-    "open menu",
-    "more tools",
-    "choose entry",
-    *(f"menu {way}" for way in ("up", "down", "left", "right")),
-)
 
 _PLOT = "probes.plot"  # offered where the mod that plots is there
 _RESULTS = (
@@ -52,13 +44,11 @@ _OF_RODS = (
 
 def menu_at(context: Context, pixel: Vector) -> Menu:
     """The menu of the selected elements, or of the canvas, opened at a pixel."""
-    groups = _groups(context, pixel)
-    offered = offers(context.scene)
-    entries = [[entry if isinstance(entry, tuple) else (entry, "") for entry in group] for group in groups]
-    tools = [
-        tuple(tool(context, offered[action], title) for action, title in group if action in offered)
-        for group in entries
+    entries = [
+        [entry if isinstance(entry, tuple) else (entry, "") for entry in group]
+        for group in _groups(context, pixel)
     ]
+    tools = [tuple(filter(None, (tool(context, *entry) for entry in group))) for group in entries]
     return Menu(_title(context), tuple(group for group in tools if group), pixel, pointed=pixel)
 
 
@@ -71,7 +61,7 @@ def _title(context: Context) -> str:
 def _groups(context: Context, pixel: Vector) -> Groups:
     if context.scene == FORCE_METHOD:
         unknown = [("pick unknown", marked("release this"))]
-        return [unknown, *([binding.action for binding in group] for group in toolbar(context.scene))]
+        return [unknown, *actions_of_toolbar(context)]
     return _of_selection(context, pixel) if context.has_selected else _of_canvas(context)
 
 
@@ -123,20 +113,19 @@ def _of_canvas(context: Context) -> Groups:
             ("place", marked("new particle here")),
             "rod",
             "rigid",
-            *ADDED_TOOLS,
+            *of_mods(draw=True),
             ("paste", marked("paste here")),
             "select all",
         ],
         ["toggle run", "restart", "settle"],
         ["toggle diagrams", "toggle free bodies", "toggle utilisation"],
         ["toggle theory", "toggle energy", "toggle events", "next shape"],
-        [binding.action for binding in ADDED_BUTTONS],
+        [*of_mods(draw=False)],
         ["fit", "zoom in", "zoom out", "new grid", "next grid", "toggle legend", "next theme", "next language"],
         ["environment", "toggle full screen", "toggle help"],
         ["screenshot", "picture as svg", "picture as pdf"],
     ]
     if context.view.strip.width == 0:
         known = {entry if isinstance(entry, str) else entry[0] for group in groups for entry in group}
-        whole = [[binding.action for binding in group] for group in toolbar(context.scene)]
-        groups += [[action for action in group if action not in known] for group in whole]
+        groups += [[action for action in group if action not in known] for group in actions_of_toolbar(context)]
     return groups

@@ -223,7 +223,7 @@ def _overview(context: Context, theory: Theories, comparison: Comparison) -> Ite
     if any(comparison.worst(way) is not None for way in _WORST):
         yield tr("errors: in % of the largest value of that kind"), ""
     disturbed = context.document.assessment.disturbed
-    if disturbed and not context.at_beginning:
+    if disturbed and not context.document.at_beginning:
         yield tr(_DISTURBED[disturbed]), tr("theory leaves this out")
 
 
@@ -242,7 +242,11 @@ def _verdict(context: Context, comparison: Comparison) -> Iterator[tuple[str, st
     if context.simulation.reason is not StopReason.REST or comparison.worst("simulation") is None:
         return
     if differs(comparison):
-        reasons = [DEPARTURES[remark.kind] for remark in context.remarks if remark.kind in DEPARTURES]
+        reasons = [
+            DEPARTURES[remark.kind]
+            for remark in context.document.assessment.remarks
+            if remark.kind in DEPARTURES
+        ]
         why = joined(map(tr, dict.fromkeys(reasons)), ", ")
         yield tr("differs from static theory"), why or tr("see pinjoint verify")
     else:

@@ -5,7 +5,7 @@ from __future__ import annotations
 from pinjoint.components.field import Vector
 from pinjoint.editor.context import Context
 from pinjoint.editor.view_model import pages_of_help
-from pinjoint.systems.input.bindings import FORMS, LIVE, MENU, action_for
+from pinjoint.systems.input.actions import FORMS, LIVE, MENU, action_for
 from pinjoint.systems.render.empty_card import card_button_at
 from pinjoint.systems.render.help import help_closed_by
 from pinjoint.systems.render.lesson_card import lesson_button_at

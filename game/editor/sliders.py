@@ -22,7 +22,7 @@ from pinjoint.documents.sliders import unmovable
 from pinjoint.editor.context import Context
 from pinjoint.systems.edit import Refusal
 from pinjoint.systems.edit.arrows import extent, usual_force
-from pinjoint.systems.input.bindings import LIVE
+from pinjoint.systems.input.actions import LIVE
 
 SCALE = -1  # the key of the control of the displacement scale
 SCALES = Slider((), 1.0, 1000.0, logarithmic=True)  # of displacements, unless the model needs more
@@ -127,7 +127,7 @@ def slider_of(context: Context, key: int) -> Slider:
     if key == SCALE:
         return scales(context.scenes.active.scaled(context)[0])
     if key >= len(context.model.sliders):
-        raise Refusal(tr("This slider has been removed."))
+        raise Refusal("This slider has been removed.")
     return context.model.sliders[key]
 
 
@@ -175,15 +175,13 @@ def add_slider(context: Context, elements: Sequence[Handle], field: str, axis: s
     aims = tuple(Aim(element.table, element, found.name, axis) for element in elements)
     there = next((slider for slider in model.sliders if slider.aims == aims), None)
     if there is not None:
-        raise Refusal(tr("There is already a slider for {title}.", title=_title(model, aims[0], first, found)))
+        raise Refusal("There is already a slider for {title}.", title=_title(model, aims[0], first, found))
     value = _value(aims[0], first)
     if value is None:
         raise Refusal(
-            tr(
-                "{quantity} is {absent}; give it a number first.",
-                quantity=begun(tr(found.title)),
-                absent=tr(found.absent),
-            )
+            "{quantity} is {absent}; give it a number first.",
+            quantity=begun(tr(found.title)),
+            absent=tr(found.absent),
         )
     slider = _limited(_around(model, found, value, aims), found)
     _set(context, (*model.sliders, slider), marked("new slider"))
@@ -234,9 +232,7 @@ def add_usual_slider(context: Context) -> None:
         if elements:
             add_slider(context, *_usual(context.model, elements))
             return
-    raise Refusal(
-        tr("Select a particle or a rod first; then this makes a slider for its load or its stiffness.")
-    )
+    raise Refusal("Select a particle or a rod first; then this makes a slider for its load or its stiffness.")
 
 
 def _usual(model: Model, elements: Sequence[Handle]) -> tuple[Sequence[Handle], str, str]:

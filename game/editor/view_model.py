@@ -18,7 +18,7 @@ from pinjoint.editor.readouts import own_readouts
 from pinjoint.systems.base import StopReason
 from pinjoint.systems.edit import Refusal
 from pinjoint.systems.forms.results import told
-from pinjoint.systems.input.bindings import LIVE, help_lines
+from pinjoint.systems.input.actions import LIVE, help_lines
 from pinjoint.systems.render.help import help_pages
 from pinjoint.systems.render.overlays import BAR
 
@@ -42,7 +42,10 @@ def show(context: Context, elapsed: float) -> None:
     lasting = (
         [context.notice]
         if context.notice
-        else [*(remark.message for remark in context.remarks), "" if follows(context) else _gone(context)]
+        else [
+            *(remark.message for remark in context.document.assessment.remarks),
+            "" if follows(context) else _gone(context),
+        ]
     )
     lasting += [_unsettled(context)] * (not any(lasting))
     view.preview = _preview(context)
@@ -59,7 +62,7 @@ def show(context: Context, elapsed: float) -> None:
     _point_out(context)
     view.status = Status(
         time=context.time,
-        speed=context.clock.shown_pace if context.busy else 0.0,
+        speed=context.document.live.clock.shown_pace if context.busy else 0.0,
         state=_state_word(context),
         hint=_drawing_hint(context) or scene.hint(context),
         problem=_problem(context),
@@ -98,7 +101,11 @@ def _unsettled(context: Context) -> str:
 def _gone(context: Context) -> str:
     """The sentence that what moves has left the picture, "" if it has not."""
     model, view = context.model, context.view
-    if context.scene not in LIVE or not 0 < model.particles.count <= MOST_WATCHED or context.at_beginning:
+    if (
+        context.scene not in LIVE
+        or not 0 < model.particles.count <= MOST_WATCHED
+        or context.document.at_beginning
+    ):
         return ""
     x, y = view.camera.to_pixels(drawn_positions(model)).T
     v, reach = view.canvas, model.particles.radius * view.camera.scale
@@ -171,7 +178,7 @@ def _flashes(context: Context) -> NDArray[np.float64]:
     impacts = context.impacts
     if not context.busy or len(impacts) == 0:
         return np.zeros((0, 2))
-    since = context.time - FLASH * context.clock.shown_pace
+    since = context.time - FLASH * context.document.live.clock.shown_pace
     first = max(int(np.searchsorted(impacts.time, since)), len(impacts) - MOST_FLASHES)
     return np.column_stack([impacts.x[first:], impacts.y[first:]])
 
@@ -200,7 +207,7 @@ def _state_word(context: Context) -> str:
         return marked("preparing")
     if not context.busy:
         return marked("paused")
-    return marked("running below the set speed") if context.clock.lagging else marked("running")
+    return marked("running below the set speed") if context.document.live.clock.lagging else marked("running")
 
 
 def _problem(context: Context) -> str:

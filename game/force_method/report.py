@@ -24,7 +24,7 @@ from pinjoint.force_method import thesis, words
 from pinjoint.force_method.copies import base_structure, loaded, still, unloaded
 from pinjoint.force_method.tables import PRODUCTS, Table, Tables
 from pinjoint.force_method.words import EXACT, index
-from pinjoint.systems.render.diagrams import largest_force
+from pinjoint.systems.render.arrows import largest_force
 from pinjoint.systems.render.paper import (
     GUTTER,
     LAYOUTS,

@@ -19,6 +19,7 @@ import numpy as np
 from pinjoint.components import FieldError, HistoryKind, Load, Model, Vector
 from pinjoint.components.language import marked, tr
 from pinjoint.components.load import History
+from pinjoint.components.mistake import WrongValue
 from pinjoint.components.wording import quoted
 from pinjoint.mods import App
 
@@ -30,13 +31,11 @@ def check_positive(parameter: str, unit: str, history: History, where: str) -> N
     """Raise FieldError unless a parameter is above 0."""
     if not history[parameter] > 0.0:
         raise FieldError(
-            tr(
-                "{where}: history {parameter} is {value:g} {unit}; it must be above 0 {unit}.",
-                where=where,
-                parameter=parameter,
-                value=history[parameter],
-                unit=unit,
-            )
+            "{where}: history {parameter} is {value:g} {unit}; it must be above 0 {unit}.",
+            where=where,
+            parameter=parameter,
+            value=history[parameter],
+            unit=unit,
         )
 
 
@@ -45,16 +44,14 @@ def check_points(history: History, where: str) -> None:
     times, values = (history[name] for name in list(history)[1:])
     if not times or len(times) != len(values):
         raise FieldError(
-            tr(
-                "{where}: the history has {times} times and {values} values; give as many of both.",
-                where=where,
-                times=len(times),
-                values=len(values),
-            )
+            "{where}: the history has {times} times and {values} values; give as many of both.",
+            where=where,
+            times=len(times),
+            values=len(values),
         )
     if any(later <= earlier for earlier, later in itertools.pairwise(times)):
         raise FieldError(
-            tr("{where}: history times must ascend; correct or leave out those that do not.", where=where)
+            "{where}: history times must ascend; correct or leave out those that do not.", where=where
         )
 
 
@@ -104,19 +101,17 @@ def read_record(path: Path, unit: float = 1.0) -> dict[str, list[float] | str]:
                 time, value = float(row[0]), float(row[1])
             except (ValueError, IndexError):
                 if times and "".join(row).strip():
-                    raise ValueError(
-                        tr(
-                            "{path}, line {number}: {row} is not a time and an acceleration.",
-                            path=path,
-                            number=number,
-                            row=quoted(row),
-                        )
+                    raise WrongValue(
+                        "{path}, line {number}: {row} is not a time and an acceleration.",
+                        path=path,
+                        number=number,
+                        row=quoted(row),
                     ) from None
                 continue
             times.append(time)
             values.append(value * unit)
     if not times:
-        raise ValueError(tr("{path}: there is no line with a time and an acceleration.", path=path))
+        raise WrongValue("{path}: there is no line with a time and an acceleration.", path=path)
     return {"kind": "record", "times": times, "accelerations": values}
 
 
@@ -126,13 +121,11 @@ def _lines(file: TextIO, path: Path) -> Iterator[list[str]]:
     try:
         yield from reader
     except (csv.Error, UnicodeDecodeError) as error:
-        raise ValueError(
-            tr(
-                "{path}, after line {number}: this is not a CSV file in UTF-8 ({error}).",
-                path=path,
-                number=reader.line_num,
-                error=error,
-            )
+        raise WrongValue(
+            "{path}, after line {number}: this is not a CSV file in UTF-8 ({error}).",
+            path=path,
+            number=reader.line_num,
+            error=error,
         ) from None
 
 
@@ -173,7 +166,7 @@ def run(words: list[str]) -> int:
         shake(model, record, DIRECTIONS[options.direction])
     except OSError as error:
         raise UsageError(
-            tr("{file} cannot be read: {reason}. Check its path.", file=options.record, reason=error.strerror)
+            "{file} cannot be read: {reason}. Check its path.", file=options.record, reason=error.strerror
         ) from None
     except ValueError as error:
         raise UsageError(str(error)) from None

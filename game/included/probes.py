@@ -197,11 +197,9 @@ def save(session: Context, pixel: Vector) -> None:
             write_png(probe, path.with_suffix(".png"), session.view.theme)
     except OSError as error:
         raise Refusal(
-            tr(
-                "No plot was saved: {file}: {reason}. Start Pinjoint in a folder where you may write.",
-                file=error.filename,
-                reason=error.strerror,
-            )
+            "No plot was saved: {file}: {reason}. Start Pinjoint in a folder where you may write.",
+            file=error.filename,
+            reason=error.strerror,
         ) from None
     names = listed([path.stem for path in paths])
     session.notice = (
@@ -278,11 +276,9 @@ def run(words: list[str]) -> int:
     output = Path(options.output)
     if output.suffix not in (".csv", ".png"):
         raise UsageError(
-            tr(
-                "{file}: choose a file that ends with one of {endings}.",
-                file=f"--output {output}",
-                endings=".csv, .png",
-            )
+            "{file}: choose a file that ends with one of {endings}.",
+            file=f"--output {output}",
+            endings=".csv, .png",
         )
     record(session, probe, options.until, options.samples)
     with writing(output):

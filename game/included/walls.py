@@ -9,16 +9,17 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pinjoint.components import CM, Field, FieldError, Handle, Pieces, Selected, Table, Vector
-from pinjoint.components.language import marked, tr
+from pinjoint.components.language import marked
 from pinjoint.components.tags import Hovered
 from pinjoint.mods import App
 from pinjoint.systems.render.clip import bounds, clip_segments
-from pinjoint.systems.render.labels import Label, half_size
+from pinjoint.systems.render.labels import Label
 from pinjoint.systems.render.marks import Discs, Mark, Points, Strokes
 from pinjoint.systems.render.occupancy import STRONG
 from pinjoint.systems.render.sheet import Rows, Sheet
 from pinjoint.systems.render.structure import HALO_OPACITY
 from pinjoint.systems.render.theme import Colour, faded
+from pinjoint.systems.render.values import BACKING, beside
 
 WIDTH = 4.0  # points, of the line that is drawn
 
@@ -50,7 +51,7 @@ class Wall(Handle):
         for row in rows[points][:1].tolist():
             where = table.world.describe(table[row])
             raise FieldError(
-                tr("{wall}: its start and its end are the same point; place one elsewhere.", wall=where)
+                "{wall}: its start and its end are the same point; place one elsewhere.", wall=where
             )
 
 
@@ -91,15 +92,8 @@ def _thick(start: Points, end: Points, width: float, colour: Colour, rows: Rows)
 def name_wall(sheet: Sheet, row: int, start: NDArray[np.float64], end: NDArray[np.float64]) -> None:
     """Place the name of a wall beside its middle, where there is room."""
     size, name = sheet.font(12.0), sheet.model.tables["walls"].names[row]
-    half = half_size(name, size, "semibold", sheet.unit)
-    along = (end - start) / max(float(np.hypot(*(end - start))), 1e-9)
-    reach = abs(along[1]) * half[0] + abs(along[0]) * half[1] + WIDTH * sheet.unit
-    places = [
-        tuple((start + share * (end - start) + side * reach * np.array([along[1], -along[0]])).tolist())
-        for share in (0.5, 0.3, 0.7)
-        for side in (-1.0, 1.0)
-    ]
-    backing = faded(sheet.theme.background, 0.86)
+    places = beside(sheet, name, start, end, (0.5, 0.3, 0.7), WIDTH)
+    backing = faded(sheet.theme.background, BACKING)
     label = Label(name, places, size, sheet.theme.text, 1e11, "semibold", backing, of=("walls", row))
     sheet.labels.append(label)
 

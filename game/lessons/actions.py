@@ -5,13 +5,13 @@ from __future__ import annotations
 from typing import Any
 
 from pinjoint.components.field import Vector
-from pinjoint.components.language import tr
-from pinjoint.editor.context import action
 from pinjoint.lessons.course import Course
 from pinjoint.lessons.shelf import after
 from pinjoint.scripts.script import Script, ScriptError
 from pinjoint.systems.edit import Refusal
+from pinjoint.systems.input.actions import IN_LESSONS, actions_of
 
+action = actions_of("Lessons", IN_LESSONS)
 MOST_ANSWERS = 9  # choices, so that each has a key
 
 Session = Any  # pinjoint.session.Session, which holds the lesson
@@ -20,12 +20,12 @@ Session = Any  # pinjoint.session.Session, which holds the lesson
 def _course(session: Session) -> Course:
     """The lesson that a person is in. Raises Refusal."""
     if session.course is None:
-        raise Refusal(tr("There is no lesson now: D opens the start page, where lessons stand at the top."))
+        raise Refusal("There is no lesson now: D opens the start page, where lessons stand at the top.")
     course: Course = session.course
     return course
 
 
-@action("check answer", while_drawing=True)
+@action("check answer", "f5", "check the task of the lesson, or go on", while_drawing=True)
 def _check(session: Session, pixel: Vector) -> None:
     course = _course(session)
     if course.accepted:
@@ -51,17 +51,12 @@ def _next(session: Session, pixel: Vector) -> None:
     _leave(session, pixel)
 
 
-@action("hint", while_drawing=True)
+@action("hint", "f6", "show a hint for the task", while_drawing=True)
 def _hint(session: Session, pixel: Vector) -> None:
     _course(session).hint()
 
 
-@action("task again")
-def _again(session: Session, pixel: Vector) -> None:
-    _course(session).again()
-
-
-@action("show solution")
+@action("show solution", "f7", "show how the task is done")
 def _show(session: Session, pixel: Vector) -> None:
     """Do the task: before the person's eyes in a window, else at once."""
     course = _course(session)
@@ -74,7 +69,12 @@ def _show(session: Session, pixel: Vector) -> None:
     session.lesson = Script.of_lines(course.lesson.title, course.task.solution)
 
 
-@action("leave lesson")
+@action("task again", "f8", "begin the task again")
+def _again(session: Session, pixel: Vector) -> None:
+    _course(session).again()
+
+
+@action("leave lesson", "f9", "leave the lesson")
 def _leave(session: Session, pixel: Vector) -> None:
     """Back to the document that was open before; where there was none, to the start page."""
     _course(session)

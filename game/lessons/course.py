@@ -7,7 +7,8 @@ from collections.abc import Sequence
 from typing import Any
 
 from pinjoint.components.card import Card, CardButton
-from pinjoint.components.language import decimals, marked, tr
+from pinjoint.components.language import decimals, joined, marked, tr
+from pinjoint.components.mistake import WrongValue
 from pinjoint.components.view import Shape
 from pinjoint.documents.document import document
 from pinjoint.documents.models import ModelError, load
@@ -132,7 +133,7 @@ class Course:
         script = self.lesson.script
         for number, entry in lines:
             for failure in play_line(script, number, entry, self._session):
-                raise ScriptError(f"{script.path} {failure}")
+                raise ScriptError(joined([str(script.path), str(failure)]))
 
     def again(self) -> None:
         """Begin the task anew, from the model with which it began."""
@@ -162,7 +163,7 @@ class Course:
         elif task.kind == CHOICES and isinstance(value, str):
             self.choice = value
         else:
-            raise ValueError(tr("the task asks for {kind}, not for {value}.", kind=task.kind, value=value))
+            raise WrongValue("the task asks for {kind}, not for {value}.", kind=task.kind, value=value)
         self.check()
 
     def choose(self, number: int) -> None:

@@ -12,6 +12,7 @@ import numpy as np
 from pinjoint.components import written
 from pinjoint.components.handle import Handle
 from pinjoint.components.language import begun, decimals, joined, listed, marked, tr
+from pinjoint.components.mistake import NotFound, WrongValue
 from pinjoint.documents.document import document
 from pinjoint.lessons.tasks import CHOICES, NUMBER, SELECT, UNTIL, Line, Task
 from pinjoint.paths import PathError, locate, quantity, readable
@@ -159,7 +160,7 @@ def _judge_choice(truth: Session, task: Task, answer: str) -> Verdict:
     choice = next((choice for choice in task.choices if choice.text == answer), None)
     if choice is None:
         texts = ", ".join(choice.text for choice in task.choices)
-        raise LookupError(tr("there is no choice '{text}'; use one of {texts}.", text=answer, texts=texts))
+        raise NotFound("there is no choice '{text}'; use one of {texts}.", text=answer, texts=texts)
     if choice.right if isinstance(choice.right, bool) else holds(truth, choice.right):
         return Verdict(True, filled(task.right, truth))
     said = filled(choice.say, truth) or tr(
@@ -264,7 +265,7 @@ def _shown_number(session: Session, path: str) -> float:
     """The number at a path in the unit in which it is shown."""
     value = read(session, path)
     if not isinstance(value, int | float):
-        raise ValueError(tr("{path} is {value}, not one number.", path=path, value=value))
+        raise WrongValue("{path} is {value}, not one number.", path=path, value=value)
     return float(value) * _said_of(session, path)[1]
 
 

@@ -126,7 +126,7 @@ class Lesson:
         self.title, self.description = script.title, script.description
         self.tasks = tuple(_Reader(script).tasks())
         if not self.tasks:
-            raise ScriptError(tr("{file}: a lesson needs a line with a task.", file=script.path))
+            raise ScriptError("{file}: a lesson needs a line with a task.", file=script.path)
 
     @property
     def name(self) -> str:

@@ -5,9 +5,11 @@
 []
 """
 
-from pinjoint.editor.context import FAULTS
+from pinjoint.components.extensions import EXTENSIONS
 from pinjoint.mods.app import App
-from pinjoint.mods.loading import MODS, include, load, load_all, unload
+from pinjoint.mods.loading import include, load, load_all, unload
 from pinjoint.mods.mod import Mod, ModError
+
+FAULTS, MODS = EXTENSIONS.faults, EXTENSIONS.mods
 
 __all__ = ["FAULTS", "MODS", "App", "Mod", "ModError", "include", "load", "load_all", "unload"]

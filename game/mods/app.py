@@ -3,26 +3,25 @@
 from __future__ import annotations
 
 import inspect
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, MutableMapping, Sequence
 from functools import partial
 from pathlib import Path
-from typing import Any, TypeVar
+from typing import Any
 
-from pinjoint.commands import COMMANDS, Command
+from pinjoint.commands import Command
 from pinjoint.components.component import Component, add_component
+from pinjoint.components.extensions import EXTENSIONS
 from pinjoint.components.handle import Handle
-from pinjoint.components.kind import add_kind
-from pinjoint.components.language import add_catalogues, joined, remove_catalogues, tr
-from pinjoint.components.load import HISTORIES, HistoryKind, register_history
-from pinjoint.components.model import ADDED
-from pinjoint.components.obstacles import SHAPES, Shape
+from pinjoint.components.kind import checked_kind
+from pinjoint.components.language import add_catalogues, joined, language, speak, tr
+from pinjoint.components.load import HISTORIES, HistoryKind
+from pinjoint.components.mistake import WrongValue
+from pinjoint.components.obstacles import Shape
 from pinjoint.components.table import fields_of
 from pinjoint.documents import models
-from pinjoint.documents.mod_data import UPGRADES, VERSIONS, Upgrade
-from pinjoint.editor.actions import ACTIONS, WHILE_DRAWING, Action, action
-from pinjoint.editor.context import PANELS
-from pinjoint.editor.gestures.drawing import TOOL_HINTS, TOOLS, drawing_of
-from pinjoint.editor.scenes import SCENES, Scene, all_scenes
+from pinjoint.documents.mod_data import Upgrade
+from pinjoint.editor.gestures.drawing import drawing_of
+from pinjoint.editor.scenes import Scene, all_scenes
 from pinjoint.mods.declared import checks_arguments
 from pinjoint.mods.guard import (
     guard_checkers,
@@ -41,24 +40,10 @@ from pinjoint.mods.interface import (
 )
 from pinjoint.mods.mod import INCLUDED, Mod, ModError
 from pinjoint.systems.base import Integrator, System
-from pinjoint.systems.catalogue import SYSTEMS
-from pinjoint.systems.input.bindings import (
-    LIVE,
-    Binding,
-    add_binding,
-    add_button,
-    add_tool,
-    key_named,
-    remove_binding,
-    remove_button,
-    remove_tool,
-)
-from pinjoint.systems.physics.integrators import INTEGRATORS, register_integrator, remove_integrator
-from pinjoint.systems.render.icons import ADDED as ADDED_ICONS
+from pinjoint.systems.input.actions import ACTIONS, LIVE, Action, Binding, Perform, key_named
+from pinjoint.systems.physics.integrators import INTEGRATORS
 from pinjoint.systems.render.icons import Part, check_icon
-from pinjoint.systems.render.sheet import ABOVE, BELOW, Layer
-
-T = TypeVar("T")
+from pinjoint.systems.render.sheet import Layer
 
 
 @checks_arguments
@@ -98,10 +83,10 @@ class App:
         """
         guard_checkers(self._mod, fields_of(kind))
         try:
-            name = add_kind(self.name, kind)
+            name = checked_kind(self.name, kind)
         except ValueError as error:
             raise ModError(str(error)) from None
-        self._undo.append(lambda: ADDED.pop(name))
+        self._put(EXTENSIONS.kinds, name, kind)
         self._keeps_data()
 
     def upgrade(self, upgrade: Upgrade) -> None:
@@ -115,16 +100,13 @@ class App:
         def upgraded(document: dict[str, Any], version: str) -> None:
             self._mod.call(what, upgrade, document, version)
             if self._mod.off:
-                raise ValueError(
-                    tr(
-                        "the data of {mod} {version} could not be upgraded; --no-mods opens it without the mod.",
-                        mod=name,
-                        version=version or "?",
-                    )
+                raise WrongValue(
+                    "the data of {mod} {version} could not be upgraded; --no-mods opens it without the mod.",
+                    mod=name,
+                    version=version or "?",
                 )
 
-        UPGRADES[name] = upgraded
-        self._undo.append(lambda: UPGRADES.pop(name))
+        self._put(EXTENSIONS.upgrades, name, upgraded)
 
     def tool(self, kind: type[Handle], *, key: str, title: str = "", icon: Sequence[Part] = ()) -> None:
         """Let a person draw elements of a kind with two points, from one to the other, by a key and a button.
@@ -133,42 +115,33 @@ class App:
         """
         if len(kind.points) != 2:
             raise ModError(
-                tr(
-                    "A tool draws from one point to another; {kind} must have 2 points, not {count}.",
-                    kind=kind.__name__,
-                    count=len(kind.points),
-                )
+                "A tool draws from one point to another; {kind} must have 2 points, not {count}.",
+                kind=kind.__name__,
+                count=len(kind.points),
             )
         name = f"{self.name}.{kind.noun}"
-        TOOLS[name] = drawing_of(kind, name, key)
-        TOOL_HINTS[name] = tr(
+        drawing = drawing_of(kind, name, key)
+        hint = tr(
             "{table}: click two points, or drag from one to the other     {key} or Esc done",
-            table=kind.table,
+            table=tr(kind.table),
             key=key.upper(),
         )
-        self._undo += [lambda: TOOLS.pop(name), lambda: TOOL_HINTS.pop(name)]
-        self.action(
-            name, key=key, title=title or tr("{kind}, from point to point", kind=kind.noun), while_drawing=True
-        )(TOOLS[name].use)
-        if icon:
-            self._icon(name, icon)
-            add_tool(name)
-            self._undo.append(lambda: remove_tool(name))
+        act = guarded_action(self._mod, name, drawing.use)
+        self._act(Action(name, act, while_drawing=True, draws=drawing, hint=hint))
+        self.key(key, name, title=title or tr("{kind}, from point to point", kind=tr(kind.noun)))
+        self._icon(name, icon)
 
     def shape(self, kind: type[Handle], shape: Shape) -> None:
         """Let particles collide with elements of a kind: `shape(table)` returns the Pieces that they are."""
-        if kind in SHAPES:
-            raise ModError(
-                tr("The shape of {table} is registered already; register it once.", table=kind.table)
-            )
-        SHAPES[kind] = guarded_shape(self._mod, kind, shape)
-        self._undo.append(lambda: SHAPES.pop(kind))
+        if kind in EXTENSIONS.obstacles:
+            raise ModError("The shape of {table} is registered already; register it once.", table=kind.table)
+        self._put(EXTENSIONS.obstacles, kind, guarded_shape(self._mod, kind, shape))
 
     def system(self, system: Callable[[], System]) -> None:
         """Add a frame system, a law or a commit, by its class: every session makes one of its own."""
         name = getattr(system, "name", "")
         self._check_prefix("system", name or getattr(system, "__name__", "?"))
-        self._add(SYSTEMS, guarded_maker(self._mod, system))
+        self._add(EXTENSIONS.systems, guarded_maker(self._mod, system))
 
     def integrator(self, integrator: type[Integrator]) -> None:
         """Add an integrator that models, the command line and the properties can choose."""
@@ -177,54 +150,49 @@ class App:
         key = made.key
         if key in INTEGRATORS:
             raise ModError(
-                tr("There is an integrator '{key}' already; give {name} another name.", key=key, name=made.name)
+                "There is an integrator '{key}' already; give {name} another name.", key=key, name=made.name
             )
-        register_integrator(made)
-        self._undo.append(lambda: remove_integrator(key))
+        self._put(INTEGRATORS, key, made)
 
     def history(self, kind: HistoryKind) -> None:
         """Add a way in which loads change in time."""
         kind = guarded_history(self._mod, kind)
-        try:
-            register_history(kind)
-        except ValueError as error:
-            raise ModError(str(error)) from None
-        self._undo.append(lambda: HISTORIES.pop(kind.name))
+        if kind.name in HISTORIES:
+            raise ModError(
+                "There is a kind of history '{name}' already; give this one another name.", name=kind.name
+            )
+        self._put(HISTORIES, kind.name, kind)
 
     def models(self, folder: str | Path) -> None:
         """Let the models in a folder be opened by name, like those that come with Pinjoint."""
         path = Path(folder)
         if not path.is_dir():
-            raise ModError(tr("There is no folder of models {folder}; check its path.", folder=path))
+            raise ModError("There is no folder of models {folder}; check its path.", folder=path)
         taken = {entry.name for entry in path.glob("*.json")} & {f"{name}.json" for name in models.bundled()}
         if taken:
             raise ModError(
-                tr("There is a bundled model '{name}' already; give the file another name.", name=min(taken))
+                "There is a bundled model '{name}' already; give the file another name.", name=min(taken)
             )
-        self._add(models.FOLDERS, path)
+        self._add(EXTENSIONS.folders, path)
 
     # --- scenes, actions, keys -------------------------------------------------------------------------
 
     def scene(self, scene: type[Scene]) -> None:
         """Add a mode. Its `sources` are the scenes from which it can be reached; "pause" must be a target."""
         if scene.name in {other.name for other in all_scenes()}:
-            raise ModError(
-                tr("There is a scene '{name}' already; give this one another name.", name=scene.name)
-            )
+            raise ModError("There is a scene '{name}' already; give this one another name.", name=scene.name)
         made = guarded_scene(self._mod, scene)
         if "pause" not in scene.targets:
             raise ModError(
-                tr("The scene '{name}' must lead to pause; add 'pause' to its targets.", name=scene.name)
+                "The scene '{name}' must lead to pause; add 'pause' to its targets.", name=scene.name
             )
         if hasattr(scene, "advance"):
             raise ModError(
-                tr(
-                    "The scene '{name}' has a method 'advance', which is no longer called; write a System with"
-                    " phase = Phase.STEP and scenes = ('{name}',), and register it by app.system.",
-                    name=scene.name,
-                )
+                "The scene '{name}' has a method 'advance', which is no longer called; write a System with"
+                " phase = Phase.STEP and scenes = ('{name}',), and register it by app.system.",
+                name=scene.name,
             )
-        self._add(SCENES, made)
+        self._add(EXTENSIONS.scenes, made)
 
     def action(
         self,
@@ -235,7 +203,7 @@ class App:
         title: str = "",
         while_drawing: bool = False,
         icon: Sequence[Part] = (),
-    ) -> Callable[[Action], Action]:
+    ) -> Callable[[Perform], Perform]:
         """Register a function(session, pixel) as a named action, and perhaps a key and a button for it.
 
         Everything that it changes in the model is one step of undo, dropped whole if it raises. icon: of its button
@@ -243,22 +211,21 @@ class App:
         """
         self._check_prefix("action", name)
 
-        def register(function: Action) -> Action:
-            if name in ACTIONS:
-                raise ModError(
-                    tr("There is an action '{name}' already; give this one another name.", name=name)
-                )
-            action(name, while_drawing=while_drawing)(guarded_action(self._mod, name, function))
-            self._undo += [lambda: ACTIONS.pop(name), lambda: WHILE_DRAWING.discard(name)]
+        def register(function: Perform) -> Perform:
+            act = guarded_action(self._mod, name, function)
+            offered = (Binding("", tuple(scenes), title or name),) if icon else ()
+            self._act(Action(name, act, offered, while_drawing=while_drawing))
             if key:
                 self.key(key, name, scenes, title)
-            if icon:
-                self._icon(name, icon)
-                add_button(Binding(key, name, tuple(scenes), title or name))
-                self._undo.append(lambda: remove_button(name))
+            self._icon(name, icon)
             return function
 
         return register
+
+    def _act(self, action: Action) -> None:
+        if action.name in ACTIONS:
+            raise ModError("There is an action '{name}' already; give this one another name.", name=action.name)
+        self._put(ACTIONS, action.name, action)
 
     def key(self, key: str, name: str, scenes: Sequence[str] = LIVE, title: str = "") -> None:
         """Let a key, such as "w" or "ctrl+w", perform a named action in some scenes.
@@ -268,25 +235,23 @@ class App:
         """
         if name not in ACTIONS:
             raise ModError(
-                tr(
-                    "The key '{key}' is for the action '{name}', which is not registered; register the action first.",
-                    key=key,
-                    name=name,
-                )
+                "The key '{key}' is for the action '{name}', which is not registered; register the action first.",
+                key=key,
+                name=name,
             )
         key = _checked_key(key)
-        binding = Binding(key, name, tuple(scenes), title or name)
-        self._undo.append(lambda: remove_binding(binding))
-        for other in add_binding(binding):
+        before = ACTIONS[name]
+        self._undo.append(lambda: ACTIONS.__setitem__(name, before))
+        for other, taken in ACTIONS.bind(name, Binding(key, tuple(scenes), title or name)):
             self._mod.notes.append(
                 tr(
                     "The key '{key}' for {name} already does '{other}' in {scenes}; to change that, write {form} in the"
                     " settings file.",
                     key=key,
                     name=name,
-                    other=other.action,
-                    scenes=", ".join(other.scenes),
-                    form=f'{{"keys": {{"{other.scenes[0]}": {{"{key}": "{name}"}}}}}}',
+                    other=other.name,
+                    scenes=", ".join(taken.scenes),
+                    form=f'{{"keys": {{"{taken.scenes[0]}": {{"{key}": "{name}"}}}}}}',
                 )
             )
 
@@ -295,20 +260,19 @@ class App:
 
         UsageError, ModelError, FieldError and PathError that it raises are shown as mistakes of the person.
         """
-        if name in COMMANDS:
-            raise ModError(tr("There is a command '{name}' already; give this one another name.", name=name))
-        COMMANDS[name] = Command(guarded_command(self._mod, name, run), about)
-        self._undo.append(lambda: COMMANDS.pop(name))
+        if name in EXTENSIONS.commands:
+            raise ModError("There is a command '{name}' already; give this one another name.", name=name)
+        self._put(EXTENSIONS.commands, name, Command(guarded_command(self._mod, name, run), about))
 
     # --- what is seen ------------------------------------------------------------------------------------
 
     def layer(self, draw: Layer, *, below: bool = False) -> None:
         """Draw marks with every picture of a model, above its elements or below them; see systems/render/marks.py."""
-        self._add(BELOW if below else ABOVE, guarded_layer(self._mod, draw))
+        self._add(EXTENSIONS.below if below else EXTENSIONS.above, guarded_layer(self._mod, draw))
 
     def panel(self, read: Panel) -> None:
         """Show small panels beside the model: `read(session)` returns a Readout, several, or None."""
-        self._add(PANELS, guarded_panel(self._mod, read))
+        self._add(EXTENSIONS.panels, guarded_panel(self._mod, read))
 
     def catalogues(self) -> None:
         """Say what the mod says in the languages of its folder `locale`, if it has one; Pinjoint calls this itself."""
@@ -319,21 +283,21 @@ class App:
             add_catalogues(self.name, folder)
         except ValueError as error:
             raise ModError(str(error)) from None
-        self._undo.append(lambda: remove_catalogues(self.name))
+        self._undo += [lambda: speak(language()), lambda: EXTENSIONS.catalogues.pop(self.name)]
 
     def _icon(self, name: str, icon: Sequence[Part]) -> None:
+        if not icon:
+            return
         try:
             check_icon(icon)
         except ValueError as error:
-            raise ModError(tr("The icon of '{name}': {error}", name=name, error=error)) from None
-        ADDED_ICONS[name] = tuple(icon)
-        self._undo.append(lambda: ADDED_ICONS.pop(name))
+            raise ModError("The icon of '{name}': {error}", name=name, error=error) from None
+        self._put(EXTENSIONS.icons, name, tuple(icon))
 
     def _keeps_data(self) -> None:
         """Note the version, which files state that hold data of the mod."""
-        if self._mod.source != INCLUDED and self.name not in VERSIONS:
-            VERSIONS[self.name] = self._mod.version
-            self._undo.append(lambda: VERSIONS.pop(self.name))
+        if self._mod.source != INCLUDED and self.name not in EXTENSIONS.versions:
+            self._put(EXTENSIONS.versions, self.name, self._mod.version)
 
     # --- all or nothing ------------------------------------------------------------------------------------
 
@@ -342,19 +306,21 @@ class App:
         while self._undo:
             self._undo.pop()()
 
-    def _add(self, entries: list[T], entry: T) -> None:
+    def _put(self, entries: MutableMapping[Any, Any], key: Any, entry: Any) -> None:
+        entries[key] = entry
+        self._undo.append(lambda: entries.pop(key))
+
+    def _add(self, entries: list[Any], entry: Any) -> None:
         entries.append(entry)
         self._undo.append(lambda: entries.remove(entry))
 
     def _check_prefix(self, what: str, name: str) -> None:
         if not name.startswith(f"{self.name}."):
             raise ModError(
-                tr(
-                    "The name of the {kind} '{name}' must begin with the name of its mod, such as '{better}'.",
-                    kind=what,
-                    name=name,
-                    better=f"{self.name}.{name}",
-                )
+                "The name of the {kind} '{name}' must begin with the name of its mod, such as '{better}'.",
+                kind=what,
+                name=name,
+                better=f"{self.name}.{name}",
             )
 
 
@@ -367,11 +333,7 @@ def _checked_key(key: str) -> str:
         raise ModError(joined([str(error), names])) from None
     if "shift" in key.lower() and "shift" not in named:
         raise ModError(
-            tr(
-                "The key '{key}' is the same as '{named}'; use that, or 'ctrl+shift+{named}'.",
-                key=key,
-                named=named,
-            )
+            "The key '{key}' is the same as '{named}'; use that, or 'ctrl+shift+{named}'.", key=key, named=named
         )
     return named
 
@@ -379,7 +341,7 @@ def _checked_key(key: str) -> str:
 def check_plugin(plugin: object) -> Callable[[App], object]:
     """The function `plugin(app)` of a mod. Raises ModError."""
     if not callable(plugin):
-        raise ModError(tr("It has no function plugin(app); write `def plugin(app): …` in its __init__.py."))
+        raise ModError("It has no function plugin(app); write `def plugin(app): …` in its __init__.py.")
     if len(inspect.signature(plugin).parameters) != 1:
-        raise ModError(tr("Its function plugin must take one argument: def plugin(app)."))
+        raise ModError("Its function plugin must take one argument: def plugin(app).")
     return plugin

@@ -21,6 +21,7 @@ from typing import Any, Literal, TypeVar, Union, get_args, get_origin, get_type_
 import numpy as np
 
 from pinjoint.components.language import Said, in_both, marked, tr
+from pinjoint.components.mistake import WrongValue
 from pinjoint.components.wording import quoted
 
 C = TypeVar("C")
@@ -190,7 +191,7 @@ def _items(value: Any, called: str) -> list[Any]:
         raise _refused(value, called, marked("{called} is {value}; it must be a list or a tuple"))
     items = list(islice(value, MOST + 1))
     if len(items) > MOST:
-        raise ValueError(tr("{called} has more than {count:,} entries; give fewer", called=called, count=MOST))
+        raise WrongValue("{called} has more than {count:,} entries; give fewer", called=called, count=MOST)
     return items
 
 

@@ -20,6 +20,7 @@ from pinjoint.components.field import Column, Field, FieldError, Role
 from pinjoint.components.handle import Handle
 from pinjoint.components.language import tr
 from pinjoint.components.load import HistoryKind
+from pinjoint.components.mistake import WrongValue
 from pinjoint.components.model import Model
 from pinjoint.components.obstacles import Pieces, Shape, check_pieces
 from pinjoint.components.snapshot import Snapshot
@@ -56,16 +57,14 @@ def check_declarations(system: Any) -> System:
     role = next((role for role in _ROLES if isinstance(system, role)), None)
     if role is None:
         raise ModError(
-            tr(
-                "{name} is not a System; derive it from a class in pinjoint.systems.base.",
-                name=type(system).__name__,
-            )
+            "{name} is not a System; derive it from a class in pinjoint.systems.base.",
+            name=type(system).__name__,
         )
     for name, hint in get_type_hints(role).items():
         if get_origin(hint) is ClassVar:
             if isinstance(getattr_static(system, name), property):  # might answer differently, or fail, later
                 raise ModError(
-                    tr("{name} is a property; give the value itself.", name=f"{type(system).__name__}.{name}")
+                    "{name} is a property; give the value itself.", name=f"{type(system).__name__}.{name}"
                 )
             as_declared(getattr(system, name), get_args(hint)[0], f"{type(system).__name__}.{name}")
     made: System = system
@@ -165,12 +164,10 @@ def check_view(view: View) -> None:
     check_fields(view, View)
     numbers = (*view.camera.centre, view.camera.scale, view.pixel_ratio)
     if not (all(map(math.isfinite, numbers)) and view.camera.scale > 0.0 < view.pixel_ratio):
-        raise ValueError(
-            tr(
-                "the view's camera is at {centre} with {scale} pixels per metre; give finite numbers, and a scale above 0",
-                centre=str(numbers[:2]),
-                scale=str(numbers[2]),
-            )
+        raise WrongValue(
+            "the view's camera is at {centre} with {scale} pixels per metre; give finite numbers, and a scale above 0",
+            centre=str(numbers[:2]),
+            scale=str(numbers[2]),
         )
 
 
@@ -218,8 +215,8 @@ def guarded_integrator(mod: Mod, integrator: Integrator) -> Integrator:
     def stable_step(frequency: float, decay: float) -> float:
         size: float = as_declared(own(frequency, decay), float, "it")
         if not size >= 0.0:
-            raise ValueError(
-                tr("it is {size} s; return a number of at least 0 (0: no step is stable)", size=str(size))
+            raise WrongValue(
+                "it is {size} s; return a number of at least 0 (0: no step is stable)", size=str(size)
             )
         return size
 
@@ -265,12 +262,10 @@ def _guarded_checker(mod: Mod, field: Field[Any], own: Callable[[Any, str], Any]
         made = mod.call(what, own, value, where, otherwise=value, mistakes=(FieldError,))
         if mod.off and not was_off:
             raise FieldError(
-                tr(
-                    "{where}: {field} cannot be checked; {problem}",
-                    where=where,
-                    field=field.title,
-                    problem=mod.problem,
-                )
+                "{where}: {field} cannot be checked; {problem}",
+                where=where,
+                field=field.title,
+                problem=mod.problem,
             )
         return made
 

@@ -7,15 +7,15 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 
 from pinjoint.components import written
+from pinjoint.components.extensions import EXTENSIONS
 from pinjoint.components.language import joined, tr
-from pinjoint.mods.loading import MODS
 from pinjoint.mods.mod import Mod, ModError
 from pinjoint.systems.run.simulation import Simulation
 
 
 def switched_off() -> list[Mod]:
     """The mods that were loaded and failed since."""
-    return [mod for mod in MODS if mod.loaded and mod.off]
+    return [mod for mod in EXTENSIONS.mods if mod.loaded and mod.off]
 
 
 def check_mods(known: list[Mod] | None = None, time: float | None = None) -> None:
@@ -29,7 +29,7 @@ def check_mods(known: list[Mod] | None = None, time: float | None = None) -> Non
 
 def blamed_on_mod(error: BaseException) -> bool:
     """Switch off the mod from whose code an error came past all guards; False if it came from no mod's."""
-    for mod in MODS:
+    for mod in EXTENSIONS.mods:
         if mod.loaded and not mod.off and mod.place_of(error):
             mod.fail(tr("code that the program called"), error)
             return True

@@ -11,16 +11,17 @@ from typing import Any
 from pinjoint.commands.arguments import BAD_INPUT, UsageError
 from pinjoint.components.field import FieldError, Vector
 from pinjoint.components.language import english, in_both, tr
+from pinjoint.components.mistake import WrongValue
 from pinjoint.components.view import Plot, Readout, View
 from pinjoint.components.wording import printable
 from pinjoint.documents import models
-from pinjoint.editor.actions import Action
-from pinjoint.editor.context import ACTIONS, Context, Scene
+from pinjoint.editor.context import Context, Scene
 from pinjoint.mods.declared import as_declared, result_of
 from pinjoint.mods.guard import check_view, interruptible, view_kept
 from pinjoint.mods.mod import INCLUDED, PATIENCE, Mod
 from pinjoint.paths import PathError
 from pinjoint.systems.edit import Refusal
+from pinjoint.systems.input.actions import ACTIONS, Perform
 from pinjoint.systems.render.framing import framed
 from pinjoint.systems.render.marks import Mark
 from pinjoint.systems.render.sheet import Layer, Sheet
@@ -34,13 +35,13 @@ LONGEST = 400  # characters of a text in the window
 # --- what is done ----------------------------------------------------------------------------------------
 
 
-def guarded_action(mod: Mod, name: str, function: Action) -> Action:
+def guarded_action(mod: Mod, name: str, function: Perform) -> Perform:
     """An action of a mod: one step of undo, dropped whole if it fails."""
     what = tr("the action '{name}'", name=name)
 
     def act(context: Context, pixel: Vector) -> None:
         if mod.off:
-            raise Refusal(tr("The mod '{name}' is switched off: {problem}", name=mod.name, problem=mod.problem))
+            raise Refusal("The mod '{name}' is switched off: {problem}", name=mod.name, problem=mod.problem)
         mod.call(what, changed, context, pixel, mistakes=(Refusal, FieldError))
 
     def changed(context: Context, pixel: Vector) -> None:
@@ -103,12 +104,10 @@ def _checked_readout(readout: Readout) -> Readout:
     """
     rows = tuple((readable(tr(name)), readable(value)) for name, value in readout.rows)
     if readout.closes and readout.closes not in ACTIONS:
-        raise ValueError(
-            tr(
-                "the panel '{title}' names '{action}' to close it; there is no such action",
-                title=readout.title,
-                action=readout.closes,
-            )
+        raise WrongValue(
+            "the panel '{title}' names '{action}' to close it; there is no such action",
+            title=readout.title,
+            action=readout.closes,
         )
     plot = readout.plot and _checked_plot(readout.plot)
     return Readout(readable(tr(readout.title)), rows, plot, readout.closes)
@@ -117,13 +116,11 @@ def _checked_readout(readout: Readout) -> Readout:
 def _checked_plot(plot: Plot) -> Plot:
     for name, x, y in plot.curves:
         if x.ndim != 1 or x.shape != y.shape:
-            raise ValueError(
-                tr(
-                    "the curve '{name}' has x of shape {x} and y of shape {y}; both must be (n,)",
-                    name=name,
-                    x=str(x.shape),
-                    y=str(y.shape),
-                )
+            raise WrongValue(
+                "the curve '{name}' has x of shape {x} and y of shape {y}; both must be (n,)",
+                name=name,
+                x=str(x.shape),
+                y=str(y.shape),
             )
     curves = tuple((readable(tr(name)), x, y) for name, x, y in plot.curves)
     return replace(plot, x_title=readable(tr(plot.x_title)), y_title=readable(tr(plot.y_title)), curves=curves)

@@ -9,9 +9,9 @@ from collections.abc import Iterable, Sequence
 from pathlib import Path
 from types import ModuleType
 
+from pinjoint.components.extensions import EXTENSIONS
 from pinjoint.components.language import tr
 from pinjoint.documents.preferences import preferred_keys
-from pinjoint.editor.context import FAULTS
 from pinjoint.interrupts import is_persons, mark_interrupts
 from pinjoint.mods import finding
 from pinjoint.mods.app import App, check_plugin
@@ -20,13 +20,11 @@ from pinjoint.mods.finding import in_order, required
 from pinjoint.mods.mod import MANIFEST, Mod, ModError
 from pinjoint.mods.surroundings import Surroundings
 from pinjoint.systems.catalogue import all_systems
-from pinjoint.systems.input.bindings import prefer
+from pinjoint.systems.input.actions import ACTIONS
 from pinjoint.systems.schedule import Schedule
 from pinjoint.version import __version__
 
 PATIENCE = 30.0  # s that loading one mod may take
-
-MODS: list[Mod] = []  # all that were found in this process, those that come with the program first
 
 
 def load(folders: Iterable[str | Path] = (), *, installed: bool = False) -> list[Mod]:
@@ -37,21 +35,23 @@ def load(folders: Iterable[str | Path] = (), *, installed: bool = False) -> list
     found = [mod for folder in folders for mod in finding.in_folder(Path(folder))]
     if installed:
         found += [*finding.in_folder(finding.mods_folder()), *finding.in_packages()]
-    known: dict[Path | None, Mod] = {mod.folder: mod for mod in MODS if mod.loaded and mod.folder is not None}
+    known: dict[Path | None, Mod] = {
+        mod.folder: mod for mod in EXTENSIONS.mods if mod.loaded and mod.folder is not None
+    }
     new = [mod for mod in found if mod.folder not in known]
-    ordered = in_order(new, __version__, [mod for mod in MODS if mod.loaded])
-    MODS.extend(new)
+    ordered = in_order(new, __version__, [mod for mod in EXTENSIONS.mods if mod.loaded])
+    EXTENSIONS.mods.extend(new)
     if ordered:
         mark_interrupts()
     for mod in ordered:
         _load(mod)
-    FAULTS.extend(
+    EXTENSIONS.faults.extend(
         tr("The mod '{name}' was left out: {problem}", name=mod.name, problem=mod.problem)
         for mod in new
         if mod.off
     )
     for scene, key, action in preferred_keys() if new else ():
-        prefer(scene, key, action)
+        ACTIONS.prefer(scene, key, action)
     return [known.get(mod.folder, mod) for mod in found]
 
 
@@ -61,17 +61,13 @@ def load_all(folders: Iterable[str | Path]) -> None:
         found = load([folder])
         if not found:
             raise ModError(
-                tr(
-                    "There is no mod in {folder}; a mod is a folder with a file {manifest}.",
-                    folder=folder,
-                    manifest=MANIFEST,
-                )
+                "There is no mod in {folder}; a mod is a folder with a file {manifest}.",
+                folder=folder,
+                manifest=MANIFEST,
             )
         for mod in found:
             if mod.off:
-                raise ModError(
-                    tr("The mod '{name}' cannot be used: {problem}", name=mod.name, problem=mod.problem)
-                )
+                raise ModError("The mod '{name}' cannot be used: {problem}", name=mod.name, problem=mod.problem)
 
 
 def include(module: ModuleType, description: str) -> None:
@@ -80,7 +76,7 @@ def include(module: ModuleType, description: str) -> None:
     app = App(mod)
     module.plugin(app)
     mod.withdraw = app.withdraw
-    MODS.append(mod)
+    EXTENSIONS.mods.append(mod)
 
 
 def unload(mods: Sequence[Mod]) -> None:
@@ -89,8 +85,8 @@ def unload(mods: Sequence[Mod]) -> None:
         if mod.withdraw is not None:
             mod.withdraw()
             _forget(mod)
-        if mod in MODS:
-            MODS.remove(mod)
+        if mod in EXTENSIONS.mods:
+            EXTENSIONS.mods.remove(mod)
 
 
 def _load(mod: Mod) -> None:
@@ -98,8 +94,8 @@ def _load(mod: Mod) -> None:
     surroundings = Surroundings()
     try:
         for name in required(mod):
-            if any(other.name == name and other.off for other in MODS):
-                raise ModError(tr("It requires the mod '{name}', which cannot be used.", name=name))
+            if any(other.name == name and other.off for other in EXTENSIONS.mods):
+                raise ModError("It requires the mod '{name}', which cannot be used.", name=name)
         mod.within(PATIENCE, lambda: _plug_in(mod, app))
         surroundings.check()
     except ModError as error:
@@ -141,12 +137,10 @@ def _find(mod: Mod) -> None:
     assert mod.folder is not None
     file = mod.folder / "__init__.py"
     if not file.is_file():
-        raise ModError(tr("It has no __init__.py; write one with a function plugin(app)."))
+        raise ModError("It has no __init__.py; write one with a function plugin(app).")
     origin = finding.origin_of_module(mod.name)
     if origin is not None and not _is_from(origin, file):
-        raise ModError(
-            tr("There is a Python module '{name}' already; give the mod another name.", name=mod.name)
-        )
+        raise ModError("There is a Python module '{name}' already; give the mod another name.", name=mod.name)
     if mod.name in sys.modules:
         return
     spec = importlib.util.spec_from_file_location(mod.name, file, submodule_search_locations=[str(mod.folder)])

@@ -11,10 +11,10 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any, TypeVar
 
+from pinjoint.components.extensions import EXTENSIONS
 from pinjoint.components.language import english, tr
 from pinjoint.components.mistake import Mistake
 from pinjoint.components.wording import is_identifier, printable, quoted
-from pinjoint.editor.context import FAULTS
 from pinjoint.interrupts import is_persons
 from pinjoint.mods.declared import as_declared
 from pinjoint.mods.watchdog import is_running, within
@@ -79,7 +79,7 @@ class Mod:
             name=self.name,
             reason=reason,
         )
-        FAULTS.append(sentence)
+        EXTENSIONS.faults.append(sentence)
         LOG.error(english(sentence))
         if error is not None:  # without its message, which is code of the mod
             places = "".join(traceback.format_tb(error.__traceback__)).rstrip()
@@ -177,34 +177,30 @@ def _entries(path: Path) -> dict[str, Any]:
         return tomllib.loads(path.read_text(encoding="utf-8"))
     except (OSError, UnicodeDecodeError) as error:
         reason = (error.strerror if isinstance(error, OSError) else None) or str(error)
-        raise ModError(tr("{file} cannot be read: {reason}.", file=MANIFEST, reason=reason)) from None
+        raise ModError("{file} cannot be read: {reason}.", file=MANIFEST, reason=reason) from None
     except RecursionError:
-        raise ModError(tr("{file} is nested too deeply; write it simpler.", file=MANIFEST)) from None
+        raise ModError("{file} is nested too deeply; write it simpler.", file=MANIFEST) from None
     except tomllib.TOMLDecodeError as error:
-        raise ModError(tr("{file} is not TOML: {error}.", file=MANIFEST, error=error)) from None
+        raise ModError("{file} is not TOML: {error}.", file=MANIFEST, error=error) from None
 
 
 def _fill(made: Mod, entries: dict[str, Any], named: str | None) -> None:
     for key in entries:
         if key not in _KEYS:
             raise ModError(
-                tr(
-                    "{file} has the key '{key}', which means nothing; use only {keys}.",
-                    file=MANIFEST,
-                    key=key,
-                    keys=", ".join(_KEYS),
-                )
+                "{file} has the key '{key}', which means nothing; use only {keys}.",
+                file=MANIFEST,
+                key=key,
+                keys=", ".join(_KEYS),
             )
     for key in ("name", "version", "description"):
         value = entries.get(key, "")
         if not isinstance(value, str):
             raise ModError(
-                tr(
-                    '{file}: {key} is {value}; it must be a text, such as {key} = "…".',
-                    file=MANIFEST,
-                    key=key,
-                    value=quoted(value),
-                )
+                '{file}: {key} is {value}; it must be a text, such as {key} = "…".',
+                file=MANIFEST,
+                key=key,
+                value=quoted(value),
             )
         if value or key != "name":
             setattr(made, key, value)
@@ -212,22 +208,18 @@ def _fill(made: Mod, entries: dict[str, Any], named: str | None) -> None:
     check_name(made.name)
     if named is not None and made.name != named:
         raise ModError(
-            tr(
-                "{file}: the name is '{name}', but the entry point calls it '{other}'; use the same name.",
-                file=MANIFEST,
-                name=made.name,
-                other=named,
-            )
+            "{file}: the name is '{name}', but the entry point calls it '{other}'; use the same name.",
+            file=MANIFEST,
+            name=made.name,
+            other=named,
         )
     requires = entries.get("requires", [])
     if not isinstance(requires, list) or not all(isinstance(entry, str) for entry in requires):
         raise ModError(
-            tr(
-                "{file}: requires is {value}; write a list such as {form}.",
-                file=MANIFEST,
-                value=quoted(requires),
-                form='["pinjoint>=0.1", "gusts"]',
-            )
+            "{file}: requires is {value}; write a list such as {form}.",
+            file=MANIFEST,
+            value=quoted(requires),
+            form='["pinjoint>=0.1", "gusts"]',
         )
     made.requires = tuple(requires)
     _check_versions(made)
@@ -236,7 +228,7 @@ def _fill(made: Mod, entries: dict[str, Any], named: str | None) -> None:
 def check_name(name: str) -> None:
     """Raise ModError unless a mod may have this name."""
     if not is_identifier(name) or "__" in name:
-        raise ModError(tr("The name '{name}' must be a Python name without __, such as 'wind'.", name=name))
+        raise ModError("The name '{name}' must be a Python name without __, such as 'wind'.", name=name)
 
 
 def _check_versions(made: Mod) -> None:
@@ -247,16 +239,12 @@ def _check_versions(made: Mod) -> None:
         Version(made.version)
     except InvalidVersion:
         raise ModError(
-            tr("{file}: the version is '{version}'; write it like '1.0'.", file=MANIFEST, version=made.version)
+            "{file}: the version is '{version}'; write it like '1.0'.", file=MANIFEST, version=made.version
         ) from None
     for entry in made.requires:
         try:
             Requirement(entry)
         except InvalidRequirement:
             raise ModError(
-                tr(
-                    "{file}: requires has '{entry}'; write it like 'pinjoint>=0.1,<2'.",
-                    file=MANIFEST,
-                    entry=entry,
-                )
+                "{file}: requires has '{entry}'; write it like 'pinjoint>=0.1,<2'.", file=MANIFEST, entry=entry
             ) from None

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from pinjoint.components.language import tr
 from pinjoint.mods.finding import origin_of_module
 from pinjoint.mods.mod import MANIFEST, ModError, check_name
 
@@ -75,7 +74,7 @@ def write_skeleton(name: str, parent: Path, version: str) -> list[Path]:
     check_name(name)
     folder = parent / name
     if not folder.exists() and origin_of_module(name) is not None:
-        raise ModError(tr("There is a Python module '{name}' already; give the mod another name.", name=name))
+        raise ModError("There is a Python module '{name}' already; give the mod another name.", name=name)
     try:
         folder.mkdir(parents=True)
         paths = []
@@ -83,13 +82,11 @@ def write_skeleton(name: str, parent: Path, version: str) -> list[Path]:
             paths.append(folder / pattern.format(name=name))
             paths[-1].write_text(text.format(name=name, version=version), encoding="utf-8")
     except FileExistsError:
-        raise ModError(tr("{folder} exists already; choose another name.", folder=folder)) from None
+        raise ModError("{folder} exists already; choose another name.", folder=folder) from None
     except OSError as error:
         raise ModError(
-            tr(
-                "{folder} cannot be written: {reason}. Choose another folder with --into.",
-                folder=folder,
-                reason=error.strerror,
-            )
+            "{folder} cannot be written: {reason}. Choose another folder with --into.",
+            folder=folder,
+            reason=error.strerror,
         ) from None
     return paths

@@ -9,7 +9,6 @@ import threading
 
 import numpy as np
 
-from pinjoint.components.language import tr
 from pinjoint.mods.mod import ModError
 
 _STREAMS = ("stdin", "stdout", "stderr")
@@ -29,38 +28,29 @@ class Surroundings:
         for name, stream in self._streams.items():
             if getattr(sys, name, None) is not stream:
                 raise ModError(
-                    tr(
-                        "It replaced or removed sys.{name}, which the program needs; leave it as it is.",
-                        name=name,
-                    )
+                    "It replaced or removed sys.{name}, which the program needs; leave it as it is.", name=name
                 )
             if getattr(stream, "closed", False):
-                raise ModError(tr("It closed sys.{name}, which the program needs; leave it open.", name=name))
+                raise ModError("It closed sys.{name}, which the program needs; leave it open.", name=name)
         for name, module in self._modules.items():
             if sys.modules.get(name) is not module:
                 raise ModError(
-                    tr(
-                        "It replaced or removed the module '{name}' in sys.modules, which others use; leave it there.",
-                        name=name,
-                    )
+                    "It replaced or removed the module '{name}' in sys.modules, which others use; leave it there.",
+                    name=name,
                 )
         for library, functions in self._functions:
             for name, function in functions.items():
                 if vars(library).get(name) is not function:
                     raise ModError(
-                        tr(
-                            "It replaced or removed {name}, by which others compute; leave it as it is.",
-                            name=f"{library.__name__}.{name}",
-                        )
+                        "It replaced or removed {name}, by which others compute; leave it as it is.",
+                        name=f"{library.__name__}.{name}",
                     )
         for thread in set(threading.enumerate()) - self._threads:
             if thread.is_alive() and not thread.daemon:
                 raise ModError(
-                    tr(
-                        "Its plugin(app) left the thread '{name}' running, which would keep the program from ending; start"
-                        " the thread with daemon=True.",
-                        name=thread.name,
-                    )
+                    "Its plugin(app) left the thread '{name}' running, which would keep the program from ending; start"
+                    " the thread with daemon=True.",
+                    name=thread.name,
                 )
 
     def put_back(self) -> None:

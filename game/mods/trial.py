@@ -8,14 +8,15 @@ from pathlib import Path
 from typing import Any
 
 from pinjoint.checks import EVERYTHING, FRAME, STEPS, run_frames
+from pinjoint.components.extensions import EXTENSIONS
 from pinjoint.components.field import MADE, Field, FieldError
 from pinjoint.components.language import joined, marked, tr
 from pinjoint.components.load import HISTORIES
-from pinjoint.components.model import ADDED, Model
+from pinjoint.components.mistake import WrongValue
+from pinjoint.components.model import Model
 from pinjoint.components.suggestions import missing
 from pinjoint.documents import models
 from pinjoint.documents.library import data_apart
-from pinjoint.editor.context import FAULTS
 from pinjoint.editor.frame import Frame
 from pinjoint.editor.scenes import all_scenes
 from pinjoint.interrupts import is_persons
@@ -23,7 +24,7 @@ from pinjoint.mods.mod import LOG, Mod
 from pinjoint.session import Session
 from pinjoint.systems.base import Commit, Event, Integrator, Law, StepSystem, System
 from pinjoint.systems.catalogue import all_systems
-from pinjoint.systems.input.bindings import BINDINGS, PAUSE, SIMULATION
+from pinjoint.systems.input.actions import ACTIONS, PAUSE, SIMULATION
 from pinjoint.systems.physics.integrators import INTEGRATORS
 from pinjoint.systems.program.binding import KERNELS, ProgramError, bind
 from pinjoint.systems.program.endless import Patience
@@ -50,14 +51,14 @@ class _Trial:
     def __init__(self, mod: Mod) -> None:
         self.mod = mod
         self.found: list[str] = []
-        heard, known, patience = LOG.disabled, len(FAULTS), Patience.seconds
+        heard, known, patience = LOG.disabled, len(EXTENSIONS.faults), Patience.seconds
         LOG.disabled, Patience.seconds = True, PATIENCE
         try:
             with data_apart():
                 self._try_all()
         finally:
             LOG.disabled, Patience.seconds = heard, patience
-            del FAULTS[known:]
+            del EXTENSIONS.faults[known:]
 
     def _try_all(self) -> None:
         systems = [s for s in (*all_systems(), *INTEGRATORS.values()) if s.mod is self.mod]
@@ -72,8 +73,8 @@ class _Trial:
         for scene in (PAUSE, SIMULATION, *(scene.name for scene in all_scenes() if scene.mod is self.mod)):
             with self._part():
                 self._live_in(scene)
-        for binding in BINDINGS:
-            for scene in binding.scenes if binding.action.startswith(f"{self.mod.name}.") else ():
+        for action, binding in ACTIONS.bound():
+            for scene in binding.scenes if action.name.startswith(f"{self.mod.name}.") else ():
                 with self._part():
                     self._press(binding.key, scene)
         for integrator in (s.key for s in systems if isinstance(s, Integrator)):
@@ -81,7 +82,7 @@ class _Trial:
                 self._run(integrator)
         with self._part():
             self._run("velocity_verlet")
-        for folder in models.FOLDERS:
+        for folder in EXTENSIONS.folders:
             for file in sorted(folder.glob("*.json")) if self._owns(folder) else ():
                 with self._part():
                     models.load(file)
@@ -130,14 +131,14 @@ class _Trial:
 
     def _check_keys(self) -> None:
         group, scenes = marked("scenes"), {scene.name for scene in all_scenes()}
-        for binding in BINDINGS:
-            if binding.action.startswith(f"{self.mod.name}."):
+        for action, binding in ACTIONS.bound():
+            if action.name.startswith(f"{self.mod.name}."):
                 for scene in sorted(set(binding.scenes) - scenes):
                     problem = missing(group, scene, scenes)
                     sentence = tr(
                         "The key '{key}' for {action}: {problem}",
                         key=binding.key,
-                        action=binding.action,
+                        action=action.name,
                         problem=problem,
                     )
                     self._note(sentence)
@@ -214,11 +215,8 @@ def _way_to(session: Session, scene: str) -> list[str]:
                 ways[name] = [*ways[here], name]
                 pending.append(name)
     if scene not in ways:
-        raise ValueError(
-            tr(
-                "The scene '{name}' cannot be reached; list the scenes that lead to it in its sources",
-                name=scene,
-            )
+        raise WrongValue(
+            "The scene '{name}' cannot be reached; list the scenes that lead to it in its sources", name=scene
         )
     return ways[scene]
 
@@ -226,7 +224,7 @@ def _way_to(session: Session, scene: str) -> list[str]:
 def _sample(mod: Mod) -> Model:
     """A model with everything that Pinjoint has, and with the Fields, elements and histories of a mod."""
     model = models.load(EVERYTHING)
-    for called, kind in ADDED.items():
+    for called, kind in EXTENSIONS.kinds.items():
         if called.partition(".")[0] == mod.name:
             places = {point: (0.3 * n, -0.5) for n, point in enumerate(kind.points)}
             model.create(kind, 1, **places)

@@ -10,6 +10,7 @@ from typing import Any, Protocol
 
 from pinjoint.components.handle import Handle
 from pinjoint.components.language import english, listed, marked, tr
+from pinjoint.components.mistake import NotFound, WrongValue
 from pinjoint.components.suggestions import missing
 from pinjoint.components.view import View
 from pinjoint.components.wording import cut, quoted
@@ -28,10 +29,6 @@ _SAMENESS = ("=", "≈", "~")
 _NOTHING = ("none", "null")  # texts for no value
 
 
-class ExpectationError(AssertionError):
-    """An expectation that does not hold; the message gives the expected and the present value."""
-
-
 class Shown(Readable, Protocol):
     """The part of a session that expectations read."""
 
@@ -46,9 +43,9 @@ class Shown(Readable, Protocol):
 
 
 def expect(session: Shown, text: str) -> None:
-    """Raise ExpectationError unless a text holds; ValueError or LookupError if it cannot be tested."""
+    """Raise AssertionError unless a text holds; ValueError or LookupError if it cannot be tested."""
     for expected, got in check(session, text):
-        raise ExpectationError(tr("expected {expected}, got {got}", expected=expected, got=str(got)))
+        raise AssertionError(tr("expected {expected}, got {got}", expected=expected, got=str(got)))
 
 
 def check(session: Shown, text: str) -> Iterator[tuple[str, Any]]:
@@ -63,8 +60,8 @@ def parts_of(text: str) -> tuple[str, str, str, str | None]:
     """Path, relation, value and slack of an expectation. Raises ValueError."""
     match = _EXPECTATION.match(text)
     if match is None:
-        raise ValueError(
-            tr("'{text}' is not an expectation; write it like rods.AB.axial_force ≈ -28.34 ± 0.01.", text=text)
+        raise WrongValue(
+            "'{text}' is not an expectation; write it like rods.AB.axial_force ≈ -28.34 ± 0.01.", text=text
         )
     return match["path"], match["relation"], match["value"], match["slack"]
 
@@ -72,42 +69,36 @@ def parts_of(text: str) -> tuple[str, str, str, str | None]:
 def compared(got: Any, relation: str, value: str, slack: str | None) -> bool:
     """True if a value is so related to what an expectation says. Raises ValueError."""
     if relation not in (*_SAMENESS, *_ORDERS):
-        raise ValueError(
-            tr(
-                "'{relation}' does not compare anything; write one of {relations}.",
-                relation=relation,
-                relations=", ".join((*_SAMENESS, *_ORDERS)),
-            )
+        raise WrongValue(
+            "'{relation}' does not compare anything; write one of {relations}.",
+            relation=relation,
+            relations=", ".join((*_SAMENESS, *_ORDERS)),
         )
     if isinstance(got, bool | str) or got is None:
         if relation in _ORDERS:
-            raise ValueError(
-                tr(
-                    "it is {value}, which is not a number; compare it with =, or with ≈ for a part of a text.",
-                    value=quoted(got),
-                )
+            raise WrongValue(
+                "it is {value}, which is not a number; compare it with =, or with ≈ for a part of a text.",
+                value=quoted(got),
             )
         said, wanted_text = (_typed(text) for text in (str(got), value.strip("\"'")))
         if got is None:
             return wanted_text in _NOTHING
         return said == wanted_text if relation == "=" else isinstance(got, str) and wanted_text in said
     if isinstance(got, tuple):
-        raise ValueError(tr("it has two components, {value}; add .x or .y.", value=str(got)))
+        raise WrongValue("it has two components, {value}; add .x or .y.", value=str(got))
     if value.lower() in _NOTHING:
         return False
     try:
         wanted, within = float(value), float(slack or 0.0)
     except ValueError:
         said = f"{value} ± {slack}" if slack else value
-        raise ValueError(
-            tr(
-                "it is {value}, which cannot be compared with '{wanted}'; write a number.",
-                value=str(got),
-                wanted=said,
-            )
+        raise WrongValue(
+            "it is {value}, which cannot be compared with '{wanted}'; write a number.",
+            value=str(got),
+            wanted=said,
         ) from None
     if not within >= 0.0:
-        raise ValueError(tr("± {tolerance}: write a tolerance of at least 0.", tolerance=slack))
+        raise WrongValue("± {tolerance}: write a tolerance of at least 0.", tolerance=slack)
     if relation in _ORDERS:
         return bool(_ORDERS[relation](got, wanted))
     tolerance = within if slack is not None or relation == "=" else 1e-9 * abs(wanted)
@@ -150,17 +141,15 @@ def each(session: Shown, path: str) -> list[tuple[Handle, float]]:
     """The elements that a path such as rods.*.axial_force names, with their numbers; without those that have none."""
     target, rest = locate(session.model, path.strip(), readable)
     if rest:
-        raise PathError(
-            tr("{path}: leave out '{rest}', which follows the path.", path=cut(path), rest=cut(rest))
-        )
+        raise PathError("{path}: leave out '{rest}', which follows the path.", path=cut(path), rest=cut(rest))
     values = [(handle, target.part(getattr(handle, target.field.name))) for handle in target.handles]
     wrong = next((value for _, value in values if not isinstance(value, int | float | None)), None)
     if wrong is not None:
         if not target.field.shape:
-            raise PathError(tr("{path} is {value}, not a number.", path=cut(path), value=wrong))
+            raise PathError("{path} is {value}, not a number.", path=cut(path), value=wrong)
         parts = [f"{target.key}.{axis}" for axis in target.field.axes]
         raise PathError(
-            tr("{path} is {value}; name one number: {parts}.", path=cut(path), value=wrong, parts=listed(parts))
+            "{path} is {value}; name one number: {parts}.", path=cut(path), value=wrong, parts=listed(parts)
         )
     return [(handle, float(value)) for handle, value in values if value is not None]
 
@@ -222,13 +211,13 @@ def _of_force_method(session: Shown, quantity: str) -> Any:
     if quantity == "message" and session.scene == "force method":
         return session.scenes.active.message
     if guide is None:
-        raise LookupError(tr("the force method is not open; press K in pause first."))
+        raise NotFound("the force method is not open; press K in pause first.")
     if quantity == "unknown":
         return guide.unknown.name if guide.unknown else None
     if quantity == "part":
         return guide.part
     if guide.solution is None:
-        raise LookupError(tr("no redundant is chosen yet; choose one in part 2 first."))
+        raise NotFound("no redundant is chosen yet; choose one in part 2 first.")
     what, _, rod = quantity.partition(".")
     if rod:  # a row of the final table
         of_set = _one_of({name: getattr(guide.solution, name) for name in _SETS}, what, "sets")

@@ -8,9 +8,10 @@ from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass
 from typing import Any
 
+from pinjoint.components.extensions import EXTENSIONS
 from pinjoint.components.language import tr
+from pinjoint.components.mistake import WrongValue
 from pinjoint.components.wording import as_json, cut
-from pinjoint.editor.context import FAULTS
 from pinjoint.mods.mod import ModError
 from pinjoint.paths import apply_override
 from pinjoint.scripts.expectation import check
@@ -41,15 +42,15 @@ def play_line(script: Script, number: int, entry: Mapping[str, Any], session: Se
 
     One of every line is that no mod fails.
     """
-    known, failures = len(FAULTS), list[Failure]()
+    known, failures = len(EXTENSIONS.faults), list[Failure]()
     try:
         failures += [Failure(number, *wrong) for wrong in perform(session, entry)]
     except ModError:
-        pass  # it is among FAULTS
+        pass  # it is among EXTENSIONS.faults
     except (ValueError, LookupError, TypeError) as error:
         reason = error.args[0] if error.args else error
         raise script.error(number, reason) from error
-    return failures + [Failure(number, tr("mods that work"), fault) for fault in FAULTS[known:]]
+    return failures + [Failure(number, tr("mods that work"), fault) for fault in EXTENSIONS.faults[known:]]
 
 
 _EXAMPLES: dict[str, Any] = {  # by key of a line: a value of the required shape
@@ -83,19 +84,15 @@ def _check_line(entry: Mapping[str, Any]) -> None:
     """Raise ValueError unless every key is known and every value has the shape of its example."""
     for key, value in entry.items():
         if key not in _EXAMPLES:
-            raise ValueError(
-                tr("there is no '{key}'; use one of {keys}.", key=cut(key), keys=", ".join(_EXAMPLES))
-            )
+            raise WrongValue("there is no '{key}'; use one of {keys}.", key=cut(key), keys=", ".join(_EXAMPLES))
         example = _EXAMPLES[key]
         fits = (_is_like(value, example) or key == "answer") and not (key in _SIZES and min(value) <= 0)
         if not fits and (key, value) != ("run", "rest"):
-            raise ValueError(
-                tr(
-                    "{key} is {value}; write it like {form}.",
-                    key=key,
-                    value=as_json(value),
-                    form=json.dumps({key: example}),
-                )
+            raise WrongValue(
+                "{key} is {value}; write it like {form}.",
+                key=key,
+                value=as_json(value),
+                form=json.dumps({key: example}),
             )
 
 
@@ -124,11 +121,9 @@ def perform(session: Session, entry: Mapping[str, Any]) -> Iterator[tuple[str, A
         session.clipboard = rest.pop("clipboard")
     button, pixel = rest.pop("button", "click"), rest.pop("pixel", None)
     if len(rest) > 1:
-        raise ValueError(
-            tr(
-                "a line can do one thing only, but this one has {keys}; write several lines.",
-                keys=", ".join(map(cut, rest)),
-            )
+        raise WrongValue(
+            "a line can do one thing only, but this one has {keys}; write several lines.",
+            keys=", ".join(map(cut, rest)),
         )
     for verb, value in rest.items():
         if verb == "expect":

@@ -8,11 +8,11 @@ from collections.abc import Mapping
 from contextlib import suppress
 from typing import Any, TextIO
 
+from pinjoint.components.extensions import EXTENSIONS
 from pinjoint.components.field import Vector
 from pinjoint.components.language import ENGLISH, joined, language, spoken, tr
 from pinjoint.components.wording import is_broken
 from pinjoint.documents.format import ModelError
-from pinjoint.mods.loading import MODS
 from pinjoint.mods.mod import INCLUDED
 from pinjoint.scripts.lines import Failure, play_line
 from pinjoint.scripts.script import HEADER, Script, ScriptError
@@ -42,11 +42,9 @@ def check_mods(script: Script) -> str:
     here = _loaded_mods()
     if missing := [f"{name} {version}" for name, version in script.mods.items() if name not in here]:
         raise ScriptError(
-            tr(
-                "{file} was recorded with mods that are not loaded: {mods}. Name their folder: --mods FOLDER.",
-                file=script.path,
-                mods=", ".join(missing),
-            )
+            "{file} was recorded with mods that are not loaded: {mods}. Name their folder: --mods FOLDER.",
+            file=script.path,
+            mods=", ".join(missing),
         )
     others = [f"{name} {version}" for name, version in here.items() if version != script.mods.get(name)]
     if not others:
@@ -60,7 +58,11 @@ def check_mods(script: Script) -> str:
 
 def _loaded_mods() -> dict[str, str]:
     """Versions of the mods that act now, those that come with the program apart, by name."""
-    return {mod.name: mod.version for mod in MODS if mod.loaded and not mod.off and mod.source != INCLUDED}
+    return {
+        mod.name: mod.version
+        for mod in EXTENSIONS.mods
+        if mod.loaded and not mod.off and mod.source != INCLUDED
+    }
 
 
 def play(script: Script, session: Session | None = None) -> list[Failure]:

@@ -96,14 +96,12 @@ class Script:
         header = self.lines[0][1] if self.lines else {}
         if header.get("format") != HEADER["format"]:
             form = json.dumps({**HEADER, "model": "isostatic"})
-            raise ScriptError(tr("{file}: write the first line like {form}.", file=source, form=form))
+            raise ScriptError("{file}: write the first line like {form}.", file=source, form=form)
         if header.get("version") != HEADER["version"]:
             raise ScriptError(
-                tr(
-                    "{file}: this program cannot read version {version}; update Pinjoint.",
-                    file=source,
-                    version=as_json(header.get("version")),
-                )
+                "{file}: this program cannot read version {version}; update Pinjoint.",
+                file=source,
+                version=as_json(header.get("version")),
             )
         self._check_header(header)
         self.mods: dict[str, str] | None = header.get("mods")
@@ -132,7 +130,7 @@ class Script:
 
     def error(self, line: int, reason: object) -> ScriptError:
         """What is wrong with a line."""
-        return ScriptError(tr("{file} line {line}: {reason}", file=self.path, line=line, reason=reason))
+        return ScriptError("{file} line {line}: {reason}", file=self.path, line=line, reason=reason)
 
     @classmethod
     def of_lines(cls, title: str, lines: Iterable[tuple[int, Mapping[str, Any]]]) -> Script:
@@ -148,15 +146,15 @@ class Script:
         except FileNotFoundError:
             near = remedy(str(self.path), [*lessons_with_tasks(), *lessons()])
             raise ScriptError(
-                tr("There is no file and no lesson '{file}'; {remedy}", file=self.path, remedy=near)
+                "There is no file and no lesson '{file}'; {remedy}", file=self.path, remedy=near
             ) from None
         except OSError as error:
             raise ScriptError(
-                tr("{file} cannot be read: {reason}. Check its path.", file=self.path, reason=error.strerror)
+                "{file} cannot be read: {reason}. Check its path.", file=self.path, reason=error.strerror
             ) from None
         except UnicodeDecodeError as error:
             raise ScriptError(
-                tr("{file} is not in UTF-8 ({error}); save it in UTF-8.", file=self.path, error=error)
+                "{file} is not in UTF-8 ({error}); save it in UTF-8.", file=self.path, error=error
             ) from None
         for number, line in enumerate(text.splitlines(), start=1):
             if not line.strip() or line.lstrip().startswith("#"):

@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 
 from pinjoint.commands.reports.results import reported
 from pinjoint.components.field import Column, FieldError
+from pinjoint.components.language import english
 from pinjoint.components.rod import bends
 from pinjoint.components.settings import AUTOMATIC
 from pinjoint.documents.format import ModelError
@@ -174,7 +175,7 @@ class Batches:
         found: dict[int, list[Record]] = {}
         for variant in np.flatnonzero(~batch.alone).tolist():
             status = "at rest" if analysis.times is None else "time reached"
-            message = at_rest_since(batch.rested[variant]) if batch.resting[variant] else ""
+            message = english(at_rest_since(batch.rested[variant])) if batch.resting[variant] else ""
             found[numbers[variant]] = [(status, message, *state[variant]) for state in states]
         return found
 

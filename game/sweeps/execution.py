@@ -10,7 +10,7 @@ from contextlib import contextmanager
 from dataclasses import dataclass, field
 from typing import Any
 
-from pinjoint.components.language import ENGLISH, spoken, tr
+from pinjoint.components.language import ENGLISH, spoken
 from pinjoint.sweeps.batches import Batches
 from pinjoint.sweeps.plan import Outcome, Plan, Record
 from pinjoint.sweeps.variant_runner import VariantRunner
@@ -121,10 +121,8 @@ def compute_all(
         import distributed
     except ImportError:
         raise SweepError(
-            tr(
-                "Several workers need dask.distributed; use --workers 1, or install it with: {command}",
-                command=INSTALL,
-            )
+            "Several workers need dask.distributed; use --workers 1, or install it with: {command}",
+            command=INSTALL,
         ) from None
     workers = min(workers, len(numbers))
     with (
@@ -158,19 +156,17 @@ def _client_of(distributed: Any, scheduler: str) -> Any:
         client = distributed.Client(scheduler, timeout=ANSWER_WITHIN)
     except (OSError, ValueError) as error:
         raise SweepError(
-            tr(
-                "No Dask scheduler answers at {scheduler} ({error}). Start one with: dask scheduler, and workers"
-                " with: dask worker {scheduler}",
-                scheduler=scheduler,
-                error=error,
-            )
+            "No Dask scheduler answers at {scheduler} ({error}). Start one with: dask scheduler, and workers"
+            " with: dask worker {scheduler}",
+            scheduler=scheduler,
+            error=error,
         ) from None
     try:
         client.wait_for_workers(1, timeout=ANSWER_WITHIN)
     except TimeoutError:
         client.close()
         raise SweepError(
-            tr("{scheduler} has no workers. Start some with: dask worker {scheduler}", scheduler=scheduler)
+            "{scheduler} has no workers. Start some with: dask worker {scheduler}", scheduler=scheduler
         ) from None
     return client
 
@@ -209,7 +205,7 @@ def _result(distributed: Any, future: Any) -> Computed | None:
         if isinstance(error, SweepError):
             raise
         raise SweepError(
-            tr("A worker cannot compute this: {error}. Install the same software there as here.", error=error)
+            "A worker cannot compute this: {error}. Install the same software there as here.", error=error
         ) from None
     future.release()
     return found

@@ -53,7 +53,7 @@ def read_measures(model: Model, texts: Iterable[str]) -> tuple[Measure, ...]:
         for path in _BETWEEN.split(text):
             measures |= {measure.column: measure for measure in _read(model, path.strip())}
     if not measures:
-        raise SweepError(tr("Nothing is measured; add --measure: {form}.", form=tr(_FORM)))
+        raise SweepError("Nothing is measured; add --measure: {form}.", form=tr(_FORM))
     return tuple(measures.values())
 
 
@@ -65,15 +65,13 @@ def _read(model: Model, path: str) -> list[Measure]:
         return [Measure(path, (path,), path, "")]
     if section not in _SECTIONS:
         names = ", ".join(_OF_THE_RUN)
-        raise SweepError(
-            tr("--measure {path}: {form}, or one of {names}.", path=path, form=tr(_FORM), names=names)
-        )
+        raise SweepError("--measure {path}: {form}, or one of {names}.", path=path, form=tr(_FORM), names=names)
     try:
         if section == "energy":
             return [Measure(path, ("energy", energy_named(rest)), f"{rest.replace('_', ' ')} energy", "J")]
         target, rest = locate(model, path, partial(_reported, model))
         if rest:
-            raise PathError(tr("'{rest}' does not belong to the quantity; {form}.", rest=rest, form=tr(_FORM)))
+            raise PathError("'{rest}' does not belong to the quantity; {form}.", rest=rest, form=tr(_FORM))
     except PathError as error:
         raise SweepError(joined([f"--measure {path}:", str(error)])) from None
     elements = target.table.names if target.element == EVERY else [target.element]

@@ -14,10 +14,11 @@ import numpy as np
 
 from pinjoint import __version__
 from pinjoint.commands.reports.report import Analysis
+from pinjoint.components.extensions import EXTENSIONS
 from pinjoint.components.language import english, tr
 from pinjoint.documents import models
 from pinjoint.documents.open_documents import file_of
-from pinjoint.mods import MODS, load
+from pinjoint.mods import load
 from pinjoint.mods.mod import INCLUDED
 from pinjoint.paths import apply_override
 from pinjoint.sweeps.measure import Measure, read_measures
@@ -59,7 +60,7 @@ class SoftwareEnvironment:
     @classmethod
     def present(cls) -> SoftwareEnvironment:
         """The software of this process, as it is now."""
-        mods = (mod for mod in MODS if mod.loaded and mod.source != INCLUDED)
+        mods = (mod for mod in EXTENSIONS.mods if mod.loaded and mod.source != INCLUDED)
         return cls(
             __version__,
             tuple(
@@ -72,11 +73,9 @@ class SoftwareEnvironment:
         """Load the mods that this process lacks. Raises SweepError if its version or mods differ even then."""
         if self.version != __version__:
             raise SweepError(
-                tr(
-                    "A worker has Pinjoint {present}, but the sweep needs {version}; install that version there.",
-                    present=__version__,
-                    version=self.version,
-                )
+                "A worker has Pinjoint {present}, but the sweep needs {version}; install that version there.",
+                present=__version__,
+                version=self.version,
             )
         missing = set(self.mods) - set(SoftwareEnvironment.present().mods)
         if missing:
@@ -87,9 +86,9 @@ class SoftwareEnvironment:
             wanted = {"name": mod.name, "version": mod.version, "folder": mod.folder}
             if mod.folder:
                 raise SweepError(
-                    tr("A worker lacks the mod '{name}' {version} in {folder}; install it there.", **wanted)
+                    "A worker lacks the mod '{name}' {version} in {folder}; install it there.", **wanted
                 )
-            raise SweepError(tr("A worker lacks the mod '{name}' {version}; install it there.", **wanted))
+            raise SweepError("A worker lacks the mod '{name}' {version}; install it there.", **wanted)
 
 
 @dataclass(frozen=True)
@@ -172,19 +171,17 @@ def plan_of(
     variations = read_variations(model, vary)
     drawn = any(isinstance(variation, Random) for variation in variations)
     if not variations:
-        raise SweepError(tr("Nothing is varied; {form}.", form=tr(FORMS)))
+        raise SweepError("Nothing is varied; {form}.", form=tr(FORMS))
     if drawn and samples is None:
-        raise SweepError(tr("A distribution (~) needs a number of samples; add, for example, --samples 1000."))
+        raise SweepError("A distribution (~) needs a number of samples; add, for example, --samples 1000.")
     if not drawn and samples is not None:
         raise SweepError(
-            tr(
-                "--samples works only with a distribution; write PATH~normal(MEAN,DEVIATION), or leave out --samples."
-            )
+            "--samples works only with a distribution; write PATH~normal(MEAN,DEVIATION), or leave out --samples."
         )
     if samples is not None and samples < 1:
-        raise SweepError(tr("--samples {samples}: draw at least 1.", samples=samples))
+        raise SweepError("--samples {samples}: draw at least 1.", samples=samples)
     if seed < 0:
-        raise SweepError(tr("--seed {seed}: write a whole number of at least 0.", seed=seed))
+        raise SweepError("--seed {seed}: write a whole number of at least 0.", seed=seed)
     plan = Plan(
         file_of(source).name,
         document,
@@ -198,10 +195,8 @@ def plan_of(
     )
     if plan.size > MOST_VARIANTS:
         raise SweepError(
-            tr(
-                "These are {count} variants, more than {most}; vary in fewer steps.",
-                count=plan.size,
-                most=MOST_VARIANTS,
-            )
+            "These are {count} variants, more than {most}; vary in fewer steps.",
+            count=plan.size,
+            most=MOST_VARIANTS,
         )
     return plan

@@ -162,23 +162,17 @@ def check_output(path: Path, suffixes: Sequence[str] = SUFFIXES) -> None:
     """Refuse what could not be written in the end. Raises SweepError."""
     if path.suffix not in suffixes:
         endings = ", ".join(suffixes)
-        raise SweepError(
-            tr("{file}: choose a file that ends with one of {endings}.", file=path, endings=endings)
-        )
+        raise SweepError("{file}: choose a file that ends with one of {endings}.", file=path, endings=endings)
     module = _NEEDED.get(path.suffix)
     if module is not None and importlib.util.find_spec(module) is None:
         raise SweepError(
-            tr(
-                "A {suffix} file needs {module}; install it with: {command}",
-                suffix=path.suffix,
-                module=module,
-                command=INSTALL,
-            )
+            "A {suffix} file needs {module}; install it with: {command}",
+            suffix=path.suffix,
+            module=module,
+            command=INSTALL,
         )
     if path.is_dir() or not path.parent.is_dir():
         raise SweepError(
-            tr(
-                "{path} cannot be written: it is a folder, or its folder is missing. Choose another file.",
-                path=path,
-            )
+            "{path} cannot be written: it is a folder, or its folder is missing. Choose another file.",
+            path=path,
         )

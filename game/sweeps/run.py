@@ -55,7 +55,7 @@ def sweep(
     """
     plan = plan_of(source, vary, measure, analysis, overrides, samples, seed)
     if workers is not None and workers < 1:
-        raise SweepError(tr("--workers {workers}: use at least 1.", workers=workers))
+        raise SweepError("--workers {workers}: use at least 1.", workers=workers)
     path = None if output is None else Path(output)
     if path is not None:
         check_output(path)
@@ -105,11 +105,9 @@ class Journal:
             lines = kept.split(b"\n")[:-1]  # what follows the last line end is part of a line
             if lines[:1] != [title] and not title.startswith(kept):
                 raise SweepError(
-                    tr(
-                        "{path} holds an unfinished sweep with another model, variation, seed or version, or something"
-                        " else. Finish that sweep with its own command, delete the file, or choose another --output.",
-                        path=self.path,
-                    )
+                    "{path} holds an unfinished sweep with another model, variation, seed or version, or something"
+                    " else. Finish that sweep with its own command, delete the file, or choose another --output.",
+                    path=self.path,
                 )
             file.truncate(sum(len(line) + 1 for line in lines))
             if not lines:

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator
 from contextlib import contextmanager
 
+from pinjoint.components.language import english
 from pinjoint.components.snapshot import Snapshot
 from pinjoint.documents import models
 from pinjoint.paths import apply_override
@@ -35,7 +36,7 @@ class VariantRunner:
         with self.taken_back():
             self.override(self._plan.overrides_of(number))
             run = self._plan.analysis.run(self.simulation, self._plan.name)
-        about = run["status"], run["message"]
+        about = run["status"], english(run["message"])
         return [
             (
                 *about,

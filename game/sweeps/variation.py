@@ -101,16 +101,14 @@ def read_variations(model: Model, vary: Iterable[str] | Mapping[str, Sequence[Va
     paths = [path for variation in variations for path in variation.columns]
     for path, times in Counter(paths).items():
         if times > 1:
-            raise SweepError(tr("{path} is varied twice; leave out one of the two.", path=path))
+            raise SweepError("{path} is varied twice; leave out one of the two.", path=path)
     for place, path in enumerate(paths):
         for before in paths[:place] if EVERY in path else ():
             if _covers(path, before):
                 raise SweepError(
-                    tr(
-                        "Varying {path} would overwrite {before}, which is varied before it; swap the two.",
-                        path=path,
-                        before=before,
-                    )
+                    "Varying {path} would overwrite {before}, which is varied before it; swap the two.",
+                    path=path,
+                    before=before,
                 )
     return variations
 
@@ -123,7 +121,7 @@ def _covers(path: str, one: str) -> bool:
 
 def _listed(path: str, values: Sequence[Value]) -> str:
     if isinstance(values, str) or len(values) == 0:
-        raise SweepError(tr("{path}: give it a list of at least one value.", path=path))
+        raise SweepError("{path}: give it a list of at least one value.", path=path)
     return ",".join(as_text(np.asarray(value).item()) for value in values)
 
 
@@ -131,16 +129,16 @@ def _read(model: Model, text: str) -> Variation:
     try:
         target, rest = locate(model, text, settable)
         if not target.handles:
-            raise PathError(tr("the model has no {table}; vary something else.", table=tr(target.table.name)))
+            raise PathError("the model has no {table}; vary something else.", table=tr(target.table.name))
         if target.field.shape and not target.axis:
-            raise PathError(tr("vary one component, {key}.x or {key}.y.", key=target.field.key))
+            raise PathError("vary one component, {key}.x or {key}.y.", key=target.field.key)
         if rest.startswith("="):
             return Values(
                 target.path(target.element), _values(target, rest[1:]), _label(target, target.element)
             )
         if rest.startswith("~"):
             return _random(target, rest[1:])
-        raise PathError(tr("it has no values; {form}.", form=tr(FORMS)))
+        raise PathError("it has no values; {form}.", form=tr(FORMS))
     except PathError as error:
         raise SweepError(joined([f"--vary {cut(text)}:", str(error)])) from None
 
@@ -162,12 +160,10 @@ def _values(target: Target, text: str) -> tuple[Value, ...]:
     for value in values:
         if isinstance(value, str) and (target.field.dtype is not str or not value):
             raise PathError(
-                tr(
-                    "'{value}' is not a value of {field}; {form}.",
-                    value=cut(str(value)),
-                    field=target.field.title,
-                    form=tr(FORMS),
-                )
+                "'{value}' is not a value of {field}; {form}.",
+                value=cut(str(value)),
+                field=target.field.title,
+                form=tr(FORMS),
             )
     return values
 
@@ -175,12 +171,12 @@ def _values(target: Target, text: str) -> tuple[Value, ...]:
 def _range(parts: Sequence[str]) -> tuple[float, ...]:
     spaced = np.geomspace if parts[3:] == ["log"] else np.linspace
     if len(parts) not in (3, 4) or (len(parts) == 4 and parts[3] != "log"):
-        raise PathError(tr("a range has a start, a stop and a count; {form}.", form=tr(FORMS)))
+        raise PathError("a range has a start, a stop and a count; {form}.", form=tr(FORMS))
     start, stop = _finite(parts[0]), _finite(parts[1])
     if not (re.fullmatch("[0-9]{1,9}", parts[2]) and 1 <= int(parts[2]) <= MOST_VARIANTS):
-        raise PathError(tr("'{text}' is not a count; write a whole number of at least 1.", text=cut(parts[2])))
+        raise PathError("'{text}' is not a count; write a whole number of at least 1.", text=cut(parts[2]))
     if spaced is np.geomspace and not start * stop > 0.0:
-        raise PathError(tr("a :log range cannot reach or cross 0; leave out :log, or change the limits."))
+        raise PathError("a :log range cannot reach or cross 0; leave out :log, or change the limits.")
     return tuple(spaced(start, stop, int(parts[2])).tolist())
 
 
@@ -189,27 +185,23 @@ def _random(target: Target, text: str) -> Random:
     kinds = ", ".join(DISTRIBUTIONS)
     if found is None or found[1] not in DISTRIBUTIONS:
         raise PathError(
-            tr(
-                "'{text}' is not a distribution; write one of {kinds} with its two parameters, such as"
-                " normal(164640,5%) or uniform(100,300).",
-                text=text,
-                kinds=kinds,
-            )
+            "'{text}' is not a distribution; write one of {kinds} with its two parameters, such as"
+            " normal(164640,5%) or uniform(100,300).",
+            text=text,
+            kinds=kinds,
         )
     if target.field.dtype is not float:
-        raise PathError(tr("{field} is not a number; list its values after =.", field=target.field.title))
+        raise PathError("{field} is not a number; list its values after =.", field=target.field.title)
     kind, first, second = found[1], _finite(found[2]), found[3].strip()
     if kind == "uniform":
         parameters = (first, _finite(second))
         if not parameters[0] < parameters[1]:
-            raise PathError(tr("write uniform(LOWEST,HIGHEST), the lower value first."))
+            raise PathError("write uniform(LOWEST,HIGHEST), the lower value first.")
     else:
         deviation = abs(first) * _finite(second[:-1]) / 100.0 if second.endswith("%") else _finite(second)
         parameters = (first, deviation)
         if not deviation >= 0.0 or (kind == "lognormal" and not first > 0.0):
-            raise PathError(
-                tr("the standard deviation must be at least 0, and the mean of a lognormal above 0.")
-            )
+            raise PathError("the standard deviation must be at least 0, and the mean of a lognormal above 0.")
     # Strengths and stiffnesses of different rods are independent: each has its own draw.
     elements = target.table.names if target.element == EVERY else [target.element]
     return Random(tuple(map(target.path, elements)), kind, parameters, _label(target, elements[0]))
@@ -221,7 +213,7 @@ def _finite(text: str) -> float:
     except ValueError:
         value = math.nan
     if not math.isfinite(value):
-        raise PathError(tr("'{text}' is not a finite number; {form}.", text=text.strip(), form=tr(FORMS)))
+        raise PathError("'{text}' is not a finite number; {form}.", text=text.strip(), form=tr(FORMS))
     return value
 
 

@@ -36,11 +36,9 @@ def divide(model: Model, rods: Sequence[Rod], parts: int = 2) -> list[Rod]:
     """Divide rods into equally long ones, as one edit; returns the new ones, in order. Raises Refusal."""
     if isinstance(parts, bool) or not isinstance(parts, int) or not 2 <= parts <= MOST_PARTS:
         raise Refusal(
-            tr(
-                "A rod can be divided into 2 to {most} equal parts, not {parts}.",
-                most=MOST_PARTS,
-                parts=quoted(parts),
-            )
+            "A rod can be divided into 2 to {most} equal parts, not {parts}.",
+            most=MOST_PARTS,
+            parts=quoted(parts),
         )
     places = np.arange(1, parts) / parts
     with model.transaction(tr("divide {rods}", rods=several(model, rods))):
@@ -61,20 +59,16 @@ def divide_at(model: Model, rod: Rod, places: Sequence[float] | Numbers) -> list
     name = model.describe(rod)
     if rod.bending_stiffness == 0.0:
         raise Refusal(
-            tr(
-                "{rod} does not bend, and pinned bars in a line are a mechanism; join it rigidly or give it a bending"
-                " stiffness first.",
-                rod=begun(name),
-            )
+            "{rod} does not bend, and pinned bars in a line are a mechanism; join it rigidly or give it a bending"
+            " stiffness first.",
+            rod=begun(name),
         )
     shares = np.asarray(places, dtype=np.float64)
     lengths = np.diff(shares, prepend=0.0, append=1.0)
     if not (lengths > 0.0).all():
         raise Refusal(
-            tr(
-                "{rod}: the places where it is divided must be between 0 and 1, in ascending order.",
-                rod=begun(name),
-            )
+            "{rod}: the places where it is divided must be between 0 and 1, in ascending order.",
+            rod=begun(name),
         )
     ends, last = rod.ends, len(lengths) - 1
     with model.transaction(tr("divide {rods}", rods=name)):

@@ -5,7 +5,6 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
 from pinjoint.components.bent import FLAT, curved_lines
 from pinjoint.components.field import Vector
@@ -16,8 +15,7 @@ from pinjoint.components.model import Model
 from pinjoint.components.particle import Particle
 from pinjoint.components.rod import Rod
 from pinjoint.components.view import View, drawn_positions
-
-Numbers = NDArray[np.float64]
+from pinjoint.systems.broad_phase import distance_to_segments
 
 PARTICLE_REACH = 8.0  # points from the centre, at least its radius
 ROD_REACH = 10.0  # points
@@ -97,39 +95,27 @@ def pick_rod(model: Model, view: View, pixel: Vector) -> Rod | None:
     """The nearest rod within reach of a pixel, bent ones along their curves."""
     if model.rods.count == 0:
         return None
-    x, y = (view.camera.to_pixels(drawn_positions(model)) - pixel).T
+    places, at = view.camera.to_pixels(drawn_positions(model)), np.array(pixel)
     first, last = model.rods.between.astype(np.intp).T
-    distance = _squared_distance(x[first], y[first], x[last], y[last])
+    distance = distance_to_segments(at, places.take(first, axis=0), places.take(last, axis=0))
     if (curved := curved_lines(model, FLAT / view.camera.scale)) is not None:
-        ends = (view.camera.to_pixels(points) - pixel for points in (curved.start, curved.end))
+        ends = (view.camera.to_pixels(points) for points in (curved.start, curved.end))
         distance[curved.rods] = np.inf
-        np.minimum.at(distance, curved.rods, _squared_distance(*(part for end in ends for part in end.T)))
+        np.minimum.at(distance, curved.rods, distance_to_segments(at, *ends))
     nearest = int(np.argmin(distance))
-    return model.rods[nearest] if distance[nearest] <= (ROD_REACH * view.pixel_ratio) ** 2 else None
-
-
-def _squared_distance(start_x: Numbers, start_y: Numbers, end_x: Numbers, end_y: Numbers) -> Numbers:
-    """From the origin to the lines between two points each."""
-    along_x, along_y = end_x - start_x, end_y - start_y
-    squared = along_x**2 + along_y**2
-    share = -(start_x * along_x + start_y * along_y) / np.where(squared > 0.0, squared, 1.0)
-    share = np.minimum(np.maximum(share, 0.0), 1.0)  # of the line, up to its point nearest to the origin
-    distance: Numbers = (start_x + share * along_x) ** 2 + (start_y + share * along_y) ** 2
-    return distance
+    return model.rods[nearest] if distance[nearest] <= ROD_REACH * view.pixel_ratio else None
 
 
 def _outlined_at(model: Model, view: View, pixel: Vector) -> Handle | None:
     """The nearest element, within reach, of a mod's kind with points, seen as the lines through them."""
-    best, found = (ROD_REACH * view.pixel_ratio) ** 2, None
+    best, found = ROD_REACH * view.pixel_ratio, None
     for table, points in outlines(model):
-        x, y = np.moveaxis(view.camera.to_pixels(points) - pixel, -1, 0)
-        for k in range(max(x.shape[1] - 1, 1)):
-            distance = _squared_distance(
-                x[:, k], y[:, k], x[:, (k + 1) % x.shape[1]], y[:, (k + 1) % x.shape[1]]
-            )
-            nearest = int(np.argmin(distance))
-            if distance[nearest] <= best:
-                best, found = float(distance[nearest]), table[nearest]
+        places, lines = view.camera.to_pixels(points), max(points.shape[1] - 1, 1)
+        ends = places[:, :lines], np.roll(places, -1, axis=1)[:, :lines]
+        distance = distance_to_segments(np.array(pixel), *ends).min(axis=1)
+        nearest = int(np.argmin(distance))
+        if distance[nearest] <= best:
+            best, found = float(distance[nearest]), table[nearest]
     return found
 
 

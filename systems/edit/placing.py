@@ -8,7 +8,7 @@ import numpy as np
 
 from pinjoint.components.field import Vector
 from pinjoint.components.handle import Handle
-from pinjoint.components.language import begun, tr
+from pinjoint.components.language import begun
 from pinjoint.components.model import Model
 from pinjoint.components.particle import Particle
 from pinjoint.components.view import View, drawn_positions
@@ -73,4 +73,4 @@ def check_free(model: Model, view: View, point: Vector, besides: list[Particle] 
     nearest = int(np.argmin(distance))
     if distance[nearest] <= PARTICLE_REACH * view.pixel_ratio:
         name = model.describe(model.particles[nearest])
-        raise Refusal(tr("{particle} is here already; choose another place, or zoom in.", particle=begun(name)))
+        raise Refusal("{particle} is here already; choose another place, or zoom in.", particle=begun(name))

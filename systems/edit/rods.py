@@ -38,24 +38,20 @@ def distance(first: Particle, second: Particle) -> float:
 def check_ends(model: Model, first: Particle, second: Particle) -> None:
     """Raise Refusal if two particles cannot be joined by a new rod."""
     if first is second:
-        raise Refusal(tr("A rod needs two different particles; point at another one."))
+        raise Refusal("A rod needs two different particles; point at another one.")
     ends = model.rods.between
     for row in np.flatnonzero(((ends == first.row) | (ends == second.row)).all(axis=1))[:1].tolist():
         raise Refusal(
-            tr(
-                "{rod} already joins {first} and {second}; choose two other particles.",
-                rod=begun(model.describe(model.rods[row])),
-                first=first.name,
-                second=second.name,
-            )
+            "{rod} already joins {first} and {second}; choose two other particles.",
+            rod=begun(model.describe(model.rods[row])),
+            first=first.name,
+            second=second.name,
         )
     if distance(first, second) == 0.0:
         raise Refusal(
-            tr(
-                "{first} and {second} are at the same place; move one of them first.",
-                first=first.name,
-                second=second.name,
-            )
+            "{first} and {second} are at the same place; move one of them first.",
+            first=first.name,
+            second=second.name,
         )
 
 
@@ -117,9 +113,7 @@ def toggle_joint(model: Model, particle: Particle) -> str:
     """Hinge all rods' ends at a particle, or make them rigid if they are hinged; returns what they are now."""
     ends = np.argwhere(model.rods.between == particle.row).tolist()
     if not ends:
-        raise Refusal(
-            tr("No rod ends at {particle}; choose an end of a rod to hinge it.", particle=particle.name)
-        )
+        raise Refusal("No rod ends at {particle}; choose an end of a rod to hinge it.", particle=particle.name)
     rigid = any(is_rigid(model.rods[row], end) for row, end in ends)
     name = model.describe(particle)
     title = (

@@ -25,7 +25,7 @@ def weigh_along(model: Model, rods: Sequence[Rod]) -> str:
     rows = np.array([rod.row for rod in chosen], dtype=np.intp)
     if not (model.rods.density[rows] > 0.0).any():
         raise Refusal(
-            tr("These rods have no density, so they weigh nothing; give them a density or a section first.")
+            "These rods have no density, so they weigh nothing; give them a density or a section first."
         )
     pull = everywhere if everywhere.any() else np.array(GRAVITY)
     weight = model.rods.density[rows][:, None] * pull / 1000.0

@@ -135,5 +135,5 @@ def _per_inside_unit(field: Field[Any], unit: str) -> float:
     """How many of a unit make one of those inside the program. Raises FieldError if it is of another kind."""
     units = LENGTHS if field.unit == "m" else dict([field.shown])
     if unit not in units:
-        raise FieldError(tr("must be in one of {units}, not in {unit}", units=", ".join(units), unit=unit))
+        raise FieldError("must be in one of {units}, not in {unit}", units=", ".join(units), unit=unit)
     return units[unit]

@@ -10,7 +10,7 @@ import pygame
 
 from pinjoint.components.field import Vector
 from pinjoint.systems.base import Phase, System
-from pinjoint.systems.input.bindings import FILES, MENU, TEXT, repeats
+from pinjoint.systems.input.actions import FILES, MENU, TEXT, repeats
 
 CLICK_REACH = 4.0  # points that the pointer may move while a button is down; more: a drag
 DOUBLE_CLICK = 0.4  # s between two clicks that count as a double click

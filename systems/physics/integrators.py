@@ -8,7 +8,7 @@ from __future__ import annotations
 import math
 from typing import Any, ClassVar
 
-from pinjoint.components import settings
+from pinjoint.components.extensions import EXTENSIONS
 from pinjoint.systems.base import Integrator
 from pinjoint.systems.physics.tableaus import CLASSICAL, DORMAND_PRINCE_8, KENNEDY_CARPENTER_4, Tableau
 
@@ -175,22 +175,8 @@ class ImplicitRungeKutta4(RungeKutta4):
         return math.inf
 
 
-INTEGRATORS: dict[
-    str, Integrator
-] = {}  # by the name that models use; pinjoint.components.settings describes them
-
-
-def register_integrator(integrator: Integrator) -> None:
-    """Make an integrator known to models, the command line and the properties."""
-    INTEGRATORS[integrator.key] = integrator
-    settings.INTEGRATORS[integrator.key] = (integrator.__doc__ or "").strip().partition("\n")[0]
-
-
-def remove_integrator(key: str) -> None:
-    """Let models no longer know an integrator."""
-    del INTEGRATORS[key], settings.INTEGRATORS[key]
-
-
 _EXACT = VelocityVerlet, DormandPrince853, ImplicitRungeKutta4, RungeKutta4
-for _kind in (*_EXACT, SemiImplicitEuler, ThesisTaylor):  # the last two to compare with
-    register_integrator(_kind())
+INTEGRATORS: dict[str, Integrator] = EXTENSIONS.integrators  # ours, then those of mods
+INTEGRATORS |= {
+    kind.key: kind for kind in (kind() for kind in (*_EXACT, SemiImplicitEuler, ThesisTaylor))
+}  # the last two to compare with

@@ -15,6 +15,7 @@ from numpy.typing import NDArray
 
 from pinjoint.components.field import Role
 from pinjoint.components.language import marked, tr
+from pinjoint.components.mistake import Explained
 from pinjoint.components.model import Model
 from pinjoint.components.wording import is_identifier
 from pinjoint.systems import is_ours
@@ -52,11 +53,11 @@ _KINDS = ("rods", "ends", "particles", "rotations", "pairs", "loads")
 ROWS_OF = {"pairs": "particles", "rotations": "particles", "ends": "rods"}  # tables of kinds that are none
 
 
-class ProgramError(ValueError):
+class ProgramError(Explained, ValueError):
     """A step system that cannot join the program; the message names it, the reason and the remedy."""
 
-    def __init__(self, message: str, system: StepSystem | None = None) -> None:
-        super().__init__(message)
+    def __init__(self, message: str, system: StepSystem | None = None, /, **values: Any) -> None:
+        super().__init__(message, **values)
         self.system = system
 
 
@@ -217,12 +218,10 @@ def bind(system: StepSystem, model: Model, kernel: str = "kernel") -> Bound:
         if system.mod is None:
             raise
         raise ProgramError(
-            tr(
-                "{system} cannot be read: {error}.",
-                system=system.name,
-                error=f"{type(error).__name__}: {error}",
-            ),
+            "{system} cannot be read: {error}.",
             system,
+            system=system.name,
+            error=f"{type(error).__name__}: {error}",
         ) from error
 
 
@@ -232,19 +231,15 @@ def _bound(system: StepSystem, model: Model, kernel: str) -> Bound:
     plain = getattr(function, "py_func", None)
     if plain is None:
         raise ProgramError(
-            tr(
-                "The kernel of {system} is not compiled; put `@compiled` of pinjoint.api above it.",
-                system=system.name,
-            )
+            "The kernel of {system} is not compiled; put `@compiled` of pinjoint.api above it.",
+            system=system.name,
         )
     if system.mod is not None and (chance := source_of_chance(function)):
         raise ProgramError(
-            tr(
-                "The kernel of {system} draws random numbers ({source}), so that no run could be repeated. Draw them"
-                " before the run, with a seed, and hand them over by `arrays`.",
-                system=system.name,
-                source=chance,
-            )
+            "The kernel of {system} draws random numbers ({source}), so that no run could be repeated. Draw them"
+            " before the run, with a seed, and hand them over by `arrays`.",
+            system=system.name,
+            source=chance,
         )
     parameters = tuple(inspect.signature(plain).parameters)
     arrays = {name: read_only(array) for name, array in system.arrays(model).items()}
@@ -252,21 +247,17 @@ def _bound(system: StepSystem, model: Model, kernel: str) -> Bound:
     for name, array in bound.arrays.items():
         if _is_column(name, model):
             raise ProgramError(
-                tr(
-                    "The array '{name}' of {system} has the name of a column; rename it.",
-                    name=name,
-                    system=system.name,
-                )
+                "The array '{name}' of {system} has the name of a column; rename it.",
+                name=name,
+                system=system.name,
             )
         if not bound.is_ours and (column := _column_in(array, model)):
             raise ProgramError(
-                tr(
-                    "The array '{name}' of {system} is {column} itself, which steps write to while kernels read it; hand"
-                    " over a copy, or read the column.",
-                    name=name,
-                    system=system.name,
-                    column=column,
-                )
+                "The array '{name}' of {system} is {column} itself, which steps write to while kernels read it; hand"
+                " over a copy, or read the column.",
+                name=name,
+                system=system.name,
+                column=column,
             )
     if bound.each != "loads":
         for parameter in bound.parameters:
@@ -290,11 +281,9 @@ def _cutoff(system: StepSystem, model: Model) -> float:
     distance = system.cutoff(model)
     if not distance > 0.0:
         raise ProgramError(
-            tr(
-                "The cutoff of {system} is {distance}; give a distance above 0 m, or math.inf for all pairs.",
-                system=system.name,
-                distance=str(distance),
-            )
+            "The cutoff of {system} is {distance}; give a distance above 0 m, or math.inf for all pairs.",
+            system=system.name,
+            distance=str(distance),
         )
     return float(distance)
 
@@ -337,13 +326,11 @@ def check_names(bound: Iterable[Bound]) -> None:
         for name in (b.call, *b.stored_arrays):
             if name in owner:
                 raise ProgramError(
-                    tr(
-                        "{one} and {other} are both called '{name}' in the step program; rename one of them.",
-                        one=owner[name],
-                        other=b.system.name,
-                        name=name,
-                    ),
+                    "{one} and {other} are both called '{name}' in the step program; rename one of them.",
                     b.system,
+                    one=owner[name],
+                    other=b.system.name,
+                    name=name,
                 )
             owner[name] = b.system.name
 
@@ -352,41 +339,35 @@ def _check_role(system: StepSystem, model: Model) -> None:
     name = system.name
     if not all(is_identifier(part) for part in name.split(".")):
         raise ProgramError(
-            tr("The name '{name}' of a step system cannot be used; name it like 'mymod.wind'.", name=name)
+            "The name '{name}' of a step system cannot be used; name it like 'mymod.wind'.", name=name
         )
     if isinstance(system, Law) and system.each not in _KINDS:
         raise ProgramError(
-            tr(
-                "{law} has each = '{each}'; choose one of {choices}.",
-                law=name,
-                each=system.each,
-                choices=", ".join(_KINDS),
-            )
+            "{law} has each = '{each}'; choose one of {choices}.",
+            law=name,
+            each=system.each,
+            choices=", ".join(_KINDS),
         )
     if isinstance(system, Event) and system.each not in ("rods", "particles"):
         raise ProgramError(
-            tr("{event} has each = '{each}'; choose rods or particles.", event=name, each=system.each)
+            "{event} has each = '{each}'; choose rods or particles.", event=name, each=system.each
         )
     if isinstance(system, Law | Commit) and system.account not in ACCOUNTS:
         raise ProgramError(
-            tr(
-                "{system} has the account '{account}'; choose one of {choices}.",
-                system=name,
-                account=system.account,
-                choices=", ".join(ACCOUNTS),
-            )
+            "{system} has the account '{account}'; choose one of {choices}.",
+            system=name,
+            account=system.account,
+            choices=", ".join(ACCOUNTS),
         )
     if isinstance(system, Commit):
         table, _, column = (system.writes[0] if len(system.writes) == 1 else "").partition(".")
         field = model.tables["rods"].fields.get(column) if table == "rods" else None
         if field is None or field.role is Role.DOCUMENT or field.shape:
             raise ProgramError(
-                tr(
-                    "{system} has writes = {columns}; a commit writes exactly one column of the rods, which has one number"
-                    " in each row and is not part of the document.",
-                    system=name,
-                    columns=list(system.writes),
-                )
+                "{system} has writes = {columns}; a commit writes exactly one column of the rods, which has one number"
+                " in each row and is not part of the document.",
+                system=name,
+                columns=list(system.writes),
             )
 
 
@@ -400,13 +381,11 @@ def find(kernel: str | Callable[..., Any], owner: StepSystem) -> Callable[..., A
         found = getattr(importlib.import_module(module), attribute)
     except (Exception, SystemExit) as error:  # of the module, which may be a mod's
         raise ProgramError(
-            tr(
-                "The kernel '{kernel}' of {system} cannot be found: {error}; write it like 'package.module:function'.",
-                kernel=kernel,
-                system=owner.name,
-                error=str(error),
-            ),
+            "The kernel '{kernel}' of {system} cannot be found: {error}; write it like 'package.module:function'.",
             owner,
+            kernel=kernel,
+            system=owner.name,
+            error=str(error),
         ) from None
     return found
 
@@ -418,79 +397,65 @@ def _check_parameter(b: Bound, parameter: str, model: Model) -> None:
     conservative = isinstance(b.system, Law) and b.system.potential
     if parameter in ("time", "dt", "drift", "particles_velocity") and conservative:
         raise ProgramError(
-            tr(
-                "{law} has a potential, so its force depends on positions only, but its kernel takes '{parameter}'; remove"
-                " one of the two.",
-                law=name,
-                parameter=parameter,
-            )
+            "{law} has a potential, so its force depends on positions only, but its kernel takes '{parameter}'; remove"
+            " one of the two.",
+            law=name,
+            parameter=parameter,
         )
     if parameter in ("time", "dt") and getattr(b.system, "elastic", False):
         raise ProgramError(
-            tr(
-                "{law} is elastic, so the energy it stores depends on the state only, but its kernel takes '{parameter}';"
-                " remove `elastic` or the parameter.",
-                law=name,
-                parameter=parameter,
-            )
+            "{law} is elastic, so the energy it stores depends on the state only, but its kernel takes '{parameter}';"
+            " remove `elastic` or the parameter.",
+            law=name,
+            parameter=parameter,
         )
     if parameter in provided:
         return
     if parameter in b.arrays:
         if len(b.arrays[parameter]) != model.tables[rows].count:
             raise ProgramError(
-                tr(
-                    "The array '{name}' of {system} has {count} rows for {elements} {table}; give it one row for each.",
-                    name=parameter,
-                    system=name,
-                    count=len(b.arrays[parameter]),
-                    elements=model.tables[rows].count,
-                    table=tr(rows),
-                )
+                "The array '{name}' of {system} has {count} rows for {elements} {table}; give it one row for each.",
+                name=parameter,
+                system=name,
+                count=len(b.arrays[parameter]),
+                elements=model.tables[rows].count,
+                table=tr(rows),
             )
         width = math.prod(b.arrays[parameter].shape[1:])
         if not 0 < width <= WIDEST_ROW:
             raise ProgramError(
-                tr(
-                    "The array '{name}' of {system} has {count} numbers in a row; a kernel takes 1 to {most}.",
-                    name=parameter,
-                    system=name,
-                    count=width,
-                    most=WIDEST_ROW,
-                )
+                "The array '{name}' of {system} has {count} numbers in a row; a kernel takes 1 to {most}.",
+                name=parameter,
+                system=name,
+                count=width,
+                most=WIDEST_ROW,
             )
         return
     table, _, column = parameter.partition("_")
     if not _is_column(parameter, model):
         raise ProgramError(
-            tr(
-                "The kernel of {system} has a parameter '{parameter}', but there is no column {column}; name parameters"
-                " <table>_<column>, {provided} or like an entry of `arrays`.",
-                system=name,
-                parameter=parameter,
-                column=f"{table}.{column}",
-                provided=", ".join(provided),
-            )
+            "The kernel of {system} has a parameter '{parameter}', but there is no column {column}; name parameters"
+            " <table>_<column>, {provided} or like an entry of `arrays`.",
+            system=name,
+            parameter=parameter,
+            column=f"{table}.{column}",
+            provided=", ".join(provided),
         )
     if f"{table}.{column}" not in (*b.system.reads, *b.system.writes):
         raise ProgramError(
-            tr(
-                "The kernel of {system} takes {parameter}, but the system does not declare that it reads '{column}'; add it"
-                " to `reads`.",
-                system=name,
-                parameter=parameter,
-                column=f"{table}.{column}",
-            )
+            "The kernel of {system} takes {parameter}, but the system does not declare that it reads '{column}'; add it"
+            " to `reads`.",
+            system=name,
+            parameter=parameter,
+            column=f"{table}.{column}",
         )
     if table != rows and not model.tables[table].kind.single:
         raise ProgramError(
-            tr(
-                "The kernel of {system} is called for each of the {table} and cannot take {parameter}; take a column of the"
-                " {table} or of a table with a single row, such as the environment.",
-                system=name,
-                table=tr(rows),
-                parameter=parameter,
-            )
+            "The kernel of {system} is called for each of the {table} and cannot take {parameter}; take a column of the"
+            " {table} or of a table with a single row, such as the environment.",
+            system=name,
+            table=tr(rows),
+            parameter=parameter,
         )
 
 

@@ -51,11 +51,9 @@ def _asked() -> Compile:
         return Compile(said)
     except ValueError:
         raise Mistake(
-            tr(
-                "{variable} is '{value}'; set it to never or always, or leave it out.",
-                variable=VARIABLE,
-                value=said,
-            )
+            "{variable} is '{value}'; set it to never or always, or leave it out.",
+            variable=VARIABLE,
+            value=said,
         ) from None
 
 

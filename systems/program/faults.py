@@ -49,13 +49,11 @@ def check_plain_forms(bound: Iterable[Bound]) -> None:
             rewrite([b.function])
         except NoPlainForm as reason:
             raise ProgramError(
-                tr(
-                    "The kernel of {system} cannot be interpreted: {reason}. PINJOINT_COMPILE=never forbids compiling it;"
-                    " leave that out.",
-                    system=b.system.name,
-                    reason=str(reason),
-                ),
+                "The kernel of {system} cannot be interpreted: {reason}. PINJOINT_COMPILE=never forbids compiling it;"
+                " leave that out.",
                 b.system,
+                system=b.system.name,
+                reason=str(reason),
             ) from reason
 
 

@@ -1,27 +1,33 @@
-"""Arrows of loads, reactions and velocities: each kind on one scale, so that they grow with what they show."""
+"""Arrows of loads, reactions and velocities with their values: each kind on one scale, so that they grow with what they
+show."""
 
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Sequence
 
 import numpy as np
 from numpy.typing import NDArray
 
+from pinjoint.components import written
+from pinjoint.components.bent import distributed_shares
+from pinjoint.components.language import tr
 from pinjoint.components.model import Model
 from pinjoint.components.rod import nodes
 from pinjoint.components.tags import DiagramShown
+from pinjoint.components.view import View
 from pinjoint.systems.render.clip import bounds, clip_segments
-from pinjoint.systems.render.marks import Fills, Mark, Owner, Owners, Points, Strokes
+from pinjoint.systems.render.marks import Fills, Owner, Owners, Points, Strokes
 from pinjoint.systems.render.occupancy import STRONG
 from pinjoint.systems.render.sheet import DIRECTIONS, Rows, Sheet
-from pinjoint.systems.render.supports import crowding
+from pinjoint.systems.render.supports import NO_SUPPORT, crowding
+from pinjoint.systems.render.symbols import SUPPORT_DEPTH
 from pinjoint.systems.render.theme import Colour
+from pinjoint.systems.render.values import FEW_VALUES, FIRST, GAP, SMALLEST, half_sizes, most_important, write
 
 MOST = 100  # particles, above which arrows would hide one another
 LONGEST, SHORTEST = 46.0, 13.0  # points: of the largest of its kind, and of any that is drawn
 HEAD = 9.0  # points, or of short arrows a share of them
-GAP = 3.0  # points between an arrow and its particle
+OFF = 3.0  # points between an arrow and its particle
 NOTHING = 1e-6  # of the usual speed in a run: a slower motion counts as none
 SLOW = 0.02  # of it, below which motion has no arrow while time passes, since it would flicker in piles
 FORCES, VELOCITIES = ("arrows.force", 0), ("arrows.velocity", 0)  # keys by which scales are kept
@@ -29,6 +35,10 @@ FORCES, VELOCITIES = ("arrows.force", 0), ("arrows.velocity", 0)  # keys by whic
 _STEPS = 6.0  # of a scale in a power of ten
 _KEPT = 3  # steps by which a scale may be coarser than needed, so that it is steady while forces change
 _SHORT_HEAD = 0.65
+_FIELDS = {"load": "particles.applied_force", "reaction": "particles.reaction"}  # what arrows along axes show
+_MANY = 200  # such arrows of a kind, up to which all are drawn, though they may lie over each other
+_SQUARE = 20.0  # points, the side of squares of which each shows one of more arrows
+_OFF_ARCS = 6.0  # points between the arrow of a moment and that of a force
 
 Values = NDArray[np.float64]
 
@@ -75,7 +85,7 @@ def steady(sheet: Sheet, key: tuple[str, int], largest: float) -> float:
     return float(10.0 ** (step / _STEPS))
 
 
-def draw_loads(sheet: Sheet) -> Iterator[Mark]:
+def draw_loads(sheet: Sheet) -> None:
     """The force on each particle, its loads at full size included, where no diagram shows it."""
     model = sheet.model
     force = full_load(model)
@@ -90,10 +100,10 @@ def draw_loads(sheet: Sheet) -> Iterator[Mark]:
     crowd = crowding(sheet, rows)
     pushes = crowd[rows, (ahead + 2) % 4] <= crowd[rows, ahead] + 0.1  # towards the particle, if there is room
     of = whose(model, rows, loads_only=True)
-    yield from _at_rims(sheet, rows, along, length, sheet.theme.load, "load", pushes, of)
+    _draw_at_rims(sheet, of, rows, along, length, sheet.theme.load, "load", pushes)
 
 
-def draw_velocities(sheet: Sheet) -> Iterator[Mark]:
+def draw_velocities(sheet: Sheet) -> None:
     """The velocity of free particles, and of nodes before their first step.
 
     At rest there is none: what is left in the state is below what counts as motion.
@@ -113,7 +123,8 @@ def draw_velocities(sheet: Sheet) -> Iterator[Mark]:
     if not len(rows):
         return
     length = lengths(sheet, VELOCITIES, speed, max(speed.max(), usual))
-    yield from _at_rims(sheet, rows, _directions(velocity[rows]), length, sheet.theme.ink, "velocity")
+    along = _directions(velocity[rows])
+    _draw_at_rims(sheet, ("particles", rows), rows, along, length, sheet.theme.ink, "velocity")
 
 
 def _directions(vectors: Values) -> Values:
@@ -123,23 +134,22 @@ def _directions(vectors: Values) -> Values:
     return directions
 
 
-def _at_rims(
+def _draw_at_rims(
     sheet: Sheet,
+    of: Owners | list[Owner],
     rows: Rows,
     along: Values,
     length: Values,
     colour: Colour,
     name: str,
     pushes: NDArray[np.bool_] | bool = False,
-    of: Sequence[Owner] = (),
-) -> list[Mark]:
+) -> None:
     """Arrows from the rims of particles outwards, or (pushes) ending there."""
-    reach = (sheet.radii[rows] + GAP * sheet.unit)[:, None] * along
+    reach = (sheet.radii[rows] + OFF * sheet.unit)[:, None] * along
     back = -reach - length[:, None] * along
     tail = sheet.centres[rows] + np.where(np.reshape(pushes, (-1, 1)), back, reach)
     sheet.explain(name, tail, tail + length[:, None] * along)
-    of = of or [("particles", row) for row in rows.tolist()]
-    return arrows(sheet, of, tail, along, length, colour, (f"particles.{name}", rows))
+    draw_arrows(sheet, of, tail, along, length, colour, (f"particles.{name}", rows))
 
 
 def head_length(length: Values, unit: float) -> Values:
@@ -147,16 +157,16 @@ def head_length(length: Values, unit: float) -> Values:
     return np.minimum(HEAD * unit, _SHORT_HEAD * length)
 
 
-def arrows(
+def draw_arrows(
     sheet: Sheet,
-    of: Sequence[Owner],
+    of: Owners | list[Owner],
     tail: Points,
     along: Points,
     length: Values,
     colour: Colour,
     part: Owners,
     width: float = 2.0,
-) -> list[Mark]:
+) -> None:
     """Arrows of elements from `tail` (n, 2) along unit vectors (n, 2), of so many pixels (n,).
 
     part: the key of each among the parts of the picture. width: points, of their shafts.
@@ -173,12 +183,166 @@ def arrows(
     for ends in ((tail, tip), (neck - barb, neck + barb)):
         sheet.occupancy.parts.symbols((kind, which[seen]), *ends, u)
     points = np.stack([tip, neck + barb, neck - barb], axis=1)
-    marks: list[Mark] = []
-    for table in dict.fromkeys(of[index][0] for index in seen.tolist()):
-        chosen = np.array([of[index][0] == table for index in seen.tolist()])
-        rows = table, np.array([of[index][1] for index in seen.tolist()])[chosen]
-        marks += [
-            Strokes(tail[chosen], neck[chosen], width * u, colour, rows),
-            Fills(points[chosen], colour, rows),
+    of = of if isinstance(of, list) else [(of[0], row) for row in of[1].tolist()]
+    tables, rows = np.array([table for table, _ in of])[seen], np.array([row for _, row in of])[seen]
+    for table in dict.fromkeys(tables.tolist()):
+        own = tables == table
+        sheet.marks += [
+            Strokes(tail[own], neck[own], width * u, colour, (table, rows[own])),
+            Fills(points[own], colour, (table, rows[own])),
         ]
-    return marks
+
+
+# --- diagrams of particles ----------------------------------------------------------------------------
+
+
+def draw_particle_diagrams(sheet: Sheet, sides: NDArray[np.int64]) -> None:
+    """Arrows of the horizontal and vertical load and reaction on each particle that shows its diagram."""
+    shown = sheet.particles if sheet.view.forces_known else sheet.particles[:0]
+    if not sheet.view.all_diagrams:
+        shown = shown[sheet.chosen(sheet.tagged(DiagramShown, "particles"), shown)]
+    if not len(shown):
+        return
+    particles = sheet.model.particles
+    largest = max(largest_force(sheet.model, sheet.view), sheet.view.largest_force)
+    taken = np.full((len(sheet.centres), 2), NO_SUPPORT)  # by reactions: a side of each particle, by axis
+    applied = particles.applied_force - distributed_shares(sheet.model)  # rows of arrows show the others
+    for name, force in (("reaction", particles.reaction[shown]), ("load", applied[shown])):
+        index, axis = _thinned(sheet, shown, force, *np.nonzero(np.abs(force) > SMALLEST))
+        if len(index):
+            _draw_forces(sheet, name, shown[index], axis, force[index, axis], largest, sides, taken)
+
+
+def largest_force(model: Model, view: View) -> float:
+    """The largest force (kN) that an arrow may show: of loads at full size, and in diagrams of their parts and reactions."""
+    particles = model.particles
+    largest = float(np.hypot(*full_load(model).T).max(initial=SMALLEST))
+    if view.forces_known and (view.all_diagrams or model.any_tagged(DiagramShown)):
+        for forces in (particles.applied_force, particles.reaction):
+            largest = max(largest, float(np.abs(forces).max(initial=0.0)))
+    return largest
+
+
+def _draw_forces(
+    sheet: Sheet,
+    name: str,
+    rows: Rows,
+    axis: Rows,
+    value: Values,
+    largest: float,
+    sides: NDArray[np.int64],
+    taken: NDArray[np.int64],
+) -> None:
+    """Arrows of forces of one kind along an axis each, with their values."""
+    # Model y is up, pixels' y is down: a positive vertical force points in direction 3.
+    direction = np.where(axis == 0, np.where(value > 0, 0, 2), np.where(value > 0, 3, 1))
+    length = lengths(sheet, FORCES, np.abs(value), largest)
+    tail, outer = _arrow_places(sheet, rows, direction, length, sides, taken[rows, axis])
+    taken[rows, axis] = outer
+    along, parts = DIRECTIONS[direction], (_FIELDS[name], 2 * rows + axis)
+    middle, of = tail + along * length[:, None] / 2, [("particles", row) for row in rows.tolist()]
+    of = whose(sheet.model, rows) if name == "load" else of
+    sheet.explain(name, tail, tail + along * length[:, None])
+    draw_arrows(sheet, of, tail, along, length, getattr(sheet.theme, name), parts)
+    sheet.occupancy.block_squares(middle, np.minimum(0.2 * length, 3.0 * sheet.unit))
+    _write_forces(sheet, name, of, parts, value, middle, length, DIRECTIONS[outer], outer == direction)
+
+
+def _thinned(sheet: Sheet, rows: Rows, force: Values, index: Rows, axis: Rows) -> tuple[Rows, Rows]:
+    """Of many arrows, the largest in each square, so that they can be told apart.
+
+    Squares divide the original geometry, so that arrows neither come nor go while a structure moves.
+    """
+    if len(index) <= _MANY:
+        return index, axis
+    side = _SQUARE * sheet.unit / sheet.view.camera.scale
+    x, y = np.floor(sheet.model.particles.position[rows[index]] / side).T
+    order = np.lexsort((index, -np.abs(force[index, axis]), axis, y, x))
+    x, y, along = x[order], y[order], axis[order]
+    first = np.ones(len(order), dtype=bool)
+    first[1:] = (np.diff(x) != 0) | (np.diff(y) != 0) | (np.diff(along) != 0)
+    kept = np.sort(order[first])
+    if len(kept) < len(order):
+        sheet.notes.append(tr("zoom in to see all loads and reactions"))
+    return index[kept], axis[kept]
+
+
+def _arrow_places(
+    sheet: Sheet,
+    rows: Rows,
+    direction: NDArray[np.int64],
+    length: NDArray[np.float64],
+    sides: NDArray[np.int64],
+    taken: NDArray[np.int64],
+) -> tuple[Points, NDArray[np.int64]]:
+    """Tails of the arrows, and on which side of its particle each stands.
+
+    An arrow starts at the rim, or ends at it where the side that it comes from is freer; there it stands beyond
+    the support, if there is one, and beyond the arrow of a moment. taken: the side of another arrow along the
+    same axis, or NO_SUPPORT.
+    """
+    u = sheet.unit
+    opposite, crowd = (direction + 2) % 4, crowding(sheet, rows)
+    supported = sides[rows] != NO_SUPPORT
+    busy_ahead = crowd[rows, direction] + 0.8 * (supported & (sides[rows] == direction))
+    busy_behind = crowd[rows, opposite] + 0.8 * (supported & (sides[rows] == opposite))
+    pushes = ((busy_behind < busy_ahead - 0.1) & (taken != opposite)) | (taken == direction)
+    side = np.where(pushes, opposite, direction)
+    gap = sheet.radii[rows] + 2.0 * u + np.where(supported & (sides[rows] == side), SUPPORT_DEPTH * u, 0.0)
+    around = np.where(DIRECTIONS[side, 1] > 0.0, 0.0, sheet.arcs[rows])  # they are open below
+    gap = np.maximum(gap, around + np.where(around > 0.0, _OFF_ARCS * u, 0.0))
+    outward = DIRECTIONS[side]
+    start = sheet.centres[rows] + outward * gap[:, None]
+    return start + outward * np.where(pushes, length, 0.0)[:, None], side
+
+
+def _write_forces(
+    sheet: Sheet,
+    name: str,
+    of: list[Owner],
+    parts: Owners,
+    value: Values,
+    middle: Points,
+    length: Values,
+    outward: Points,
+    pulls: NDArray[np.bool_],
+) -> None:
+    """The size of the force at each arrow, of which `parts` are the keys; pulls: whether its head is at its outer end."""
+    field, which = parts
+    few = len(value) <= FEW_VALUES
+    shown, worth = most_important(sheet, field, which, value, np.flatnonzero(sheet.sees(middle)))
+    sizes = np.abs(value[shown]).tolist()
+    texts = [(written.force if few else written.number)(size, nothing=SMALLEST) for size in sizes]
+    font, out = sheet.font(12.0 if few else 11.0), outward[shown]
+    half = half_sizes(sheet, texts, font)
+    places = _places_by_arrows(middle[shown], length[shown], out, pulls[shown], half, sheet.unit)
+    anchors = (middle[shown] + out * length[shown, None] / 2)[:, None]
+    colour, ranks = getattr(sheet.theme, name), (FIRST - worth).tolist()
+    for k, index in enumerate(shown.tolist()):
+        key, leads = (field, int(which[index])), (anchors[k], out[k])
+        write(
+            sheet, texts[k], places[k], colour, key, of[index], rank=ranks[k], own=key, leads=leads, size=font
+        )
+
+
+def _places_by_arrows(
+    middle: Points, length: Values, outward: Points, pulls: NDArray[np.bool_], half: Points, u: float
+) -> Points:
+    """Where the value of each arrow may stand, (n, k, 2): beyond its outer end, beside its head, it, that end.
+
+    pulls: whether the head is at the outer end.
+    """
+    level = outward[:, 0] != 0.0
+    deep, width = np.where(level, half.T, half.T[::-1])
+    outer, nothing, wing = length / 2, np.zeros(len(middle)), head_length(length, u) / 2
+    beyond, beside = outer + deep + GAP * u, wing + width + GAP * u
+    along, across = [beyond], [nothing]
+    for place in ((outer - 2.0 * wing) * np.where(pulls, 1.0, -1.0), nothing, deep - outer, outer, beyond):
+        along += [place, place]
+        across += [beside, -beside]
+    along += [nothing, nothing]
+    across += [beside + width, -beside - width]
+    x, y = np.stack(along, axis=1), np.stack(across, axis=1)
+    dx, dy = outward.T[:, :, None]
+    places: Points = middle[:, None, :] + np.stack([dx * x + dy * y, dy * x + dx * y], axis=2)
+    return places

@@ -1,48 +1,184 @@
-"""Force diagrams: rectangles on rods, arrows at particles, and their values."""
+"""Diagrams along rods: N, M on the side in tension, or V, with values, extremes and zero points.
+
+Where no rod of a model bends, N is drawn as rectangles that stand outside of the structure.
+"""
 
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable
+from dataclasses import dataclass, replace
 from typing import Literal
 
 import numpy as np
 from numpy.typing import NDArray
 
 from pinjoint.components import written
-from pinjoint.components.bent import distributed_shares
-from pinjoint.components.language import tr
+from pinjoint.components.bent import (
+    AXIAL,
+    MOMENT,
+    SHEAR,
+    Axes,
+    axes,
+    derivative,
+    inner_forces,
+    values,
+    zeros,
+)
+from pinjoint.components.language import marked, tr
 from pinjoint.components.load import CONSTANT
 from pinjoint.components.model import Model
 from pinjoint.components.tags import DiagramShown, Selected
-from pinjoint.components.view import View
-from pinjoint.systems.render.arrows import FORCES, arrows, full_load, head_length, lengths, whose
-from pinjoint.systems.render.clip import bounds, clip_segments
-from pinjoint.systems.render.labels import Key, Label, half_size
+from pinjoint.components.view import MARGIN
+from pinjoint.systems.render.arrows import steady
+from pinjoint.systems.render.clip import bounds, clip_rods
 from pinjoint.systems.render.leaders import ANCHORS
-from pinjoint.systems.render.marks import Bars, Owner, Points, Strokes
+from pinjoint.systems.render.marks import Bars, Discs, Fills, Points, Strokes
+from pinjoint.systems.render.nearness import ranges
 from pinjoint.systems.render.occupancy import FAINT
-from pinjoint.systems.render.sheet import DIRECTIONS, Rows, Sheet, typical_length
-from pinjoint.systems.render.supports import NO_SUPPORT, crowding
-from pinjoint.systems.render.symbols import SUPPORT_DEPTH
+from pinjoint.systems.render.overlays import heading_height
+from pinjoint.systems.render.sheet import Rows, Sheet, typical_length
 from pinjoint.systems.render.theme import Colour, faded
+from pinjoint.systems.render.values import (
+    FEW_VALUES,
+    GAP,
+    SMALLEST,
+    half_sizes,
+    in_rows,
+    most_important,
+    reach,
+    write,
+)
 
-SMALLEST_FORCE = 1e-4  # kN; smaller forces are drawn as none
-FEW_VALUES = 24  # up to which each carries its unit and keeps clear of rods
+NAMES = {
+    AXIAL: marked("axial force N"),
+    MOMENT: marked("bending moment M"),
+    SHEAR: marked("shear force V"),
+}
+_UNITS = {AXIAL: "kN", MOMENT: "kN·m", SHEAR: "kN"}
+_MEANT = {AXIAL: ("tension", "compression"), MOMENT: ("moment",), SHEAR: ("shear",)}  # in the legend
+_BESIDE = ("load", "load per length", "load moment", "reaction", "reaction moment", "ghost")  # there, at most
+_LEAST = 24.0  # points that diagrams have towards the legend and the rim, where there is less room
+_LARGEST, _FAR = 1e100, 1e6  # kN or kN·m, pixels: what is beyond is left out
 _STEPS = (8.0, 6.0, 5.0, 4.0, 3.0, 2.0, 1.5, 1.0)
 _TOO_FLAT, _ENLARGED = 0.05, 0.3  # of the room: loads (one point per kN) below which, up to which, to enlarge
-SHORTEST_WITH_DIAGRAM = 6.0  # points
-SHORTEST_WITH_VALUE = 24.0  # points; the values of shorter rods would only hide the structure
-_MANY_ARROWS = 200  # of a kind, up to which all are drawn, though they may lie over each other
-_SQUARE = 20.0  # points, the side of squares of which each shows one of more arrows
-_TOLD = 1.5  # factor by which a new value must be larger to replace one of the last picture
-_ROD_VALUE = "rods.axial_force"  # keys by which labels keep places
-_ARROW_VALUES = {"load": "particles.applied_force", "reaction": "particles.reaction"}
-_MOST_COVERED = 0.15  # of a picture, by values
-_SLIDES = np.array([0.0, 0.3, -0.3, 0.6, -0.6, 0.9, -0.9])  # of how far a label can go along a rod
-_OFF_ARCS = 6.0  # points between the arrow of a moment and that of a force
-GAP = 1.0  # points between a rod or an arrow and a value beside it
-BACKING = 0.86  # opacity behind a value
+_SHORTEST, _SHORTEST_WITH_VALUE = (
+    6.0,
+    24.0,
+)  # points, of rods with a diagram; values of others would only hide them
+_MANY = 300  # rods, above which diagrams of those that bend are outlines
+_PIECES = ((24, 24), (120, 12), (_MANY, 8), (np.inf, 4))  # of a diagram, by how many rods have one at most
+_PIECE = 5.0  # points, or longer
+_ROOM, _SHARE = 1.25, 0.3  # of the room of force diagrams; of the largest shear, the least that fills it with N
+_HATCH = 7.0  # points between lines across
+_NOTHING = 1e-3  # of the largest value: what is not told
+_ALIKE = 5e-3  # of the largest value: what counts as the same
+_GREAT = 0.5  # of the largest value: what is told before all else
+_ZERO = 2.5  # points, radius of the mark of a zero point
+_INSIDE = 0.02  # share of a rod, from which on a zero point or an extreme is not at its end
+_STRAIGHT = 0.9  # cosine of the turn at a joint up to which two rods are one member
+_ALONG = np.array([0.0, 0.3, -0.3, 0.6, -0.6, 0.9, -0.9])  # of how far the value of a rectangle can go along it
+_SLIDES = (
+    (0.0, 0.0),
+    (0.5, 0.5),
+    (-0.5, 1.0),
+    (1.0, 2.0),
+    (-1.0, -1.0),
+    (1.5, 4.0),
+)  # between ends, and at one
+_NEAR = 42.0  # points along a rod, or two steps: so far from its end stands a value, but for the last place
+_PLACES = 3  # of values of a rod: start, end, between
+
+Values = NDArray[np.float64]
+Truths = NDArray[np.bool_]
+
+
+@dataclass(frozen=True)
+class _Diagram:
+    """The diagram of some rods: rows (n,), their axes in pixels, values as polynomials, which of a rectangle have the
+    degree 0, pixels per kN or kN·m, largest value in the model.
+
+    side: 1 where positive values stand to the left, as drawn, else −1, (n,). points, normals, heights: at shares (n, k),
+    with unit normals to where positive values stand;
+    of rectangles one for both ends.
+    """
+
+    quantity: str
+    rows: Rows
+    base: Axes
+    polynomials: Values
+    scale: float
+    largest: float
+    side: Values
+    points: Points
+    normals: Points
+    heights: Values
+
+    @property
+    def is_straight(self) -> bool:
+        """Whether it consists of rectangles."""
+        return bool(self.polynomials.shape[1] == 1)
+
+    def some(self, which: Truths | Rows) -> _Diagram:
+        """The diagram of some of the rods."""
+        names = "rows", "polynomials", "side", "points", "normals", "heights"
+        columns = {name: getattr(self, name)[which] for name in names}
+        return replace(self, base=self.base.some(which), **columns)
+
+    def at(self, which: Rows, shares: Values) -> tuple[Points, Points]:
+        """Points at shares (k,) of some of its rods, and unit normals to where positive values stand."""
+        points, normals = _stations(self.base.some(which), shares[:, None], self.side[which])
+        return points[:, 0], normals[:, 0]
+
+
+def draw_diagrams(sheet: Sheet) -> None:
+    """The diagrams of rods; where they are too short, they themselves take the colour of tension or compression."""
+    shown = np.full(len(sheet.rods), sheet.view.forces_known)
+    if sheet.view.forces_known and not sheet.view.all_diagrams:
+        shown = sheet.chosen(sheet.tagged(DiagramShown, "rods"), sheet.rods)
+    if not shown.any():
+        return
+    rows, start, end = sheet.rods[shown], sheet.start[shown], sheet.end[shown]
+    quantity, force = sheet.view.quantity if sheet.is_frame else AXIAL, _forces(sheet)
+    if typical_length(start, end) < _SHORTEST * sheet.unit:
+        if quantity == AXIAL:
+            sheet.pulled, sheet.pushed = rows[force[rows] > SMALLEST], rows[force[rows] < -SMALLEST]
+        sheet.notes.append(tr("zoom in to see force diagrams"))
+        return
+    window = min(sheet.viewport.width, sheet.viewport.height)  # what leaves the structure readable:
+    room = max(min(0.15 * window, 0.6 * typical_length(start, end)), 10.0 * sheet.unit)
+    diagram = (
+        _curves(sheet, rows, quantity, min(_ROOM * room, MARGIN * sheet.unit))
+        if sheet.is_frame
+        else (_rectangles(sheet, rows, force, start, end, room))
+    )
+    if diagram is not None:
+        _draw(sheet, diagram)
+        _mark_zeros(sheet, diagram)
+        _write(sheet, diagram)
+
+
+def _forces(sheet: Sheet) -> Values:
+    """Axial forces (kN) of all rods."""
+    force: Values = np.nan_to_num(sheet.model.rods.axial_force)
+    return force
+
+
+# --- rectangles, where none bends --------------------------------------------------------------------
+
+
+def _rectangles(sheet: Sheet, rows: Rows, force: Values, start: Points, end: Points, room: float) -> _Diagram:
+    """The diagram of bars of which these parts are seen, |N| × diagram scale high."""
+    largest, scale = float(np.abs(force).max()), sheet.model.settings.diagram_scale
+    factor = diagram_factor(largest, _loads(sheet.model), scale, room / sheet.unit)
+    if factor != 1.0:
+        sheet.notes.append(tr("diagrams ×{factor:g}", factor=factor))
+    value, scale = force[rows, None], scale * factor * sheet.unit
+    way = end - start
+    left = np.stack([way[:, 1], -way[:, 0]], axis=1) / np.maximum(np.hypot(*way.T), 1e-9)[:, None]
+    side = _outward(sheet, rows) * np.where(value[:, 0] < 0.0, -1.0, 1.0)
+    base = Axes(start, end, left, np.zeros((len(rows), 1)))
+    points, normals = np.stack([start, end], axis=1), (left * side[:, None])[:, None]
+    return _Diagram(AXIAL, rows, base, value, scale, largest, side, points, normals, scale * value)
 
 
 def scale_step(largest: float, scale: float, room: float) -> float:
@@ -63,51 +199,11 @@ def diagram_factor(largest: float, loads: float, scale: float, room: float) -> f
     stay while the forces that they cause vibrate.
     """
     factor = 1.0
-    if SMALLEST_FORCE < loads < _TOO_FLAT * room:
+    if SMALLEST < loads < _TOO_FLAT * room:
         factor = scale_step(loads, 1.0, _ENLARGED * room)
     if largest * scale * factor > room:
         factor = scale_step(largest, scale, room)
     return factor
-
-
-def draw_rod_diagrams(sheet: Sheet) -> None:
-    """A rectangle on each rod that shows its diagram, |N| × diagram scale high, and the value of N.
-
-    Where rods are too short for rectangles, they themselves take the colour of tension or compression.
-    """
-    force, rows, start, end = _shown_rods(sheet)
-    if not len(rows):
-        return
-    if typical_length(start, end) < SHORTEST_WITH_DIAGRAM * sheet.unit:
-        sheet.pulled = rows[force[rows] > SMALLEST_FORCE]
-        sheet.pushed = rows[force[rows] < -SMALLEST_FORCE]
-        sheet.notes.append(tr("zoom in to see force diagrams"))
-        return
-    room = room_for(sheet, start, end) / sheet.unit
-    largest = float(np.abs(force).max())
-    factor = diagram_factor(largest, _loads(sheet.model), sheet.model.settings.diagram_scale, room)
-    if factor != 1.0:
-        sheet.notes.append(tr("diagrams ×{factor:g}", factor=factor))
-    height = np.abs(force[rows]) * (sheet.model.settings.diagram_scale * factor * sheet.unit)
-    normal = _outward_normals(sheet, rows, start, end)
-    values = force[rows]
-    rise = normal * height[:, None]
-    pulled, pushed = values > SMALLEST_FORCE, values < -SMALLEST_FORCE
-    nothing = ~(pulled | pushed | sheet.model.rods.tension_only[rows])  # a slack cable stays dashed
-    for name, mask in (("tension", pulled), ("compression", pushed), ("zero", nothing)):
-        if mask.any():
-            _draw_rectangles(sheet, name, rows[mask], start[mask], end[mask], rise[mask])
-    _label_rods(sheet, rows, values, start, end, normal, height)
-
-
-def _shown_rods(sheet: Sheet) -> tuple[NDArray[np.float64], Rows, Points, Points]:
-    """Axial forces of all rods; rows and visible ends of those whose diagram is drawn."""
-    shown: NDArray[np.bool_] | slice = slice(None if sheet.view.forces_known else 0)
-    if sheet.view.forces_known and not sheet.view.all_diagrams:
-        shown = sheet.chosen(sheet.tagged(DiagramShown, "rods"), sheet.rods)
-    rows = sheet.rods[shown]
-    force = np.nan_to_num(sheet.model.rods.axial_force) if len(rows) else np.empty(0)
-    return force, rows, sheet.start[shown], sheet.end[shown]
 
 
 def _loads(model: Model) -> float:
@@ -117,14 +213,9 @@ def _loads(model: Model) -> float:
     return float(np.hypot(*constant.T).sum() + np.hypot(*loads.force[varying].T).sum())
 
 
-def room_for(sheet: Sheet, start: Points, end: Points) -> float:
-    """The greatest height (pixels) of a diagram that leaves the structure readable."""
-    window = min(sheet.viewport.width, sheet.viewport.height)
-    return max(min(0.15 * window, 0.6 * typical_length(start, end)), 10.0 * sheet.unit)
-
-
-def _outward_normals(sheet: Sheet, rows: Rows, start: Points, end: Points) -> Points:
-    """Unit normals (pixels) away from the middle of the original structure; upwards or left if through it.
+def _outward(sheet: Sheet, rows: Rows) -> Values:
+    """1 for rods whose left side, as drawn, is away from the middle of the original structure, else −1; if they go through
+    it, upwards or to the left.
 
     Judged in the original geometry, so that a diagram does not change sides while the rod moves.
     """
@@ -139,283 +230,337 @@ def _outward_normals(sheet: Sheet, rows: Rows, start: Points, end: Points) -> Po
     side = outward_y * difference_x - outward_x * difference_y
     upwards = np.where(np.abs(difference_x) > 1e-9 * length, difference_x, -difference_y)
     side = np.where(np.abs(side) < 1e-6 * extent * length, upwards, side)
-    along_x, along_y = (end - start).T
-    scale = np.where(side < 0.0, -1.0, 1.0) / np.maximum(np.hypot(along_x, along_y), 1e-9)
-    return np.stack([along_y * scale, -along_x * scale], axis=1)
+    return np.where(side < 0.0, -1.0, 1.0)
 
 
-def _draw_rectangles(sheet: Sheet, name: str, rows: Rows, start: Points, end: Points, rise: Points) -> None:
-    colour: Colour = getattr(sheet.theme, name)
-    outlined = sheet.rod_length > 16.0 * sheet.unit
-    bars = Bars(start, end, rise, faded(colour, 0.16 if outlined else 0.5), ("rods", rows))
-    sheet.marks.append(bars)
-    sheet.occupancy.parts.diagrams(("rods", rows), start, end, rise)
-    if outlined:
-        corners = bars.corners
-        first, last = corners[:, :-1].reshape(-1, 2), corners[:, 1:].reshape(-1, 2)
+# --- curves ------------------------------------------------------------------------------------------
+
+
+def _curves(sheet: Sheet, rows: Rows, quantity: str, room: float) -> _Diagram | None:
+    """The diagram of some rods, on the scale of all; None where there is nothing to be drawn."""
+    model = sheet.model
+    every = inner_forces(model, np.arange(model.rods.count), quantity)
+    every[~(np.abs(every) < _LARGEST).all(axis=1)] = 0.0
+    largest = float(np.abs(values(every, np.linspace(0.0, 1.0, 5))).max(initial=0.0))
+    if quantity == AXIAL:  # small ones, as bending shortens rods, look small
+        shear = np.abs(model.rods.shear)
+        largest = max(largest, _SHARE * float(shear[shear < _LARGEST].max(initial=0.0)))
+    if largest <= SMALLEST:
+        return None
+    side = np.full(len(every), -1.0 if quantity == MOMENT else 1.0)
+    fitting = max(largest, room * _crowding(sheet, every, quantity, side))
+    scale = room * model.settings.diagram_scale / steady(sheet, (f"diagrams.{quantity}", 0), fitting)
+    base, polynomials, side = _baseline(sheet, rows), every[rows], side[rows]
+    shares = np.linspace(0.0, 1.0, _pieces(sheet, rows) + 1)
+    points, normals = _stations(base, shares, side)
+    heights = scale * values(polynomials, shares)
+    found = _Diagram(quantity, rows, base, polynomials, scale, largest, side, points, normals, heights)
+    near = (np.abs(points) < _FAR) & np.isfinite(normals)
+    return found.some(np.asarray(near.all(axis=(1, 2))))
+
+
+def _crowding(sheet: Sheet, every: Values, quantity: str, side: Values) -> float:
+    """The value per pixel up to which diagrams of all rods keep off the legend and the rim; 0 where the view is closer."""
+    view = sheet.view
+    if not view.shows(sheet.model):
+        return 0.0
+    shares, names = np.linspace(0.0, 1.0, 5), _MEANT[quantity]
+    points, normals = _stations(_baseline(sheet, np.arange(len(every))), shares, side)
+    explained = (*names, *_BESIDE) if view.legend else ()
+    low, high = bounds(view.room)
+    low[1] += heading_height(view.heading, sheet.viewport.width, sheet.unit, explained)
+    above = normals * values(every, shares)[..., None]
+    free = np.maximum(np.where(above < 0.0, points - low, high - points), _LEAST * sheet.unit)
+    return float(np.nan_to_num(np.abs(above) / free).max(initial=0.0))
+
+
+def _pieces(sheet: Sheet, rows: Rows) -> int:
+    """Into how many pieces diagrams are cut, more where rods are few and long."""
+    most = next(pieces for count, pieces in _PIECES if len(rows) <= count)
+    return int(np.clip(sheet.rod_length / (_PIECE * sheet.unit), 2, most))
+
+
+def _baseline(sheet: Sheet, rows: Rows) -> Axes:
+    """The axes of rods in pixels as drawn, or where they were originally, as a person wants it."""
+    model, camera = sheet.model, sheet.view.camera
+    if model.settings.original_diagrams:
+        ends = model.particles.position[sheet.ends[rows]]
+        found = Axes(ends[:, 0], ends[:, 1], np.zeros((len(rows), 2)), np.zeros((len(rows), 5)))
+    else:
+        found = axes(model, rows)
+    left = found.left * [
+        camera.scale,
+        -camera.scale,
+    ]  # pixels' y is down, and what is ahead of a left side behind it
+    drift = None if found.drift is None else -found.drift
+    return Axes(camera.to_pixels(found.start), camera.to_pixels(found.end), left, found.bow, drift)
+
+
+def _stations(base: Axes, shares: Values, side: Values) -> tuple[Points, Points]:
+    """Points of baselines in pixels, and unit normals to the left as drawn, or where `side` is −1 to the right."""
+    x, y = np.moveaxis(base.tangents(shares), -1, 0)
+    left = np.stack([y, -x], axis=-1) / np.maximum(np.hypot(x, y), 1e-300)[..., None]
+    return base.points(shares), left * side[:, None, None]
+
+
+# --- areas -------------------------------------------------------------------------------------------
+
+
+def _draw(sheet: Sheet, diagram: _Diagram) -> None:
+    """Areas with an outline; axial forces in the colours of tension and compression, and of bars without force."""
+    if diagram.quantity != AXIAL:
+        everywhere = np.ones(len(diagram.rows), dtype=bool)
+        _draw_areas(sheet, _MEANT[diagram.quantity][0], diagram, diagram.heights, everywhere)
+        return
+    nothing = diagram.is_straight & ~sheet.model.rods.tension_only[diagram.rows]  # a slack cable stays dashed
+    pulled, pushed = np.maximum(diagram.heights, 0.0), np.minimum(diagram.heights, 0.0)
+    for name, heights in (("tension", pulled), ("compression", pushed)):
+        drawn = np.abs(heights).max(axis=1) > SMALLEST * diagram.scale
+        _draw_areas(sheet, name, diagram, heights, drawn)
+        nothing &= ~drawn
+    _draw_areas(sheet, "zero", diagram, diagram.heights, nothing)
+
+
+def _draw_areas(sheet: Sheet, name: str, diagram: _Diagram, heights: Values, drawn: Truths) -> None:
+    """One colour of a diagram; what is curved is hatched but for moments."""
+    if not drawn.any():
+        return
+    rows, points, heights = diagram.rows[drawn], diagram.points[drawn], heights[drawn]
+    rise = heights[..., None] * diagram.normals[drawn]
+    colour, edge, u = _colour(sheet, name), points + rise, sheet.unit
+    is_outlined, of = not diagram.is_straight or sheet.rod_length > 16.0 * u, ("rods", rows)
+    if diagram.is_straight:
+        area = faded(colour, 0.16 if is_outlined else 0.5)
+        sheet.marks.append(Bars(points[:, 0], points[:, 1], rise[:, 0], area, of))
+    elif len(rows) <= _MANY:
+        corners = np.concatenate([points, edge[:, ::-1]], axis=1)
+        sheet.marks.append(Fills(corners, faded(colour, 0.13), of))
+        if name != "moment":
+            _hatch(sheet, diagram, drawn, colour, name)
+    if is_outlined:
+        outline = np.concatenate([points[:, :1], edge, points[:, -1:]], axis=1)
+        first, last = outline[:, :-1].reshape(-1, 2), outline[:, 1:].reshape(-1, 2)
+        each, width = ("rods", np.repeat(rows, outline.shape[1] - 1)), 1.25 if diagram.is_straight else 1.4
+        sheet.marks.append(Strokes(first, last, width * u, faded(colour, 0.9), each))
         sheet.occupancy.line(first, last, FAINT)
-        sheet.marks.append(
-            Strokes(first, last, 1.25 * sheet.unit, faded(colour, 0.9), ("rods", np.repeat(rows, 3)))
-        )
     if name != "zero":
-        sheet.explain(name, np.concatenate([start, start + rise]), np.concatenate([end, end + rise]))
+        shown = (np.concatenate([points[:, end], edge[:, end]]) for end in (0, -1))
+        sheet.explain(name, *shown)
+    if not diagram.is_straight:
+        higher = np.abs(heights[:, :-1]) > np.abs(heights[:, 1:])
+        rise = np.where(higher[..., None], rise[:, :-1], rise[:, 1:])
+    pieces = points[:, :-1].reshape(-1, 2), points[:, 1:].reshape(-1, 2), rise.reshape(-1, 2)
+    sheet.occupancy.parts.diagrams(("rods", np.repeat(rows, points.shape[1] - 1)), *pieces)
 
 
-def _label_rods(
-    sheet: Sheet,
-    rows: Rows,
-    values: NDArray[np.float64],
-    start: Points,
-    end: Points,
-    normal: Points,
-    height: NDArray[np.float64],
-) -> None:
-    """The values of the rods, along those parts of them that are seen."""
-    start, end, seen = clip_segments(start, end, *bounds(sheet.viewport))
-    rows, values, normal, height = rows[seen], values[seen], normal[seen], height[seen]
-    sheet.values[_ROD_VALUE] = len(rows)
-    selected = sheet.chosen(sheet.tagged(Selected, "rods"), rows)
-    is_short = sheet.rod_length < SHORTEST_WITH_VALUE * sheet.unit
-    candidates = np.flatnonzero(selected) if is_short else np.arange(len(rows))
-    worth = worth_of(sheet, _ROD_VALUE, rows, values) + 1e6 * selected
-    shown = most_important(sheet, worth, candidates)
-    few = len(values) <= FEW_VALUES
-    numbers = values[shown].tolist()
-    texts, size, half = _value_texts(sheet, numbers, few)
-    places = _places_by_rods(start[shown], end[shown], normal[shown], height[shown], half, sheet.unit)
-    signs = ("zero" if abs(n) <= SMALLEST_FORCE else "tension" if n > 0.0 else "compression" for n in numbers)
-    colours = [getattr(sheet.theme, sign) for sign in signs]
-    keys = [(_ROD_VALUE, row) for row in rows[shown].tolist()]
-    of = [("rods", row) for row in rows[shown].tolist()]
-    edge = start[shown] + (normal * height[:, None])[shown]
-    anchors = edge[:, None] + ANCHORS[:, None] * (end - start)[shown, None]
-    ranks = (-worth[shown]).tolist()
-    values_of = zip(texts, places, colours, ranks, keys, of, of, anchors, normal[shown], strict=True)
-    add_values(sheet, values_of, size, "spare" if few else "cover")
-
-
-def worth_of(sheet: Sheet, field: str, rows: Rows, values: NDArray[np.float64]) -> NDArray[np.float64]:
-    """The importance of each value: its size to two digits, so that tiny changes do not reorder labels.
-
-    Values of the last picture count more, so that labels do not come and go while forces vibrate.
-    """
-    size = np.maximum(np.abs(values), 1e-300)
-    decade = 10.0 ** np.floor(np.log10(size))
-    told = np.array([row for name, row in sheet.placed if name == field], dtype=np.intp)
-    worth: NDArray[np.float64] = np.round(size / decade, 1) * decade
-    return worth * np.where(sheet.chosen(told, rows), _TOLD, 1.0)
-
-
-def most_important(sheet: Sheet, worth: NDArray[np.float64], candidates: Rows) -> Rows:
-    """Of the candidates those worth most, as many as there may be room for beside them."""
-    area = sheet.viewport.width * sheet.viewport.height / sheet.unit**2
-    most = int(_MOST_COVERED * area / (46.0 * 18.0))
-    return np.sort(candidates[np.lexsort((candidates, -worth[candidates]))][:most])
-
-
-def _value_texts(sheet: Sheet, forces: Iterable[float], few: bool) -> tuple[list[str], int, Points]:
-    """Forces (kN) as they are written among few or many, their font size, and half the size of each label, (n, 2)."""
-    write = written.force if few else written.number
-    texts = [write(force, nothing=SMALLEST_FORCE) for force in forces]
-    size = sheet.font(12.0 if few else 11.0)
-    half = [half_size(text, size, "semibold", sheet.unit) for text in texts]
-    return texts, size, np.array(half).reshape(-1, 2)
-
-
-def add_values(
-    sheet: Sheet,
-    values: Iterable[tuple[str, Points, Colour, float, Key, Owner, Owner, Points, Points]],
-    size: int,
-    lines: Literal["spare", "cover"],
-) -> None:
-    """Labels of values: text, places, colour, rank, key, owner, own part, anchors and direction of each."""
-    backing = faded(sheet.theme.background, BACKING)
-    sheet.labels += [
-        Label(text, places, size, colour, rank, "semibold", backing, lines, key, of, own, anchors, out)
-        for text, places, colour, rank, key, of, own, anchors, out in values
-    ]
-
-
-def _places_by_rods(
-    start: Points, end: Points, normal: Points, height: NDArray[np.float64], half: Points, u: float
-) -> Points:
-    """Where the value of each rod may stand, (n, k, 2): in its diagram if it fits, beyond, behind the rod, on it.
-
-    reach: half the extent of a label along the normal of its rod. slide: how far it can move along the rod.
-    """
-    normal_x, normal_y = np.abs(normal).T
-    reach, extent = normal_x * half[:, 0] + normal_y * half[:, 1], normal_y * half[:, 0] + normal_x * half[:, 1]
-    beside, fits = reach + GAP * u, height > 2.0 * reach
-    beyond, nothing = height + beside, np.zeros(len(height))
-    across = [np.where(fits, 0.5 * height, beyond), beyond, np.where(fits, beside, -beside), -beside, nothing]
-    slide = np.maximum(np.hypot(*(end - start).T) / 2 - extent, 0.0)[:, None] * _SLIDES
-    along = np.stack([-normal[:, 1], normal[:, 0]], axis=1)
-    offset = np.stack(across, axis=1)[:, :, None, None] * normal[:, None, None, :]
-    places = (start + end)[:, None, None, :] / 2 + offset + slide[:, None, :, None] * along[:, None, None, :]
-    found: Points = places.reshape(len(start), len(across) * len(_SLIDES), 2)
+def _colour(sheet: Sheet, name: str) -> Colour:
+    found: Colour = sheet.theme.ink if name in ("moment", "shear") else getattr(sheet.theme, name)
     return found
 
 
-def draw_particle_diagrams(sheet: Sheet, sides: NDArray[np.int64]) -> None:
-    """Arrows of the horizontal and vertical load and reaction on each particle that shows its diagram."""
-    shown = sheet.particles if sheet.view.forces_known else sheet.particles[:0]
-    if not sheet.view.all_diagrams:
-        shown = shown[sheet.chosen(sheet.tagged(DiagramShown, "particles"), shown)]
+def _hatch(sheet: Sheet, diagram: _Diagram, drawn: Truths, colour: Colour, name: str) -> None:
+    """Lines across, at equal distances along each rod."""
+    some = np.flatnonzero(drawn)
+    length = np.hypot(*(diagram.points[some, -1] - diagram.points[some, 0]).T)
+    count = np.clip(length / (_HATCH * sheet.unit), 1, 200).astype(np.intp)
+    of = np.repeat(some, count)
+    shares = (ranges(np.zeros_like(count), count) + 0.5) / np.repeat(count, count)
+    start, normals = diagram.at(of, shares)
+    height = values(diagram.polynomials[of], shares[:, None])[:, 0]
+    if name in ("tension", "compression"):
+        height = np.maximum(height, 0.0) if name == "tension" else np.minimum(height, 0.0)
+    end = start + (diagram.scale * height)[:, None] * normals
+    sheet.marks.append(Strokes(start, end, 0.8 * sheet.unit, faded(colour, 0.4), ("rods", diagram.rows[of])))
+
+
+def _mark_zeros(sheet: Sheet, diagram: _Diagram) -> None:
+    """Small open circles where a curve changes sign between the ends of a rod."""
+    if len(diagram.rows) > _MANY or diagram.is_straight:
+        return
+    which, shares = zeros(diagram.polynomials)
+    large = np.abs(diagram.heights).max(axis=1) > 2.0 * sheet.unit
+    kept = (shares > _INSIDE) & (shares < 1.0 - _INSIDE) & large[which]
+    which, shares = which[kept], shares[kept]
+    if not len(which):
+        return
+    at, radius = diagram.at(which, shares)[0], np.full(len(which), _ZERO * sheet.unit)
+    colour, of = faded(sheet.theme.ink, 0.9), ("rods", diagram.rows[which])
+    sheet.above.append(Discs(at, radius, colour, sheet.theme.background, 1.25 * sheet.unit, of))
+
+
+# --- values ------------------------------------------------------------------------------------------
+
+
+def _write(sheet: Sheet, diagram: _Diagram) -> None:
+    """Values: of rectangles in the middle of what is seen of the rod, else at the ends and at the extreme between, where
+    they are not told by a neighbour already."""
+    quantity, field = diagram.quantity, f"rods.{diagram.quantity}"
+    if diagram.is_straight:
+        ends = np.arange(2 * len(diagram.rows)).reshape(2, -1).T
+        points = np.concatenate([diagram.base.start, diagram.base.end])
+        start, end, seen = clip_rods(points, ends, *bounds(sheet.viewport))
+        diagram = diagram.some(seen)
+        diagram = replace(diagram, base=replace(diagram.base, start=start, end=end))
+    selected = sheet.chosen(sheet.tagged(Selected, "rods"), diagram.rows)
+    if sheet.rod_length < _SHORTEST_WITH_VALUE * sheet.unit:
+        sheet.values[field] += int((~selected).sum())
+        diagram, selected = diagram.some(selected), selected[selected]
+    which, number, shares, value = _told(sheet, diagram)
+    keys, selected = _PLACES * diagram.rows[which] + number, selected[which]
+    seen = np.arange(len(which))
+    if not diagram.is_straight:
+        seen = seen[sheet.sees(diagram.at(which, shares)[0])]
+    shown, worth = most_important(sheet, field, keys, value, seen, np.where(selected, 1e6, 0.0))
     if not len(shown):
         return
-    particles = sheet.model.particles
-    largest = max(largest_force(sheet.model, sheet.view), sheet.view.largest_force)
-    taken = np.full((len(sheet.centres), 2), NO_SUPPORT)  # by reactions: a side of each particle, by axis
-    applied = (particles.applied_force - distributed_shares(sheet.model))[
-        shown
-    ]  # rows of arrows show the others
-    for name, force in (("reaction", particles.reaction[shown]), ("load", applied)):
-        index, axis = _thinned(sheet, shown, force, *np.nonzero(np.abs(force) > SMALLEST_FORCE))
-        if len(index):
-            _draw_forces(sheet, name, shown[index], axis, force[index, axis], largest, sides, taken)
+    few = len(seen) <= FEW_VALUES
+    size, which, number, value = sheet.font(12.0 if few else 11.0), which[shown], number[shown], value[shown]
+    nothing = SMALLEST if diagram.is_straight else max(_NOTHING * diagram.largest, SMALLEST)
+    texts = [_written(quantity, each, nothing, few) for each in value.tolist()]
+    lines: Literal["cover", "spare"] = "spare" if few else "cover"
+    half, height = half_sizes(sheet, texts, size), diagram.scale * np.abs(value)
+    at, normal = diagram.at(which, shares[shown])
+    along = normal[:, ::-1] * [-1.0, 1.0] * diagram.side[which, None]
+    normal = normal * np.where(value < 0.0, -1.0, 1.0)[:, None]
+    edge = at + normal * height[:, None]
+    if diagram.is_straight:
+        way = (diagram.base.end - diagram.base.start)[which]
+        places = _places_by_rectangles(at, normal, height, half, np.hypot(*way.T), sheet.unit)
+        anchors = edge[:, None] + (ANCHORS[:, None] - 0.5) * way[:, None]
+    else:
+        inward = np.array([1.0, -1.0, 0.0])[number]
+        places = _places_by_curves(at, normal, along, height, inward, half, sheet.unit)
+        anchors = np.stack([edge, at + normal * (0.5 * height)[:, None], at], axis=1)
+        worth = worth + np.where(np.abs(value) > _GREAT * diagram.largest, 2e9, 0.0)  # before arrows
+    for k, row in enumerate(diagram.rows[which].tolist()):
+        of, key, rank = ("rods", row), (field, int(keys[shown[k]])), -float(worth[k])
+        colour = _colour_of(sheet, quantity, float(value[k]))
+        leads = anchors[k], normal[k]
+        write(
+            sheet, texts[k], places[k], colour, key, of, rank=rank, own=of, leads=leads, size=size, lines=lines
+        )
 
 
-def largest_force(model: Model, view: View) -> float:
-    """The largest force (kN) that an arrow may show: of loads at full size, and in diagrams of their parts and reactions."""
-    particles = model.particles
-    largest = float(np.hypot(*full_load(model).T).max(initial=SMALLEST_FORCE))
-    if view.forces_known and (view.all_diagrams or model.any_tagged(DiagramShown)):
-        for forces in (particles.applied_force, particles.reaction):
-            largest = max(largest, float(np.abs(forces).max(initial=0.0)))
-    return largest
+def _colour_of(sheet: Sheet, quantity: str, value: float) -> Colour:
+    if quantity != AXIAL:
+        return sheet.theme.text
+    sign = "zero" if abs(value) <= SMALLEST else "tension" if value > 0.0 else "compression"
+    return _colour(sheet, sign)
 
 
-def _draw_forces(
-    sheet: Sheet,
-    name: str,
-    rows: Rows,
-    axis: Rows,
-    value: NDArray[np.float64],
-    largest: float,
-    sides: NDArray[np.int64],
-    taken: NDArray[np.int64],
-) -> None:
-    """Arrows of forces of one kind along an axis each, with their values."""
-    # Model y is up, pixels' y is down: a positive vertical force points in direction 3.
-    direction = np.where(axis == 0, np.where(value > 0, 0, 2), np.where(value > 0, 3, 1))
-    length = lengths(sheet, FORCES, np.abs(value), largest)
-    tail, outer = _arrow_places(sheet, rows, direction, length, sides, taken[rows, axis])
-    taken[rows, axis] = outer
-    along, parts = DIRECTIONS[direction], (_ARROW_VALUES[name], 2 * rows + axis)
-    middle = tail + along * length[:, None] / 2
-    sheet.explain(name, tail, tail + along * length[:, None])
-    sheet.marks += arrows(sheet, _of(sheet, name, rows), tail, along, length, getattr(sheet.theme, name), parts)
-    sheet.occupancy.block_squares(middle, np.minimum(0.2 * length, 3.0 * sheet.unit))
-    _label_arrows(sheet, name, 2 * rows + axis, value, middle, length, outer, outer == direction)
+def _written(quantity: str, value: float, nothing: float, few: bool) -> str:
+    """A value as it is told: moments without sign, since their side says it; shear with both."""
+    text = written.number(abs(value) if quantity == MOMENT else value, nothing=nothing)
+    sign = "+" if quantity == SHEAR and value > 0.0 and text != "0" else ""
+    return f"{sign}{text}{f' {_UNITS[quantity]}' if few else ''}"
 
 
-def _of(sheet: Sheet, name: str, rows: Rows) -> list[Owner]:
-    """Whose the arrows of forces of one kind on particles are."""
-    return whose(sheet.model, rows) if name == "load" else [("particles", row) for row in rows.tolist()]
+def _told(sheet: Sheet, diagram: _Diagram) -> tuple[Rows, Rows, Values, Values]:
+    """Which values are told: of which rod of the diagram, at which of its places, the share there, and the value."""
+    count, polynomials, quantity = len(diagram.rows), diagram.polynomials, diagram.quantity
+    every = np.arange(count)
+    if diagram.is_straight:
+        return every, np.full(count, 2), np.full(count, 0.5), polynomials[:, 0]
+    ends = values(polynomials, np.array([0.0, 1.0]))
+    largest = diagram.largest
+    least = max(_NOTHING * largest, SMALLEST)
+    told = np.abs(ends) > least
+    which, shares = zeros(derivative(polynomials))
+    between = values(polynomials[which], shares[:, None])[:, 0]
+    kept = (shares > _INSIDE) & (shares < 1.0 - _INSIDE) & (np.abs(between) > least)
+    kept &= (np.abs(between[:, None] - ends[which]) > _ALIKE * largest).all(axis=1)
+    which, shares, between = which[kept], shares[kept], between[kept]
+    order = np.lexsort((-np.abs(between), which))  # of several in a rod the largest
+    first = order[np.unique(which[order], return_index=True)[1]]
+    which, shares, between = which[first], shares[first], between[first]
+    same = np.abs(ends[:, 0] - ends[:, 1]) <= _ALIKE * largest
+    same[which] = False
+    middle = np.flatnonzero(same & (told.any(axis=1) | (quantity == AXIAL)))
+    middle = middle[~_continued(sheet, diagram.rows[middle], ends[middle, 0], largest)]
+    told[same] = False
+    if quantity == MOMENT:
+        told &= ~_repeated(sheet, diagram, ends, largest)
+    rod, end = np.nonzero(told)
+    return (
+        np.concatenate([rod, which, every[middle]]),
+        np.concatenate([end, np.full(len(which) + len(middle), 2)]),
+        np.concatenate([end.astype(np.float64), shares, np.full(len(middle), 0.5)]),
+        np.concatenate([ends[rod, end], between, values(polynomials[middle], np.array([0.5]))[:, 0]]),
+    )
 
 
-def _thinned(
-    sheet: Sheet, rows: Rows, force: NDArray[np.float64], index: Rows, axis: Rows
-) -> tuple[Rows, Rows]:
-    """Of many arrows, the largest in each square, so that they can be told apart.
-
-    Squares divide the original geometry, so that arrows neither come nor go while a structure moves.
-    """
-    if len(index) <= _MANY_ARROWS:
-        return index, axis
-    side = _SQUARE * sheet.unit / sheet.view.camera.scale
-    x, y = np.floor(sheet.model.particles.position[rows[index]] / side).T
-    order = np.lexsort((index, -np.abs(force[index, axis]), axis, y, x))
-    x, y, along = x[order], y[order], axis[order]
-    first = np.ones(len(order), dtype=bool)
-    first[1:] = (np.diff(x) != 0) | (np.diff(y) != 0) | (np.diff(along) != 0)
-    kept = np.sort(order[first])
-    if len(kept) < len(order):
-        sheet.notes.append(tr("zoom in to see all loads and reactions"))
-    return index[kept], axis[kept]
+def _continued(sheet: Sheet, rows: Rows, constant: Values, largest: float) -> NDArray[np.bool_]:
+    """Which rods with constant values go on from another one with the same, by a joint of these two only."""
+    start, end = sheet.ends[rows].T
+    before = np.full(len(sheet.centres), np.nan)
+    before[end] = np.abs(constant)
+    joined = np.bincount(sheet.ends.ravel(), minlength=len(sheet.centres)) == 2
+    same: NDArray[np.bool_] = joined[start] & (np.abs(before[start] - np.abs(constant)) <= _ALIKE * largest)
+    return same
 
 
-def _arrow_places(
-    sheet: Sheet,
-    rows: Rows,
-    direction: NDArray[np.int64],
-    length: NDArray[np.float64],
-    sides: NDArray[np.int64],
-    taken: NDArray[np.int64],
-) -> tuple[Points, NDArray[np.int64]]:
-    """Tails of the arrows, and on which side of its particle each stands.
-
-    An arrow starts at the rim, or ends at it where the side that it comes from is freer; there it stands beyond
-    the support, if there is one, and beyond the arrow of a moment. taken: the side of another arrow along the
-    same axis, or NO_SUPPORT.
-    """
-    u = sheet.unit
-    opposite, crowd = (direction + 2) % 4, crowding(sheet, rows)
-    supported = sides[rows] != NO_SUPPORT
-    busy_ahead = crowd[rows, direction] + 0.8 * (supported & (sides[rows] == direction))
-    busy_behind = crowd[rows, opposite] + 0.8 * (supported & (sides[rows] == opposite))
-    pushes = ((busy_behind < busy_ahead - 0.1) & (taken != opposite)) | (taken == direction)
-    side = np.where(pushes, opposite, direction)
-    gap = sheet.radii[rows] + 2.0 * u + np.where(supported & (sides[rows] == side), SUPPORT_DEPTH * u, 0.0)
-    around = np.where(DIRECTIONS[side, 1] > 0.0, 0.0, sheet.arcs[rows])  # they are open below
-    gap = np.maximum(gap, around + np.where(around > 0.0, _OFF_ARCS * u, 0.0))
-    outward = DIRECTIONS[side]
-    start = sheet.centres[rows] + outward * gap[:, None]
-    return start + outward * np.where(pushes, length, 0.0)[:, None], side
+def _repeated(sheet: Sheet, diagram: _Diagram, ends: Values, largest: float) -> NDArray[np.bool_]:
+    """Ends of rods whose moment another end at the same joint tells, or that are no extreme of a member, (n, 2)."""
+    rows, repeated = diagram.rows, np.zeros(ends.shape, dtype=bool)
+    joints = sheet.ends[rows]
+    at = np.bincount(sheet.ends[sheet.model.rods.turning_shares > 0.0], minlength=len(sheet.centres))
+    slope = values(derivative(diagram.polynomials), np.array([0.0, 1.0])) * [1.0, -1.0]  # away from the end
+    slope = slope / np.maximum(sheet.model.rods.rest_length[rows], 1e-300)[:, None] * np.sign(ends)
+    way = (diagram.points[:, -1] - diagram.points[:, 0])[:, None] * np.array([[1.0], [-1.0]])
+    way = way / np.maximum(np.hypot(way[..., 0], way[..., 1]), 1e-9)[..., None]
+    shared = np.flatnonzero(at[joints].ravel() == 2)
+    shared = shared[np.argsort(joints.ravel()[shared], kind="stable")]
+    pairs = np.flatnonzero(np.diff(joints.ravel()[shared]) == 0)
+    one, other = shared[pairs], shared[pairs + 1]
+    same = np.abs(np.abs(ends.ravel()[one]) - np.abs(ends.ravel()[other])) <= _ALIKE * largest
+    one, other = one[same], other[same]
+    way, slope = way.reshape(-1, 2), slope.ravel()
+    straight = (way[one] * way[other]).sum(axis=1) < -_STRAIGHT
+    repeated.ravel()[other] = True
+    repeated.ravel()[one[straight & (slope[one] * slope[other] < 0.0)]] = True  # the moment passes through
+    return repeated
 
 
-def _label_arrows(
-    sheet: Sheet,
-    name: str,
-    which: Rows,
-    value: NDArray[np.float64],
-    middle: Points,
-    length: NDArray[np.float64],
-    side: NDArray[np.int64],
-    pulls: NDArray[np.bool_],
-) -> None:
-    """The size of the force at each arrow; which: twice the particle's row, one more if it is vertical."""
-    few, field = len(value) <= FEW_VALUES, _ARROW_VALUES[name]
-    worth = worth_of(sheet, field, which, value)
-    seen = np.flatnonzero(sheet.sees(middle))
-    sheet.values[field] = len(seen)
-    shown = most_important(sheet, worth, seen)
-    sizes = np.abs(value[shown]).tolist()
-    texts, font, half = _value_texts(sheet, sizes, few)
-    outward = DIRECTIONS[side[shown]]
-    places = _places_by_arrows(middle[shown], length[shown], outward, pulls[shown], half, sheet.unit)
-    # Arrows are few and say little without their value: before the rods.
-    ranks, keys = (-worth[shown] - 1e9).tolist(), [(field, number) for number in which[shown].tolist()]
-    colours = [getattr(sheet.theme, name)] * len(texts)
-    of = _of(sheet, name, which[shown] // 2)
-    anchors = (middle[shown] + outward * length[shown, None] / 2)[:, None]
-    values_of = zip(texts, places, colours, ranks, keys, of, keys, anchors, outward, strict=True)
-    add_values(sheet, values_of, font, "spare")
-
-
-def _places_by_arrows(
-    middle: Points,
-    length: NDArray[np.float64],
-    outward: Points,
-    pulls: NDArray[np.bool_],
-    half: Points,
-    u: float,
+def _places_by_rectangles(
+    at: Points, normal: Points, height: Values, half: Points, length: Values, u: float
 ) -> Points:
-    """Where the value of each arrow may stand, (n, k, 2): beyond its outer end, beside its head, it, that end.
+    """Where each value may stand, (n, k, 2): in its rectangle if it fits, beyond, behind the rod, on it.
 
-    pulls: whether the head is at the outer end.
+    at: middles of what is seen of the rods, which is so long.
     """
-    level = outward[:, 0] != 0.0
-    deep, width = np.where(level, half.T, half.T[::-1])
-    outer, nothing, wing = length / 2, np.zeros(len(middle)), head_length(length, u) / 2
-    beyond, beside = outer + deep + GAP * u, wing + width + GAP * u
-    along, across = [beyond], [nothing]
-    for place in ((outer - 2.0 * wing) * np.where(pulls, 1.0, -1.0), nothing, deep - outer, outer, beyond):
-        along += [place, place]
-        across += [beside, -beside]
-    along += [nothing, nothing]
-    across += [beside + width, -beside - width]
-    x, y = np.stack(along, axis=1), np.stack(across, axis=1)
-    dx, dy = outward.T[:, :, None]
-    places: Points = middle[:, None, :] + np.stack([dx * x + dy * y, dy * x + dx * y], axis=2)
-    return places
+    along = np.stack([-normal[:, 1], normal[:, 0]], axis=1)
+    across, beside = reach(normal, half), reach(normal, half) + GAP * u
+    fits, beyond = height > 2.0 * across, height + beside
+    rows = [
+        np.where(fits, 0.5 * height, beyond),
+        beyond,
+        np.where(fits, beside, -beside),
+        -beside,
+        0.0 * height,
+    ]
+    slides = np.maximum(length / 2 - reach(along, half), 0.0)[:, None] * _ALONG
+    return in_rows(at, normal, rows, along, slides).reshape(len(at), -1, 2)
+
+
+def _places_by_curves(
+    at: Points, normal: Points, along: Points, height: Values, inward: Values, half: Points, u: float
+) -> Points:
+    """Where each value may stand, (n, k, 2): beyond the edge of its diagram, in it if it fits, behind the rod.
+
+    inward: +1, −1: at the start, the end of a rod, whose values stand along it; 0: between.
+    """
+    across, beside = reach(normal, half), reach(normal, half) + GAP * u
+    fits, beyond = height > 2.0 * across, height + beside
+    rows = [beyond, np.where(fits, 0.5 * height, beyond), -beside, beyond + 10.0 * u]
+    rows.append(np.where(fits, beside, -beside))
+    step = reach(along, half) + 3.0 * u
+    near = np.maximum(_NEAR * u, 2.0 * step)
+    slides = [
+        np.where(inward == 0.0, share * step, inward * np.minimum(other * step, near))
+        for share, other in _SLIDES
+    ]
+    slides.append(inward * 3.0 * step)
+    slides = slides if len(at) <= FEW_VALUES else slides[:3]
+    places = in_rows(at, normal, rows, along, np.stack(slides, axis=1))
+    parts = [part.reshape(len(at), -1, 2) for part in (places[:, :, :5], places[:, :, 5:])]  # far ones last
+    return np.concatenate(parts, axis=1)

@@ -10,6 +10,7 @@ import numpy as np
 
 from pinjoint.components.camera import Viewport
 from pinjoint.components.language import listed, tr
+from pinjoint.components.mistake import WrongValue
 from pinjoint.components.wording import printable
 from pinjoint.systems.render.clip import bounds, clip_segments
 from pinjoint.systems.render.icons import icons
@@ -93,8 +94,8 @@ def check_mark(mark: Mark) -> None:
         arrays.append("of")
         counts.add(len(of[1]))
     if len(counts) > 1:
-        raise ValueError(
-            tr("{mark}: {parts} have different numbers of rows", mark=kind.__name__, parts=listed(arrays))
+        raise WrongValue(
+            "{mark}: {parts} have different numbers of rows", mark=kind.__name__, parts=listed(arrays)
         )
 
 

@@ -11,14 +11,15 @@ from pinjoint.components import written
 from pinjoint.components.bent import axes
 from pinjoint.components.free_body import Apart, Force, apart, on_joint
 from pinjoint.components.language import tr
-from pinjoint.systems.render.arrows import FORCES, GAP, arrows, lengths
-from pinjoint.systems.render.diagrams import SMALLEST_FORCE
-from pinjoint.systems.render.labels import Label, half_size
+from pinjoint.systems.broad_phase import distance_to_segments
+from pinjoint.systems.render.arrows import FORCES, OFF, draw_arrows, lengths
+from pinjoint.systems.render.labels import Key
 from pinjoint.systems.render.marks import Owner, Points, Strokes
-from pinjoint.systems.render.members import arc_marks, gaps, label_moment
+from pinjoint.systems.render.members import draw_arcs, gaps, write_moment
 from pinjoint.systems.render.occupancy import STRONG
 from pinjoint.systems.render.sheet import Sheet
-from pinjoint.systems.render.theme import Colour, faded
+from pinjoint.systems.render.theme import Colour
+from pinjoint.systems.render.values import SMALLEST, beside, half_sizes, off, write
 
 MOST = 150  # rods that are taken apart: of more, arrows would hide one another
 SHORTEST = 74.0  # points: shorter rods stay whole, since there is no room for arrows
@@ -54,7 +55,7 @@ def draw_free_bodies(sheet: Sheet) -> None:
 def _largest(sheet: Sheet, force: NDArray[np.float64]) -> float:
     particles = sheet.model.particles
     acting = [particles.applied_force, particles.reaction, force]
-    return max(SMALLEST_FORCE, *(float(np.abs(values).max(initial=0.0)) for values in acting))
+    return max(SMALLEST, *(float(np.abs(values).max(initial=0.0)) for values in acting))
 
 
 def _draw_rods(sheet: Sheet, known: Apart, long: NDArray[np.bool_], largest: float) -> None:
@@ -63,17 +64,24 @@ def _draw_rods(sheet: Sheet, known: Apart, long: NDArray[np.bool_], largest: flo
     way = sheet.end - sheet.start
     length = np.hypot(*way.T)
     along = way / np.maximum(length, 1e-9)[:, None]
-    bearing = long & (np.abs(known.on_ends[rods]) > SMALLEST_FORCE).any(axis=(1, 2))
+    bearing = long & (np.abs(known.on_ends[rods]) > SMALLEST).any(axis=(1, 2))
     gap = np.where(bearing, gaps(length, u), 0.0)
     start, end = sheet.start + gap[:, None] * along, sheet.end - gap[:, None] * along
     _draw_bodies(sheet, start, end, gap / np.maximum(length, 1e-9))
     _draw_bending(sheet, known, bearing, (start, end), along, largest)
     for index in np.flatnonzero(long & ~bearing).tolist():
-        row, own = int(rods[index]), [start[index], end[index]]
-        places = _beside(sheet, "0 kN", *own)
-        _label(sheet, "0 kN", places, sheet.theme.zero, ("rods.end0", row), ("rods", row), own)
+        row, own = int(rods[index]), (start[index], end[index])
+        _write(
+            sheet,
+            "0 kN",
+            _by_line(sheet, "0 kN", *own),
+            sheet.theme.zero,
+            ("rods.end0", row),
+            ("rods", row),
+            own,
+        )
     for pulled, name in ((True, "tension"), (False, "compression")):
-        bears = long & ((force[rods] > SMALLEST_FORCE) if pulled else (force[rods] < -SMALLEST_FORCE))
+        bears = long & ((force[rods] > SMALLEST) if pulled else (force[rods] < -SMALLEST))
         which = np.flatnonzero(bears)
         if not len(which):
             continue
@@ -81,13 +89,14 @@ def _draw_rods(sheet: Sheet, known: Apart, long: NDArray[np.bool_], largest: flo
         colour: Colour = getattr(sheet.theme, name)
         for joint, out, rod_end, side in ((sheet.start, along, start, 0), (sheet.end, -along, end, 1)):
             radius = sheet.radii[sheet.ends[rods[which], side]]
-            room = gap[which] - radius - GAP * u
-            size = np.minimum(lengths(sheet, FORCES, np.abs(force[rods[which]]), largest), 0.5 * room - GAP * u)
-            rim = joint[which] + (radius + GAP * u)[:, None] * out[which]
+            room = gap[which] - radius - OFF * u
+            size = np.minimum(lengths(sheet, FORCES, np.abs(force[rods[which]]), largest), 0.5 * room - OFF * u)
+            rim = joint[which] + (radius + OFF * u)[:, None] * out[which]
             _draw_pair(sheet, rods[which], rim, rod_end[which], out[which], size, colour, pulled=pulled)
-            for row, *own in zip(rods[which].tolist(), rim, rod_end[which], strict=True):
+            for row, *line in zip(rods[which].tolist(), rim, rod_end[which], strict=True):
                 text, key = written.force(abs(float(force[row]))), (f"rods.end{side}", row)
-                _label(sheet, text, _beside(sheet, text, *own), colour, key, ("rods", row), own)
+                own = line[0], line[1]
+                _write(sheet, text, _by_line(sheet, text, *own), colour, key, ("rods", row), own)
 
 
 def _draw_bodies(sheet: Sheet, start: Points, end: Points, gap: NDArray[np.float64]) -> None:
@@ -124,51 +133,37 @@ def _draw_bending(
     for side, joint, out in ((0, sheet.start, along), (1, sheet.end, -along)):
         force = known.on_ends[sheet.rods, side]
         shear = (force[:, :2] * true).sum(axis=1)
-        rim = joint + (sheet.radii[sheet.ends[sheet.rods, side]] + 3.0 * GAP * u)[:, None] * out
-        which = np.flatnonzero(bearing & (np.abs(shear) > SMALLEST_FORCE))
+        rim = joint + (sheet.radii[sheet.ends[sheet.rods, side]] + 3.0 * OFF * u)[:, None] * out
+        which = np.flatnonzero(bearing & (np.abs(shear) > SMALLEST))
         if len(which):
             way = across[which] * np.sign(shear[which])[:, None]
             size = lengths(sheet, FORCES, np.abs(shear[which]), largest)
-            rows = sheet.rods[which]
-            whose: list[Owner] = [("rods", row) for row in rows.tolist()]
-            key = ("rods.shear", 2 * rows + side)
-            sheet.marks += arrows(sheet, whose, rod_ends[side][which], way, size, colour, key)
-            sheet.marks += arrows(sheet, whose, rim[which], -way, size, colour, key)
-            for index, row, tail, direction, long in zip(
-                which.tolist(), rows.tolist(), rod_ends[side][which], way, size.tolist(), strict=True
-            ):
-                own = [tail, tail + long * direction]
-                text = written.force(abs(float(shear[index])))
-                places = [_beyond(sheet, text, own[1], direction), *_beside(sheet, text, *own)]
-                _label(sheet, text, places, colour, ("rods.shear", 2 * row + side), ("rods", row), own)
+            rows, key = sheet.rods[which], ("rods.shear", 2 * sheet.rods[which] + side)
+            for at, forwards in ((rod_ends[side], way), (rim, -way)):
+                draw_arrows(sheet, ("rods", rows), at[which], forwards, size, colour, key)
+            tips = rod_ends[side][which] + size[:, None] * way
+            for k, (index, row) in enumerate(zip(which.tolist(), rows.tolist(), strict=True)):
+                own, text = (rod_ends[side][index], tips[k]), written.force(abs(float(shear[index])))
+                places = _by_arrow(sheet, text, *own, way[k])
+                _write(sheet, text, places, colour, ("rods.shear", 2 * row + side), ("rods", row), own)
             sheet.legend.append("shear")
         moment = force[:, 2]
-        which = np.flatnonzero(bearing & (np.abs(moment) > SMALLEST_FORCE))
+        which = np.flatnonzero(bearing & (np.abs(moment) > SMALLEST))
         for at, turn in ((rod_ends[side], moment), (rim, -moment)):
             radius = np.full(len(which), _ARC * u)
             arcs = ("rods", sheet.rods[which])
-            sheet.marks += arc_marks(sheet, arcs, at[which], radius, turn[which], colour, "rods.bending_moment")
+            draw_arcs(sheet, arcs, at[which], radius, turn[which], colour, "rods.bending_moment")
         for index in which.tolist():
             text, row, at = (
                 written.moment(abs(float(moment[index]))),
                 int(sheet.rods[index]),
                 rod_ends[side][index],
             )
-            down = np.array([0.0, _ARC * u])
-            ends = [at - down, at + down]
-            places = [_beyond(sheet, text, end, (end - at) / (_ARC * u)) for end in ends]
-            places += [
-                _beyond(sheet, text, at + sign * _ARC * u * across[index], sign * across[index])
-                for sign in (1, -1)
-            ]
-            _label(sheet, text, places, colour, ("rods.bending_moment", 2 * row + side), ("rods", row), ends)
-
-
-def _beyond(sheet: Sheet, text: str, end: Points, way: Points) -> Points:
-    """Where a value may stand beyond the end of a line that goes that way."""
-    half = half_size(text, sheet.font(12.0), "semibold", sheet.unit)
-    found: Points = end + (abs(way[0]) * half[0] + abs(way[1]) * half[1] + 4.0 * sheet.unit) * way
-    return found
+            ways = np.array([[0.0, -1.0], [0.0, 1.0], across[index], -across[index]])
+            places = off(at, ways, (_ARC + 4.0) * u, half_sizes(sheet, [text]))
+            first, last = at + _ARC * u * ways[:2]
+            key_of_value = "rods.bending_moment", 2 * row + side
+            _write(sheet, text, places, colour, key_of_value, ("rods", row), (first, last))
 
 
 def _draw_pair(
@@ -186,14 +181,9 @@ def _draw_pair(
 
     A rod in tension pulls both: the arrows point at each other. In compression they point apart.
     """
-    step = size[:, None] * out
-    whose = [("rods", row) for row in rows.tolist()]
-    if pulled:
-        sheet.marks += arrows(sheet, whose, rim, out, size, colour, ("rods.end", rows))
-        sheet.marks += arrows(sheet, whose, rod_end, -out, size, colour, ("rods.end", rows))
-    else:
-        sheet.marks += arrows(sheet, whose, rim + step, -out, size, colour, ("rods.end", rows))
-        sheet.marks += arrows(sheet, whose, rod_end - step, out, size, colour, ("rods.end", rows))
+    for at, way in ((rim, out), (rod_end, -out)):
+        tail, along = (at, way) if pulled else (at + size[:, None] * way, -way)
+        draw_arrows(sheet, ("rods", rows), tail, along, size, colour, ("rods.end", rows))
 
 
 def _draw_others(sheet: Sheet, row: int, forces: list[Force], largest: float) -> None:
@@ -201,17 +191,15 @@ def _draw_others(sheet: Sheet, row: int, forces: list[Force], largest: float) ->
     taken = _directions_of_rods(sheet, row)
     u, centre, radius = sheet.unit, sheet.centres[row], float(sheet.radii[row])
     for force in forces:
-        if abs(force.moment) > SMALLEST_FORCE:
+        if abs(force.moment) > SMALLEST:
             colour: Colour = sheet.theme.ink if force.kind == "inertia" else getattr(sheet.theme, force.kind)
             key, around = f"particles.{force.name}.moment", np.array([radius + 2.0 * _ARC * u])
             at, rows = centre[None], np.array([row])
-            sheet.marks += arc_marks(
-                sheet, ("particles", rows), at, around, np.array([force.moment]), colour, key
-            )
+            draw_arcs(sheet, ("particles", rows), at, around, np.array([force.moment]), colour, key)
             sheet.legend.append(f"{force.kind} moment")
-            label_moment(sheet, centre, float(around[0]), force.moment, colour, (key, row))
+            write_moment(sheet, centre, float(around[0]), force.moment, colour, (key, row))
         size = math.hypot(force.x, force.y)
-        if size <= SMALLEST_FORCE:
+        if size <= SMALLEST:
             continue
         out = np.array([force.x, -force.y]) / size
         crowd = [max((float(side @ other) for other in taken), default=-1.0) for side in (out, -out)]
@@ -220,19 +208,16 @@ def _draw_others(sheet: Sheet, row: int, forces: list[Force], largest: float) ->
         aside = np.array([-side[1], side[0]]) * (_ASIDE * u if min(crowd) > _CLEAR else 0.0)
         taken.append(side)
         length = float(lengths(sheet, FORCES, np.array([size]), largest)[0])
-        rim = centre + (radius + GAP * u) * side + aside
+        rim = centre + (radius + OFF * u) * side + aside
         tail = rim + length * side if pushes else rim
         colour = sheet.theme.ink if force.kind == "inertia" else getattr(sheet.theme, force.kind)
         of = ("loads", force.load) if force.load >= 0 else ("particles", row)
         part = f"particles.{force.name}", np.array([row])
-        sheet.marks += arrows(sheet, [of], tail[None], out[None], np.array([length]), colour, part)
+        draw_arrows(sheet, [of], tail[None], out[None], np.array([length]), colour, part)
         sheet.legend.append(force.kind)
-        text = written.force(size)
-        half = half_size(text, sheet.font(12.0), "semibold", u)
-        far = rim + (length + 4.0 * u + abs(side[0]) * half[0] + abs(side[1]) * half[1]) * side
-        own = [rim, rim + length * side]
-        places = [far, *_beside(sheet, text, *own)]
-        _label(sheet, text, places, colour, (f"particles.{force.name}", row), of, own)
+        text, far = written.force(size), rim + length * side
+        places = _by_arrow(sheet, text, rim, far, side)
+        _write(sheet, text, places, colour, (f"particles.{force.name}", row), of, (rim, far))
 
 
 def _directions_of_rods(sheet: Sheet, row: int) -> list[Points]:
@@ -245,44 +230,32 @@ def _directions_of_rods(sheet: Sheet, row: int) -> list[Points]:
     return found
 
 
-def _beside(sheet: Sheet, text: str, start: Points, end: Points) -> list[Points]:
+def _by_line(sheet: Sheet, text: str, start: Points, end: Points) -> Points:
     """Where a value may stand beside a line: on either side of its middle, then nearer to its ends."""
-    half = half_size(text, sheet.font(12.0), "semibold", sheet.unit)
-    way = end - start
-    across = np.array([-way[1], way[0]]) / max(float(np.hypot(*way)), 1e-9)
-    reach = abs(across[0]) * half[0] + abs(across[1]) * half[1] + 4.0 * sheet.unit
-    shares = (0.5, 0.75, 0.3, 1.0)
-    return [start + share * way + side * reach * across for share in shares for side in (1.0, -1.0)]
+    return beside(sheet, text, start, end, (0.5, 0.75, 0.3, 1.0), 4.0)
 
 
-def _label(
+def _by_arrow(sheet: Sheet, text: str, start: Points, end: Points, way: Points) -> Points:
+    """Where the value of an arrow may stand: beyond an end of it that lies that way, or beside it."""
+    beyond = off(end, way, 4.0 * sheet.unit, half_sizes(sheet, [text]))
+    return np.concatenate([beyond, _by_line(sheet, text, start, end)])
+
+
+def _write(
     sheet: Sheet,
     text: str,
-    places: list[Points],
+    places: Points,
     colour: Colour,
-    key: tuple[str, int],
+    key: Key,
     of: Owner,
-    own: list[Points],
+    own: tuple[Points, Points],
 ) -> None:
     """A value at one of the places in sight that are nearer to its own arrows, a line from and to, than to other rods."""
-    at = np.array(places)
-    at = at[sheet.sees(at)]
-    if not len(at):
-        return
-    sheet.values[key[0]] += 1
+    at = places[sheet.sees(places)]
     others = sheet.rods != (of[1] if of[0] == "rods" else -1)
-    distance = _distances(at, sheet.start[others], sheet.end[others]).min(axis=1, initial=np.inf)
-    nearest = at[_distances(at, own[0][None], own[1][None])[:, 0] < distance]
+    away = distance_to_segments(at[:, None], sheet.start[others], sheet.end[others]).min(axis=1, initial=np.inf)
+    nearest = at[distance_to_segments(at, *own) < away]
     if len(nearest):
-        backing = faded(sheet.theme.background, 0.86)
-        label = Label(text, nearest, sheet.font(12.0), colour, -1e9, "semibold", backing, "avoid", key, of)
-        sheet.labels.append(label)
-
-
-def _distances(points: Points, start: Points, end: Points) -> NDArray[np.float64]:
-    """From each of points (n, 2) to each of lines (m, 2), shape (n, m)."""
-    way, to = end - start, points[:, None] - start
-    share = (to * way).sum(axis=2) / np.maximum((way * way).sum(axis=1), 1e-12)
-    away = to - np.clip(share, 0.0, 1.0)[:, :, None] * way
-    found: NDArray[np.float64] = np.hypot(away[..., 0], away[..., 1])
-    return found
+        write(sheet, text, nearest, colour, key, of, lines="avoid")
+    elif len(at):
+        sheet.values[key[0]] += 1

@@ -12,14 +12,12 @@ from collections.abc import Sequence
 from functools import cache
 from importlib.resources import files
 
-from pinjoint.components.language import tr
+from pinjoint.components.extensions import EXTENSIONS
+from pinjoint.components.mistake import WrongValue
 
 Part = tuple[str, tuple[float, ...]]
 
 STROKE = 1.8  # the width of lines
-
-
-ADDED: dict[str, tuple[Part, ...]] = {}  # icons of mods
 
 
 _NUMBERS = {"disc": 3, "arc": 5}  # of one part; lines and areas have two for each of their points
@@ -35,18 +33,16 @@ def check_icon(parts: Sequence[Part]) -> None:
             else few <= len(numbers) and len(numbers) % 2 == 0
         )
         if kind not in (*_NUMBERS, "line", "area") or not fits or not all(map(math.isfinite, numbers)):
-            raise ValueError(
-                tr(
-                    "{part!r} is not a part of an icon; write ('line', (-5, 0, 5, 0)), 'area' with three points or"
-                    " more, ('arc', (x, y, radius, from, to)) or ('disc', (x, y, radius)).",
-                    part=(kind, numbers),
-                )
+            raise WrongValue(
+                "{part!r} is not a part of an icon; write ('line', (-5, 0, 5, 0)), 'area' with three points or"
+                " more, ('arc', (x, y, radius, from, to)) or ('disc', (x, y, radius)).",
+                part=(kind, numbers),
             )
 
 
 def icon(name: str) -> tuple[Part, ...]:
     """The parts of an icon. Raises KeyError."""
-    return ADDED[name] if name in ADDED else icons()[name]
+    return EXTENSIONS.icons[name] if name in EXTENSIONS.icons else icons()[name]
 
 
 @cache

@@ -10,13 +10,14 @@ from pinjoint.components.bent import axes
 from pinjoint.components.model import Model
 from pinjoint.components.rod import rigid_joints
 from pinjoint.components.tags import DiagramShown
-from pinjoint.systems.render.arrows import MOST, arrows, head_length
-from pinjoint.systems.render.labels import Label, half_size
-from pinjoint.systems.render.marks import Discs, Fills, Mark, Owners, Points, Strokes
+from pinjoint.systems.render.arrows import MOST, draw_arrows, head_length
+from pinjoint.systems.render.leaders import ANCHORS
+from pinjoint.systems.render.marks import Discs, Fills, Owners, Points, Strokes
 from pinjoint.systems.render.occupancy import STRONG
 from pinjoint.systems.render.sheet import Rows, Sheet
 from pinjoint.systems.render.symbols import RIM
-from pinjoint.systems.render.theme import Colour, faded
+from pinjoint.systems.render.theme import Colour
+from pinjoint.systems.render.values import FIRST, SMALLEST, half_sizes, off, write
 
 _HINGE = 3.5  # points, radius of a hinge beside a joint
 _SHORTEST = 5.0  # times its radius: the shortest rod at which a hinge is drawn
@@ -29,7 +30,6 @@ _WIDEST_GAP, _GAP_SHARE = 84.0, 0.36  # between a joint and its rod drawn apart:
 _ARC = {"load": 15.0, "reaction": 21.0}  # points, radii of the arrows of moments
 _SWEEP = np.radians(250.0)  # of these arrows
 _PIECES = 20
-SMALLEST_MOMENT = 1e-4  # kN·m; smaller ones are drawn as none
 
 Values = NDArray[np.float64]
 
@@ -88,11 +88,11 @@ def draw_distributed_forces(sheet: Sheet) -> None:
             continue
         level = np.full(len(tips), height[index] if not shifted else _APART * u)
         tails = tips - level[:, None] * along
-        of, owners = ("rods", np.full(len(tips), row)), [("rods", row)] * len(tips)
+        of = "rods", np.full(len(tips), row)
         if not shifted:  # a line through the tails
             sheet.marks.append(Strokes(tails[:-1], tails[1:], 1.25 * u, colour, (of[0], of[1][1:])))
             sheet.occupancy.line(tails[:-1], tails[1:], STRONG, (of[0], of[1][1:]))
-        sheet.marks += arrows(sheet, owners, tails, np.tile(along, (len(tips), 1)), level, colour, of, 1.25)
+        draw_arrows(sheet, of, tails, np.tile(along, (len(tails), 1)), level, colour, of, 1.25)
         sheet.explain("load per length", tails, tips)
         if index in told:
             _label_row(sheet, row, tails, along, float(size[index]), shifted)
@@ -134,27 +134,18 @@ def _tips(sheet: Sheet, index: int, along: Points) -> tuple[Points, bool]:
 
 
 def _label_row(sheet: Sheet, row: int, tails: Points, along: Points, size: float, shifted: bool) -> None:
-    text, font, key = (
-        f"{written.given(size, written.DIGITS)} kN/m",
-        sheet.font(12.0),
-        ("rods.distributed_force", row),
-    )
-    half = half_size(text, font, "semibold", sheet.unit)
-    way = tails[-1] - tails[0]
-    out = -along
+    text, u = f"{written.given(size, written.DIGITS)} kN/m", sheet.unit
+    way, out = tails[-1] - tails[0], -along
     if shifted:
         out = np.array([way[1], -way[0]]) / max(float(np.hypot(*way)), 1e-9)
         out = out if out[1] <= 0.0 else -out
-    reach = abs(out[0]) * half[0] + abs(out[1]) * half[1] + 2.0 * sheet.unit
-    shares = np.array([0.5, 0.35, 0.65, 0.2, 0.8])
-    base = tails[0] + shares[:, None] * way
-    places = np.concatenate([base + out * reach, base + out * (reach + 12.0 * sheet.unit)])
-    backing, of = faded(sheet.theme.background, 0.86), ("rods", row)
-    label = Label(text, places, font, sheet.theme.load, -1e9 - size, "semibold", backing, "spare", key, of, of)
+    shares = ANCHORS
+    near = off(tails[0] + shares[:, None] * way, out, 2.0 * u, half_sizes(sheet, [text]))
+    places, of = np.concatenate([near, near + out * 12.0 * u]), ("rods", row)
     at = shares * (len(tails) - 1.0)
     anchors = np.stack([np.interp(at, np.arange(len(tails)), part) for part in tails.T], axis=1)
-    sheet.labels.append(label._replace(anchors=anchors, outward=out))
-    sheet.values["rods.distributed_force"] += 1
+    key, rank = ("rods.distributed_force", row), FIRST - size
+    write(sheet, text, places, sheet.theme.load, key, of, rank=rank, own=of, leads=(anchors, out))
 
 
 # --- moments -----------------------------------------------------------------------------------------
@@ -180,15 +171,13 @@ def draw_moments(sheet: Sheet) -> None:
     applied = full_moment(model)
     if shown.any():
         applied = np.where(shown, model.particles.applied_moment, applied)
-        _draw_arcs(sheet, "reaction", np.where(shown, model.particles.reaction_moment, 0.0))
-    _draw_arcs(sheet, "load", np.where(rigid_joints(model), applied, 0.0))
+        _draw_moments(sheet, "reaction", np.where(shown, model.particles.reaction_moment, 0.0))
+    _draw_moments(sheet, "load", np.where(rigid_joints(model), applied, 0.0))
 
 
-def _draw_arcs(sheet: Sheet, name: str, moment: Values) -> None:
+def _draw_moments(sheet: Sheet, name: str, moment: Values) -> None:
     """Arrows of moments (n,) around their particles, and their values; of many the largest."""
-    rows = sheet.particles[
-        (np.abs(moment[sheet.particles]) > SMALLEST_MOMENT) & np.isfinite(moment[sheet.particles])
-    ]
+    rows = sheet.particles[(np.abs(moment[sheet.particles]) > SMALLEST) & np.isfinite(moment[sheet.particles])]
     rows = np.sort(rows[np.argsort(-np.abs(moment[rows]), kind="stable")][:MOST])
     if not len(rows):
         return
@@ -196,16 +185,16 @@ def _draw_arcs(sheet: Sheet, name: str, moment: Values) -> None:
     sheet.arcs[rows] = np.maximum(sheet.arcs[rows], radius)
     key = "particles.applied_moment" if name == "load" else "particles.reaction_moment"
     colour, of = getattr(sheet.theme, name), ("particles", rows)
-    sheet.marks += arc_marks(sheet, of, sheet.centres[rows], radius, moment[rows], colour, key)
+    draw_arcs(sheet, of, sheet.centres[rows], radius, moment[rows], colour, key)
     sheet.explain(f"{name} moment", sheet.centres[rows], sheet.centres[rows])
     for at, size, row, value in zip(
         sheet.centres[rows], radius.tolist(), rows.tolist(), moment[rows].tolist(), strict=True
     ):
         text = written.moment(abs(value)) if name == "reaction" else ""
-        label_moment(sheet, at, size, value, colour, (key, row), text)
+        write_moment(sheet, at, size, value, colour, (key, row), text)
 
 
-def arc_marks(
+def draw_arcs(
     sheet: Sheet,
     of: Owners,
     at: Points,
@@ -215,14 +204,14 @@ def arc_marks(
     key: str,
     middle: float = np.pi / 2.0,
     sweep: float = _SWEEP,
-) -> list[Mark]:
+) -> None:
     """Curved arrows about points (n, 2), of radii (n,), that turn as moments (n,) do, counter-clockwise if positive.
 
     They reach so far (sweep) around a middle, in radians: the usual ones are open below. key: of these parts of the
     picture, beside the rows of their elements.
     """
     if not len(at):
-        return []
+        return
     table, rows = of
     u, turn = sheet.unit, np.where(moment > 0.0, 1.0, -1.0)
     head = head_length(radius, u)
@@ -238,29 +227,26 @@ def arc_marks(
     sheet.occupancy.line(first, last, STRONG, (key, every))
     for parts in ((first, last, every), (neck - barb, neck + barb, rows), (neck, tip, rows)):
         sheet.occupancy.parts.symbols((key, parts[2]), *parts[:2], u)
-    return [
+    sheet.marks += [
         Strokes(first, last, 1.75 * u, colour, (table, every)),
         Fills(np.stack([tip, neck + barb, neck - barb], axis=1), colour, (table, rows)),
     ]
 
 
-def label_moment(
+def write_moment(
     sheet: Sheet,
     at: Points,
     radius: float,
     moment: float,
     colour: Colour,
     key: tuple[str, int],
-    said: str = "",
+    text: str = "",
 ) -> None:
-    """The size of a moment outside its arrow; said: in other words than what a person gave."""
-    text, font = said or f"{written.given(abs(moment), written.DIGITS)} kN·m", sheet.font(12.0)
-    half = half_size(text, font, "semibold", sheet.unit)
+    """Write the size of a moment outside its arrow; text: in place of the number as a person gave it."""
+    text = text or f"{written.given(abs(moment), written.DIGITS)} kN·m"
     angle = np.radians([90.0, 52.5, 127.5, 15.0, 165.0, 0.0, 180.0, -40.0, 220.0])  # first corners of the arrow
     out = np.stack([np.cos(angle), -np.sin(angle)], axis=1)
-    reach = radius + 2.0 * sheet.unit + np.abs(out) @ np.array(half)
-    places = np.concatenate([at + out * reach[:, None], at + out * (reach + 8.0 * sheet.unit)[:, None]])
-    backing, of = faded(sheet.theme.background, 0.86), ("particles", key[1])
-    label = Label(text, places, font, colour, -1e9 - abs(moment), "semibold", backing, "spare", key, of, key)
-    sheet.labels.append(label._replace(anchors=at + radius * out[:5], outward=out[0]))
-    sheet.values[key[0]] += 1
+    near = off(at, out, radius + 2.0 * sheet.unit, half_sizes(sheet, [text]))
+    places, of = np.concatenate([near, near + 8.0 * sheet.unit * out]), ("particles", key[1])
+    anchors, rank = at + radius * out[:5], FIRST - abs(moment)
+    write(sheet, text, places, colour, key, of, rank=rank, own=key, leads=(anchors, out[0]))

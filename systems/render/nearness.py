@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from pinjoint.components.camera import Viewport
+from pinjoint.systems.broad_phase import distance_to_segments
 from pinjoint.systems.render.clip import bounds
 from pinjoint.systems.render.marks import Owner, Owners, Points
 
@@ -311,13 +312,9 @@ def _are_within(boxes: Boxes, box: Indices, pieces: _Pieces, piece: Indices, lim
 def _to_segments(middle: Points, half: Points, start: Points, end: Points) -> Numbers:
     """Distances of upright boxes that meet no segment from segments, pair by pair, (n,)."""
     start, end = start - middle, end - middle
-    step = end - start
     ends = (np.hypot(*np.maximum(np.abs(point) - half, 0.0).T) for point in (start, end))
     away = np.minimum(*ends)
-    square = np.maximum((step**2).sum(axis=1), 1e-300)
-    for sign in ((1.0, 1.0), (1.0, -1.0), (-1.0, 1.0), (-1.0, -1.0)):
-        corner = half * sign - start
-        share = within((corner * step).sum(axis=1) / square, 0.0, 1.0)
-        away = np.minimum(away, np.hypot(*(corner - share[:, None] * step).T))
+    for corner in ((1.0, 1.0), (1.0, -1.0), (-1.0, 1.0), (-1.0, -1.0)):
+        away = np.minimum(away, distance_to_segments(half * corner, start, end))
     found: Numbers = away
     return found

@@ -5,15 +5,15 @@ from __future__ import annotations
 import re
 from collections.abc import Callable, Sequence
 
+from pinjoint.components.extensions import EXTENSIONS
 from pinjoint.components.field import Vector
 from pinjoint.components.form import Form
 from pinjoint.components.model import Model
 from pinjoint.components.toolbar import Toolbar
 from pinjoint.components.view import View
-from pinjoint.systems.render.arrows import draw_loads, draw_velocities
-from pinjoint.systems.render.bending_diagrams import draw_diagrams
+from pinjoint.systems.render.arrows import draw_loads, draw_particle_diagrams, draw_velocities
 from pinjoint.systems.render.cuts import draw_cuts
-from pinjoint.systems.render.diagrams import draw_particle_diagrams
+from pinjoint.systems.render.diagrams import draw_diagrams
 from pinjoint.systems.render.empty_card import draw_card, shows_card
 from pinjoint.systems.render.free_bodies import draw_free_bodies
 from pinjoint.systems.render.labels import Placed, place_labels
@@ -25,7 +25,7 @@ from pinjoint.systems.render.page import draw_page
 from pinjoint.systems.render.panel import compose_form
 from pinjoint.systems.render.pointed import draw_pointed
 from pinjoint.systems.render.readouts import ShownPanel, draw_readouts
-from pinjoint.systems.render.sheet import ABOVE, BELOW, Sheet, measure
+from pinjoint.systems.render.sheet import Sheet, measure
 from pinjoint.systems.render.sliders import draw_sliders
 from pinjoint.systems.render.structure import (
     draw_ghost,
@@ -121,7 +121,8 @@ def _draw_structure(sheet: Sheet) -> None:
     draw_hinges(sheet)
     sheet.marks += sheet.above
     draw_distributed_forces(sheet)
-    sheet.marks += [*draw_loads(sheet), *draw_velocities(sheet)]
+    draw_loads(sheet)
+    draw_velocities(sheet)
     draw_moments(sheet)
     draw_cuts(sheet)
     draw_shape(sheet)
@@ -132,7 +133,7 @@ def _composed(sheet: Sheet) -> tuple[Picture, list[ShownPanel]]:
     """The picture of a model, and where its panels are."""
     model, theme = sheet.model, sheet.theme
     draw_grid(sheet)
-    for layer in BELOW:
+    for layer in EXTENSIONS.below:
         sheet.marks += layer(sheet)
     if sheet.view.free_bodies and sheet.view.forces_known:
         draw_halos(sheet)
@@ -142,7 +143,7 @@ def _composed(sheet: Sheet) -> tuple[Picture, list[ShownPanel]]:
     else:
         _draw_structure(sheet)
     label_names(sheet)
-    for layer in ABOVE:
+    for layer in EXTENSIONS.above:
         sheet.marks += layer(sheet)
     overlays, room = draw_overlays(sheet)
     overlays += draw_sliders(sheet)

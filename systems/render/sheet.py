@@ -212,6 +212,3 @@ def _smallest_radius(start: Points, end: Points, unit: float) -> float:
 
 
 Layer = Callable[[Sheet], Iterable[Mark]]  # draws marks with every picture of a model
-
-BELOW: list[Layer] = []  # layers of mods below the elements, in small pictures of a model, too
-ABOVE: list[Layer] = []  # layers of mods above the elements

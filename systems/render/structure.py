@@ -16,12 +16,14 @@ from pinjoint.systems.render.clip import bounds, clip_segments
 from pinjoint.systems.render.labels import Label, half_size
 from pinjoint.systems.render.marks import Discs, Fills, Points, Rectangles, Strokes
 from pinjoint.systems.render.occupancy import FAINT, STRONG
-from pinjoint.systems.render.sheet import FEW, MANY, Rows, Sheet
+from pinjoint.systems.render.sheet import DIRECTIONS, FEW, MANY, Rows, Sheet
 from pinjoint.systems.render.symbols import LARGEST_STAMP, RIM, arcs, circle, dashed
 from pinjoint.systems.render.theme import Colour, faded
+from pinjoint.systems.render.values import BACKING, reach
 
 _CLOSEST_LINES = 8.0  # points between grid lines
-_CLOSE = 8  # places of a name that touch its particle
+_CLOSE = 8  # places of a name that touch its particle, at these corners and sides
+_CORNERS, _SIDES = np.array([(x, y) for y in (-1.0, 1.0) for x in (-1.0, 1.0)]), DIRECTIONS[[3, 2, 0, 1]]
 _CABLE = 0.5  # width of a cable, of that of another rod
 _DASH = 5.0  # points
 _GHOST_FROM = 4.0  # points of displacement
@@ -275,7 +277,7 @@ def _lines_of_shape(
 def label_names(sheet: Sheet) -> None:
     """Names of selected elements, of all where there are few, and of the one that a click would hit."""
     all_of_them = sheet.model.particles.count + sheet.model.rods.count <= FEW
-    backing = faded(sheet.theme.background, 0.86)
+    backing = faded(sheet.theme.background, BACKING)
     for table, rows in (("particles", sheet.particles), ("rods", sheet.rods)):
         selected = sheet.tagged(Selected, table)
         marked = np.append(selected if len(selected) <= FEW else [], sheet.tagged(Hovered, table)).astype(int)
@@ -284,37 +286,34 @@ def label_names(sheet: Sheet) -> None:
             row = int(rows[index])
             name, is_marked = sheet.model.tables[table].handles[row].name, row in marked
             size, weight = (sheet.font(12.0), "semibold") if is_marked else (sheet.font(11.0), "regular")
-            half, key = half_size(name, size, weight, sheet.unit), (f"{table}.name", row)
-            at = _beside_particle(sheet, row, half) if table == "particles" else beside_rod(sheet, index, half)
+            half, key = np.array(half_size(name, size, weight, sheet.unit)), (f"{table}.name", row)
+            of_particle = table == "particles"
+            at = _places_by_particle(sheet, row, half) if of_particle else places_by_rod(sheet, index, half)
             if is_marked:
                 label = Label(name, at, size, sheet.theme.text, 1e11, weight, backing, key=key)
             else:
                 label = Label(name, at, size, sheet.theme.muted, 1e12, weight, lines="avoid", key=key)
             own = None if is_marked else (table, row)  # what is marked is not taken for another
-            close = _CLOSE if table == "particles" else 0
+            close = _CLOSE if of_particle else 0
             sheet.labels.append(label._replace(of=(table, row), own=own, close=close))
 
 
-def _beside_particle(sheet: Sheet, row: int, half: tuple[float, float]) -> list[tuple[float, float]]:
-    """Around its rim: first the corners, then the sides, then further away."""
-    x, y = sheet.centres[row].tolist()
-    radius = float(sheet.radii[row])
-    places = []
+def _places_by_particle(sheet: Sheet, row: int, half: Points) -> Points:
+    """Where a label may stand around a rim: first at the corners, then at the sides, then further away."""
+    radius, places = float(sheet.radii[row]), []
     for gap in (0.0, 6.0 * sheet.unit, 14.0 * sheet.unit):
-        near = 0.8 * radius + 3.0 * sheet.unit + gap
-        corner_x, corner_y = near + half[0], near + half[1]
-        side_x, side_y = radius + half[0] + gap, radius + half[1] + gap
-        places += [(x + sx * corner_x, y + sy * corner_y) for sy in (-1, 1) for sx in (-1, 1)]
-        places += [(x, y - side_y), (x - side_x, y), (x + side_x, y), (x, y + side_y)]
-    return places
+        corner, side = half + 0.8 * radius + 3.0 * sheet.unit + gap, half + radius + gap
+        places += [corner * _CORNERS, side * _SIDES]
+    found: Points = sheet.centres[row] + np.concatenate(places)
+    return found
 
 
-def beside_rod(sheet: Sheet, index: int, half: tuple[float, float]) -> list[tuple[float, float]]:
-    """Beside its middle, on either side, then further along and further away."""
+def places_by_rod(sheet: Sheet, index: int, half: Points) -> Points:
+    """Where a label may stand by a rod: beside its middle, on either side, then further along and further away."""
     places = []
     for share in (0.5, 0.35, 0.65):
-        (x, y), (along_x, along_y) = (part.tolist() for part in sheet.line_at(index, share))
-        nx, ny = along_y, -along_x
-        reach = abs(nx) * half[0] + abs(ny) * half[1] + 1.0 * sheet.unit
-        places += [(x + side * reach * nx, y + side * reach * ny) for side in (-1.0, 1.0, -1.8, 1.8)]
-    return places
+        at, (x, y) = sheet.line_at(index, share)
+        across = np.array([y, -x])
+        away = reach(across, half) + 1.0 * sheet.unit
+        places += [at + side * away * across for side in (-1.0, 1.0, -1.8, 1.8)]
+    return np.array(places)

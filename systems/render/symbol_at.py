@@ -11,8 +11,8 @@ from pinjoint.components.model import Model
 from pinjoint.components.particle import Particle
 from pinjoint.components.rod import Rod
 from pinjoint.components.view import View
-from pinjoint.systems.render.arrows import draw_loads, draw_velocities
-from pinjoint.systems.render.diagrams import draw_particle_diagrams
+from pinjoint.systems.broad_phase import distance_to_segments
+from pinjoint.systems.render.arrows import draw_loads, draw_particle_diagrams, draw_velocities
 from pinjoint.systems.render.free_bodies import draw_free_bodies
 from pinjoint.systems.render.marks import Fills, Mark, Owners, Points, Stamps, Strokes
 from pinjoint.systems.render.members import draw_distributed_forces, draw_moments
@@ -36,7 +36,7 @@ def symbol_at(model: Model, view: View, pixel: Vector) -> Particle | Rod | None:
     sheet = measure(model, view, load_theme(view.theme))
     best, found = np.inf, None
     for start, end, reach, of in (lines for mark in _symbols(sheet) for lines in _lines_of(mark, sheet.unit)):
-        away = _away(np.array(pixel), start, end)
+        away = distance_to_segments(np.array(pixel), start, end)
         if len(away) and (nearest := int(np.argmin(away))) >= 0 and away[nearest] <= min(reach, best):
             best, found = float(away[nearest]), (of[0], int(of[1][nearest]))
     if found is None:
@@ -54,7 +54,8 @@ def _symbols(sheet: Sheet) -> list[Mark]:
     sides = support_sides(sheet)
     draw_supports(sheet, sides)
     draw_distributed_forces(sheet)
-    sheet.marks += [*draw_loads(sheet), *draw_velocities(sheet)]
+    draw_loads(sheet)
+    draw_velocities(sheet)
     draw_moments(sheet)
     draw_particle_diagrams(sheet, sides)
     return sheet.marks
@@ -70,11 +71,3 @@ def _lines_of(mark: Mark, unit: float) -> Iterator[_Lines]:
                 yield corners[:, k - 1], corners[:, k], REACH * unit, of
         case Stamps(_, at, size, turns=turns, of=(str(), _) as of):
             yield at, at + size * DIRECTIONS[turns], size / 2, of
-
-
-def _away(pixel: Points, start: Points, end: Points) -> Points:
-    """From a pixel to lines (n, 2)."""
-    way = end - start
-    share = ((pixel - start) * way).sum(axis=1) / np.maximum((way * way).sum(axis=1), 1e-12)
-    found: Points = np.hypot(*(start + np.clip(share, 0.0, 1.0)[:, None] * way - pixel).T)
-    return found

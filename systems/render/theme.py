@@ -8,7 +8,7 @@ from dataclasses import dataclass, fields
 from functools import cache
 from importlib.resources import files
 
-from pinjoint.components.language import tr
+from pinjoint.components.mistake import WrongValue
 
 Colour = tuple[int, int, int, int]  # red, green, blue, opacity, each 0 to 255
 
@@ -80,7 +80,7 @@ def load_theme(name: str = "light") -> Theme:
     """The theme of that name. Raises ValueError if there is none or if its file is wrong."""
     if name not in theme_names():
         known = ", ".join(theme_names())
-        raise ValueError(tr("There is no theme '{name}'; choose one of {known}.", name=name, known=known))
+        raise WrongValue("There is no theme '{name}'; choose one of {known}.", name=name, known=known)
     text = (files("pinjoint.assets") / "themes" / f"{name}.json").read_text(encoding="utf-8")
     return theme_from(json.loads(text), f"theme {name}")
 
@@ -92,17 +92,15 @@ def theme_from(entries: dict[str, str], where: str) -> Theme:
     if wrong:
         told = {"where": where, "colour": wrong[0], "known": ", ".join(sorted(known))}
         if wrong[0] in known:
-            raise ValueError(tr("{where} lacks the colour '{colour}'; it needs exactly {known}.", **told))
-        raise ValueError(tr("{where} has an unknown colour '{colour}'; it needs exactly {known}.", **told))
+            raise WrongValue("{where} lacks the colour '{colour}'; it needs exactly {known}.", **told)
+        raise WrongValue("{where} has an unknown colour '{colour}'; it needs exactly {known}.", **told)
     colours = {key: _colour(value, f"{where}, {key}") for key, value in entries.items() if key != "title"}
     return Theme(title=entries["title"], **colours)
 
 
 def _colour(text: str, where: str) -> Colour:
     if not re.fullmatch(r"#[0-9A-Fa-f]{6}", text):
-        raise ValueError(
-            tr("{where}: '{text}' is not a colour; write it like #0064FF.", where=where, text=text)
-        )
+        raise WrongValue("{where}: '{text}' is not a colour; write it like #0064FF.", where=where, text=text)
     red, green, blue = bytes.fromhex(text[1:])
     return red, green, blue, 255
 

@@ -10,13 +10,14 @@ import numpy as np
 
 from pinjoint.components.bent import MOMENT
 from pinjoint.components.camera import Camera, Viewport
+from pinjoint.components.extensions import EXTENSIONS
 from pinjoint.components.model import Model
 from pinjoint.components.view import View, drawn_places
 from pinjoint.systems.render.arrows import draw_loads, draw_velocities
-from pinjoint.systems.render.bending_diagrams import draw_diagrams
+from pinjoint.systems.render.diagrams import draw_diagrams
 from pinjoint.systems.render.marks import Bars, Discs, Fills, Mark, Points, Rectangles, Stamps, Strokes
 from pinjoint.systems.render.members import draw_distributed_forces, draw_hinges, draw_moments
-from pinjoint.systems.render.sheet import BELOW, measure
+from pinjoint.systems.render.sheet import measure
 from pinjoint.systems.render.structure import draw_particles, draw_rods
 from pinjoint.systems.render.supports import draw_supports, support_sides
 from pinjoint.systems.render.symbols import turned_parts
@@ -94,7 +95,7 @@ def _marks(model: Model, camera: Camera, unit: float, theme: Theme) -> tuple[Mar
     smaller = _SMALLER * min(camera.viewport.height / (_USUAL * unit), 1.0)
     view = View(camera=replace(camera), pixel_ratio=smaller * unit, all_diagrams=True, quantity=MOMENT)
     sheet = measure(model, view, shown)
-    for layer in BELOW:
+    for layer in EXTENSIONS.below:
         sheet.marks += layer(sheet)
     below = len(sheet.marks)
     draw_diagrams(sheet)
@@ -109,7 +110,9 @@ def _marks(model: Model, camera: Camera, unit: float, theme: Theme) -> tuple[Mar
     draw_distributed_forces(sheet)
     sheet.view.all_diagrams = False  # arrows of one length; the values of diagrams are left out
     draw_moments(sheet)
-    return (*sheet.marks, *draw_loads(sheet), *draw_velocities(sheet))
+    draw_loads(sheet)
+    draw_velocities(sheet)
+    return tuple(sheet.marks)
 
 
 def _tinted(theme: Theme) -> Colour:

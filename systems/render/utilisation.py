@@ -11,12 +11,12 @@ from pinjoint.components import written
 from pinjoint.components.language import tr
 from pinjoint.components.model import Model
 from pinjoint.components.rod import has_strength, utilisation
-from pinjoint.systems.render.labels import Label, half_size
 from pinjoint.systems.render.leaders import ANCHORS
 from pinjoint.systems.render.marks import Mark, Strokes, boxes
 from pinjoint.systems.render.sheet import FEW, Sheet
-from pinjoint.systems.render.structure import HALO_OPACITY, beside_rod
+from pinjoint.systems.render.structure import HALO_OPACITY, places_by_rod
 from pinjoint.systems.render.theme import Colour, Theme, faded
+from pinjoint.systems.render.values import half_sizes, write
 
 LEVELS = 10  # colours of the scale
 _HALO = 13.0  # points
@@ -69,22 +69,18 @@ def _mark_first(sheet: Sheet, share: Values) -> None:
 
 def _label(sheet: Sheet, share: Values) -> None:
     """The shares of few rods, unless they show their forces; of many that of the first at its strength."""
-    first, size = first_at_limit(sheet.model, share), sheet.font(12.0)
-    backing = faded(sheet.theme.background, 0.86)
-    few = len(share) <= FEW and not sheet.view.all_diagrams
+    first, few = first_at_limit(sheet.model, share), len(share) <= FEW and not sheet.view.all_diagrams
     for index, row in enumerate(sheet.rods.tolist()):
         if row != first and not (few and share[row] >= _LEAST_TOLD):
             continue
         text = _said(sheet.model, row, float(share[row])) if row == first else written.share(share[row])
-        half = half_size(text, size, "semibold", sheet.unit)
-        rank, key = (-1e11 if row == first else -share[row]), ("rods.utilisation", row)
-        nearest = [at for number, at in enumerate(beside_rod(sheet, index, half)) if number % 4 < 2]
+        places = places_by_rod(sheet, index, half_sizes(sheet, [text])[0])
+        nearest = places.reshape(-1, 4, 2)[:, :2].reshape(-1, 2)
         along = sheet.end[index] - sheet.start[index]
         across = along[::-1] * [1.0, -1.0] / max(float(np.hypot(*along)), 1e-9)
-        of, anchors = ("rods", row), sheet.start[index] + ANCHORS[:, None] * along
-        label = Label(text, nearest, size, sheet.theme.text, rank, "semibold", backing, "spare", key, of, of)
-        sheet.labels.append(label._replace(anchors=anchors, outward=across))
-        sheet.values["rods.utilisation"] += 1
+        rank, key, of = (-1e11 if row == first else -share[row]), ("rods.utilisation", row), ("rods", row)
+        anchors, text_colour = sheet.start[index] + ANCHORS[:, None] * along, sheet.theme.text
+        write(sheet, text, nearest, text_colour, key, of, rank=rank, own=of, leads=(anchors, across))
 
 
 def _said(model: Model, row: int, share: float) -> str:

@@ -11,9 +11,10 @@ from dataclasses import dataclass, replace
 from typing import Any
 
 from pinjoint.components.departure import Departure
+from pinjoint.components.extensions import EXTENSIONS
 from pinjoint.components.field import Column, Role
 from pinjoint.components.language import joined, marked, tr
-from pinjoint.components.model import ADDED, Model
+from pinjoint.components.model import Model
 from pinjoint.components.numeric_range import incomputable
 from pinjoint.components.rod import idle_moment
 from pinjoint.components.snapshot import Snapshot
@@ -125,7 +126,7 @@ class Simulation:
     def _sources(self) -> tuple[str, ...]:
         """The columns that the derived ones follow from."""
         tables = ["particles", "rods", "loads", "environment", "settings", "clock"]
-        tables += [kind.table for kind in ADDED.values() if kind.table in self.model.tables]
+        tables += [kind.table for kind in EXTENSIONS.kinds.values() if kind.table in self.model.tables]
         return tuple(
             f"{name}.{field.name}"
             for name in tables

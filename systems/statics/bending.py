@@ -79,6 +79,36 @@ class Bending:
         }
         return replace(self, **more | {"rest_length": np.concatenate([self.rest_length, rest_length])})
 
+    # --- hinges ------------------------------------------------------------------------------------
+
+    @property
+    def _of_ends(self) -> Array:
+        """The moment at each end by its own slope, (rods, 2)."""
+        return self.end_stiffness[:, ::2]
+
+    def carried_over(self, moment: Array, hinges: NDArray[np.bool_]) -> Array:
+        """What moments (rods, 2) at hinges leave at the other ends while these do not turn, (rods, 2)."""
+        stiff, mixed = self._of_ends, self.end_stiffness[:, 1:2]
+        share = np.divide(mixed, stiff, where=hinges & (stiff != 0.0), out=np.zeros_like(stiff))
+        over: Array = np.where(hinges, 0.0, (share * moment)[:, ::-1])
+        return over
+
+    def hinged(self, hinges: NDArray[np.bool_]) -> Bending:
+        """The same with hinges at some rigid ends, (rods, 2), at which slopes are still those of the joints."""
+        own = np.where(hinges, 0.0, self._of_ends - self.carried_over(self.end_stiffness[:, [1, 1]], hinges))
+        mixed = np.where(hinges.any(axis=1), 0.0, self.end_stiffness[:, 1])
+        shares = np.where(hinges, 0.0, self.load_shares - self.carried_over(self.load_shares, hinges))
+        stiffness = np.stack([own[:, 0], mixed, own[:, 1]], axis=1)
+        return replace(self, end_stiffness=stiffness, load_shares=shares)
+
+    def kinks(self, moment: Array, hinges: NDArray[np.bool_]) -> Array:
+        """The slopes (rods, 2) of hinged ends that moments there would cause while the other ends do not turn."""
+        stiff, mixed = self._of_ends, self.end_stiffness[:, 1:2]
+        crossed = stiff[:, ::-1] * moment - mixed * moment[:, ::-1]
+        both = hinges.all(axis=1, keepdims=True)
+        over, under = np.where(both, crossed, moment), np.where(both, stiff * stiff[:, ::-1] - mixed**2, stiff)
+        return np.divide(over, under, where=hinges & (under != 0.0), out=np.zeros_like(stiff))
+
     # --- states ------------------------------------------------------------------------------------
 
     def bow(self, slopes: Array) -> tuple[Array, Array]:

@@ -17,7 +17,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pinjoint.components.derived import with_full_turns
-from pinjoint.components.language import tr
+from pinjoint.components.mistake import WrongValue
 from pinjoint.components.model import Model
 from pinjoint.components.rod import bends
 from pinjoint.components.table import flags
@@ -99,7 +99,7 @@ class Structure:
     def of(cls, model: Model, geometry: str = "exact") -> Structure:
         """The structure of a model in "exact" or "linear" geometry; without plasticity no rod yields."""
         if geometry not in ("exact", "linear"):
-            raise ValueError(tr("Geometry is '{geometry}'; it must be 'exact' or 'linear'.", geometry=geometry))
+            raise WrongValue("Geometry is '{geometry}'; it must be 'exact' or 'linear'.", geometry=geometry)
         particles, rods = model.particles, model.rods
         yields = bool(model.settings.plasticity)
         ends = rods.between.astype(np.intp)
@@ -138,6 +138,16 @@ class Structure:
         if bending is not None:
             bending = replace(bending, initial_slopes=share * bending.initial_slopes)
         return replace(self, misfit=share * self.misfit, bending=bending)
+
+    def released(self, bars: Flags, hinges: Flags, supports: Flags) -> Structure:
+        """The same structure without some bars (rods,) and supports (n, …), and with hinges at some rigid ends (rods, 2)."""
+        return replace(
+            self,
+            stiffness=np.where(bars, 0.0, self.stiffness),
+            bending=None if self.bending is None else self.bending.hinged(hinges),
+            fixed=self.fixed & ~supports,
+            unknown=self.unknown | supports,
+        )
 
     # --- unknowns ----------------------------------------------------------------------------------
 
@@ -342,7 +352,9 @@ class Structure:
             axis=axis,
             elastic_force=elastic,
             axial_force=force,
-            plastic_strain=np.where(flowing, strain - force / self.stiffness, plastic_strain),
+            plastic_strain=np.where(
+                flowing, strain - force / np.where(flowing, self.stiffness, 1.0), plastic_strain
+            ),
             flowing=flowing,
             slack=slack,
             round_off=self._round_off_of_forces(displacement, plastic_strain, bent),

@@ -12,7 +12,6 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from pinjoint.components.language import tr
 from pinjoint.components.model import Model
 from pinjoint.components.numeric_range import incomputable
 from pinjoint.systems.statics.equations import Array
@@ -78,11 +77,9 @@ def solve(model: Model, unknowns: Sequence[Unknown]) -> Solution:
         raise ForceMethodError(problem)
     if model.rods.tension_only.any():
         raise ForceMethodError(
-            tr(
-                "{cables} in tension only, and superposition needs rods that bear compression as well. Make cables that"
-                " stay taut ordinary rods, and delete those that go slack.",
-                cables=cables_named(model),
-            )
+            "{cables} in tension only, and superposition needs rods that bear compression as well. Make cables that"
+            " stay taut ordinary rods, and delete those that go slack.",
+            cables=cables_named(model),
         )
     refuse_unsuited(model, unknowns)
     load = external_forces(model).at(1.0)
@@ -173,5 +170,5 @@ def _deltas(model: Model, unknowns: Sequence[Unknown], states: Iterable[SetState
         found[of_clamps] = state.rotation[rows[of_clamps]]
         if of_ends.any():
             kink = state.kink if len(state.kink) else np.zeros((model.rods.count, 2))
-            found[of_ends] = (kink[rows, axes] * np.where(axes == 0, 1.0, -1.0))[of_ends]
+            found[of_ends] = kink[rows[of_ends], axes[of_ends]] * np.where(axes[of_ends] == 0, 1.0, -1.0)
         yield found

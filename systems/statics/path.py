@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pinjoint.components.language import joined, marked, tr
+from pinjoint.components.mistake import WrongValue
 from pinjoint.components.model import Model
 from pinjoint.components.suggestions import missing
 from pinjoint.components.wording import cut
@@ -66,7 +67,7 @@ def goal_of(model: Model, factor: float = 1.0, until: str | None = None) -> Goal
     """
     if until is None:
         if not math.isfinite(factor):
-            raise ValueError(tr("The load factor is {factor}; give a finite number.", factor=str(factor)))
+            raise WrongValue("The load factor is {factor}; give a finite number.", factor=str(factor))
         return Goal(factor)
     place, _, amount = until.partition("=")
     name, _, axis = place.strip().rpartition(".")
@@ -75,27 +76,23 @@ def goal_of(model: Model, factor: float = 1.0, until: str | None = None) -> Goal
     except ValueError:
         value = math.nan
     if axis not in AXES or not math.isfinite(value):
-        raise ValueError(
-            tr(
-                "'{until}' is no displacement; write it like B.y=-2.5, in m, or B.rotation=1, in rad.",
-                until=cut(until),
-            )
+        raise WrongValue(
+            "'{until}' is no displacement; write it like B.y=-2.5, in m, or B.rotation=1, in rad.",
+            until=cut(until),
         )
     if name not in model.particles:
         raise ValueError(missing(marked("particles"), name, model.particles.names))
     particle, direction = model.particles[name], AXES.index(axis)
     if axis == "rotation":
         if model.particles.turning[particle.row] == 0.0:
-            raise ValueError(
-                tr("{particle} cannot turn: it is clamped, or no rod is rigidly joined to it.", particle=name)
+            raise WrongValue(
+                "{particle} cannot turn: it is clamped, or no rod is rigidly joined to it.", particle=name
             )
     elif particle.fixed[direction]:
-        raise ValueError(
-            tr(
-                "{particle} is held along {axis}, so it cannot move that way; choose a free direction.",
-                particle=name,
-                axis=axis,
-            )
+        raise WrongValue(
+            "{particle} is held along {axis}, so it cannot move that way; choose a free direction.",
+            particle=name,
+            axis=axis,
         )
     return Goal(value, (particle.row, direction))
 
@@ -115,8 +112,8 @@ def load_path(model: Model, goal: Goal, *, points: int = 500, detail: float = DE
     structure, external = Structure.of(model), external_forces(model)
     loaded = external.scaled + structure.carried(structure.unmoved)
     if not structure.gather(loaded).any():
-        raise ValueError(
-            tr("No force or load acts in a free direction; apply one, which the load factor multiplies.")
+        raise WrongValue(
+            "No force or load acts in a free direction; apply one, which the load factor multiplies."
         )
     search = _Search.towards(goal, structure, external, unloaded)
     found, complete, events = search.run(model, points, detail, branch)

@@ -14,6 +14,7 @@ import numpy as np
 
 from pinjoint.components.field import LARGEST, FieldError
 from pinjoint.components.language import joined, plural, tr
+from pinjoint.components.mistake import WrongValue
 from pinjoint.components.model import Model
 from pinjoint.components.numeric_range import incomputable
 from pinjoint.components.wording import quoted
@@ -135,19 +136,15 @@ def _factors(given: Sequence[float] | float) -> list[float]:
     except (TypeError, ValueError):
         factors = np.empty(0)
     if factors.ndim != 1 or len(factors) == 0 or not np.isfinite(factors).all():
-        raise ValueError(
-            tr(
-                "Load factors are {value}; give at least one finite number, such as (1.0, 0.0).",
-                value=quoted(given),
-            )
+        raise WrongValue(
+            "Load factors are {value}; give at least one finite number, such as (1.0, 0.0).",
+            value=quoted(given),
         )
     for factor in factors[np.abs(factors) > LARGEST].tolist()[:1]:
         raise FieldError(
-            tr(
-                "The load factor {factor:g} is too large to compute with; make it at most {largest:g}.",
-                factor=factor,
-                largest=LARGEST,
-            )
+            "The load factor {factor:g} is too large to compute with; make it at most {largest:g}.",
+            factor=factor,
+            largest=LARGEST,
         )
     found: list[float] = factors.tolist()
     return found

@@ -8,17 +8,26 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from pinjoint.components.language import tr
+from pinjoint.components.mistake import WrongValue
 from pinjoint.components.model import Model
 from pinjoint.systems.statics.equations import ROUND_OFF, Array, Structure, largest, normalised
 from pinjoint.systems.statics.events import NoEquilibrium
 from pinjoint.systems.statics.explain import cables_named, describe_motion
 from pinjoint.systems.statics.external import external_forces, loose_bodies, loose_event
-from pinjoint.systems.statics.factor import SOFT, pseudo_random, regular, soft_count, soft_modes, unresisted
+from pinjoint.systems.statics.factor import (
+    SOFT,
+    Factor,
+    pseudo_random,
+    regular,
+    soft_count,
+    soft_modes,
+    unresisted,
+)
 from pinjoint.systems.statics.response import Response
 from pinjoint.systems.statics.state import STABLE, Start, StaticState, state_of
 
-REFINEMENTS = 4  # of a linear solution
-REFINEMENTS_OF_BENDING = 40  # at most; few unless hundreds of rods divide a long member
+_REFINEMENTS = 4  # of a linear solution
+_REFINEMENTS_OF_BENDING = 40  # at most; few unless hundreds of rods divide a long member
 FULL = 600  # unknowns up to which singular values are computed
 MOST_MODES = 20  # mechanisms or states of self-stress of larger structures
 
@@ -39,10 +48,9 @@ def linear(model: Model, start: Start | None = None, factor: float = 1.0) -> Sta
         if body.pull:
             raise NoEquilibrium("mechanism", loose_event(model, body, factor).message)
     supports = np.where(structure.fixed, structure.field(start.displacement, start.rotation), 0.0)
-    initial = structure.respond(supports, start.plastic_strain, factor)
-    moved = supports + _deflection(model, structure, load - _internal(structure, initial))
-    final = structure.respond(moved, start.plastic_strain, factor)
-    elastic = replace(final, axial_force=final.elastic_force, plastic_strain=start.plastic_strain)
+    initial = elastic_response(structure, supports, start.plastic_strain, factor)
+    moved = supports + _deflection(model, structure, load - structure.internal(initial))
+    elastic = elastic_response(structure, moved, start.plastic_strain, factor)
     unbalanced = np.where(structure.fixed, 0.0, structure.internal(elastic) - load)
     forces = max(structure.largest(load), structure.largest_force(elastic))
     return state_of(
@@ -60,9 +68,27 @@ def linear(model: Model, start: Start | None = None, factor: float = 1.0) -> Sta
     )
 
 
-def _internal(structure: Structure, response: Response) -> Array:
-    """Forces (n, …) that hold the particles against the rods, none of which yields in linear theory."""
-    return structure.internal(replace(response, axial_force=response.elastic_force))
+def elastic_response(
+    structure: Structure, displacement: Array, plastic_strain: Array, share: float
+) -> Response:
+    """How rods respond of which none yields, as in linear theory."""
+    found = structure.respond(displacement, plastic_strain, share)
+    return replace(found, axial_force=found.elastic_force, plastic_strain=plastic_strain)
+
+
+def refined(structure: Structure, factor: Factor, right: Array) -> Array:
+    """The solution of K u = f about the original positions by a factor of K, to its last digits."""
+    solution = factor.solve(right)
+    for _ in range(_REFINEMENTS if structure.bending is None else _REFINEMENTS_OF_BENDING):
+        if structure.bending is None:
+            held = structure.initial_tangent @ solution
+        else:  # relative motions of the ends lose fewer digits than the matrix
+            held = structure.gather(structure.resistance(structure.spread(solution)))
+        step = factor.solve(right - held)
+        solution = solution + step
+        if structure.bending is not None and largest(step) <= ROUND_OFF * largest(solution):
+            break
+    return solution
 
 
 def _deflection(model: Model, structure: Structure, load: Array) -> Array:
@@ -76,15 +102,7 @@ def _deflection(model: Model, structure: Structure, load: Array) -> Array:
         raise NoEquilibrium("limit reached", message)
     matrix, right = structure.initial_tangent, structure.gather(load)
     factor = regular(matrix, structure.weight)
-    solution = factor.solve(right)
-    for _ in range(REFINEMENTS if structure.bending is None else REFINEMENTS_OF_BENDING):
-        held = matrix @ solution
-        if structure.bending is not None:  # relative motions of the ends lose fewer digits than the matrix
-            held = structure.gather(structure.resistance(structure.spread(solution)))
-        step = factor.solve(right - held)
-        solution = solution + step
-        if structure.bending is not None and largest(step) <= ROUND_OFF * largest(solution):
-            break
+    solution = refined(structure, factor, right)
     if float(right @ solution) < SOFT * structure.effort(solution, structure.unmoved):
         message = tr(
             "Mechanism: the load moves {motion}, and the resistance is less than {share:g} of the stiffness of the rods"
@@ -155,7 +173,7 @@ def self_stress(model: Model) -> Array:
         count = min(MOST_MODES, structure.deformations - _rank(structure))
         states = pseudo_random(structure.deformations, count)
         factor = regular((compatibility.T @ compatibility).tocsc(), np.ones(structure.size))
-        for _ in range(REFINEMENTS):
+        for _ in range(_REFINEMENTS):
             states = states - compatibility @ factor.solve(compatibility.T @ states)
     states = _localised(states)
     scaled: Array = (states / np.abs(states).max(axis=0, initial=0.0)).T
@@ -257,12 +275,10 @@ def influence_on_reaction(model: Model, particle: int, axis: int) -> Array:
     """Reaction of a constrained direction (row, 0 or 1; of a clamp 2) per unit force on each particle, (n, …)."""
     structure = Structure.of(model, "linear")
     if not structure.fixed[particle, axis]:
-        raise ValueError(
-            tr(
-                "No support holds {particle} along {axis}, so there is no reaction.",
-                particle=model.particles[particle].name,
-                axis=("x", "y", "rotation")[axis],
-            )
+        raise WrongValue(
+            "No support holds {particle} along {axis}, so there is no reaction.",
+            particle=model.particles[particle].name,
+            axis=("x", "y", "rotation")[axis],
         )
     unit = _unit(structure, particle, axis)
     return _deflection(model, structure, structure.resistance(unit)) - unit

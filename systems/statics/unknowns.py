@@ -4,12 +4,14 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from typing import Any
 
 import numpy as np
 from scipy.linalg import qr
 
 from pinjoint.components.field import ENDS
-from pinjoint.components.language import marked, tr
+from pinjoint.components.language import marked
+from pinjoint.components.mistake import Explained
 from pinjoint.components.model import Model
 from pinjoint.components.particle import Particle
 from pinjoint.components.rod import Rod, bends
@@ -24,14 +26,14 @@ _FIRST = 1e-3  # of bending moments, which are released before bars
 _RANK = 1e-9  # relative size below which a pivot is zero
 
 
-class ForceMethodError(ValueError):
+class ForceMethodError(Explained, ValueError):
     """A static unknown that cannot be used; the message names it, the reason and the remedy.
 
     motion: of the mechanism that its release would leave, (n, 2 or 3), the largest 1; None for other reasons.
     """
 
-    def __init__(self, message: str, motion: Array | None = None) -> None:
-        super().__init__(message)
+    def __init__(self, message: str, motion: Array | None = None, /, **values: Any) -> None:
+        super().__init__(message, **values)
         self.motion = motion
 
 
@@ -90,7 +92,7 @@ def find_unknown(model: Model, name: str) -> Unknown:
         return _found(model, Unknown(model.particles[place], AXES.index(what)))
     if name in model.particles:
         raise ForceMethodError(
-            tr("'{name}' is a particle; say which of its supports, such as {name}.x or {name}.y.", name=name)
+            "'{name}' is a particle; say which of its supports, such as {name}.x or {name}.y.", name=name
         )
     choices = [*model.rods.names, *(unknown.name for unknown in _of_supports(model) + _of_ends(model))]
     raise ForceMethodError(missing(marked("rods and supports"), name, choices))
@@ -101,23 +103,19 @@ def _found(model: Model, unknown: Unknown) -> Unknown:
     row, axis, place = unknown.element.row, unknown.axis, unknown.element.name
     if unknown.of_end and not model.rods.turning_shares[row, axis]:
         raise ForceMethodError(
-            tr(
-                "There is no moment to release at {name}: {rod} is hinged there, or does not bend.",
-                name=unknown.name,
-                rod=place,
-            )
+            "There is no moment to release at {name}: {rod} is hinged there, or does not bend.",
+            name=unknown.name,
+            rod=place,
         )
     if axis == 2 and not model.particles.fixed_rotation[row]:
         raise ForceMethodError(
-            tr("{particle} is not clamped, so there is no moment to release there.", particle=place)
+            "{particle} is not clamped, so there is no moment to release there.", particle=place
         )
     if unknown.of_support and axis in (0, 1) and not model.particles.fixed[row, axis]:
         raise ForceMethodError(
-            tr(
-                "{particle} is free along {axis}, so there is no reaction to release there.",
-                particle=place,
-                axis=AXES[axis],
-            )
+            "{particle} is free along {axis}, so there is no reaction to release there.",
+            particle=place,
+            axis=AXES[axis],
         )
     return unknown
 
@@ -128,27 +126,21 @@ def refuse_unsuited(model: Model, unknowns: Sequence[Unknown]) -> None:
         row = unknown.element.row
         if unknown.of_bar and (model.rods.turning_shares[row] > 0.0).any():
             raise ForceMethodError(
-                tr(
-                    "{rod} bends. Release the moment at one of its ends instead: {rod}.start or {rod}.end.",
-                    rod=unknown.name,
-                )
+                "{rod} bends. Release the moment at one of its ends instead: {rod}.start or {rod}.end.",
+                rod=unknown.name,
             )
         if unknown.of_support and not (model.rods.between == row).any():
             raise ForceMethodError(
-                tr(
-                    "{name} is not a static unknown: no rod ends at {particle}, so its reaction only balances what acts"
-                    " on it there. Choose a rod, or a support of the structure.",
-                    name=unknown.name,
-                    particle=unknown.element.name,
-                )
+                "{name} is not a static unknown: no rod ends at {particle}, so its reaction only balances what acts"
+                " on it there. Choose a rod, or a support of the structure.",
+                name=unknown.name,
+                particle=unknown.element.name,
             )
         if unknown.axis == 2 and unknown.of_support and not is_turned(model, row):
             raise ForceMethodError(
-                tr(
-                    "{name} is not a static unknown: no rod that bends is joined rigidly at {particle}.",
-                    name=unknown.name,
-                    particle=unknown.element.name,
-                )
+                "{name} is not a static unknown: no rod that bends is joined rigidly at {particle}.",
+                name=unknown.name,
+                particle=unknown.element.name,
             )
 
 

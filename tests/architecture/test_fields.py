@@ -9,10 +9,11 @@ from typing import Any
 
 import pinjoint.included  # noqa: F401 (adds walls)
 from pinjoint.components.clock import Clock
+from pinjoint.components.extensions import EXTENSIONS
 from pinjoint.components.field import Field, Role
 from pinjoint.components.handle import Handle
 from pinjoint.components.load import HISTORIES
-from pinjoint.components.model import ADDED, KINDS
+from pinjoint.components.model import KINDS
 from pinjoint.components.table import fields_of
 from pinjoint.mods.mod import INCLUDED
 from pinjoint.systems.program.binding import find
@@ -56,7 +57,8 @@ def page() -> str:
     """What the page is to say."""
     kinds = [kind for kind in KINDS if kind is not Clock]
     sections = [section(kind, kind.table) for kind in kinds]
-    ours = [(name, kind) for name, kind in ADDED.items() if kind.__module__.startswith("pinjoint.included")]
+    kinds = EXTENSIONS.kinds.items()
+    ours = [(name, kind) for name, kind in kinds if kind.__module__.startswith("pinjoint.included")]
     sections += [section(kind, kind.table, f" (in files `components` / `{name}`)") for name, kind in ours]
     return "\n".join([HEAD, *sections, histories()]) + SLIDERS
 

@@ -13,10 +13,10 @@ from pathlib import Path
 
 import pytest
 
-from pinjoint.commands import COMMANDS
 from pinjoint.commands.command_line import main
+from pinjoint.components.extensions import EXTENSIONS
 from pinjoint.documents import models
-from pinjoint.systems.input.bindings import BINDINGS
+from pinjoint.systems.input.actions import ACTIONS
 
 ROOT = Path(__file__).parents[2]
 README = ROOT / "README.md"
@@ -156,7 +156,7 @@ def test_the_table_of_keys_is_that_of_the_program() -> None:
     """On its page all of them; in the README keys that do something in the window."""
     page = (ROOT / "systems" / "input" / "README.md").read_text(encoding="utf-8")
     assert table_of_keys() in page, "paste the output of: python -m tests.architecture.test_readme"
-    keys = {readable(binding.key) for binding in BINDINGS}
+    keys = {readable(binding.key) for _, binding in ACTIONS.bound()}
     section = TEXT.partition("## Keys")[2].partition("\n## ")[0]
     rows = [line.split("|")[1:5] for line in section.splitlines() if line.startswith("| ")][2:]
     for one, _, other, _ in rows:
@@ -171,7 +171,7 @@ def readable(key: str) -> str:
 def table_of_keys() -> str:
     """The README's table of keys, to be pasted there when bindings change."""
     merged: dict[tuple[str, str], list[str]] = {}
-    for binding in BINDINGS:
+    for _, binding in ACTIONS.bound():
         if binding.title:
             merged.setdefault((binding.key, binding.title), []).extend(binding.scenes)
     rows = [f"| {readable(key)} | {', '.join(scenes)} | {title} |" for (key, title), scenes in merged.items()]
@@ -191,14 +191,14 @@ def test_every_link_leads_somewhere(page: Path) -> None:
 def test_every_command_exists(page: Path) -> None:
     for block in blocks("sh", page.read_text(encoding="utf-8")):
         for word in re.findall(r"(?:^|bin/)pinjoint ([\w-]+)", block, flags=re.MULTILINE):
-            assert word.isupper() or word in COMMANDS or word in models.bundled(), word
+            assert word.isupper() or word in EXTENSIONS.commands or word in models.bundled(), word
 
 
 LONG = ("open", "bench", "sweep", "play")  # or with a window, or tried elsewhere
 WITHOUT_WINDOW = [
     words
     for line in re.findall(r"^pinjoint (.*)$", "".join(blocks("sh")), flags=re.MULTILINE)
-    if (words := shlex.split(line, comments=True))[0] in set(COMMANDS) - set(LONG) and len(words) > 1
+    if (words := shlex.split(line, comments=True))[0] in set(EXTENSIONS.commands) - set(LONG) and len(words) > 1
 ]
 
 

@@ -8,7 +8,8 @@ import sys
 from collections.abc import Iterator
 from pathlib import Path
 
-ROOT = Path(__file__).parents[2]
+from tests.catalogues import KEYWORDS, ROOT
+
 SOURCES = [path for top in ("components", "systems", "game") for path in sorted((ROOT / top).rglob("*.py"))]
 SAYING = {
     "tr",
@@ -18,7 +19,7 @@ SAYING = {
     "joined",
     "begun",
     "Binding",
-}  # Binding: its title is marked by its place
+}  # the last marks a title by its place
 TELLING = {"tell", "say", "switch_off", "told"}  # functions whose arguments are read by a person
 SHOWN = {
     "help",
@@ -42,11 +43,7 @@ FOR_PROGRAMMERS = {
     "AssertionError",
     "RuntimeError",
 }
-IN_PROGRAMS = (
-    "systems/program/templates/",
-    "systems/machine_code.py",
-    "systems/interpreter.py",
-)
+IN_PROGRAMS = ("systems/program/templates/", "systems/machine_code.py", "systems/interpreter.py")
 NAMES = {"limit reached"}  # statuses, which scripts compare
 PHRASE = re.compile(r"[A-Za-z]{2,}[,.:;]? [a-zA-Z]{2,}|[a-z]{3,}\.$")
 
@@ -62,7 +59,8 @@ def sentences(path: Path) -> Iterator[tuple[int, str]]:
 def read_by_people(node: ast.AST) -> Iterator[ast.AST]:
     match node:
         case ast.Raise(exc=ast.Call(func=called) as error) if name_of(called) not in FOR_PROGRAMMERS:
-            yield from [*error.args, *(keyword.value for keyword in error.keywords)]
+            extracted = name_of(called) in KEYWORDS and isinstance(error.args[0], ast.Constant)
+            yield from [*error.args[extracted:], *(keyword.value for keyword in error.keywords)]
         case ast.Assign(targets=targets, value=value) if any(name_of(target) in SHOWN for target in targets):
             yield value
         case ast.AugAssign(target=target, value=value) if name_of(target) in SHOWN:

@@ -12,13 +12,13 @@ from typing import Any
 from numba import njit
 
 from pinjoint import Session
+from pinjoint.components.extensions import EXTENSIONS
 from pinjoint.components.model import Model
 from pinjoint.documents.document import document
-from pinjoint.editor.context import PANELS
 from pinjoint.mods import Mod
 from pinjoint.mods.guard import guarded_system
 from pinjoint.systems.base import StepSystem, System
-from pinjoint.systems.catalogue import SYSTEMS, step_systems
+from pinjoint.systems.catalogue import step_systems
 from pinjoint.systems.physics.integrators import INTEGRATORS
 from pinjoint.systems.physics.system import Drag
 from pinjoint.systems.program.parallel import make_program
@@ -105,17 +105,17 @@ def machinery() -> list[Row]:
 def frames(*, quick: bool) -> list[Row]:
     """µs of a frame in pause with what is written as mods are, and without, in turns."""
     with_mods = Session.open("isostatic")
-    kept = list(SYSTEMS), list(PANELS)
-    SYSTEMS.clear()
+    kept = list(EXTENSIONS.systems), list(EXTENSIONS.panels)
+    EXTENSIONS.systems.clear()
     without = Session.open("isostatic")
-    SYSTEMS.extend(kept[0])
+    EXTENSIONS.systems.extend(kept[0])
     count, best = 200 if quick else 2000, [float("inf")] * 2
     for _ in range(5):
         for at, (session, panels) in enumerate(((with_mods, kept[1]), (without, []))):
-            PANELS[:] = panels
+            EXTENSIONS.panels[:] = panels
             took = _seconds(lambda session=session: [session.frame(0.0) for _ in range(count)])  # type: ignore[misc]
             best[at] = min(best[at], 1e6 * took / count)
-    PANELS[:] = kept[1]
+    EXTENSIONS.panels[:] = kept[1]
     return [{"with_us": best[0], "without_us": best[1], "difference_us": best[0] - best[1]}]
 
 

@@ -27,7 +27,7 @@ def test_every_action_is_seen(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -
             assert seen or not what or what.endswith(ANNOUNCED), what
         assert hand.session.scene == "pause"
         assert hand.session.rods.count < rods
-        assert len(hand.session.history._done) > 30
+        assert len(hand.session.document.history._done) > 30
 
 
 def test_the_table_names_every_action(monkeypatch: pytest.MonkeyPatch) -> None:

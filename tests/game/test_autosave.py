@@ -408,7 +408,7 @@ def test_what_was_left_behind_is_offered_first_and_opened(data: Path) -> None:
     session.press("return")
     assert session.rods["AB"].stiffness == 5.0
     assert session.document.unsaved
-    assert session.file == ModelFile(None, "my work"), "Ctrl+S asks for a name"
+    assert session.document.file == ModelFile(None, "my work"), "Ctrl+S asks for a name"
     session.rods["AB"].stiffness = 6.0
     kept(keeper, session)
     assert left.exists(), "until it is saved it can be recovered again"

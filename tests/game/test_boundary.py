@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -14,8 +15,7 @@ from pinjoint.boundary import FAULTS
 from pinjoint.documents import library, models
 from pinjoint.documents.autosave import Autosave
 from pinjoint.documents.open_documents import ModelFile
-from pinjoint.editor.context import ACTIONS
-from pinjoint.systems.input.bindings import FILES
+from pinjoint.systems.input.actions import ACTIONS, FILES
 from pinjoint.systems.render.pygame_canvas import Canvas
 from tests.reference.models import triangle
 
@@ -77,7 +77,7 @@ def test_an_action_that_raises_is_told_of_and_the_next_ones_act(
     tmp_path: Path,
     error: Exception,
 ) -> None:
-    monkeypatch.setitem(ACTIONS, "next shape", failing(error))
+    monkeypatch.setitem(ACTIONS, "next shape", replace(ACTIONS["next shape"], perform=failing(error)))
     said = shown_to(app, monkeypatch, "b", "b", "ctrl+z", "b", "ctrl+y")
     assert type(error).__name__ in said[1]
     assert str(tmp_path / FAULTS) in said[1]

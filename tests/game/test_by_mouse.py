@@ -13,9 +13,9 @@ from pinjoint.components.tags import DiagramShown
 from pinjoint.documents import library, models
 from pinjoint.editor.scenes.form import FormScene
 from pinjoint.editor.scenes.properties import Properties
+from pinjoint.editor.toolbar import of_mods
 from pinjoint.scripts.playing import Recorder, play, session_of
 from pinjoint.scripts.script import Script
-from pinjoint.systems.input.bindings import ADDED_TOOLS, TOOLBAR, offers
 from pinjoint.systems.render.marks import Text
 from pinjoint.systems.render.menu import MenuLayout, menu_of
 from pinjoint.systems.render.picture import compose
@@ -251,8 +251,8 @@ def test_menus_offer_all_that_the_toolbar_has_where_it_is_hidden(session: Sessio
     session.press("tab")
     session.press("right click", session.view.camera.middle)
     offered = {entry.action for entry in menu(session).menu.entries}
-    bar = {action for group in TOOLBAR for action in group if action in offers("pause")}
-    assert {*bar, *ADDED_TOOLS, "toggle legend"} <= offered
+    bar = {tool.action for group in session.view.toolbar.groups for tool in group}
+    assert {*bar, *of_mods(draw=True), "toggle legend"} <= offered
     choose(session, "toggle legend")
     assert session.view.legend
 
@@ -304,7 +304,7 @@ def test_a_double_click_elsewhere_is_two_clicks(session: Session) -> None:
     )
     for key in ("click", "double click"):
         session.press(key, (button.left + 3.0, button.top + 3.0))
-    assert session.clock.factor == 4.0
+    assert session.document.live.clock.factor == 4.0
 
 
 def test_the_second_click_on_a_picture_is_not_meant_for_the_model_that_it_opened(session: Session) -> None:
@@ -434,13 +434,13 @@ def test_files_that_are_dropped_are_opened_and_wrong_ones_explained(session: Ses
     assert "is a folder" in session.message
     assert "gone.json" in session.message
     session.open_files([tmp_path / "isostatic.json", tmp_path / "photo.png", tmp_path / "tower.json"])
-    assert (session.scene, session.file.name) == ("pause", "tower")
+    assert (session.scene, session.document.file.name) == ("pause", "tower")
     assert session.notice.endswith("Opened isostatic and tower. Ctrl+Z goes back.")
     assert "photo.png" in session.notice
     session.press("ctrl+z")
-    assert session.file.name == "isostatic"
+    assert session.document.file.name == "isostatic"
     session.press("ctrl+z")
-    assert session.file.name == "hyperstatic"
+    assert session.document.file.name == "hyperstatic"
 
 
 def test_a_recorded_session_that_is_dropped_is_played(session: Session, tmp_path: Path) -> None:
@@ -452,7 +452,7 @@ def test_a_recorded_session_that_is_dropped_is_played(session: Session, tmp_path
     session.open_files([path])
     assert session.lesson is not None
     assert session.lesson.title == "T"
-    assert (session.scene, session.file.name) == ("pause", "tower")
+    assert (session.scene, session.document.file.name) == ("pause", "tower")
 
 
 def test_properties_stand_where_they_cover_nothing(session: Session) -> None:

@@ -123,7 +123,7 @@ def test_changing_it_in_a_run_leaves_what_was_measured_and_the_way_back() -> Non
     session.run(steps=300)
     session.settings.displacement_scale = 20.0
     assert session.document.assessment.undisturbed
-    assert session.timeline.first == 0
+    assert session.document.timeline.first == 0
     assert session.document.unsaved
     time = session.time
     assert "scale" in session.undo()

@@ -5,6 +5,7 @@ from __future__ import annotations
 import pytest
 
 from pinjoint.components.language import language, spoken
+from pinjoint.components.particle import Particle
 from pinjoint.documents.preferences import CONFIG_VARIABLE, preferred_language
 from pinjoint.editor.scenes.form import FormScene
 from pinjoint.session import Session
@@ -76,3 +77,16 @@ def test_boxes_show_and_take_a_comma_in_portuguese_and_give_scripts_the_point():
         session.press("return")
         assert session.scenes.active.boxes["load x"] == "12.5"
     assert session.particles["B"].force[0] == 12.5
+
+
+def test_undo_says_in_the_present_language_what_was_done_in_another():
+    session = Session.open("isostatic")
+    rod = session.model.rods[0]
+    rod.youngs_modulus = 2.1e8
+    session.model.create(Particle, position=[(5.0, 5.0)])
+    session.press("f2")
+    said = []
+    for _ in range(2):
+        session.press("ctrl+z")
+        said.append(session.message)
+    assert said == ["Anulado: criar partícula", f"Anulado: módulo de Young de barra {rod.name}"]

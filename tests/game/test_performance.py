@@ -112,7 +112,7 @@ def test_what_a_script_saves_replaces_nothing_of_the_persons(
     script = Script(tmp_path / "saves.jsonl")
     assert opened(app, script).play() == []
     assert mine.read_text() == "what I made"
-    assert (app.session.file.path, app.session.file.name) == (None, "mine")
+    assert (app.session.document.file.path, app.session.document.file.name) == (None, "mine")
     assert app.session.document.unsaved
     app.session.press("ctrl+s")
     assert app.session.scene == "save"
@@ -120,7 +120,7 @@ def test_what_a_script_saves_replaces_nothing_of_the_persons(
     script.has_data = True
     mine.unlink()
     assert opened(app, script).play() == []
-    assert app.session.file.path == mine
+    assert app.session.document.file.path == mine
     assert mine.is_file()
 
 

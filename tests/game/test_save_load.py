@@ -174,7 +174,7 @@ def test_a_file_whose_name_is_no_text_is_shown_and_saved(data: Path, tmp_path: P
     path = tmp_path / os.fsdecode(b"\xff-\n.json")
     models.save(models.parse(triangle()), path)
     session = Session.open(path)
-    assert session.file.name.encode().decode() == "\ufffd-\n"
+    assert session.document.file.name.encode().decode() == "\ufffd-\n"
     session.rods["AB"].stiffness = 5.0
     session.press("ctrl+s")
     assert stiffness_in(path) == 5.0
@@ -281,7 +281,7 @@ def test_a_saved_model_is_loaded_by_its_name(session: Session) -> None:
     session.press("return")
     assert session.scene == "pause"
     assert session.rods["AB"].stiffness == 5.0
-    assert session.file.name == "file 1"
+    assert session.document.file.name == "file 1"
     session.run(steps=10)
     assert session.time > 0.0
 

@@ -5,10 +5,11 @@ from pathlib import Path
 import pytest
 
 from pinjoint import Session
+from pinjoint.components.mistake import WrongValue
 from pinjoint.components.particle import Particle
 from pinjoint.components.rod import Rod
 from pinjoint.components.tags import DiagramShown
-from pinjoint.editor.scenes import SceneError, all_scenes
+from pinjoint.editor.scenes import all_scenes
 from pinjoint.systems.render.marks import Text
 from pinjoint.systems.render.picture import compose
 from pinjoint.systems.render.theme import load_theme
@@ -56,14 +57,14 @@ def test_pause_is_the_hub(session: Session, start: str, target: str) -> None:
         session.frame(0.0)
         assert session.scene == target
     else:
-        with pytest.raises(SceneError, match=f"From the scene '{start}' one cannot go to '{target}'"):
+        with pytest.raises(WrongValue, match=f"From the scene '{start}' one cannot go to '{target}'"):
             session.scenes.request(target)
         session.frame(0.0)
         assert session.scene == start
 
 
 def test_an_unknown_scene_is_refused_by_name(session: Session) -> None:
-    with pytest.raises(SceneError, match=r"no scene 'kitchen'.*pause, simulation"):
+    with pytest.raises(WrongValue, match=r"no scene 'kitchen'.*pause, simulation"):
         session.scenes.request("kitchen")
 
 
@@ -71,7 +72,7 @@ def test_a_chain_of_transitions_is_checked_link_by_link(session: Session) -> Non
     session.scenes.request("save", "pause", "simulation")
     session.frame(0.0)
     assert session.scene == "simulation"
-    with pytest.raises(SceneError, match="From the scene 'save' one cannot go to 'load'"):
+    with pytest.raises(WrongValue, match="From the scene 'save' one cannot go to 'load'"):
         session.scenes.request("pause", "save", "load")
     session.frame(0.0)
     assert session.scene == "simulation"  # a chain with an illegal link does nothing at all

@@ -22,12 +22,6 @@ SCRIPTED = sorted((Path(__file__).parents[1] / "scripted").glob("*.jsonl"))
 
 
 @pytest.mark.parametrize("source", [*lessons(), *SCRIPTED], ids=lambda source: Path(source).stem)
-def test_scripts_play_in_portuguese_as_in_english(source):
-    with spoken("pt"), library.data_apart():
-        assert not play(Script(source))
-
-
-@pytest.mark.parametrize("source", [*lessons(), *SCRIPTED], ids=lambda source: Path(source).stem)
 def test_scripts_play_in_a_language_in_which_every_word_differs(source):
     with pseudo(), library.data_apart():
         assert not play(Script(source))

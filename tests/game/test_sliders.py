@@ -55,7 +55,7 @@ def test_the_displacement_scale_is_dragged_and_goes_back_to_automatic() -> None:
     slide(session, "displacements", 0.0)
     assert session.settings.displacement_scale == 1.0
     slide(session, "displacements", 0.7, 1.0)
-    assert (session.settings.displacement_scale, len(session.history._done)) == (1000.0, 2)
+    assert (session.settings.displacement_scale, len(session.document.history._done)) == (1000.0, 2)
     assert not place(session, "displacements").control.pressed
     button = where.button
     session.press("click", (button.left + 3, button.top + 3))
@@ -89,7 +89,7 @@ def test_the_wheel_moves_a_slider_and_does_not_zoom() -> None:
         session.press("wheel up", at(place(session, "B: load x"), 0.2))
     assert 130.0 < session.particles["B"].force[0] < 140.0  # three times 2 % of the length
     assert session.view.camera.scale == scale
-    assert len(session.history._done) == 1
+    assert len(session.document.history._done) == 1
 
 
 def test_the_slider_of_a_load_that_grows_says_how_much_of_it_acts_now() -> None:

@@ -16,7 +16,7 @@ from pinjoint.components.language import spoken
 from pinjoint.components.model import Model
 from pinjoint.documents.models import bundled
 from pinjoint.session import Session
-from pinjoint.systems.input.bindings import BINDINGS
+from pinjoint.systems.input.actions import ACTIONS
 from pinjoint.systems.render.marks import Picture, Text
 from tests.golden.scenes import SCENES, Window, composed, opened
 from tests.golden.states import LONG_NAME, STATES, seen
@@ -30,7 +30,7 @@ SHOWN = [*SCENES, *STATES]
 _WORD = re.compile(r"(?<![^\W_])[A-Za-z]{3,}(?![^\W_])")
 _UNITS = {"MPa", "GPa", "mrad", "rad", "kNm"}
 _PROPER = {"Pinjoint", "English", "IPE", "HEA", "HEB", "CHS", "SHS", "Lee", "Euler", "Williams", "Rayleigh"}
-_KEYS = {part.capitalize() for binding in BINDINGS for part in re.split(r"[+ ]", binding.key)} | {
+_KEYS = {part.capitalize() for _, binding in ACTIONS.bound() for part in re.split(r"[+ ]", binding.key)} | {
     "Esc",
     "Ctrl",
     "Shift",

@@ -8,7 +8,7 @@ from itertools import combinations
 import pytest
 
 from pinjoint import Session
-from pinjoint.systems.input.bindings import help_lines
+from pinjoint.systems.input.actions import help_lines
 from pinjoint.systems.render.marks import Panel, Picture, Text
 from pinjoint.systems.render.typography import capital_height
 from tests.golden.scenes import SCENES, WINDOWS, Window, composed

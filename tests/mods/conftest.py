@@ -9,7 +9,7 @@ from pathlib import Path
 import pytest
 
 from pinjoint import mods
-from pinjoint.systems.input.bindings import BINDINGS
+from pinjoint.systems.input.actions import ACTIONS
 
 Write = Callable[..., Path]
 
@@ -19,11 +19,11 @@ def unloaded(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> Iterator[None]:
     """A program without a person's files; the mods that a test loads are unloaded after it."""
     monkeypatch.setenv("PINJOINT_DATA", str(tmp_path / "data"))
     monkeypatch.setenv("PINJOINT_CONFIG", str(tmp_path / "config"))
-    before, keys = len(mods.MODS), list(BINDINGS)
+    before, keys = len(mods.MODS), dict(ACTIONS)
     yield
     mods.unload(mods.MODS[before:])
     mods.FAULTS.clear()
-    assert keys == BINDINGS
+    assert keys == dict(ACTIONS)
 
 
 @pytest.fixture

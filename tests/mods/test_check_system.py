@@ -16,13 +16,14 @@ from numpy.typing import NDArray
 from pinjoint import Session, SystemCheckError, check_system
 from pinjoint.checks import BODIES, ELASTIC, EVERYTHING
 from pinjoint.components import Model
+from pinjoint.components.extensions import EXTENSIONS
 from pinjoint.documents.autosave import Autosave
 from pinjoint.documents.document import document
 from pinjoint.included.probes import Sampling
 from pinjoint.mods import ModError
 from pinjoint.preparation import Preparation
 from pinjoint.systems.base import Law, Phase, StepSystem, System
-from pinjoint.systems.catalogue import SYSTEMS, step_systems
+from pinjoint.systems.catalogue import step_systems
 from pinjoint.systems.collision.system import Collision
 from pinjoint.systems.edit.hover import Hover
 from pinjoint.systems.edit.pull import Hand, Pull
@@ -35,7 +36,7 @@ from tests.mods.conftest import Write
 CABLES = EVERYTHING | {"rods": [rod | {"tension_only": True} for rod in EVERYTHING["rods"]]}
 FRAME = EVERYTHING | {"rods": [rod | {"bending_stiffness": 50.0} for rod in EVERYTHING["rods"]]}
 WARPED = FRAME | {"rods": [rod | {"temperature_gradient": 5.0} for rod in FRAME["rods"]]}
-OURS = {system.name: system for system in [*step_systems(), *(make() for make in SYSTEMS)]}
+OURS = {system.name: system for system in [*step_systems(), *(make() for make in EXTENSIONS.systems)]}
 
 
 def again(system: StepSystem) -> System:

@@ -14,9 +14,8 @@ import pytest
 
 from pinjoint import mods
 from pinjoint.commands.command_line import main
-from pinjoint.editor.actions import ACTIONS
 from pinjoint.systems.base import ACCOUNTS
-from pinjoint.systems.input.bindings import BINDINGS, FORMS
+from pinjoint.systems.input.actions import ACTIONS, FORMS
 
 GUIDE = Path(__file__).parents[2] / "assets" / "mods" / "README.md"
 BLOCK = re.compile(r"(?:^`([\w./]+)`:\n\n)?^```(\w+)\n(.*?)^```$", re.MULTILINE | re.DOTALL)
@@ -61,7 +60,7 @@ def test_the_guide_names_all_that_can_be_registered_called_and_chosen() -> None:
     methods = [name for name, method in vars(mods.App).items() if callable(method) and name[0] != "_"]
     for name in methods:
         assert name in ("withdraw", "catalogues") or f"`{name}(" in guide, name  # which Pinjoint calls
-    in_forms = {b.action for b in BINDINGS if set(b.scenes) <= set(FORMS)}
+    in_forms = {action.name for action, b in ACTIONS.bound() if set(b.scenes) <= set(FORMS)}
     listed = set(guide.partition("besides the ones in forms: ")[2].partition(".")[0].split(", "))
     assert listed == {name for name in ACTIONS if "." not in name} - in_forms
     for account in ACCOUNTS:

@@ -10,11 +10,10 @@ from pathlib import Path
 import pytest
 
 from pinjoint import Session, mods
-from pinjoint.commands import COMMANDS
 from pinjoint.commands.command_line import main
 from pinjoint.components import Particle
-from pinjoint.editor.actions import ACTIONS
-from pinjoint.systems.input.bindings import BINDINGS, action_for
+from pinjoint.components.extensions import EXTENSIONS
+from pinjoint.systems.input.actions import ACTIONS, action_for
 from pinjoint.systems.physics.integrators import VelocityVerlet
 from tests.mods.conftest import Write
 
@@ -203,9 +202,9 @@ def test_of_a_plugin_that_raises_nothing_stays(tmp_path: Path, write_mod: Write)
             raise RuntimeError("at last")
         """,
     )
-    before = len(BINDINGS), set(ACTIONS), set(COMMANDS), set(vars(Particle))
+    before = dict(ACTIONS), set(EXTENSIONS.commands), set(vars(Particle))
     assert "at last" in load(tmp_path)["apple"].problem
-    assert (len(BINDINGS), set(ACTIONS), set(COMMANDS), set(vars(Particle))) == before
+    assert (dict(ACTIONS), set(EXTENSIONS.commands), set(vars(Particle))) == before
     session = Session.open(BALL)
     with pytest.raises(KeyError):
         session.scenes["show"]

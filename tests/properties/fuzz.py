@@ -30,7 +30,7 @@ from pinjoint.documents.library import data_in
 from pinjoint.documents.open_documents import OpenDocument
 from pinjoint.scripts.playing import Recorder, play, session_of
 from pinjoint.scripts.script import EMPTY, Script
-from pinjoint.systems.input.bindings import BINDINGS, LIVE, TEXT
+from pinjoint.systems.input.actions import ACTIONS, LIVE, TEXT
 from pinjoint.systems.render.picture import compose
 from pinjoint.systems.render.theme import load_theme
 from tests.properties.soundness import Print, check_sound, contents
@@ -113,7 +113,7 @@ class Fuzz:
 
     def _note_desk(self) -> None:
         document = self.session.document
-        if document not in self.starts and not self.session.history.can_undo:  # F7 opens a task and does it
+        if document not in self.starts and not document.history.can_undo:  # F7 opens a task and does it
             self.starts[document] = contents(document.model)
 
     # --- doing ---------------------------------------------------------------------------------------
@@ -125,10 +125,10 @@ class Fuzz:
             self._do("ctrl+a", (0.0, 0.0))
             self._do("delete", (0.0, 0.0))
         elif chance < 0.40:
-            known = [binding.key for binding in BINDINGS if session.scene in binding.scenes]
+            known = [binding.key for _, binding in ACTIONS.bound() if session.scene in binding.scenes]
             self._press(self.random.choice([*known, *2 * OFTEN[session.scene]]))
         elif chance < 0.45:
-            self._press(self.random.choice(BINDINGS).key)
+            self._press(self.random.choice([binding.key for _, binding in ACTIONS.bound()]))
         elif chance < 0.65:
             self._press(self.random.choice(MOUSE))
         elif chance < 0.80:
@@ -230,7 +230,7 @@ class Fuzz:
             pass
         end, entries = contents(session.model), 0
         while True:
-            if not session.history.can_undo and session.document in self.starts:
+            if not session.document.history.can_undo and session.document in self.starts:
                 assert _same(contents(session.model), self.starts[session.document])
             if not session.undo():
                 break

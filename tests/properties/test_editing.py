@@ -9,7 +9,7 @@ from hypothesis import strategies as st
 from hypothesis.stateful import RuleBasedStateMachine, initialize, invariant, rule
 
 from pinjoint import Session
-from pinjoint.systems.input.bindings import BINDINGS, LIVE
+from pinjoint.systems.input.actions import ACTIONS, LIVE
 from pinjoint.systems.render.empty_card import card_button_at
 from tests.properties.soundness import check_sound, contents
 from tests.reference.sessions import put_states_aside
@@ -37,7 +37,11 @@ class Editing(RuleBasedStateMachine):
         self.session.point(*at)
         self.session.press(key)
 
-    @rule(key=st.sampled_from(sorted({b.key for b in BINDINGS if set(b.scenes) & set(LIVE)} - set("sdk"))))
+    @rule(
+        key=st.sampled_from(
+            sorted({b.key for _, b in ACTIONS.bound() if set(b.scenes) & set(LIVE)} - set("sdk"))
+        )
+    )
     def press(self, key: str) -> None:
         if key not in ("return", "ctrl+o", "ctrl+s", "ctrl+n", "drag middle"):
             self.session.press(key)

@@ -25,7 +25,7 @@ from pinjoint.documents.open_documents import ModelFile
 from pinjoint.documents.preferences import CONFIG_VARIABLE
 from pinjoint.scripts.performance import Performance
 from pinjoint.systems.input import pygame_input
-from pinjoint.systems.input.bindings import BINDINGS
+from pinjoint.systems.input.actions import ACTIONS
 from tests.properties.fuzz import OFTEN, TEXTS
 from tests.properties.limits import within
 from tests.properties.soundness import check_sound, contents
@@ -94,7 +94,7 @@ class Monkey:
         ):  # else it stays for long where few keys lead away
             return self._key("escape")
         if chance < 0.5:
-            known = [b.key for b in BINDINGS if self.session.scene in b.scenes]
+            known = [b.key for _, b in ACTIONS.bound() if self.session.scene in b.scenes]
             return self._key(self.random.choice([*known, *2 * OFTEN.get(self.session.scene, ("space",))]))
         if chance < 0.55:
             return self._key(self.random.choice([*self._codes]))

@@ -15,5 +15,5 @@ def put_states_aside(session: Session, beyond: int) -> None:
 
 def states_put_aside(session: Session) -> int:
     """How many states of its undo log are on the shelf now."""
-    entries = session.history._done._entries
+    entries = session.document.history._done._entries
     return sum(isinstance(entry, Run) and entry.stored is not None for entry in entries)

@@ -14,9 +14,10 @@ from numba import njit
 
 from pinjoint import Session
 from pinjoint.commands.command_line import main
-from pinjoint.editor.scenes import PHYSICS, SCENES, Scene
+from pinjoint.components.extensions import EXTENSIONS
+from pinjoint.editor.scenes import PHYSICS, Scene
 from pinjoint.systems.base import Commit, Law, Phase, System
-from pinjoint.systems.physics.integrators import SemiImplicitEuler, register_integrator, remove_integrator
+from pinjoint.systems.physics.integrators import INTEGRATORS, SemiImplicitEuler
 from tests.reference.models import model, particle
 from tests.systems.test_events import Crossing
 
@@ -82,10 +83,9 @@ class Noting(System):
 @pytest.fixture
 def arcade() -> Iterator[Callable[..., Session]]:
     """Opens sessions in which there are two further scenes."""
-    SCENES.extend([Arcade, Still])
+    EXTENSIONS.scenes.extend([Arcade, Still])
     yield lambda document, *systems: Session.open(document, systems)
-    SCENES.remove(Arcade)
-    SCENES.remove(Still)
+    del EXTENSIONS.scenes[-2:]
 
 
 def go(session: Session, scene: str) -> None:
@@ -247,7 +247,7 @@ def test_an_integrator_acts_in_its_scenes_and_another_elsewhere(
         name = "test.mine"
         scenes = ("arcade",)
 
-    register_integrator(Mine())
+    INTEGRATORS["mine"] = Mine()
     try:
         document = {**BALL, "environment": {"drag": 1.0}, "settings": {"integrator": "mine"}}
         session = arcade(document)
@@ -257,7 +257,7 @@ def test_an_integrator_acts_in_its_scenes_and_another_elsewhere(
         assert session.simulation.integrator.key == "mine"
         assert np.isfinite(session.particles.displacement).all()
     finally:
-        remove_integrator("mine")
+        del INTEGRATORS["mine"]
 
 
 def test_what_an_event_noted_in_its_scene_is_kept_in_others(arcade: Callable[..., Session]) -> None:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import ast
 import gettext
+import re
 from collections.abc import Iterator
 from pathlib import Path
 from string import Formatter
@@ -11,9 +12,8 @@ from string import Formatter
 import pytest
 
 from pinjoint.components.language import DOMAIN, ENGLISH, LANGUAGES
-from tests.catalogues import ROOT, extracted, folders, is_translated, path_of, texts, translations
+from tests.catalogues import KEYWORDS, ROOT, extracted, folders, is_translated, path_of, texts, translations
 
-KEYWORDS = {"tr": 1, "marked": 1, "plural": 2, "tr_in": 2}  # the number of arguments that are literals
 SOURCES = [
     path for folder in ("components", "systems", "game") for path in sorted((ROOT / folder).rglob("*.py"))
 ]
@@ -90,8 +90,14 @@ def can_be_filled(text: str) -> bool:
 def calls() -> Iterator[tuple[Path, ast.Call, str]]:
     for path in SOURCES:
         for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
-            if isinstance(node, ast.Call) and isinstance(node.func, ast.Name) and node.func.id in KEYWORDS:
-                yield path, node, node.func.id
+            match node:
+                case ast.Call(func=ast.Name(name), args=[_, *_]) if name in KEYWORDS and name != "Binding":
+                    yield path, node, name
+
+
+def test_the_sentences_of_every_error_are_extracted():
+    kinds = re.compile(r"^class (\w+)\(.*\b(?:Explained|Mistake|ModError|ModelError)\b", re.MULTILINE)
+    assert {name for path in SOURCES for name in kinds.findall(path.read_text("utf-8"))} <= KEYWORDS.keys()
 
 
 def test_sentences_are_literals_so_that_catalogues_hold_them(present):
@@ -99,12 +105,12 @@ def test_sentences_are_literals_so_that_catalogues_hold_them(present):
     held = {part for _, said in present[DOMAIN] for part in (said if isinstance(said, tuple) else (said,))}
     wrong = []
     for path, call, keyword in calls():
-        for argument in call.args[: KEYWORDS[keyword]]:
+        for argument in call.args[1:2] if keyword == "fail" else call.args[: len(KEYWORDS[keyword] or [1])]:
             if isinstance(argument, ast.Constant):
                 known = argument.value in held or (keyword == "tr_in" and argument is call.args[0])
             else:  # of what is marked elsewhere
                 literals = ast.Constant, ast.JoinedStr, ast.BinOp
-                known = keyword in ("tr", "tr_in") and not any(
+                known = keyword not in ("marked", "plural") and not any(
                     isinstance(b, literals) for b in branches(argument)
                 )
             if not known:

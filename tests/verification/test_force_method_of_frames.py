@@ -68,6 +68,17 @@ def test_the_prop_of_a_cantilever_bears_three_eighths_of_its_load() -> None:
     assert found.force[0] == pytest.approx(3.0 * Q * L / 8.0, rel=1e-12)
 
 
+def test_a_moment_at_an_end_is_released_with_clamps_and_supports_of_any_row() -> None:
+    """Two spans, clamped on the left: of the particles C is beyond the last rod's row."""
+    clamp = held("A", 0.0, fixed_rotation=True)
+    rods = [beam("AB", distributed_force=[0.0, -Q]), beam("BC")]
+    made = parse(
+        model([clamp, held("B", L, fixed=[False, True]), held("C", 2.0 * L, fixed=[False, True])], rods)
+    )
+    by_support, by_clamp = solved(made, "AB.start", "C.y"), solved(made, "AB.end", "A.rotation")
+    assert by_support.force[0] == pytest.approx(-by_clamp.force[1], rel=1e-12)
+
+
 @pytest.mark.parametrize("name", ["A.rotation", "AB.start"])
 def test_the_same_by_its_clamp(name: str) -> None:
     """The reaction turns the beam up, which is tension at its top: a negative bending moment."""

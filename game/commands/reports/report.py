@@ -41,10 +41,6 @@ FOUND = (  # statuses of a run that found what was asked for
 )
 
 
-class AnalysisError(Mistake, ValueError):
-    """An analysis that a model cannot have; the message says why and the remedy."""
-
-
 @dataclass(frozen=True)
 class Analysis:
     """The computation of a model's equilibria, of its state at certain times, or of its state at rest.
@@ -61,7 +57,7 @@ class Analysis:
     def run(self, simulation: Simulation, name: str, reported: list[State] | None = None) -> Run:
         """The result of the analysis, in which `name` is the model. reported: gets the states at `times`, one by one.
 
-        Raises AnalysisError, ResultError, FieldError, and ModError if a mod has failed or fails meanwhile.
+        Raises Mistake, ResultError, FieldError, and ModError if a mod has failed or fails meanwhile.
         """
         check_mods()
         with heeding_mods(simulation):
@@ -95,7 +91,7 @@ class Analysis:
         return {
             **found,
             "message": joined([session.message, unknown]),
-            "events": [*happened, *_records(session.model, session.remarks)],
+            "events": [*happened, *_records(session.model, session.document.assessment.remarks)],
             "error_estimate": error.record(bent=bends(session.model)) if error is not None else None,
         }
 
@@ -140,15 +136,13 @@ def run_until_rest(simulation: Simulation, name: str, limit: float) -> Run:
 def run_at(simulation: Simulation, name: str, times: Sequence[float], states: list[State]) -> Run:
     """Run through the given times (s, ascending) and report the state at exactly each of them.
 
-    states: gets them one by one, for whoever interrupts the run. Raises AnalysisError for times before that of the model.
+    states: gets them one by one, for whoever interrupts the run. Raises Mistake for times before that of the model.
     """
     if times[0] < (present := simulation.model.clock.time):
-        raise AnalysisError(
-            tr(
-                "The model is at t = {present:.9g} s already, after {asked:.9g} s; ask for later times.",
-                present=present,
-                asked=times[0],
-            )
+        raise Mistake(
+            "The model is at t = {present:.9g} s already, after {asked:.9g} s; ask for later times.",
+            present=present,
+            asked=times[0],
         )
     for target in times:
         simulation.run_to(target)

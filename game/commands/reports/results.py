@@ -110,11 +110,9 @@ def _elements(model: Model, name: str, given: Mapping[str, Column]) -> dict[str,
         for row in np.argwhere(~(np.isfinite(column) | absent))[:1, 0].tolist():
             element, value = model.describe(table[row]), field.loaded(column, row)
             raise ResultError(
-                tr(
-                    "{where} is {value}, not a finite number; report an earlier state.",
-                    where=joined([element, field.named()], ": "),
-                    value=str(value),
-                )
+                "{where} is {value}, not a finite number; report an earlier state.",
+                where=joined([element, field.named()], ": "),
+                value=str(value),
             )
         values = column.tolist()
         columns.append([None if v != v else v for v in values] if field.nullable else values)

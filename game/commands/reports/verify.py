@@ -102,7 +102,7 @@ def verify(session: Session, name: str, limit: float | None, *, simulate: bool =
     found |= _by_element(comparison if model.rods.count else None)
     worst = {way: comparison.worst(way) for way in ("simulation", "linear")}
     found["worst"] = {way: row and asdict(row) for way, row in worst.items() if model.rods.count}
-    found["remarks"] = [event_record(model, event) for event in session.remarks]
+    found["remarks"] = [event_record(model, event) for event in session.document.assessment.remarks]
     if theory.exact is not None and (simulated is not None or not simulate) and model.rods.count:
         departed = any(remark["kind"] in DEPARTURES for remark in found["remarks"])
         agreed = VERIFIED if not differs(comparison) else DIFFERS if departed else NOT_VERIFIED
@@ -264,10 +264,8 @@ def _influence(model: Model, name: str) -> Found:
         turns = axis == 2
         if turns and model.particles.inertia[row] == 0.0:
             raise ForceMethodError(
-                tr(
-                    "{particle} has no rotation, because no rod that bends is rigidly joined to it; choose another one.",
-                    particle=place,
-                )
+                "{particle} has no rotation, because no rod that bends is rigidly joined to it; choose another one.",
+                particle=place,
             )
         if not (model.particles.fixed_rotation[row] if turns else model.particles.fixed[row, axis]):
             line, unit = influence_on_displacement(model, row, axis), "rad/kN" if turns else "m/kN"
@@ -283,10 +281,10 @@ def _influence_on_end(model: Model, rod: Rod, what: str) -> Found:
     rigid = (model.rods.turning_shares[rod.row] > 0.0).tolist()
     if not any(rigid):
         raise ForceMethodError(
-            tr("{rod} does not bend, so it has no bending moments and no shear force.", rod=rod.name)
+            "{rod} does not bend, so it has no bending moments and no shear force.", rod=rod.name
         )
     if what in ENDS and not rigid[ENDS.index(what)]:
-        raise ForceMethodError(tr("{end} is hinged, so there is no bending moment.", end=f"{rod.name}.{what}"))
+        raise ForceMethodError("{end} is hinged, so there is no bending moment.", end=f"{rod.name}.{what}")
     if what == "shear":
         line = influence_on_ends(model, rod.row, (1.0 / rod.original_length,) * 2)
         return {"quantity": "shear", "unit": "kN/kN", "of": _line(model, line)}

@@ -1,20 +1,17 @@
-"""Named actions, by subject: the only way in, for keys, mouse, scripts and mods; importing them registers them."""
+"""Named actions, a module for each purpose of the help; importing them registers them.
 
-from pinjoint.editor.actions import editing, force_method, members, menu, modes, pointer, sliding, time, view
-from pinjoint.editor.context import ACTIONS, WHILE_DRAWING, Action, action
+The only way in, for keys, mouse, scripts and mods.
+"""
 
-__all__ = [
-    "ACTIONS",
-    "WHILE_DRAWING",
-    "Action",
-    "action",
-    "editing",
-    "force_method",
-    "members",
-    "menu",
-    "modes",
-    "pointer",
-    "sliding",
-    "time",
-    "view",
-]
+from pinjoint.editor.actions import (  # noqa: F401
+    boxes,
+    drawing,
+    editing,
+    files,
+    force_method,
+    menu,
+    results,
+    sliding,
+    time,
+    view,
+)

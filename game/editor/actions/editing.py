@@ -1,47 +1,216 @@
-"""Actions that make, change, copy and delete elements."""
+"""Actions that select, drag, change, copy and delete elements, and take that back."""
 
 from __future__ import annotations
 
 from collections.abc import Sequence
+from operator import attrgetter
 
 import numpy as np
 
 from pinjoint.components import written
 from pinjoint.components.field import Vector
-from pinjoint.components.grid import Grid
 from pinjoint.components.handle import Handle
 from pinjoint.components.language import begun, listed, marked, plural, tr
-from pinjoint.components.particle import Particle
 from pinjoint.editor.clipboard import Part, as_text, part_in, part_of, paste, selected_rows
-from pinjoint.editor.context import Context, action
+from pinjoint.editor.context import Context
+from pinjoint.editor.gestures.drawing import Drawing, DrawSupport, tool_in_hand
+from pinjoint.editor.gestures.moving import BoxSelect, Move, MovePoint, PullParticle
+from pinjoint.editor.menu import menu_at
+from pinjoint.editor.scenes.properties import Properties
 from pinjoint.systems.edit import Refusal
 from pinjoint.systems.edit.moving import Movable, nudged
-from pinjoint.systems.edit.picking import pick_particle
-from pinjoint.systems.edit.placing import place, snapped
+from pinjoint.systems.edit.picking import everything, pick, pick_grid, pick_line, pick_particle, pick_point
+from pinjoint.systems.edit.placing import snapped
 from pinjoint.systems.edit.rods import delete
-from pinjoint.systems.edit.supports import next_support
 from pinjoint.systems.forms.properties import counted, heading
+from pinjoint.systems.input.actions import (
+    ACTIONS,
+    IN_LESSONS,
+    IN_PICTURES,
+    LIVE,
+    PAUSE,
+    SIMULATION,
+    Binding,
+    Perform,
+    actions_of,
+)
+from pinjoint.systems.render.symbol_at import symbol_at
+
+action = actions_of("Select and edit")
+
+BESIDE = 30.0  # points to the right and down, where a duplicate appears
 
 
-@action("place", while_drawing=True)
-def _place(context: Context, pixel: Vector) -> None:
-    """A particle under the pointer; from the toolbar, under the clicks that follow."""
-    if context.view.strip.contains(pixel):
-        context.take_up("place")
+# --- the pointer -----------------------------------------------------------------------------------------
+
+
+@action("select", "click", "select", while_drawing=True)
+def _select(context: Context, pixel: Vector) -> None:
+    """With a tool in hand, a click begins or finishes a drawing instead."""
+    if isinstance(context.gesture, Drawing):
+        context.gesture.finish(context, pixel)
+    elif context.view.tool:
+        _draw(context, context.view.tool, pixel)
+    else:
+        hit = pick(context.model, context.view, pixel)
+        context.select(*([hit] if hit is not None else []))
+
+
+@action("add to selection", "ctrl+click", "add to the selection")
+def _add_to_selection(context: Context, pixel: Vector) -> None:
+    """Also the grid, which a plain click beside an element never takes."""
+    model, view = context.model, context.view
+    hit = pick(model, view, pixel) or pick_grid(model, view, pixel)
+    if hit is not None:
+        chosen = context.selected
+        context.select(*([h for h in chosen if h is not hit] if hit in chosen else [*chosen, hit]))
+
+
+@action("open", "double click", "open the properties of an element", while_drawing=True)
+def _open(context: Context, pixel: Vector) -> None:
+    """A double click: the properties of what it hits; it ends a chain of rods, and with a tool is another click."""
+    if isinstance(context.gesture, Drawing) and context.gesture.goes_on:
+        context.gesture = None
+    elif isinstance(context.gesture, Drawing) or context.view.tool:
+        _select(context, pixel)
+    elif (
+        hit := pick(context.model, context.view, pixel) or symbol_at(context.model, context.view, pixel)
+    ) is not None:
+        if hit not in context.selected:
+            context.select(hit)
+        ACTIONS["properties"].perform(context, pixel)
+
+
+@action(
+    "open menu",
+    ("right click", "menu"),
+    "open the menu at the pointer",
+    IN_PICTURES,
+    also=(Binding("shift+f10", IN_PICTURES),),
+    while_drawing=True,
+    in_menu=True,
+)
+def _open_menu(context: Context, pixel: Vector) -> None:
+    """The menu of what is under the pointer, which is selected; a drawing, or a tool in hand, is ended instead."""
+    if context.cancel_gesture():
         return
-    particle = place(context.model, context.view, pixel)
-    context.notice = tr(
-        "{element}: {value}",
-        element=context.name(particle),
-        value=written.place(particle.position, written.DIGITS),
-    )
+    if context.scene in LIVE:
+        model, view = context.model, context.view
+        hit = pick(model, view, pixel) or symbol_at(model, view, pixel)
+        if hit is None:
+            context.select()
+        elif hit not in context.selected:
+            context.select(hit)
+    context.view.menu = menu_at(context, pixel)
 
 
-@action("delete")
+@action(
+    "drag",
+    "drag",
+    "move an element, or select in a box",
+    (PAUSE,),
+    while_drawing=True,
+    also=(Binding("drag", (SIMULATION,), "pull a particle, or select in a box"),),
+)
+def _drag(context: Context, pixel: Vector) -> None:
+    """With a tool, draw; else drag the element under the pointer; where there is none, a box to select in."""
+    model, view = context.model, context.view
+    particle = pick_particle(model, view, pixel)
+    tool = tool_in_hand(context)
+    if tool == DrawSupport.tool and particle is not None:
+        context.gesture = DrawSupport(context, particle)
+    elif tool:
+        _draw(context, tool, pixel)
+    elif particle is not None and context.scene == "simulation":
+        context.gesture = PullParticle(context, particle)
+    elif context.scene == "pause" and particle is None and (grip := pick_point(model, view, pixel)) is not None:
+        context.gesture = MovePoint(context, grip)
+    elif context.scene == "pause" and (hit := particle or pick_line(model, view, pixel)) is not None:
+        context.gesture = Move(context, hit, pixel)
+    else:
+        context.gesture = BoxSelect(context, pixel, adding=False)
+
+
+@action("drag to add", "ctrl+drag", "add all in a box to the selection")
+def _drag_to_add(context: Context, pixel: Vector) -> None:
+    context.gesture = BoxSelect(context, pixel, adding=True)
+
+
+@action("drag to", "drag to", "", IN_LESSONS, while_drawing=True)
+def _drag_to(context: Context, pixel: Vector) -> None:
+    if context.gesture is not None:
+        context.gesture.move(context, pixel)
+
+
+@action("drop", "drop", "", IN_LESSONS, while_drawing=True)
+def _drop(context: Context, pixel: Vector) -> None:
+    gesture, context.gesture = context.gesture, None
+    if gesture is not None:
+        gesture.drop(context, pixel)
+    if isinstance(gesture, Drawing):
+        context.gesture = gesture.following(context)
+
+
+def _draw(context: Context, tool: str, pixel: Vector) -> None:
+    """Begin a drawing with a tool at a pixel; where none can begin, one that a key began goes on.
+
+    Tools without a drawing of their own ("place", "support") act at once.
+    """
+    action = ACTIONS[tool]
+    if action.draws is None:
+        action.perform(context, pixel)
+        return
+    begun = action.draws.begin_anywhere(context, pixel)
+    if begun is not None:
+        context.gesture = begun
+    elif context.gesture is None:
+        raise Refusal("Begin at a particle. P makes a new particle, Esc puts the tool away.")
+
+
+# --- keys ------------------------------------------------------------------------------------------------
+
+
+@action(
+    "escape",
+    "escape",
+    "put the tool away, or pause",
+    (SIMULATION,),
+    while_drawing=True,
+    also=(Binding("escape", (PAUSE,), "put the tool away, or deselect"),),
+)
+def _escape(context: Context, pixel: Vector) -> None:
+    """Cancel the drawing, else put the tool away, else hide a shape, else end the run or deselect."""
+    if context.cancel_gesture():
+        return
+    if context.document.shapes.shown is not None:
+        context.document.shapes.hide()
+    elif context.scene == "simulation":
+        context.scenes.request("pause")
+    elif context.has_selected:
+        context.select()
+    else:
+        context.notice = tr("Nothing is selected, and the run is paused. Space starts it, F1 shows all keys.")
+
+
+@action(
+    "properties",
+    "return",
+    "open the properties of the selection",
+    pressed=lambda context: context.scene == "properties",
+)
+def _properties(context: Context, pixel: Vector) -> None:
+    """The properties of the selected elements, or the environment; leaving them leads back to this scene."""
+    properties = context.scenes["properties"]
+    assert isinstance(properties, Properties)
+    properties.opened_from(context.scene)
+    context.scenes.request_from_pause("properties")
+
+
+@action("delete", ("delete", "backspace"), "delete the selection", enabled=attrgetter("has_selected"))
 def _delete(context: Context, pixel: Vector) -> None:
     doomed = context.selected
     if not doomed:
-        raise Refusal(tr("Nothing is selected; first click what you want to delete."))
+        raise Refusal("Nothing is selected; first click what you want to delete.")
     before = {table.name: table.count for table in context.model.tables.values()}
     named = context.name(doomed[0])
     delete(context.model, doomed)
@@ -53,20 +222,6 @@ def _delete(context: Context, pixel: Vector) -> None:
             counted(context.model.tables[name].kind.noun, count) for name, count in gone.items() if count
         ]
         context.notice = tr("{elements} deleted.", elements=listed(elements))
-
-
-@action("support")
-def _support(context: Context, pixel: Vector) -> None:
-    """The next support of the particle under the pointer, else of the selected ones; without any, take up the tool."""
-    hit = pick_particle(context.model, context.view, pixel)
-    chosen = [handle for handle in context.selected if isinstance(handle, Particle)]
-    if hit is not None and hit not in chosen:
-        chosen = [hit]
-    if not chosen:
-        context.take_up("support")
-        return
-    support = next_support(context.model, chosen)
-    context.notice = tr("{element}: {value}", element=all_of(context, chosen), value=tr(support))
 
 
 def all_of(context: Context, elements: Sequence[Handle]) -> str:
@@ -82,57 +237,77 @@ def nudge(context: Context, direction: Vector, *, far: bool) -> bool:
         return False
     positions = nudged(model, context.view, chosen.positions, direction, far=far)
     moved = [*chosen.particles, *chosen.others]
-    with context.history.as_one(("nudge", *(handle.entity for handle in moved))):
+    with context.document.history.as_one(("nudge", *(handle.entity for handle in moved))):
         chosen.place(positions)
     place = written.place(positions[0], written.DIGITS)
     context.notice = tr("{element}: {value}", element=all_of(context, moved), value=place)
     return True
 
 
-# --- grids -----------------------------------------------------------------------------------------------
+def _move(way: str, *, far: bool, always: bool) -> Perform:
+    """The action of an arrow key: move what is selected; once a run has begun only if `always`, as with Ctrl."""
+    direction = {"left": (-1.0, 0.0), "right": (1.0, 0.0), "up": (0.0, 1.0), "down": (0.0, -1.0)}[way]
+
+    def act(context: Context, pixel: Vector) -> None:
+        if (always or context.document.at_beginning) and nudge(context, direction, far=far):
+            return
+        if always:
+            raise Refusal(tr("Nothing that can be moved is selected; click a particle or a rod first."))
+        if context.has_selected:
+            raise Refusal(
+                tr(
+                    "Once a run has begun, arrow keys step through time. Ctrl with an arrow moves the selection; R goes back"
+                    " to the beginning."
+                )
+            )
+
+    return act
 
 
-@action("new grid")
-def _new_grid(context: Context, pixel: Vector) -> None:
-    with context.model.transaction(marked("new grid")):
-        for grid in context.model.grids:
-            if grid.shown:
-                grid.shown = False
-        context.model.create(Grid)
+for _held, _name, _ways, _title in (  # without Ctrl, left and right go through time
+    ("", "arrow", ("up", "down"), marked("move the selection (before a run)")),
+    ("shift+", "far arrow", ("up", "down"), marked("move it by the grid (before a run)")),
+    ("ctrl+", "move", ("left", "right", "up", "down"), marked("move the selection")),
+    ("ctrl+shift+", "move far", ("left", "right", "up", "down"), marked("move it by the grid")),
+):
+    for _way in _ways:
+        _act = _move(_way, far="far" in _name, always="move" in _name)
+        action(f"{_name} {_way}", _held + _way, _title, (PAUSE,), repeats=True)(_act)
 
 
-@action("next grid")
-def _next_grid(context: Context, pixel: Vector) -> None:
-    """Show the grid after the shown one; after the last, none; after none, the first."""
-    grids = list(context.model.grids)
-    shown = [index for index, grid in enumerate(grids) if grid.shown]
-    following = shown[-1] + 1 if shown else 0
-    with context.model.transaction(marked("next grid")):
-        for index, grid in enumerate(grids):
-            if grid.shown != (index == following):
-                grid.shown = index == following
+@action("undo", "ctrl+z", "undo", repeats=True, enabled=attrgetter("can_undo"))
+def _undo(context: Context, pixel: Vector) -> None:
+    title = context.undo()
+    context.notice = tr("Undone: {title}", title=tr(title)) if title else tr("There is nothing to undo.")
 
 
-# --- clipboard ----------------------------------------------------------------------------------------
+@action("redo", ("ctrl+y", "ctrl+shift+z"), "redo", repeats=True, enabled=attrgetter("can_redo"))
+def _redo(context: Context, pixel: Vector) -> None:
+    title = context.redo()
+    context.notice = tr("Redone: {title}", title=tr(title)) if title else tr("There is nothing to redo.")
 
 
-BESIDE = 30.0  # points to the right and down, where a duplicate appears
+@action("select all", "ctrl+a", "select all")
+def _select_all(context: Context, pixel: Vector) -> None:
+    chosen = everything(context.model)
+    context.select(*chosen)
+    context.notice = plural("{count} element selected.", "{count} elements selected.", len(chosen))
 
 
-@action("copy")
+@action("copy", "ctrl+c", "copy the selection", enabled=attrgetter("has_selected"))
 def _copy(context: Context, pixel: Vector) -> None:
     _put_on_clipboard(context)
     context.notice = tr("Copied. Ctrl+V pastes it at the pointer.")
 
 
-@action("cut")
+@action("cut", "ctrl+x", "cut the selection")
 def _cut(context: Context, pixel: Vector) -> None:
     _put_on_clipboard(context)
     delete(context.model, context.selected)
     context.notice = tr("Cut. Ctrl+V pastes it at the pointer.")
 
 
-@action("paste")
+@action("paste", "ctrl+v", "paste at the pointer")
 def _paste(context: Context, pixel: Vector) -> None:
     """Paste around the pointer, from the toolbar around the middle of the view; the first place snaps to the grid."""
     if context.view.strip.contains(pixel):
@@ -151,7 +326,7 @@ def _paste(context: Context, pixel: Vector) -> None:
     )
 
 
-@action("duplicate")
+@action("duplicate", "ctrl+d", "duplicate the selection", enabled=attrgetter("has_selected"))
 def _duplicate(context: Context, pixel: Vector) -> None:
     view = context.view
     beside = BESIDE * view.pixel_ratio / view.camera.scale

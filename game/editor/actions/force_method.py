@@ -3,24 +3,38 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from pinjoint.components.field import Vector
 from pinjoint.components.language import tr
 from pinjoint.components.view import CONVENTIONS
-from pinjoint.editor.context import Context, action
+from pinjoint.editor.actions.results import shows_diagrams
+from pinjoint.editor.context import Context
 from pinjoint.editor.scenes.force_method import ForceMethod
 from pinjoint.force_method import PARTS
 from pinjoint.systems.edit import Refusal
 from pinjoint.systems.edit.picking import pick
+from pinjoint.systems.input.actions import FORCE_METHOD, Condition, Perform, actions_of
 
 if TYPE_CHECKING:  # it imports scipy
     from pinjoint.force_method.guide import Guide
+
+action = actions_of("Force method", (FORCE_METHOD,))
 
 
 def _guide(context: Context) -> Guide | None:
     scene = context.scenes.active
     return scene.guide if isinstance(scene, ForceMethod) else None
+
+
+def _guided(condition: Callable[[Any], bool]) -> Condition:
+    """Whether there is a guide of which a condition is true."""
+
+    def holds(context: Context) -> bool:
+        guide = getattr(context.scenes.active, "shown_guide", None)
+        return guide is not None and condition(guide)
+
+    return holds
 
 
 def _work(context: Context, text: str, do: Callable[[], object]) -> None:
@@ -29,7 +43,7 @@ def _work(context: Context, text: str, do: Callable[[], object]) -> None:
     scene.work(context, text, do)
 
 
-@action("next part")
+@action("next part", "k", "go to the next part")
 def _next_part(context: Context, pixel: Vector) -> None:
     guide = _guide(context)
     if guide is None:
@@ -42,11 +56,13 @@ def _next_part(context: Context, pixel: Vector) -> None:
         _work(context, tr("Computing part {part}", part=guide.part + 1), guide.next)
 
 
-@action("pick unknown")
+@action(
+    "pick unknown", "click", "choose the redundant in set 1", enabled=_guided(lambda guide: guide.part == 2)
+)
 def _pick_unknown(context: Context, pixel: Vector) -> None:
     guide = _guide(context)
     if guide is not None and guide.part == 1:
-        raise Refusal(tr("Press K first: part 2 asks which rod or support to release."))
+        raise Refusal("Press K first: part 2 asks which rod or support to release.")
     if guide is not None and guide.part == 2:
         model, view = context.focus
         hit = pick(model, view, pixel) if view.camera.viewport.contains(pixel) else None
@@ -54,12 +70,12 @@ def _pick_unknown(context: Context, pixel: Vector) -> None:
         _work(context, tr("Releasing it and solving anew"), lambda: guide.pick(hit, near))
 
 
-action("release x")(lambda context, pixel: _pick_axis(context, 0))
-action("release y")(lambda context, pixel: _pick_axis(context, 1))
-action("release moment")(lambda context, pixel: _pick_axis(context, 2))
-
-
-@action("release another")
+@action(
+    "release another",
+    "n",
+    "release one more redundant",
+    enabled=_guided(lambda guide: guide.can_release_another),
+)
 def _release_another(context: Context, pixel: Vector) -> None:
     guide = _guide(context)
     if guide is not None and not guide.can_release_another:
@@ -72,26 +88,25 @@ def _release_another(context: Context, pixel: Vector) -> None:
         guide.release_another()
 
 
-def _pick_axis(context: Context, axis: int) -> None:
-    guide = _guide(context)
-    if guide is not None and axis == 2 and not guide.clamp_wanted:
-        raise Refusal(tr("Click a clamped support first; then M releases its moment."))
-    if guide is not None:
-        _work(context, tr("Releasing it and solving anew"), lambda: guide.pick_axis(axis))
+def _pick_axis(axis: int) -> Perform:
+    def act(context: Context, pixel: Vector) -> None:
+        guide = _guide(context)
+        if guide is not None and axis == 2 and not guide.clamp_wanted:
+            raise Refusal("Click a clamped support first; then M releases its moment.")
+        if guide is not None:
+            _work(context, tr("Releasing it and solving anew"), lambda: guide.pick_axis(axis))
+
+    return act
 
 
-@action("toggle diagrams of sets")
-def _toggle_diagrams(context: Context, pixel: Vector) -> None:
-    guide = _guide(context)
-    if guide is not None and guide.is_frame:
-        guide.next_quantity()
-    elif guide is not None:
-        context.view.all_diagrams = not context.view.all_diagrams
-        for one in guide.shown:
-            one.view.all_diagrams = context.view.all_diagrams
+_AXIS = _guided(lambda guide: guide.axis_wanted is not None)
+_CLAMP = _guided(lambda guide: guide.clamp_wanted)
+action("release x", "x", "release the support along x", enabled=_AXIS)(_pick_axis(0))
+action("release y", "y", "release the support along y", enabled=_AXIS)(_pick_axis(1))
+action("release moment", "m", "release the moment of the clamp", enabled=_CLAMP)(_pick_axis(2))
 
 
-@action("next convention")
+@action("next convention", "c", "change the convention: textbook or thesis")
 def _next_convention(context: Context, pixel: Vector) -> None:
     """The textbook's convention, or the thesis'."""
     at = CONVENTIONS.index(context.view.convention) + 1
@@ -102,12 +117,14 @@ def _next_convention(context: Context, pixel: Vector) -> None:
         context.notice = tr("Convention of the thesis: p = (Δ − Δ₀) / Δ₁")
 
 
-@action("report")
+@action(
+    "report", "p", "save a report of the solution as a PDF", enabled=_guided(lambda guide: guide.part == PARTS)
+)
 def _report(context: Context, pixel: Vector) -> None:
     """Write the whole solution to a PDF beside the model (part 7)."""
     guide = _guide(context)
     if guide is None or guide.part < PARTS or guide.solution is None:
-        raise Refusal(tr("Go through all parts first, with K; then P writes the report."))
+        raise Refusal("Go through all parts first, with K; then P writes the report.")
     if context.window is None:
         return
     from pinjoint.force_method.report import report  # it imports reportlab
@@ -117,9 +134,20 @@ def _report(context: Context, pixel: Vector) -> None:
     except OSError as error:
         reason = {"file": error.filename, "reason": error.strerror}
         raise Refusal(
-            tr(
-                "No report was saved: {file}: {reason}. Start Pinjoint in a folder where you may write.",
-                **reason,
-            )
+            "No report was saved: {file}: {reason}. Start Pinjoint in a folder where you may write.", **reason
         ) from None
     context.notice = tr("Report saved: {file}", file=path)
+
+
+@action("toggle diagrams of sets", "i", "show or hide force diagrams", pressed=shows_diagrams)
+def _toggle_diagrams(context: Context, pixel: Vector) -> None:
+    guide = _guide(context)
+    if guide is not None and guide.is_frame:
+        guide.next_quantity()
+    elif guide is not None:
+        context.view.all_diagrams = not context.view.all_diagrams
+        for one in guide.shown:
+            one.view.all_diagrams = context.view.all_diagrams
+
+
+action("back", "escape", "leave the force method")(lambda context, pixel: context.scenes.request("pause"))

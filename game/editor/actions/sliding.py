@@ -1,23 +1,21 @@
-"""Actions of the sliders on the canvas: moving them, making and removing them."""
+"""Actions of the sliders on the canvas: moving and removing them."""
 
 from __future__ import annotations
 
 from pinjoint.components.field import Vector
 from pinjoint.components.language import tr
-from pinjoint.editor.context import Action, Context, action
+from pinjoint.editor.context import Context
 from pinjoint.editor.gestures.sliding import Slide
-from pinjoint.editor.scenes.form import FormScene
 from pinjoint.editor.sliders import (
     SCALE,
-    add_slider_for,
-    add_usual_slider,
     move_to,
     remove_slider,
     scale_to,
     slider_of,
 )
-from pinjoint.systems.edit import Refusal
+from pinjoint.systems.input.actions import Perform, actions_of
 
+action = actions_of("More")
 WHEEL = 0.02  # of its length, by which the wheel moves a slider
 
 
@@ -60,29 +58,18 @@ def automatic(context: Context) -> None:
     scale_to(context, settings.displacement_scale if is_automatic else None)
 
 
-def _step(by: float) -> Action:
+def _step(by: float) -> Perform:
     def act(context: Context, pixel: Vector) -> None:
         place = context.slider_at(pixel)
         if place is None or place.control.share is None:
             return
         value = slider_of(context, place.control.key).value_at(place.control.share + by)
-        with context.history.as_one(("slider", place.control.key)):
+        with context.document.history.as_one(("slider", place.control.key)):
             move_to(context, place.control.key, value)
 
     return act
 
 
-@action("slider of box")
-def _slider_of_box(context: Context, pixel: Vector) -> None:
-    """A slider for what the selected box of properties holds."""
-    scene = context.scenes.active
-    box = scene.form.selected if isinstance(scene, FormScene) else None
-    if box is None:
-        raise Refusal(tr("Click the box with the number first; then Ctrl+L makes a slider for it."))
-    add_slider_for(context, box)
-
-
 action("slider up")(_step(WHEEL))
 action("slider down")(_step(-WHEEL))
 action("automatic displacement scale")(lambda context, pixel: automatic(context))
-action("new slider")(lambda context, pixel: add_usual_slider(context))

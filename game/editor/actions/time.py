@@ -1,16 +1,20 @@
-"""Actions on time: stepping, restarting, pace, undo and redo."""
+"""Actions on time: running, stepping, restarting, settling, pace."""
 
 from __future__ import annotations
 
 import math
+from operator import attrgetter
 
 from pinjoint.components import written
 from pinjoint.components.field import Vector
 from pinjoint.components.language import joined, plural, tr
 from pinjoint.editor.actions.editing import nudge
-from pinjoint.editor.context import Action, Context, action
+from pinjoint.editor.context import Context
 from pinjoint.systems.collision.impacts import TooManyImpacts
 from pinjoint.systems.edit import Refusal
+from pinjoint.systems.input.actions import PAUSE, Perform, actions_of
+
+action = actions_of("Time")
 
 PACE_STEP = 2.0
 FAR = 0.2  # s shown that one press skips
@@ -19,45 +23,47 @@ MOST_IMPACTS = 1_000_000  # of free discs that the steps of one press may hold, 
 MANY = 2000  # elements; the pace that suits larger models takes too long to find
 
 
-def _arrow(direction: Vector, steps: int, *, far: bool) -> Action:
+@action(
+    "toggle run",
+    "space",
+    "run or pause",
+    pressed=lambda context: context.scenes.active.tools == "simulation",
+    pressed_as=lambda context: ("pause", ""),
+)
+def _toggle_run(context: Context, pixel: Vector) -> None:
+    context.scenes.request("pause" if context.scene == "simulation" else "simulation")
+
+
+action("pause")(lambda context, pixel: context.scenes.request("pause"))
+
+
+def _arrow(way: float, *, far: bool) -> Perform:
     """The action of an arrow key: once there is a run, right is forward in time; before, it moves what is selected."""
 
     def act(context: Context, pixel: Vector) -> None:
-        if context.at_beginning and nudge(context, direction, far=far):
-            return
-        if steps:
-            _step(context, steps * (_far(context) if far else 1))
-        elif context.has_selected:
-            raise Refusal(
-                tr(
-                    "Once a run has begun, arrow keys step through time. Ctrl with an arrow moves the selection; R goes back"
-                    " to the beginning."
-                )
-            )
+        if not (context.document.at_beginning and nudge(context, (way, 0.0), far=far)):
+            _step(context, round(way) * (_far(context) if far else 1))
 
     return act
 
 
-def _move(direction: Vector, *, far: bool) -> Action:
-    """The action of an arrow key with Ctrl: move what is selected, whether there is a run or not."""
-
-    def act(context: Context, pixel: Vector) -> None:
-        if not nudge(context, direction, far=far):
-            raise Refusal(tr("Nothing that can be moved is selected; click a particle or a rod first."))
-
-    return act
+action("arrow right", "right", "step forward", (PAUSE,), repeats=True)(_arrow(1.0, far=False))
+action("arrow left", "left", "step back", (PAUSE,), repeats=True)(_arrow(-1.0, far=False))
+action("far arrow right", "shift+right", "skip ahead", (PAUSE,), repeats=True)(_arrow(1.0, far=True))
+action("far arrow left", "shift+left", "skip back", (PAUSE,), repeats=True)(_arrow(-1.0, far=True))
+action("step", ".", "step forward", (PAUSE,), repeats=True)(lambda context, pixel: _step(context, 1))
 
 
-for _name, _direction, _steps in (
-    ("left", (-1.0, 0.0), -1),
-    ("right", (1.0, 0.0), 1),
-    ("up", (0.0, 1.0), 0),
-    ("down", (0.0, -1.0), 0),
-):
-    action(f"arrow {_name}")(_arrow(_direction, _steps, far=False))
-    action(f"far arrow {_name}")(_arrow(_direction, _steps, far=True))
-    action(f"move {_name}")(_move(_direction, far=False))
-    action(f"move far {_name}")(_move(_direction, far=True))
+@action(
+    "step back",
+    ",",
+    "step back",
+    (PAUSE,),
+    repeats=True,
+    enabled=lambda context: context.document.timeline.first < context.model.clock.steps,
+)
+def _step_back(context: Context, pixel: Vector) -> None:
+    _step(context, -1)
 
 
 def _far(context: Context) -> int:
@@ -101,17 +107,15 @@ def _step(context: Context, steps: int) -> None:
         context.notice = context.simulation.message
 
 
-action("step")(lambda context, pixel: _step(context, 1))
-action("step back")(lambda context, pixel: _step(context, -1))
-action("faster", while_drawing=True)(lambda context, pixel: context.clock.faster(PACE_STEP))
-action("slower", while_drawing=True)(lambda context, pixel: context.clock.faster(1.0 / PACE_STEP))
-action("natural pace", while_drawing=True)(lambda context, pixel: setattr(context.clock, "factor", 1.0))
-
-
-@action("restart")
+@action(
+    "restart",
+    "r",
+    "restart from the undeformed shape",
+    enabled=lambda context: not context.document.is_undeformed,
+)
 def _restart(context: Context, pixel: Vector) -> None:
     if context.document.is_undeformed:
-        raise Refusal(tr("This is the beginning already: no time has passed. Ctrl+Z undoes edits."))
+        raise Refusal("This is the beginning already: no time has passed. Ctrl+Z undoes edits.")
     known = context.document.undeformed is not None
     context.restart()
     begun_at_rest = tr(
@@ -121,20 +125,21 @@ def _restart(context: Context, pixel: Vector) -> None:
     context.notice = back if known else joined([back, begun_at_rest])
 
 
-@action("undo")
-def _undo(context: Context, pixel: Vector) -> None:
-    title = context.undo()
-    context.notice = tr("Undone: {title}", title=tr(title)) if title else tr("There is nothing to undo.")
-
-
-@action("redo")
-def _redo(context: Context, pixel: Vector) -> None:
-    title = context.redo()
-    context.notice = tr("Redone: {title}", title=tr(title)) if title else tr("There is nothing to redo.")
-
-
-@action("settle")
+@action("settle", "e", "find equilibrium at once", enabled=attrgetter("model.particles.count"))
 def _settle(context: Context, pixel: Vector) -> None:
     """Go to the static equilibrium under the full load."""
     context.settle()
     context.view.follow(context.model, clear=True)
+
+
+def _pace(by: float) -> Perform:
+    return lambda context, pixel: context.document.live.clock.faster(by)
+
+
+action("faster", "+", "run faster", repeats=True, while_drawing=True)(_pace(PACE_STEP))
+action("slower", "-", "run slower", repeats=True, while_drawing=True)(_pace(1.0 / PACE_STEP))
+
+
+@action("natural pace", "0", "reset the speed to suit the model", while_drawing=True)
+def _natural_pace(context: Context, pixel: Vector) -> None:
+    context.document.live.clock.factor = 1.0

@@ -28,6 +28,7 @@ from pinjoint.systems.edit.placing import place, place_at, snapped, snapped_to_p
 from pinjoint.systems.edit.rods import check_ends, distance, is_rigid, join
 from pinjoint.systems.edit.supports import NAMES, Held, next_support, support, support_towards
 from pinjoint.systems.forms.properties import heading
+from pinjoint.systems.input.actions import ACTIONS
 
 CLAMPED_BEYOND = 60.0  # points from a particle to its ground, which then holds its rotation, too
 HINGES = "hinge"  # the tool by which clicks hinge ends of rods; its action acts at once
@@ -78,7 +79,7 @@ class Drawing(Gesture):
 def start_of(context: Context, particle: Particle) -> Vector:
     """Where a particle from which something is drawn is drawn (m). Raises Refusal if it was deleted."""
     if not particle.exists:
-        raise Refusal(tr("The particle where this began has been deleted; begin at another one."))
+        raise Refusal("The particle where this began has been deleted; begin at another one.")
     return drawn_at(context, particle)
 
 
@@ -274,11 +275,9 @@ class DrawMoment(DrawFromParticle):
     def __init__(self, context: Context, particle: Particle) -> None:
         if not rigid_joints(context.model)[particle.row]:
             raise Refusal(
-                tr(
-                    "A moment cannot act on {particle}, where no rod is rigidly joined. Ctrl+J makes the end of a rod"
-                    " rigid.",
-                    particle=particle.name,
-                )
+                "A moment cannot act on {particle}, where no rod is rigidly joined. Ctrl+J makes the end of a rod"
+                " rigid.",
+                particle=particle.name,
             )
         super().__init__(context, particle)
         self.hint = tr(
@@ -319,10 +318,7 @@ class DrawVelocity(DrawArrow):
     def __init__(self, context: Context, particle: Particle) -> None:
         if all(particle.fixed):
             raise Refusal(
-                tr(
-                    "{particle} is held in x and y and cannot move; C changes its support.",
-                    particle=particle.name,
-                )
+                "{particle} is held in x and y and cannot move; C changes its support.", particle=particle.name
             )
         super().__init__(context, particle)
 
@@ -356,10 +352,8 @@ class DrawElement(Drawing):
         end = snapped_to_points(context.model, context.view, pixel)
         if end == self.from_:
             raise Refusal(
-                tr(
-                    "The {element} would begin and end at the same point; click another point.",
-                    element=tr(self.kind.noun),
-                )
+                "The {element} would begin and end at the same point; click another point.",
+                element=tr(self.kind.noun),
             )
         first, last = self.kind.points
         [made] = context.model.create(self.kind, 1, **{first: [self.from_], last: [end]})
@@ -459,7 +453,12 @@ def hint_of_tool(context: Context) -> str:
     if tool == DrawRod.tool:
         steps = tr("rods: click from place to place, or drag"), kind_of_rods(context)
         return joined([*steps, tr("double click ends the chain     Esc done")], BETWEEN)
-    return tr(TOOL_HINTS.get(tool, ""))
+    return tr(ACTIONS[tool].hint) if tool else ""
+
+
+def tool_in_hand(context: Context) -> str:
+    """The tool with which clicks draw, or ""."""
+    return context.gesture.tool if isinstance(context.gesture, Drawing) else context.view.tool
 
 
 def end_pointed_at(context: Context, pixel: Vector) -> Preview | None:
@@ -477,18 +476,3 @@ def end_pointed_at(context: Context, pixel: Vector) -> Preview | None:
         else tr("make {rod} rigid at {particle}", rod=rod, particle=particle)
     )
     return Preview("hinge", at, at, label)
-
-
-# By tool: the status line while clicks use it, and what it draws ("place" draws nothing, "support" has an action).
-# That of rods names the kind of rods, too.
-TOOL_HINTS = {
-    "place": marked("click where you want particles     Esc done"),
-    "support": marked("supports: drag from a particle to its ground, or click for the next kind     Esc done"),
-    HINGES: marked("click near a rod's end: hinged or rigid     at a joint: all rods there     Esc done"),
-    "force": marked(
-        "loads: drag an arrow from a particle     from a rod: a distributed load     F or Esc done"
-    ),
-    "moment": marked("moments: drag from a particle, to the left for counter-clockwise     Esc done"),
-    "velocity": marked("velocities: drag an arrow from a particle     V or Esc done"),
-}
-TOOLS: dict[str, type[Drawing]] = {kind.tool: kind for kind in (DrawRod, DrawForce, DrawMoment, DrawVelocity)}

@@ -29,7 +29,7 @@ class Placing(Gesture):
         self.move(context, pixel)
 
     def cancel(self, context: Context) -> None:
-        context.history.retract(self)
+        context.document.history.retract(self)
 
     def leave(self, context: Context) -> None:
         """The elements stay where they are."""
@@ -54,7 +54,7 @@ class Move(Placing):
         target = snapped(model, view, (float(wanted[0]), float(wanted[1])))
         try:
             self._check_free(context, target)
-            with context.history.as_one(self):
+            with context.document.history.as_one(self):
                 self._movable.place(self._start + np.subtract(target, self._start[self._leader]))
         except (Refusal, FieldError) as error:
             context.notice = str(error)
@@ -88,7 +88,7 @@ class MovePoint(Placing):
         element, point = self._held.element, self._held.point
         target = snapped_to_points(context.model, context.view, pixel, besides=element)
         try:
-            with context.history.as_one(self):
+            with context.document.history.as_one(self):
                 context.model.assign([element], point, [target])
         except FieldError as error:
             context.notice = str(error)
@@ -108,14 +108,12 @@ class PullParticle(Gesture):
     def __init__(self, context: Context, particle: Particle) -> None:
         if context.settings.displacement_scale == 0.0:
             raise Refusal(
-                tr(
-                    "Displacements are drawn at scale 0, so nothing can be pulled; set the displacement scale above 0."
-                )
+                "Displacements are drawn at scale 0, so nothing can be pulled; set the displacement scale above 0."
             )
         self._particle = particle
         context.simulation.advance(0)
         context.document.assessment.disturb("pulled")
-        context.timeline.hold(hand_on(context.model, context.view, particle, lambda: context.pace))
+        context.document.timeline.hold(hand_on(context.model, context.view, particle, lambda: context.pace))
 
     def move(self, context: Context, pixel: Vector) -> None:
         x, y = context.view.camera.to_model(pixel)
@@ -123,13 +121,13 @@ class PullParticle(Gesture):
         hand = context.pull.hand
         if hand is not None:
             anchor = ((x - original[0]) / scale, (y - original[1]) / scale)
-            context.timeline.hold(hand.at(anchor))
+            context.document.timeline.hold(hand.at(anchor))
 
     def drop(self, context: Context, pixel: Vector) -> None:
         self.cancel(context)
 
     def cancel(self, context: Context) -> None:
-        context.timeline.hold(None)
+        context.document.timeline.hold(None)
 
     def preview(self, context: Context, pixel: Vector) -> Preview | None:
         hand = context.pull.hand

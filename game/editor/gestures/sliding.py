@@ -31,7 +31,7 @@ class Slide(Placing):
         slider = slider_of(context, self._key)
         value = slider.value_at(self._place.share_at(pixel[0] + self._grip))
         try:
-            with context.history.as_one(self):
+            with context.document.history.as_one(self):
                 move_to(context, self._key, value)
         except FieldError as error:
             context.notice = str(error)

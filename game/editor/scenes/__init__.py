@@ -1,8 +1,7 @@
 """Scenes: the modes of the program, a state machine with pause as its hub."""
 
-from collections.abc import Callable
-
-from pinjoint.editor.context import PHYSICS, Scene, SceneError, Scenes
+from pinjoint.components.extensions import EXTENSIONS
+from pinjoint.editor.context import PHYSICS, Scene, Scenes
 from pinjoint.editor.scenes.files import Pictures
 from pinjoint.editor.scenes.force_method import ForceMethod, Sets
 from pinjoint.editor.scenes.live import Pause, Simulation
@@ -12,14 +11,20 @@ from pinjoint.editor.scenes.save import Save
 from pinjoint.systems.base import System
 from pinjoint.systems.render.picture import Stage
 
-__all__ = ["PHYSICS", "SCENES", "Scene", "SceneError", "Scenes", "Stage", "all_scenes", "scene_systems"]
-
-SCENES: list[Callable[[], Scene]] = []  # that mods add; made anew for every session
+__all__ = ["PHYSICS", "SCENES", "Scene", "Scenes", "Stage", "all_scenes", "scene_systems"]
 
 
 def all_scenes() -> list[Scene]:
     """The six modes of Pinjoint, beginning with the one that the program starts in, and the modes of mods."""
-    return [Pause(), Simulation(), Properties(), Save(), Load(), ForceMethod(), *(scene() for scene in SCENES)]
+    return [
+        Pause(),
+        Simulation(),
+        Properties(),
+        Save(),
+        Load(),
+        ForceMethod(),
+        *(scene() for scene in EXTENSIONS.scenes),
+    ]
 
 
 def scene_systems() -> list[System]:

@@ -20,7 +20,7 @@ from pinjoint.editor.context import Context, Scene
 from pinjoint.editor.sliders import scale_control
 from pinjoint.force_method import PARTS, words
 from pinjoint.systems.base import Phase, System
-from pinjoint.systems.render.diagrams import largest_force
+from pinjoint.systems.render.arrows import largest_force
 from pinjoint.systems.render.overlays import heading_height
 from pinjoint.systems.render.page import page_height
 

@@ -18,20 +18,6 @@ from pinjoint.systems.render.form_layout import FormLayout, lay_out, row_of
 from pinjoint.systems.render.panel import caret_at
 from pinjoint.systems.render.picture import Stage
 
-# By titles that boxes once had, and scripts still name them by, those of today.
-FORMER = {f"applied force {axis}": f"load {axis}" for axis in "xy"} | {
-    "undeformed diagrams": "diagrams on undeformed rods"
-}
-
-
-class Texts(dict[str, str]):
-    """The texts of boxes by their titles, former ones among them."""
-
-    def __missing__(self, title: str) -> str:
-        if title in FORMER:
-            return self[FORMER[title]]
-        raise KeyError(title)
-
 
 class FormScene(Scene):
     """A mode with a form, which is made on entering and dropped on leaving."""
@@ -187,12 +173,11 @@ class FormScene(Scene):
 
     @property
     def boxes(self) -> dict[str, str]:
-        return Texts((english(box.title), box.text) for box in self.form.boxes)
+        return {english(box.title): box.text for box in self.form.boxes}
 
     def click_box(self, context: Context, title: str) -> None:
         """Select the box with that title, in English or as it is shown, as a click on it does. Raises LookupError."""
         wanted = title.strip().lower()
-        wanted = FORMER.get(wanted, wanted)
         for box in self.form.boxes:
             if wanted in (english(box.title).lower(), tr(box.title).lower()):
                 self.reveal(context, box)

@@ -70,7 +70,7 @@ class Properties(FormScene):
     def _apply(self, context: Context, *, typing: bool = False) -> list[str]:
         """Give the model what is accepted; the boxes then say what it has. Returns the sentences about refused ones."""
         before = context.model.revision
-        with context.history.as_one(("properties", self.form.context)):
+        with context.document.history.as_one(("properties", self.form.context)):
             refused = answers.apply(self.form, context.model, typing=typing)
         if context.model.revision != before:
             self.form.heading.text = properties.heading(context.model, context.selected)

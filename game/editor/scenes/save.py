@@ -22,7 +22,7 @@ class Save(FileScene):
 
     def make_form(self, context: Context) -> Form:
         self._confirmed = ""
-        form = self.new_form(tr("Save"), context.file.name, saved_models(), tr("Save"))
+        form = self.new_form(tr("Save"), context.document.file.name, saved_models(), tr("Save"))
         form.boxes[0].explanation = tr("A file in {folder}", folder=library.models_folder())
         return form
 

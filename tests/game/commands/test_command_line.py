@@ -16,9 +16,9 @@ from typing import Any
 import pytest
 
 from pinjoint import mods
-from pinjoint.commands import COMMANDS
 from pinjoint.commands.command_line import main
 from pinjoint.commands.output import FORMATS
+from pinjoint.components.extensions import EXTENSIONS
 
 ROOT = Path(__file__).parents[3]
 
@@ -141,7 +141,7 @@ def test_help_says_what_each_command_does(
     with pytest.raises(SystemExit):
         main(["--help"])
     lines = capsys.readouterr().out.splitlines()
-    for name in COMMANDS:
+    for name in EXTENSIONS.commands:
         assert any(re.fullmatch(rf"  {name} +\w.+", line) for line in lines), name
     assert max(map(len, lines)) <= 80
 

@@ -468,10 +468,10 @@ def test_a_hand_presses_a_disc_onto_a_node() -> None:
     session.simulation.advance(0)
     hand = hand_on(session.model, session.view, session.particles["ball"], lambda: session.pace)
     for k in range(20):
-        session.timeline.hold(hand.at((0.8, -0.8 if k < 10 else -1.1)))
+        session.document.timeline.hold(hand.at((0.8, -0.8 if k < 10 else -1.1)))
         session.run(time=0.1)
         assert gap(session) > -1e-6 * 0.05
-    session.timeline.hold(None)
+    session.document.timeline.hold(None)
     energy = session.energy
     assert len(session.impacts) > 0
     assert abs(energy.imbalance) < 1e-6 * (abs(energy.work) + energy.dissipated_damping)

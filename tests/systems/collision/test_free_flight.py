@@ -9,7 +9,6 @@ import pytest
 
 from pinjoint import Session
 from pinjoint.commands.command_line import main
-from pinjoint.components.collision_state import FreeFlightState, PersistentContacts
 from pinjoint.documents.models import document
 from pinjoint.systems.collision.driven.neighbours import NeighbourList
 from pinjoint.systems.edit.pull import hand_on
@@ -197,33 +196,6 @@ def test_saved_and_continued_gives_the_same_bits(document: dict[str, Any], tmp_p
     assert again.energy == session.energy
 
 
-@pytest.mark.parametrize("name", ["free_discs", "resting_ball"])
-def test_runs_saved_before_the_collision_state_was_split_go_on_to_the_bit(name: str, tmp_path: Path) -> None:
-    """Files of an earlier program, whose `state.paths` held both kinds; saved anew, they have the present form."""
-    file = Path(__file__).parent / "saved_paths" / f"{name}.json"
-    old = json.loads(file.read_text())["state"]["paths"]
-    session = Session.open(file)
-    found = session.model.clock.collision_state
-    if isinstance(found, FreeFlightState):
-        assert name == "free_discs"
-        assert [found[key] for key in ("motion", "contacts", "forces", "pile")] == [
-            old[key] for key in ("motion", "contacts", "forces", "crowd")
-        ]
-    else:
-        assert isinstance(found, PersistentContacts)
-        assert (name, old["motion"], [found.longest_step]) == ("resting_ball", [], old["crowd"])
-        assert (found["pairs"], found["forces"]) == (old["contacts"], old["forces"])
-    session.save(tmp_path / "saved.json")
-    saved = json.loads((tmp_path / "saved.json").read_text())["state"]
-    assert "paths" not in saved
-    assert saved["collision_state"] == dict(found)
-    again = Session.open(tmp_path / "saved.json")
-    assert again.model.clock.collision_state == found
-    for one in (session, again):
-        one.run(time=0.05)
-    assert state(again) == state(session)
-
-
 @pytest.mark.parametrize(
     "change",
     [{"contacts": [[0, -7]]}, {"kind": "orbits"}, {"pile": [[1.0]]}, {"more": 1}, {"motion": [[1.0], []]}],
@@ -304,9 +276,9 @@ def pull(session: Session, name: str, anchors: list[tuple[float, float]], steps:
     session.simulation.advance(0)
     hand = hand_on(session.model, session.view, session.particles[name], lambda: session.pace)
     for anchor in anchors:
-        session.timeline.hold(hand.at(anchor))
+        session.document.timeline.hold(hand.at(anchor))
         session.run(steps=steps)
-    session.timeline.hold(None)
+    session.document.timeline.hold(None)
 
 
 def sinking(session: Session) -> float:
@@ -371,11 +343,11 @@ def test_stepping_back_replays_what_a_hand_did_with_the_same_bits() -> None:
     hand = hand_on(session.model, session.view, session.particles["p7"], lambda: session.pace)
     states = {}
     for anchor in ((0.2, 0.1), (-0.1, 0.2)):
-        session.timeline.hold(hand.at(anchor))
+        session.document.timeline.hold(hand.at(anchor))
         for _ in range(15):
             session.run(steps=1)
             states[session.model.clock.steps] = state(session)
-    session.timeline.hold(None)
+    session.document.timeline.hold(None)
     session.run(steps=10)
     for _ in range(12):
         assert session.step(-3)

@@ -99,7 +99,7 @@ def test_esc_puts_back_what_is_being_dragged(triangle: Session) -> None:
     triangle.press("escape")
     triangle.drop()
     assert triangle.particles["B"].position == (1.0, 1.0)
-    assert not triangle.history.can_undo
+    assert not triangle.document.history.can_undo
 
 
 def test_a_drag_keeps_the_displacement(triangle: Session) -> None:
@@ -150,7 +150,7 @@ def test_arrows_nudge_the_selection_by_a_pixel_and_with_shift_by_the_grid(triang
     for _ in range(3):
         triangle.press("ctrl+z")
     assert triangle.particles["B"].position == (1.0, 1.0)
-    assert not triangle.history.can_undo
+    assert not triangle.document.history.can_undo
 
 
 def test_arrows_go_through_time_once_there_is_a_run_and_ctrl_moves(triangle: Session) -> None:

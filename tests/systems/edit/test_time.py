@@ -127,7 +127,7 @@ def test_moments_are_thinned_out_within_a_memory_bound(triangle: Session) -> Non
 def test_pace_goes_from_a_hundred_thousandth_to_fast(triangle: Session) -> None:
     for _ in range(40):
         triangle.press("-")
-    assert triangle.clock.factor == pytest.approx(1e-5, rel=1e-12)
+    assert triangle.document.live.clock.factor == pytest.approx(1e-5, rel=1e-12)
     triangle.press("space")
     for _ in range(5):
         triangle.frame(FRAME)
@@ -138,7 +138,7 @@ def test_pace_goes_from_a_hundred_thousandth_to_fast(triangle: Session) -> None:
     assert triangle.model.clock.steps > 0
     for _ in range(40):
         triangle.press("+")
-    assert triangle.clock.factor == pytest.approx(1e3, rel=1e-12)
+    assert triangle.document.live.clock.factor == pytest.approx(1e3, rel=1e-12)
 
 
 def test_restart_keeps_edits(triangle: Session) -> None:

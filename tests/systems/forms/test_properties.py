@@ -403,7 +403,7 @@ def test_what_was_not_typed_keeps_its_bits() -> None:
     session.press("return")
     session.press("escape")
     assert all(same(column, session.particles.column(name)) for name, column in before.items())
-    assert not session.history.can_undo
+    assert not session.document.history.can_undo
 
 
 @pytest.mark.parametrize(
@@ -637,7 +637,7 @@ def test_all_boxes_are_one_step_to_undo(session: Session) -> None:
     assert session.rods["first rod"].density == 500.0
     session.undo()
     assert (session.rods["AB"].stiffness, session.rods["AB"].density) == (164640.0, 6.15)
-    assert not session.history.can_undo
+    assert not session.document.history.can_undo
     session.redo()
     assert session.rods["first rod"].stiffness == 5.0
 

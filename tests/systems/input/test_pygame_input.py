@@ -137,4 +137,4 @@ def test_files_dropped_together_are_opened_together(session: Session, tmp_path: 
     dropped = [(pygame.DROPFILE, {"file": str(tmp_path / f"{name}.json")}) for name in ("one", "two")]
     pressed(session, *dropped)
     assert session.notice == "Opened one and two. Ctrl+Z goes back."
-    assert session.file.name == "two"
+    assert session.document.file.name == "two"

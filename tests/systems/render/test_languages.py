@@ -9,7 +9,7 @@ import pytest
 from pinjoint.components import language
 from pinjoint.components.camera import Viewport
 from pinjoint.session import Session
-from pinjoint.systems.input.bindings import help_lines
+from pinjoint.systems.input.actions import help_lines
 from pinjoint.systems.render.glossary import terms
 from pinjoint.systems.render.help import help_pages, written_key
 from pinjoint.systems.render.marks import Text

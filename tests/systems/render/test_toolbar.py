@@ -7,12 +7,13 @@ import pytest
 from pinjoint import Session
 from pinjoint.components.bent import QUANTITIES
 from pinjoint.components.camera import Viewport
+from pinjoint.components.extensions import EXTENSIONS
 from pinjoint.components.tags import DiagramShown
 from pinjoint.components.toolbar import Button, Tool
 from pinjoint.components.view import drawn_positions
-from pinjoint.editor.actions import ACTIONS
-from pinjoint.systems.input.bindings import ADDED_BUTTONS, ADDED_TOOLS, BINDINGS, TOOLBAR
-from pinjoint.systems.render.icons import ADDED, icon, icons
+from pinjoint.editor.toolbar import TOOLBAR, of_mods
+from pinjoint.systems.input.actions import ACTIONS
+from pinjoint.systems.render.icons import icon, icons
 from pinjoint.systems.render.marks import Panel, Stamps, Text
 from pinjoint.systems.render.menu import menu_of
 from pinjoint.systems.render.picture import compose, compose_all
@@ -50,16 +51,14 @@ def tool(session: Session, action: str) -> Tool:
 
 
 def test_every_tool_is_an_action_with_a_key_and_an_icon() -> None:
-    offered = [*(action for group in TOOLBAR for action in group), *ADDED_TOOLS]
+    offered = [*(action for group in TOOLBAR for action in group), *of_mods(draw=True)]
     assert len(offered) == len(set(offered))
     for action in offered:
-        assert action in ACTIONS
         assert icon(action)
-        assert any(binding.action == action and binding.title for binding in BINDINGS)
-    added = [binding.action for binding in ADDED_BUTTONS]
-    assert {*icons(), *ADDED} == {
+        assert any(binding.key and binding.title for binding in ACTIONS[action].bindings)
+    assert {*icons(), *EXTENSIONS.icons} == {
         *offered,
-        *added,
+        *of_mods(draw=False),
         "pause",
         "more tools",
         *(f"diagram {quantity}" for quantity in QUANTITIES),

@@ -210,17 +210,17 @@ def test_what_a_hand_did_within_steps_is_done_again(name: str) -> None:
     session.press("space")
     session.frame(0.02)
     hand = hand_on(session.model, session.view, session.particles["B"], lambda: 1.0)
-    session.timeline.hold(hand)
+    session.document.timeline.hold(hand)
     for number in range(5):
-        session.timeline.hold(hand.at((0.01 * number, 0.0)))
+        session.document.timeline.hold(hand.at((0.01 * number, 0.0)))
         session.frame(0.013)
-    session.timeline.hold(None)
+    session.document.timeline.hold(None)
     session.frame(0.013)
     session.press("space")
     session.step(1)
     steps, there = session.model.clock.steps, bits.columns(session.model)
     session.run(time=0.1)
-    assert session.timeline.go_to(steps)
+    assert session.document.timeline.go_to(steps)
     assert bits.different(bits.columns(session.model), there) == []
 
 

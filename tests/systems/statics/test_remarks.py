@@ -24,7 +24,7 @@ def at_rest(source: str | dict[str, Any]) -> Session:
 
 
 def kinds(session: Session) -> list[str]:
-    return [remark.kind for remark in session.remarks]
+    return [remark.kind for remark in session.document.assessment.remarks]
 
 
 def test_a_rod_that_yielded_only_in_the_overshoot() -> None:
@@ -86,7 +86,7 @@ def test_a_sudden_load_below_the_limit_that_carried_it_past_the_unstable_positio
 @pytest.mark.parametrize("name", ["isostatic", "hyperstatic", "hyperstatic_yield", "three_bar_plastic"])
 def test_nothing_is_said_of_what_theory_would_do_as_well(name: str) -> None:
     session = at_rest(name)
-    assert session.remarks == ()
+    assert session.document.assessment.remarks == ()
     assert session.message.startswith("At rest since")
     assert session.message.count(".") == 2
 
@@ -96,13 +96,13 @@ def test_nothing_is_said_when_theory_does_not_know_the_history() -> None:
     session = at_rest("hyperstatic_yield")
     session.loads[0].force = (0, 0)
     assert session.run(until="rest") == "at rest"
-    assert session.remarks == ()
+    assert session.document.assessment.remarks == ()
     document = models.document(models.load("hyperstatic_yield"))
     later = {"kind": "ramp", "start": 1.0, "duration": 0.5}
     document["loads"].append({"on": "C", "force": [0, 260], "history": later})
     session = at_rest(document)
     assert session.rods["CD"].plastic_strain != 0.0
-    assert session.remarks == ()
+    assert session.document.assessment.remarks == ()
 
 
 def test_restarting_forgets_that_the_model_was_edited_during_the_run() -> None:
@@ -127,7 +127,7 @@ def test_nothing_is_said_where_a_law_acts_that_statics_does_not_know() -> None:
     session = Session.open("overshoot_yield", systems=[More()])
     assert session.run(until="rest") == "at rest"
     assert session.rods["AB"].plastic_strain != 0.0
-    assert session.remarks == ()
+    assert session.document.assessment.remarks == ()
 
 
 def test_the_collapse_load_of_textbooks_is_not_that_of_the_changed_shape() -> None:

@@ -14,8 +14,8 @@ from pinjoint.components.tags import DiagramShown
 from pinjoint.documents.library import DATA_VARIABLE, models_folder
 from pinjoint.editor.scenes.force_method import ForceMethod
 from pinjoint.editor.scenes.form import FormScene
-from pinjoint.systems.input.bindings import (
-    BINDINGS,
+from pinjoint.systems.input.actions import (
+    ACTIONS,
     FORCE_METHOD,
     LOAD,
     MENU,
@@ -23,13 +23,14 @@ from pinjoint.systems.input.bindings import (
     PROPERTIES,
     SAVE,
     SIMULATION,
+    Action,
     Binding,
     key_named,
 )
 from pinjoint.systems.render.menu import menu_of
 from tests.properties.soundness import contents
 
-CASES = [(scene, binding) for binding in BINDINGS for scene in binding.scenes]
+CASES = [(scene, action, binding) for action, binding in ACTIONS.bound() for scene in binding.scenes]
 FOLLOWING = {"drag to", "drop"}  # are part of a drag
 
 
@@ -235,7 +236,7 @@ def seen(session: Session) -> Any:
     shown: list[Any] = [session.scene, contents(session.model), session.selected, repr(session.view)]
     shown += [
         session.model.tagged(DiagramShown),
-        session.clock.factor,
+        session.document.live.clock.factor,
         session.view.tool,
         repr(session.gesture),
     ]
@@ -251,13 +252,15 @@ def seen(session: Session) -> Any:
 
 
 @pytest.mark.parametrize(
-    ("scene", "binding"), CASES, ids=[f"{scene}-{binding.key}-{binding.action}" for scene, binding in CASES]
+    ("scene", "action", "binding"), CASES, ids=[f"{scene}-{b.key}-{action.name}" for scene, action, b in CASES]
 )
-def test_every_key_does_something_in_every_scene_that_it_names(scene: str, binding: Binding) -> None:
+def test_every_key_does_something_in_every_scene_that_it_names(
+    scene: str, action: Action, binding: Binding
+) -> None:
     if binding.key in FOLLOWING:
         pytest.skip("part of a drag, which is tested by itself")
     session = in_scene(scene)
-    prepare = PREPARED.get((binding.action, scene)) or PREPARED.get((binding.action, ""))
+    prepare = PREPARED.get((action.name, scene)) or PREPARED.get((action.name, ""))
     if prepare is not None:
         prepare(session)
     session.notice = ""
@@ -285,7 +288,8 @@ def test_keys_are_known_by_the_names_that_people_use(said: str, meant: str) -> N
 
 
 def test_every_bound_key_is_called_as_it_is() -> None:
-    assert [binding.key for binding in BINDINGS] == [key_named(binding.key) for binding in BINDINGS]
+    keys = [binding.key for _, binding in ACTIONS.bound()]
+    assert keys == list(map(key_named, keys))
 
 
 @pytest.mark.parametrize("text", ["", "spacebarr", "ctrl+", "alt+x", "undo"])

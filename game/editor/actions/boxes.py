@@ -1,0 +1,100 @@
+"""Actions in the boxes and tiles of forms."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any
+
+from pinjoint.components.field import Vector
+from pinjoint.components.language import marked
+from pinjoint.components.mistake import WrongValue
+from pinjoint.editor.context import Context
+from pinjoint.editor.scenes.form import FormScene
+from pinjoint.editor.sliders import add_slider_for
+from pinjoint.systems.edit import Refusal
+from pinjoint.systems.forms import typing
+from pinjoint.systems.input.actions import FORMS, LOAD, PROPERTIES, SAVE, Binding, Perform, actions_of
+
+action = actions_of("Boxes", FORMS)
+FILES = (SAVE, LOAD)
+
+
+def _form_scene(context: Context) -> FormScene:
+    scene = context.scenes.active
+    if not isinstance(scene, FormScene):
+        raise WrongValue(
+            "In the scene '{scene}' there are no boxes; go to 'properties', 'save' or 'load' first.",
+            scene=scene.name,
+        )
+    return scene
+
+
+def _on_form(act: Callable[[Any, Context], object]) -> Perform:
+    """An action on the scene of the form that is open."""
+    return lambda context, pixel: act(_form_scene(context), context)
+
+
+action(
+    "accept",
+    "return",
+    "accept the value, or go back",
+    (PROPERTIES,),
+    also=(Binding("return", (SAVE,), "save"), Binding("return", (LOAD,), "open")),
+)(_on_form(lambda s, context: s.accept(context)))
+action("cancel", "escape", "restore the old value, or go back")(_on_form(lambda s, context: s.cancel(context)))
+action("next box", "tab", "go to the next box", repeats=True)(
+    _on_form(lambda s, context: s.next_box(context, 1))
+)
+action("previous box", "shift+tab", "go to the previous box", repeats=True)(
+    _on_form(lambda s, context: s.next_box(context, -1))
+)
+
+
+@action(
+    "click form",
+    "click",
+    "select a box, or accept its value",
+    (PROPERTIES,),
+    also=(Binding("click", FILES, "choose"),),
+)
+def _click_form(context: Context, pixel: Vector) -> None:
+    _form_scene(context).click(context, pixel)
+
+
+def _goes(way: str, title: str) -> None:
+    """The action of an arrow key."""
+    also = (Binding(way, FILES, "choose a picture"),)
+    act = _on_form(lambda s, context: s.move(context, way))
+    action(f"go {way}", way, title, (PROPERTIES,), also=also, repeats=True)(act)
+
+
+_goes("up", marked("go up, or to the previous choice"))
+_goes("down", marked("go down, or to the next choice"))
+_goes("left", marked("move the cursor left"))
+_goes("right", marked("move the cursor right"))
+action("to the beginning", "home")(_on_form(lambda s, context: typing.place_caret(s.form, 0)))
+action("to the end", "end")(_on_form(lambda s, context: typing.place_caret(s.form, typing.MOST_CHARACTERS)))
+action("erase", "backspace", "erase", repeats=True)(_on_form(lambda s, context: s.erase(context)))
+action("erase after", "delete", "erase after the cursor", repeats=True)(
+    _on_form(lambda s, context: s.erase(context, after=True))
+)
+action("mark all", "ctrl+a", "select all text")(_on_form(lambda s, context: typing.mark_all(s.form)))
+action("copy text", "ctrl+c", "copy")(_on_form(lambda s, context: s.copy(context)))
+action("cut text", "ctrl+x", "cut")(_on_form(lambda s, context: s.cut(context)))
+action("paste text", "ctrl+v", "paste")(_on_form(lambda s, context: s.paste(context)))
+
+
+@action("slider of box", "ctrl+l", "add a slider for this number", (PROPERTIES,))
+def _slider_of_box(context: Context, pixel: Vector) -> None:
+    """A slider for what the selected box of properties holds."""
+    scene = context.scenes.active
+    box = scene.form.selected if isinstance(scene, FormScene) else None
+    if box is None:
+        raise Refusal("Click the box with the number first; then Ctrl+L makes a slider for it.")
+    add_slider_for(context, box)
+
+
+action("scroll up", "wheel up", "scroll up")(_on_form(lambda s, context: s.scroll(context, -1)))
+action("scroll down", "wheel down", "scroll down")(_on_form(lambda s, context: s.scroll(context, 1)))
+action("page up", "page up", repeats=True)(_on_form(lambda s, context: s.page(context, -1)))
+action("page down", "page down", repeats=True)(_on_form(lambda s, context: s.page(context, 1)))

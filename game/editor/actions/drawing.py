@@ -1,0 +1,191 @@
+"""Actions that draw: particles, rods and their ends, supports, arrows, grids."""
+
+from __future__ import annotations
+
+from operator import attrgetter
+
+from pinjoint.components import written
+from pinjoint.components.field import Vector
+from pinjoint.components.grid import Grid
+from pinjoint.components.language import marked, tr
+from pinjoint.components.particle import Particle
+from pinjoint.components.rod import Rod
+from pinjoint.editor.actions.editing import all_of
+from pinjoint.editor.context import Context
+from pinjoint.editor.gestures.drawing import HINGES, DrawForce, DrawMoment, DrawRod, DrawVelocity, tool_in_hand
+from pinjoint.systems.edit import Refusal
+from pinjoint.systems.edit.picking import End, pick_end, pick_particle, pick_rod
+from pinjoint.systems.edit.placing import place
+from pinjoint.systems.edit.rods import is_rigid, join_rigidly, share_at, toggle_hinge, toggle_joint
+from pinjoint.systems.edit.supports import next_support
+from pinjoint.systems.input.actions import PAUSE, actions_of
+
+action = actions_of("Draw")
+
+
+@action(
+    "place",
+    "p",
+    "draw a particle",
+    while_drawing=True,
+    hint=marked("click where you want particles     Esc done"),
+)
+def _place(context: Context, pixel: Vector) -> None:
+    """A particle under the pointer; from the toolbar, under the clicks that follow."""
+    if context.view.strip.contains(pixel):
+        context.take_up("place")
+        return
+    particle = place(context.model, context.view, pixel)
+    context.notice = tr(
+        "{element}: {value}",
+        element=context.name(particle),
+        value=written.place(particle.position, written.DIGITS),
+    )
+
+
+# The status line names the kind of rods, too.
+action("rod", "l", "draw a rod between two particles", while_drawing=True, draws=DrawRod)(DrawRod.use)
+
+
+def _are_rigid(context: Context) -> bool:
+    """Whether the selected rods, or else those that will be drawn, are rigid at both ends."""
+    rods = [] if tool_in_hand(context) == DrawRod.tool else context.selected_of(Rod)
+    return all(is_rigid(rod, end) for rod in rods for end in (0, 1)) if rods else context.view.rigid
+
+
+@action(
+    "rigid", "ctrl+r", "draw frame rods, or make selected rods rigid", while_drawing=True, pressed=_are_rigid
+)
+def _rigid(context: Context, pixel: Vector) -> None:
+    """Make the selected rods rigid at both ends, or pinned if they are so; without any, draw such rods."""
+    drawing = DrawRod.tool in (tool_in_hand(context), context.view.tool)
+    rods = [] if drawing else context.selected_of(Rod)
+    if not rods:
+        context.view.rigid = not context.view.rigid
+        if isinstance(context.gesture, DrawRod):
+            context.gesture.say(context)
+        elif context.view.rigid and not drawing:
+            context.take_up(DrawRod.tool)
+        context.notice = (
+            tr("New rods will be rigid at both ends.")
+            if context.view.rigid
+            else tr("New rods will be pinned at both ends.")
+        )
+        return
+    rigid = not all(is_rigid(rod, end) for rod in rods for end in (0, 1))
+    join_rigidly(context.model, rods, rigid)
+    context.view.rigid = rigid
+    named, section = all_of(context, rods), rods[0].section
+    if not rigid:
+        context.notice = tr("{rods}: pinned at both ends", rods=named)
+    elif section is None:
+        context.notice = tr("{rods}: rigid at both ends", rods=named)
+    else:
+        context.notice = tr("{rods}: rigid at both ends, {section}", rods=named, section=section)
+
+
+@action(
+    HINGES,
+    "ctrl+j",
+    "hinge an end of a rod, or make it rigid",
+    while_drawing=True,
+    enabled=attrgetter("model.rods.count"),
+    hint=marked("click near a rod's end: hinged or rigid     at a joint: all rods there     Esc done"),
+)
+def _hinge(context: Context, pixel: Vector) -> None:
+    """Hinge the rod's end under the pointer, or make it rigid; at a particle all ends there; else take up the tool."""
+    model, view = context.model, context.view
+    if (particle := pick_particle(model, view, pixel)) is not None:
+        context.notice = tr(
+            "{element}: {value}", element=context.name(particle), value=tr(toggle_joint(model, particle))
+        )
+    elif (end := _end_at(context, pixel)) is not None:
+        made = toggle_hinge(model, end.rod, end.number)
+        context.notice = tr("{element}: {value}", element=context.name(end.rod), value=tr(made))
+    elif view.tool == "hinge" and not view.covers(pixel):
+        raise Refusal(
+            "Click near the end of a rod, where a ring appears, or on a joint. Esc puts the tool away."
+        )
+    else:
+        context.take_up("hinge")
+
+
+def _end_at(context: Context, pixel: Vector) -> End | None:
+    """The end of a rod near a pixel; in a menu of one rod, the nearer one."""
+    found = pick_end(context.model, context.view, pixel)
+    rods = context.selected_of(Rod)
+    if found is None and context.view.tool != "hinge" and len(rods) == 1:
+        rod = pick_rod(context.model, context.view, pixel)
+        share = share_at(rods[0], context.view.camera.to_model(pixel))
+        return End(rods[0], int(share > 0.5)) if rod is rods[0] else None
+    return found
+
+
+@action(
+    "support",
+    "c",
+    "add or change a support",
+    enabled=attrgetter("model.particles.count"),
+    hint=marked("supports: drag from a particle to its ground, or click for the next kind     Esc done"),
+)
+def _support(context: Context, pixel: Vector) -> None:
+    """The next support of the particle under the pointer, else of the selected ones; without any, take up the tool."""
+    hit = pick_particle(context.model, context.view, pixel)
+    chosen = [handle for handle in context.selected if isinstance(handle, Particle)]
+    if hit is not None and hit not in chosen:
+        chosen = [hit]
+    if not chosen:
+        context.take_up("support")
+        return
+    support = next_support(context.model, chosen)
+    context.notice = tr("{element}: {value}", element=all_of(context, chosen), value=tr(support))
+
+
+action(
+    "force",
+    "f",
+    "draw a load on a particle or a rod",
+    while_drawing=True,
+    draws=DrawForce,
+    enabled=attrgetter("model.particles.count"),
+    hint=marked("loads: drag an arrow from a particle     from a rod: a distributed load     F or Esc done"),
+)(DrawForce.use)
+action(
+    "moment",
+    "ctrl+m",
+    "draw a moment on a particle",
+    while_drawing=True,
+    draws=DrawMoment,
+    enabled=attrgetter("model.particles.count"),
+    hint=marked("moments: drag from a particle, to the left for counter-clockwise     Esc done"),
+)(DrawMoment.use)
+action(
+    "velocity",
+    "v",
+    "draw the velocity of a particle",
+    while_drawing=True,
+    draws=DrawVelocity,
+    enabled=attrgetter("model.particles.count"),
+    hint=marked("velocities: drag an arrow from a particle     V or Esc done"),
+)(DrawVelocity.use)
+
+
+@action("new grid", "g", "add a grid", (PAUSE,))
+def _new_grid(context: Context, pixel: Vector) -> None:
+    with context.model.transaction(marked("new grid")):
+        for grid in context.model.grids:
+            if grid.shown:
+                grid.shown = False
+        context.model.create(Grid)
+
+
+@action("next grid", "h", "show the next grid", (PAUSE,), enabled=attrgetter("model.grids.count"))
+def _next_grid(context: Context, pixel: Vector) -> None:
+    """Show the grid after the shown one; after the last, none; after none, the first."""
+    grids = list(context.model.grids)
+    shown = [index for index, grid in enumerate(grids) if grid.shown]
+    following = shown[-1] + 1 if shown else 0
+    with context.model.transaction(marked("next grid")):
+        for index, grid in enumerate(grids):
+            if grid.shown != (index == following):
+                grid.shown = index == following

@@ -1,0 +1,48 @@
+"""Actions on files: saving, opening, beginning anew."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+from pinjoint.components.field import Vector
+from pinjoint.documents.models import ModelError
+from pinjoint.documents.open_documents import stamp_of
+from pinjoint.editor.context import Context
+from pinjoint.systems.edit import Refusal
+from pinjoint.systems.input.actions import LIVE, PAUSE, Binding, actions_of
+
+action = actions_of("Files")
+
+
+@action("save", "s", "save as", (PAUSE,), also=(Binding("ctrl+shift+s", LIVE, "save as"),))
+def _save(context: Context, pixel: Vector) -> None:
+    context.scenes.request_from_pause("save")
+
+
+@action("save again", "ctrl+s", "save")
+def _save_again(context: Context, pixel: Vector) -> None:
+    """Save to the same file; a model without one is named first, and a file that was changed since is asked about."""
+    file = context.document.file
+    if file.path is None:
+        context.scenes.request_from_pause("save")
+        return
+    there = stamp_of(file.path)
+    if there not in ((), file.stamp):
+        context.document.file = replace(file, stamp=there)
+        raise Refusal(
+            "Another window or program has changed '{file}'. Press Ctrl+S again to replace it, or S to save under"
+            " another name.",
+            file=file.name,
+        )
+    try:
+        context.save_as(file.path)
+    except ModelError as error:
+        context.notice = str(error)
+
+
+@action("load", "d", "open a model", (PAUSE,), also=(Binding("ctrl+o", LIVE, "open a model"),))
+def _load(context: Context, pixel: Vector) -> None:
+    context.scenes.request_from_pause("load")
+
+
+action("new", "ctrl+n", "start a new model")(lambda context, pixel: context.open_here(None))

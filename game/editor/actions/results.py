@@ -1,0 +1,140 @@
+"""Actions that show results: diagrams, utilisation, theory, energies, shapes."""
+
+from __future__ import annotations
+
+from operator import attrgetter
+
+from pinjoint.components.bent import AXIAL, QUANTITIES, is_frame
+from pinjoint.components.field import Vector
+from pinjoint.components.language import begun, tr
+from pinjoint.components.particle import Particle
+from pinjoint.components.rod import Rod, has_strength
+from pinjoint.components.tags import DiagramShown
+from pinjoint.documents.shapes import NoShape
+from pinjoint.editor.actions.view import toggle
+from pinjoint.editor.context import Context
+from pinjoint.editor.sliders import add_usual_slider
+from pinjoint.systems.edit import Refusal
+from pinjoint.systems.input.actions import PAUSE, actions_of
+from pinjoint.systems.render.diagrams import NAMES
+
+action = actions_of("Results", while_drawing=True)
+
+
+def shows_diagrams(context: Context) -> bool:
+    """True if there are diagrams of what is selected, else of anything."""
+    if context.has_selected and not context.view.all_diagrams:
+        shown = {handle.entity for handle in context.model.tagged(DiagramShown)}
+        return {handle.entity for handle in context.selected_of(Particle, Rod)} <= shown
+    return context.view.all_diagrams or context.model.any_tagged(DiagramShown)
+
+
+def _quantity(context: Context) -> tuple[str, str]:
+    """Icon and title of the button while diagrams are shown; where rods bend, of which quantity."""
+    quantity = context.view.quantity
+    if not is_frame(context.model):
+        return "", ""
+    return f"diagram {quantity}", tr("diagrams, now: {quantity}", quantity=tr(NAMES[quantity]))
+
+
+# Diagrams, utilisation and shapes are not seen while rods and joints are apart.
+@action(
+    "toggle diagrams",
+    "i",
+    "show or hide force diagrams (N, M, V)",
+    pressed_as=_quantity,
+    pressed=lambda context: not context.view.free_bodies and shows_diagrams(context),
+)
+def _toggle_diagrams(context: Context, pixel: Vector) -> None:
+    """The diagrams of the selected particles and rods; of all when nothing is selected, or all are shown.
+
+    Where rods bend, those of N, M and V follow one another before there are none.
+    """
+    model, view = context.model, context.view
+    apart = view.put_together()
+    if apart and (view.all_diagrams or model.any_tagged(DiagramShown)):
+        return
+    if view.all_diagrams or not context.has_selected:
+        view.all_diagrams = _following(context, view.all_diagrams)
+        model.tag_only([], DiagramShown)
+        return
+    chosen = {handle.entity: handle for handle in context.selected if isinstance(handle, Particle | Rod)}
+    shown = {handle.entity: handle for handle in model.tagged(DiagramShown)}
+    shows = _following(context, chosen.keys() <= shown.keys())
+    others = [shown[entity] for entity in shown.keys() - chosen.keys()]
+    model.tag_only([*others, *chosen.values()] if shows else others, DiagramShown)
+
+
+def _following(context: Context, shown: bool) -> bool:
+    """Whether diagrams are shown after this, of the next quantity where rods bend."""
+    view, last = context.view, QUANTITIES[-1]
+    if not is_frame(context.model):
+        return not shown
+    if shown and view.quantity == last:
+        return False
+    view.quantity = QUANTITIES[QUANTITIES.index(view.quantity) + 1] if shown else AXIAL
+    context.notice = tr("{quantity}. Press I for the next.", quantity=begun(tr(NAMES[view.quantity])))
+    return True
+
+
+action("toggle free bodies", "x", "show or hide free-body diagrams", pressed=attrgetter("view.free_bodies"))(
+    toggle("free_bodies")
+)
+
+
+@action(
+    "toggle utilisation",
+    "a",
+    "show or hide utilisation of strength",
+    pressed=lambda context: context.view.utilisation and not context.view.free_bodies,
+)
+def _toggle_utilisation(context: Context, pixel: Vector) -> None:
+    """Show how much of its strength each rod bears, or hide it."""
+    view = context.view
+    if not view.utilisation and not has_strength(context.model):
+        raise Refusal(
+            "No rod has a strength yet. Select rods, press Return, and type in a tensile or compressive strength."
+        )
+    view.utilisation = view.put_together() or not view.utilisation
+
+
+action("toggle theory", "m", "show or hide comparison with theory", pressed=attrgetter("view.theory"))(
+    toggle("theory")
+)
+action("toggle energy", "j", "show or hide energies", pressed=attrgetter("view.energy"))(toggle("energy"))
+action("toggle events", "ctrl+h", "show or hide the list of events", pressed=attrgetter("view.events"))(
+    toggle("events")
+)
+
+
+@action(
+    "next shape",
+    "b",
+    "show mechanisms, buckling, vibration modes",
+    pressed=lambda context: context.view.shape is not None and not context.view.free_bodies,
+)
+def _next_shape(context: Context, pixel: Vector) -> None:
+    """Show the next mechanism, buckling mode or natural mode; after the last, none."""
+    if context.view.put_together() and context.view.shape is not None:
+        return
+    try:
+        context.document.shapes.next()
+        shown = context.document.shapes.shown
+        context.notice = shown.note if shown is not None else ""
+    except NoShape as error:
+        raise Refusal(str(error)) from None
+    context.view.shape = context.document.shapes.shown
+
+
+@action("new slider", "ctrl+l", "add a slider for selected load or stiffness", while_drawing=False)
+def _new_slider(context: Context, pixel: Vector) -> None:
+    add_usual_slider(context)
+
+
+@action(
+    "force method", "k", "force method", (PAUSE,), while_drawing=False, enabled=attrgetter("model.rods.count")
+)
+def _force_method(context: Context, pixel: Vector) -> None:
+    if context.model.particles.count == 0:
+        raise Refusal("There is nothing to solve yet; draw a structure with P and L, or open one with D.")
+    context.scenes.request("force method")
