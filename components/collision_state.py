@@ -59,11 +59,9 @@ class _Saved(Mapping[str, Any]):
 class FreeFlightState(_Saved):
     """The paths of all particles and the contacts that persist, of particles that fly free.
 
-    motion: one row per particle, its columns FLIGHT of systems/collision/columns.py, the last four of which files of
-    earlier programs lack. contacts: a particle and one that it
+    motion: one row per particle, its columns FLIGHT of systems/collision/columns.py. contacts: a particle and one that it
     touches, in the order in which the flight looks at them, shape (k, 2). forces: in the contacts, N, shape (k,). pile:
-    PILE_COUNTS and PILE_NUMBERS of columns.py, how far a pile is with its steps, shape (9,), in files
-    of earlier programs (7,).
+    PILE_COUNTS and PILE_NUMBERS of columns.py, how far a pile is with its steps, shape (9,).
     """
 
     kind = "free flight"

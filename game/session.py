@@ -32,7 +32,7 @@ from pinjoint.documents.format import ModelError
 from pinjoint.documents.open_documents import ModelFile, Source, file_of
 from pinjoint.editor.context import Context
 from pinjoint.editor.dropping import open_dropped
-from pinjoint.editor.frame import Actions, Frame, HeadlessFrame, ShowView
+from pinjoint.editor.frame import Actions, Exaggerate, Frame, HeadlessFrame, ShowView
 from pinjoint.editor.routing import Layer, for_tools, layer, meaning
 from pinjoint.editor.scenes import all_scenes, scene_systems
 from pinjoint.editor.scenes.files import FileScene
@@ -77,6 +77,8 @@ class Session(Context):
     -28.3428
     """
 
+    course: Course | None
+
     def __init__(
         self,
         model: Model,
@@ -85,7 +87,7 @@ class Session(Context):
         file: ModelFile = ModelFile(),  # noqa: B008 (it cannot be changed)
     ) -> None:
         pull, scenes = Pull(), all_scenes()
-        ours = [Actions(), ShowView(), Time(), *scene_systems(), *step_systems(), pull]
+        ours = [Exaggerate(), Actions(), ShowView(), Time(), *scene_systems(), *step_systems(), pull]
         schedule = Schedule(
             [*ours, *(make() for make in EXTENSIONS.systems), *systems],
             wanted={scene.name: scene.systems for scene in scenes},
@@ -94,7 +96,6 @@ class Session(Context):
         # Called with every press and after every change of size; set by a recorder.
         self.on_press: Callable[[str, Vector | None], None] | None = None
         self.on_resize: Callable[[], None] | None = None
-        self.course: Course | None = None
         self._clicked: Layer | None = None  # what took the last press, if that was a click
         self._blank = Model()  # what the footer and the card of a lesson are drawn over
         self.extent = (
@@ -556,11 +557,8 @@ class Session(Context):
         """One frame, `elapsed` s after the last: input, edit, step, events and render. Raises ValueError."""
         frame = Frame(self, _forward("elapsed", elapsed))
         try:
-            try:
-                self.exaggerate()
-            finally:
-                for phase in Phase:
-                    self.schedule.run(phase, frame)
+            for phase in Phase:
+                self.schedule.run(phase, frame)
         except Exception as error:
             if not blamed_on_mod(error):
                 raise

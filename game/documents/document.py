@@ -43,9 +43,6 @@ from pinjoint.documents.mod_data import MODS, upgraded
 from pinjoint.documents.sliders import KEY as SLIDERS
 from pinjoint.documents.sliders import read_sliders
 
-Migration = Callable[[dict[str, Any]], dict[str, Any]]
-MIGRATIONS: dict[int, Migration] = {}  # by version: the function that turns a document into the next version
-
 _HEADER = ("format", "version", "title", "description")
 
 Columns = Mapping[str, Column]
@@ -94,7 +91,7 @@ class _Section:
 
 
 def _parsed(document: Any) -> Model:
-    document = _with_data_of_mods(_migrated(_by_elements(document)))
+    document = _with_data_of_mods(_of_this_version(_by_elements(document)))
     _refuse_unknown(document, (*_HEADER, *SECTIONS, SLIDERS, FOREIGN, MODS), "$")
     model = Model()
     model.foreign_versions = dict(document.get(MODS, {}))
@@ -153,8 +150,8 @@ def _by_elements(document: Any) -> Any:
         fail("$", "its columns do not fit together ({error}); copy the model again.", error=error)
 
 
-def _migrated(document: Any) -> Mapping[str, Any]:
-    """The document in the present version of the format."""
+def _of_this_version(document: Any) -> Mapping[str, Any]:
+    """The document, if it is one of the present version of the format."""
     if not isinstance(document, Mapping):
         fail("$", "it must be an object with the key 'format', not {found}.", found=_kind_of(document))
     stated = document.get("format")
@@ -172,20 +169,18 @@ def _migrated(document: Any) -> Mapping[str, Any]:
             version=version,
             newest=VERSION,
         )
-    migrated = dict(document)
-    for old in range(version, VERSION):
-        if old not in MIGRATIONS:
-            fail(
-                "$.version",
-                "there is no version {version}; the present one is {newest}.",
-                version=version,
-                newest=VERSION,
-            )
-        migrated = MIGRATIONS[old](migrated)
-    state = migrated.get("state")
-    if isinstance(state, Mapping):  # where it is of when rotations had scales of their own
-        migrated["state"] = {k: v for k, v in state.items() if k not in ("largest_rotation", "largest_spin")}
-    return migrated
+    if version < VERSION:
+        fail(
+            "$.version",
+            "there is no version {version}; the present one is {newest}.",
+            version=version,
+            newest=VERSION,
+        )
+    state = document.get("state")
+    if isinstance(state, Mapping):  # rotations had scales of their own
+        kept = {key: value for key, value in state.items() if key not in ("largest_rotation", "largest_spin")}
+        return {**document, "state": kept}
+    return document
 
 
 def _text(document: Mapping[str, Any], key: str) -> str:

@@ -8,7 +8,7 @@ from __future__ import annotations
 import operator
 from collections.abc import Iterator, Sequence
 from pathlib import Path
-from typing import ClassVar, TypeVar
+from typing import Any, ClassVar, TypeVar
 
 from pinjoint.components.camera import Viewport
 from pinjoint.components.extensions import EXTENSIONS
@@ -28,7 +28,7 @@ from pinjoint.documents.chronicle import Happening
 from pinjoint.documents.format import missing_mods
 from pinjoint.documents.open_documents import ModelFile, OpenDocument, OpenDocuments, Source, file_of
 from pinjoint.editor.clipboard import Part
-from pinjoint.editor.host import Course, ProgramPreparation, Waiting, Window
+from pinjoint.editor.host import ProgramPreparation, Waiting, Window
 from pinjoint.scripts.script import Script
 from pinjoint.systems.base import Mod
 from pinjoint.systems.collision.impacts import Impacts
@@ -244,8 +244,8 @@ class Context:
     is too large to go on before its step program is compiled.
     scenes: the mode, and its transitions. gesture: what is being drawn or dragged. performing: a script is shown in the
     window, so input is not for the scenes and no time passes by itself. footer: the strip below the picture meanwhile.
-    lesson: the script that a person asked for. course: the lesson with tasks that a person is in; beside: its card, in the
-    part of the window that it takes. faults_seen: how many faults of mods were shown and taken away.
+    lesson: the script that a person asked for. course: the lessons.course.Course that a person is in; beside: its card, in
+    the part of the window that it takes. faults_seen: how many faults of mods were shown and taken away.
     """
 
     def __init__(
@@ -267,7 +267,7 @@ class Context:
         self.performing = False
         self.footer: View | None = None
         self.lesson: Script | None = None
-        self.course: Course | None = None
+        self.course: Any = None
         self.beside: View | None = None
         self.faults_seen = len(EXTENSIONS.faults)
 

@@ -43,6 +43,20 @@ class HeadlessFrame(Frame):
         return self.session.simulation.programs.scene
 
 
+class Exaggerate(System):
+    """Lets the automatic displacement scale suit the model before anything is done to it."""
+
+    name = "edit.scale"
+    phase = Phase.EDIT
+    before = ("edit.actions",)
+    reads = ("document", "state")
+    writes = ("scale",)
+
+    def process(self, frame: Any) -> None:
+        """Choose the scale anew where the model was edited, or has come to a stand."""
+        frame.session.exaggerate()
+
+
 class Actions(System):
     """Turns what was pressed into actions, lets the view follow, and makes the transitions of scenes requested."""
 

@@ -48,19 +48,3 @@ class ProgramPreparation(Protocol):
 
     def waits_for(self, simulation: Simulation) -> Waiting | None:
         """What a simulation waits for; None if it can go on, interpreted or compiled."""
-
-
-class Course(Protocol):
-    """A lesson that a person is in, and its present task; see game/lessons/course.py."""
-
-    typed: str
-
-    @property
-    def awaits_number(self) -> bool:
-        """True while digits that are typed belong to the answer."""
-
-    @property
-    def takes_return(self) -> bool: ...
-    @property
-    def awaits_choice(self) -> bool:
-        """True while a digit that is pressed is an answer."""

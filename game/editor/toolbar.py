@@ -53,10 +53,11 @@ def tool(context: Context, name: str, title: str = "") -> Tool | None:
 
     title: where that of the action does not fit.
     """
-    action, scene = ACTIONS.get(name), context.scenes.active.tools
-    binding = action.offered(scene) if action is not None else None
-    if action is None or binding is None:
+    scene = context.scenes.active.tools
+    binding = ACTIONS.offer(name, scene)
+    if binding is None:
         return None
+    action = ACTIONS[name]
     pressed = name == tool_in_hand(context) or bool(action.pressed(context))
     icon, pressed_title = action.pressed_as(context) if pressed else ("", "")
     said = tr(title or pressed_title or binding.title)

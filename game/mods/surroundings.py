@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-import os
 import sys
 import threading
 
@@ -54,10 +53,12 @@ class Surroundings:
                 )
 
     def put_back(self) -> None:
-        """Undo what can be undone; a stream that was closed swallows what is written to it."""
+        """Undo what can be undone; Python leaves the files of standard streams open that are closed."""
         sys.modules.update(self._modules)
         for library, functions in self._functions:
             vars(library).update(functions)
-        for name, stream in self._streams.items():
-            closed = getattr(stream, "closed", False)
-            setattr(sys, name, open(os.devnull, "r+", encoding="utf-8") if closed else stream)  # noqa: SIM115
+        for number, (name, stream) in enumerate(self._streams.items()):
+            if getattr(stream, "closed", False):
+                mode = "r" if name == "stdin" else "w"
+                stream = open(number, mode, encoding=stream.encoding, errors="replace", closefd=False)  # noqa: SIM115
+            setattr(sys, name, stream)

@@ -428,7 +428,6 @@ class Count(IntEnum):
 # What a pile goes on from: FreeFlightState.pile, in this order.
 PILE_COUNTS = [Count.STEPPING, Count.CALM, Count.WORK, Count.PATIENCE]
 PILE_NUMBERS = [Number.STEP_END, Number.WORK_SINCE, Number.LOSS, Number.MOST_LOSS, Number.DEEPEST]
-ONCE = 7  # entries that files of earlier programs hold
 
 
 class Reason(IntEnum):

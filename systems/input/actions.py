@@ -78,30 +78,26 @@ class Action:
     draws: Any = None
     hint: str = ""
 
-    def offered(self, scene: str) -> Binding | None:
-        """How toolbar and menus offer it in a scene; the same while time passes as in pause. None: they do not.
-
-        Keys that perform it in the scene come first, then those of the other, then no key.
-        """
-        scenes = set(LIVE if scene in LIVE else (scene,))
-        found = [binding for binding in self.bindings if scenes.intersection(binding.scenes)]
-        return min(found, key=lambda binding: (scene not in binding.scenes, not binding.key), default=None)
-
 
 class Actions(UserDict[str, Action]):
-    """All actions by name, in the order of the help, with an index of their keys."""
+    """All actions by name, and what follows from them: which does what a key does, and how each is offered."""
 
     def __init__(self) -> None:
         super().__init__()
+        self._index()
+
+    def _index(self) -> None:
+        """Forget what follows from the actions: by scene and key, and by name and scene."""
         self._by_key: dict[tuple[str, str], tuple[Action, Binding]] = {}
+        self._offers: dict[tuple[str, str], Binding | None] = {}
 
     def __setitem__(self, name: str, action: Action) -> None:
         super().__setitem__(name, action)
-        self._by_key = {}
+        self._index()
 
     def __delitem__(self, name: str) -> None:
         super().__delitem__(name)
-        self._by_key = {}
+        self._index()
 
     def bound(self) -> Iterator[tuple[Action, Binding]]:
         """Every key with its action, by purpose."""
@@ -121,6 +117,18 @@ class Actions(UserDict[str, Action]):
         if not self._by_key:
             self._by_key = {(scene, b.key): (a, b) for a, b in self.bound() for scene in b.scenes}
         return self._by_key
+
+    def offer(self, name: str, scene: str) -> Binding | None:
+        """How toolbar and menus offer an action in a scene; the same while time passes as in pause. None: they do not.
+
+        Keys that perform it in the scene come first, then those of the other, then no key.
+        """
+        if (name, scene) not in self._offers:
+            found = sorted(self[name].bindings if name in self else (), key=lambda binding: not binding.key)
+            scenes = (scene, *(LIVE if scene in LIVE else ()))
+            offers = (binding for where in scenes for binding in found if where in binding.scenes)
+            self._offers[name, scene] = next(offers, None)
+        return self._offers[name, scene]
 
     def bind(self, name: str, binding: Binding) -> list[tuple[Action, Binding]]:
         """Let a key perform an action in the scenes in which it is free; returns what has it in the others."""

@@ -9,6 +9,7 @@ import os
 import sys
 import threading
 from collections.abc import Callable, Iterable
+from contextlib import nullcontext
 from typing import Any
 
 from pinjoint.components.language import tr
@@ -19,7 +20,7 @@ STATUS = 1  # of the process
 
 
 class Patience:
-    """seconds: that a call of a program with kernels of others may take."""
+    """seconds: that a call of a program with kernels of others may take, apart from compiling."""
 
     seconds = 600.0
 
@@ -33,18 +34,23 @@ def ending(function: Callable[..., Any], kernels: Iterable[Callable[..., Any]]) 
     """A function that calls one of these kernels, and ends the process if it does not return."""
 
     def called(*given: Any) -> Any:
-        timer = threading.Timer(Patience.seconds, _end, [Patience.seconds, kernels])
-        timer.daemon = True
-        timer.start()
+        ended = threading.Event()
+        threading.Thread(target=_end, args=(ended, Patience.seconds, kernels), daemon=True).start()
         try:
             return function(*given)
         finally:
-            timer.cancel()
+            ended.set()
 
     return called
 
 
-def _end(seconds: float, kernels: Iterable[Callable[..., Any]]) -> None:
+def _end(ended: threading.Event, seconds: float, kernels: Iterable[Callable[..., Any]]) -> None:
+    for _ in range(30):  # a compiler at work is waited for in between: it takes long where a machine is busy
+        compiler = sys.modules.get("numba.core.compiler_lock")
+        with compiler.global_compiler_lock if compiler is not None else nullcontext():
+            pass
+        if ended.wait(seconds / 30.0):
+            return
     codes = [plain_function(kernel).__code__ for kernel in kernels]
     places = ", ".join(f"{code.co_name} ({code.co_filename}, {code.co_firstlineno})" for code in codes)
     said = tr(

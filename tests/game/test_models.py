@@ -18,7 +18,6 @@ from pinjoint.commands.command_line import main
 from pinjoint.components.field import Column, FieldError, Role, same
 from pinjoint.components.load import Load
 from pinjoint.components.model import Model
-from pinjoint.documents import document as documents
 from pinjoint.documents import models
 from pinjoint.documents.facts import gathered
 from pinjoint.documents.models import ModelError
@@ -235,14 +234,6 @@ def test_deep_nesting_is_refused() -> None:
         nested = {"deeper": nested}
     with pytest.raises(ModelError, match="nested too deeply"):
         models.parse(model([particle("A", 0, 0, components={"m.C": nested})], []))
-
-
-def test_older_versions_are_migrated_forward(monkeypatch: pytest.MonkeyPatch) -> None:
-    def rename(old: dict[str, Any]) -> dict[str, Any]:
-        return {"title" if key == "heading" else key: value for key, value in old.items()}
-
-    monkeypatch.setitem(documents.MIGRATIONS, 0, rename)
-    assert models.parse(BASE | {"version": 0, "heading": "old"}).title == "old"
 
 
 def test_what_the_data_layer_refuses_is_a_model_error(monkeypatch: pytest.MonkeyPatch) -> None:

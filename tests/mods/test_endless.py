@@ -8,6 +8,7 @@ import signal
 import subprocess
 import sys
 import time
+from collections.abc import Callable
 from pathlib import Path
 
 import pytest
@@ -57,6 +58,20 @@ def test_a_kernel_that_does_not_end_is_named(write_mod: Write, form: str) -> Non
     assert run.returncode == 1
     assert "A step has not ended for 1 s. It calls kernels of mods: bad (" in said
     assert os.path.join("apple", "__init__.py") in said
+
+
+COMPILES = """
+import numpy
+from numba import njit
+from pinjoint.systems.program.endless import Patience, ending
+Patience.seconds = 0.3
+sorts = njit(lambda numbers: numpy.sort(numbers).sum() + numpy.unique(numbers).sum())
+print(ending(sorts, [sorts.py_func])(numpy.ones(3)))
+"""
+
+
+def test_a_compiler_that_takes_long_is_no_kernel_that_does_not_end(fresh_process: Callable[..., str]) -> None:
+    assert fresh_process(COMPILES) == "4.0\n"
 
 
 def test_ctrl_c_is_heard_while_machine_code_does_not_end(write_mod: Write) -> None:

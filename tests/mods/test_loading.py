@@ -407,12 +407,13 @@ def test_a_name_that_python_reads_as_another_one_is_refused(write_mod: Write) ->
     assert "must be a Python name" in found.problem
 
 
-def test_a_mod_that_closes_standard_output_is_left_out(
-    write_mod: Write, monkeypatch: pytest.MonkeyPatch
+def test_a_mod_that_closes_standard_output_is_left_out_and_what_others_write_arrives(
+    write_mod: Write, capfd: pytest.CaptureFixture[str]
 ) -> None:
-    monkeypatch.setattr(sys, "stdout", io.StringIO())
     folder = write_mod("apple", "import sys\ndef plugin(app):\n    sys.stdout.close()\n")
-    (mod,) = mods.load([folder])
-    assert mod.problem == "It closed sys.stdout, which the program needs; leave it open."
-    print("swallowed")
-    sys.stdout.close()
+    with pytest.MonkeyPatch.context() as patched:
+        patched.setattr(sys, "stdout", io.StringIO())
+        (mod,) = mods.load([folder])
+        assert mod.problem == "It closed sys.stdout, which the program needs; leave it open."
+        print("arrives", flush=True)
+    assert capfd.readouterr().out == "arrives\n"

@@ -109,7 +109,7 @@ def test_in_pause_no_time_passes(capsys: pytest.CaptureFixture[str]) -> None:
     assert found["scene"] == "pause"
     assert list(found["phases"]) == ["input", "edit", "step", "events", "render"]
     assert found["phases"]["step"] == []
-    assert found["phases"]["edit"] == ["edit.actions", "edit.hover"]
+    assert found["phases"]["edit"] == ["edit.scale", "edit.actions", "edit.hover"]
     assert found["left_out"]["physics.axial_damping"].startswith("not active in 'pause'")
 
 

@@ -252,13 +252,11 @@ def _move(way: str, *, far: bool, always: bool) -> Perform:
         if (always or context.document.at_beginning) and nudge(context, direction, far=far):
             return
         if always:
-            raise Refusal(tr("Nothing that can be moved is selected; click a particle or a rod first."))
+            raise Refusal("Nothing that can be moved is selected; click a particle or a rod first.")
         if context.has_selected:
             raise Refusal(
-                tr(
-                    "Once a run has begun, arrow keys step through time. Ctrl with an arrow moves the selection; R goes back"
-                    " to the beginning."
-                )
+                "Once a run has begun, arrow keys step through time. Ctrl with an arrow moves the selection; R goes back"
+                " to the beginning."
             )
 
     return act

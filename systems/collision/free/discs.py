@@ -263,11 +263,10 @@ class Discs:
 
     def resume(self, state: FreeFlightState) -> None:
         """Go on from the state of other discs with the same properties."""
-        self.rows[: self.count, : state.motion.shape[1]] = state.motion
+        self.rows[: self.count, FLIGHT] = state.motion
         counted = len(PILE_COUNTS)
         self.counts[PILE_COUNTS] = state.pile[:counted]
-        known = state.pile[counted:]
-        self.numbers[PILE_NUMBERS[: len(known)]] = known
+        self.numbers[PILE_NUMBERS] = state.pile[counted:]
         self.counts[Count.RENEW], self.counts[Count.LISTED] = 1, NONE
         self._enter_persistent(state.contacts, state.forces)
 
@@ -355,15 +354,12 @@ class Discs:
 
 
 def state_on(paths: Floats, time: float) -> tuple[Floats, Floats]:
-    """Displacements (m) and velocities (m/s) at a time (s) on paths that begin with the columns FLIGHT of Disc.
-
-    Paths of earlier programs end before the columns of bends, and have none.
-    """
+    """Displacements (m) and velocities (m/s) at a time (s) on paths that begin with the columns FLIGHT of Disc."""
     s = (time - paths[:, Disc.EPOCH])[:, None]
     u, v, a = (paths[:, first : first + 2] for first in (Disc.UX, Disc.VX, Disc.AX))
     place, velocity = u + s * (v + 0.5 * s * a), v + s * a
     rows = np.flatnonzero(paths[:, Disc.STEP] < np.inf)
-    if len(rows) and paths.shape[1] >= FLIGHT.stop:
+    if len(rows):
         s, left = s[rows], (time - paths[rows, Disc.STEP])[:, None]
         curve = paths[rows, Disc.CX : Disc.CY + 1]
         bend = paths[rows, Disc.BX : Disc.BY + 1] + s * curve

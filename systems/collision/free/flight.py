@@ -18,7 +18,7 @@ from pinjoint.components.load import loads_end
 from pinjoint.components.model import Model
 from pinjoint.components.obstacles import obstacles
 from pinjoint.systems.base import REVIEW_INTERVAL, Event, StopReason
-from pinjoint.systems.collision.columns import FLIGHT, ONCE, PILE_COUNTS, PILE_NUMBERS, Disc, Number, Reason
+from pinjoint.systems.collision.columns import FLIGHT, PILE_COUNTS, PILE_NUMBERS, Number, Reason
 from pinjoint.systems.collision.free.discs import EVENTS, HORIZONS, Discs, ImpactColumns, state_on
 from pinjoint.systems.collision.impacts import MOST_KEPT, Impacts, TooManyImpacts
 from pinjoint.systems.entries import Measure
@@ -129,10 +129,8 @@ class Flight:
         """True if saved paths lead through the present state, bit for bit."""
         particles, now = self.model.particles, self.model.clock.time
         count = particles.count + len(obstacles(self.model))
-        known = len(saved.pile) in (ONCE, len(PILE_COUNTS) + len(PILE_NUMBERS))
-        inside = (saved.contacts < count).all() and known
-        shapes = (particles.count, Disc.BX), (particles.count, FLIGHT.stop)  # the former once
-        if saved.motion.shape not in shapes or not inside:
+        shapes = (particles.count, FLIGHT.stop), (len(PILE_COUNTS) + len(PILE_NUMBERS),)
+        if (saved.motion.shape, saved.pile.shape) != shapes or not (saved.contacts < count).all():
             return False
         place, velocity = state_on(saved.motion, now)
         return bool((place == particles.displacement).all() and (velocity == particles.velocity).all())
