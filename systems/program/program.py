@@ -273,7 +273,8 @@ class Program:
         if not self._writer.bends:
             return []
         shape = self._rows("particles"), self._writer.coordinates
-        return [Coordinates(np.zeros(shape), *map(self._storage, pair), scale) for pair in pairs]
+        held = self._storage
+        return [Coordinates(np.zeros(shape), held(moves), held(turns), scale) for moves, turns in pairs]
 
     def _load(self) -> None:
         """Before a call, bring what the program holds up to date with the model."""

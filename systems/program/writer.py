@@ -229,7 +229,7 @@ class Writer:
         parts = [
             self._head(),
             *([self._drive()] if self.collides else []),
-            pasted(steps.advance, "compiled" if self.collides else "entered", **self._steps()),
+            pasted(steps.advance, "compiled" if self.collides else "entered", "", **self._steps()),
             *(pasted(part, "inlined") for part in (steps.aim, steps.is_check_due)),
             *(self._pasted(part, "inlined") for part in reversed(self.integrator.parts)),
             *self._of_steps(),
@@ -682,6 +682,7 @@ class Writer:
         return pasted(
             observing.measure,
             "compiled",
+            "",
             mass=self.mass,
             rods=RodLoop(self.shift, stored).one_by_one(),
             pairs=self._each_pair((b, self._pair_energy(b)) for b in self.pairs),
