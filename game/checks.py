@@ -24,8 +24,8 @@ from pinjoint.systems.base import Commit, Integrator, Law, StepSystem, StopReaso
 from pinjoint.systems.catalogue import all_systems
 from pinjoint.systems.physics.integrators import INTEGRATORS
 from pinjoint.systems.program.binding import ProgramError, bind
+from pinjoint.systems.program.kernel_rows import KernelRows
 from pinjoint.systems.program.program import MOTION, TURNING
-from pinjoint.systems.program.reference_laws import KernelRows
 from pinjoint.systems.run.simulation import Simulation
 from pinjoint.systems.schedule import Schedule, ScheduleError
 
@@ -209,24 +209,24 @@ def _check_steps(system: Callable[[], System], source: Source) -> float:
     if isinstance(made, Law) and made.each == "pairs":
         _check_pairs(made, first)
     has_kernel = isinstance(made, Law | Commit)
-    return 1e9 * KernelRows(first).seconds_per_call(bind(made, first)) if has_kernel else 0.0
+    return 1e9 * KernelRows(bind(made, first), first).seconds_per_call() if has_kernel else 0.0
 
 
 def _check_pairs(law: Law, model: Model) -> None:
     """Check that a law of pairs gives opposite forces, and those of its potential."""
     bound = bind(law, model)
-    force = KernelRows(model).of(bound)
-    if not np.allclose(force, -KernelRows(model, turned=True).of(bound), rtol=1e-9, atol=0.0):
+    force = KernelRows(bound, model).results()
+    if not np.allclose(force, -KernelRows(bound, model, turned=True).results(), rtol=1e-9, atol=0.0):
         raise SystemCheckError(
             "{name}: the forces on two particles change if the two are swapped; they must be opposite in any order.",
             name=law.name,
         )
     if not law.potential:
         return
-    energy, apart = bind(law, model, "potential"), np.hypot(*KernelRows(model).apart(bound).T)
+    energy, apart = bind(law, model, "potential"), np.hypot(*KernelRows(bound, model).apart.T)
     for axis in range(2):
         ahead, behind = (
-            KernelRows(model, moved=(side * NEARBY * (1 - axis), side * NEARBY * axis)).of(energy)[:, 0]
+            KernelRows(energy, model, moved=(side * NEARBY * (1 - axis), side * NEARBY * axis)).results()[:, 0]
             for side in (1.0, -1.0)
         )
         slope = (ahead - behind) / (2.0 * NEARBY * apart)

@@ -50,7 +50,7 @@ from pinjoint.systems.catalogue import step_systems
 from pinjoint.systems.edit import Refusal
 from pinjoint.systems.edit.dividing import divide
 from pinjoint.systems.edit.pull import Pull
-from pinjoint.systems.input.actions import ACTIONS, FILES, FORMS, LIVE, TEXT, key_named, only_in_pause
+from pinjoint.systems.input.actions import ACTIONS, FILES, FORMS, LIVE, PAUSE, SIMULATION, TEXT, key_named
 from pinjoint.systems.render.picture import Stage
 from pinjoint.systems.run.simulation import Simulation
 from pinjoint.systems.run.system import Time
@@ -429,8 +429,8 @@ class Session(Context):
             left = self._left_for_tools() if for_tools(self, key, pixel) else ""
             if name != left:  # the tool that opens a scene closes it, too
                 self.act(name, at)
-        elif title := only_in_pause(self.scene, key):
-            self.notice = tr("{action}: press Space to pause first.", action=begun(tr(title)))
+        elif self.scene == SIMULATION and (found := ACTIONS.at(PAUSE, key)) and not ACTIONS.at(self.scene, key):
+            self.notice = tr("{action}: press Space to pause first.", action=begun(tr(found[1].title)))
 
     def _left_for_tools(self) -> str:
         """Leave a scene in which tools do not act, for the one in which they do; returns its name, or ""."""

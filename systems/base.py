@@ -19,6 +19,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Mapping, Sequence
+from contextlib import AbstractContextManager
 from enum import Enum, IntEnum
 from typing import Any, ClassVar, Protocol
 
@@ -76,6 +77,9 @@ class Mod(Protocol):
 
     def switch_off(self, reason: str, error: BaseException | None = None) -> None:
         """Call no code of the mod any more."""
+
+    def aside(self) -> AbstractContextManager[None]:
+        """As if it were switched off, inside the `with`."""
 
 
 REVIEW_INTERVAL = 8192  # steps between reviews of the step size, and between safe states

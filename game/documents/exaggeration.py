@@ -14,7 +14,6 @@ from pinjoint.components.numeric_range import incomputable
 from pinjoint.components.obstacles import obstacles
 from pinjoint.components.round_numbers import round_down
 from pinjoint.systems.edit.arrows import extent
-from pinjoint.systems.islands import lowest_joined
 from pinjoint.systems.physics.pace import expected_displacement, loaded_mode
 
 DRAWN = 0.08  # of the structure's size: the largest displacement as drawn, at most, when a factor is chosen
@@ -23,7 +22,6 @@ FROM = 5.0  # the smallest factor; what would need less is seen without one
 TRUE = 1.0  # the factor of motions that are seen without one
 LEAST = 1e-7  # of the size: smaller displacements are rounding
 LARGEST = 2000  # rods up to which displacements are expected by theory; larger structures are looked at
-LARGEST_YIELDING = 60  # rods up to which statics with yielding takes no noticeable time
 
 Displacement = NDArray[np.float64]
 
@@ -63,7 +61,7 @@ class Exaggeration:
             return TRUE
         if largest < LEAST * size:
             return present
-        most = min(DRAWN * size, 0.5 * _gap(model)) / largest
+        most = DRAWN * size / largest
         if KEPT[0] <= present * largest / size <= KEPT[1] and present <= max(most * KEPT[1] / DRAWN, TRUE):
             return present
         return round_down(most) if most >= FROM else TRUE
@@ -76,8 +74,8 @@ class Exaggeration:
         revision = model.newest(Role.DOCUMENT)
         if self._expected[0] != revision:
             found = None if incomputable(model) else expected_displacement(model)
-            if found is not None and _yields(model, found):
-                found = _with_yielding(model, found)
+            if found is not None and _spare(model) <= 0 and _yields(model, found):
+                found = None  # it collapses
             size = math.inf if found is None else float(np.abs(found).max(initial=0.0))
             self._expected = revision, size
         return self._expected[1]
@@ -92,22 +90,6 @@ def _yields(model: Model, displacement: Displacement) -> bool:
     force = rods.stiffness / rods.rest_length * elongation
     beyond = (force > rods.tension_limit) | (force < -rods.compression_limit)
     return bool((beyond & model.settings.plasticity | rods.tension_only & (force < 0.0)).any())
-
-
-def _with_yielding(model: Model, elastic: Displacement) -> Displacement | None:
-    """The displacement (n, 2) of statics (m) from the beginning; None if the model collapses.
-
-    Of larger structures the elastic one, unless they have no rod to spare.
-    """
-    if model.rods.count > LARGEST_YIELDING:
-        return elastic if _spare(model) > 0 else None
-    from pinjoint.systems.statics.settle import settle  # scipy
-    from pinjoint.systems.statics.state import Start
-
-    supports = np.where(model.particles.fixed, elastic, 0.0)
-    clamps = np.where(model.particles.fixed_rotation, model.particles.rotation, 0.0)
-    final = settle(model, start=Start(supports, np.zeros(model.rods.count), clamps)).final
-    return final.displacement if final.balanced else None
 
 
 def _spare(model: Model) -> int:
@@ -137,22 +119,3 @@ def _amplitude(model: Model) -> float:
         if mode is not None:
             displacement = np.hypot(displacement, velocity / mode[0])
     return max(float(np.abs(displacement).max(initial=0.0)), largest_sag(model))
-
-
-def _gap(model: Model) -> float:
-    """The smallest gap (m) between structures that would collide; infinite if there is one only, or none collides."""
-    particles = model.particles
-    if not model.settings.collisions:
-        return math.inf
-    root = lowest_joined(particles.count, model.rods.between.astype(np.intp))
-    if (root == 0).all():
-        return math.inf
-    if particles.count > LARGEST:
-        return 0.0
-    position, radius, gap = particles.position, particles.radius, math.inf
-    for body in np.unique(root).tolist():
-        own = root == body
-        for place, reach in zip(position[own], radius[own], strict=True):
-            away = np.hypot(*(position[~own] - place).T) - radius[~own] - reach
-            gap = min(gap, float(away.min()))
-    return max(gap, 0.0)

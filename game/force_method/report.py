@@ -33,9 +33,9 @@ from pinjoint.systems.render.paper import (
     Block,
     Figure,
     Layout,
-    Matrices,
     as_paper,
     in_rows,
+    matrices,
     together,
 )
 from pinjoint.systems.render.picture import compose
@@ -321,11 +321,11 @@ class _Page:
                 self._text(equation.strip().replace(" = ", "\u00a0=\u00a0"), "equation"),
                 self._text(found[0], "result"),
             ]
-        lines: list[Flowable] = [Matrices([*self._numbers()], self.layout)]
+        lines = [matrices([*self._numbers()], self.layout)]
         if count <= PRODUCTS:
-            lines.insert(0, Matrices([*self._symbols()], self.layout))
+            lines.insert(0, matrices([*self._symbols()], self.layout))
         symmetric = tr("The matrix is symmetric: δ₁₂ = δ₂₁ (Maxwell).")
-        rows = in_rows([(line.width, [line]) for line in lines]) if count <= PRODUCTS else lines
+        rows = in_rows(lines)
         result = self._text(_APART.join(found), "result")
         return [heading, self._text(f"{symmetric} {said}"), *rows, result]
 

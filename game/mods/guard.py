@@ -6,15 +6,14 @@ What a person sees and does of mods is guarded in interface.py.
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterable, Iterator, Mapping
+from collections.abc import Callable, Iterable, Iterator
 from contextlib import contextmanager
 from copy import copy
 from dataclasses import replace
 from inspect import getattr_static
-from typing import Any, ClassVar, get_args, get_origin, get_type_hints
+from typing import Any, ClassVar, TypeVar, get_args, get_origin, get_type_hints
 
 import numpy as np
-from numpy.typing import NDArray
 
 from pinjoint.components.field import Column, Field, FieldError, Role
 from pinjoint.components.handle import Handle
@@ -27,15 +26,18 @@ from pinjoint.components.snapshot import Snapshot
 from pinjoint.components.table import Table
 from pinjoint.components.view import View
 from pinjoint.editor.context import Context
-from pinjoint.mods.declared import as_declared, check_fields
+from pinjoint.mods.declared import check, check_fields, check_has_run, result_of
+from pinjoint.mods.limit import check_limit
 from pinjoint.mods.mod import INCLUDED, Mod, ModError
-from pinjoint.mods.watchdog import stop_after
 from pinjoint.systems.base import Commit, Event, Integrator, Law, StepSystem, System
 from pinjoint.systems.physics.integrators import VelocityVerlet
+
+T = TypeVar("T")
 
 PATIENCE = 2.0  # s that a frame system may take; a longer one is interrupted
 
 _ROLES = (Law, Commit, Event, Integrator, StepSystem, System)
+_QUESTIONS = ("needs", "arrays", "leaves_flight_exact", "cutoff")  # that systems answer
 
 
 # --- systems -------------------------------------------------------------------------------------------
@@ -44,31 +46,24 @@ _ROLES = (Law, Commit, Event, Integrator, StepSystem, System)
 def guarded_maker(mod: Mod, system: Callable[[], System]) -> Callable[[], System]:
     """What makes a system of a mod for every session; one that cannot be made any more does nothing."""
     name = guarded_system(mod, system()).name
-
-    def make() -> System:
-        made = mod.call(tr("making the system '{name}'", name=name), lambda: guarded_system(mod, system()))
-        return made if made is not None else _nothing(name)
-
-    return make
+    what = tr("making the system '{name}'", name=name)
+    return made_anew(mod, what, lambda: guarded_system(mod, system()), lambda: _nothing(name))
 
 
-def check_declarations(system: Any) -> System:
-    """A system whose class attributes are of the types that its role declares. Raises ModError, TypeError."""
-    role = next((role for role in _ROLES if isinstance(system, role)), None)
-    if role is None:
-        raise ModError(
-            "{name} is not a System; derive it from a class in pinjoint.systems.base.",
-            name=type(system).__name__,
-        )
+def made_anew(mod: Mod, what: str, make: Callable[[], T], nothing: Callable[[], T]) -> Callable[[], T]:
+    """What makes something of a mod again and again, or nothing that does what it does not."""
+    make_it = mod.guarded(what, make)
+    return lambda: nothing() if (found := make_it()) is None else found
+
+
+def check_declarations(made: Any, role: type) -> None:
+    """Raise ModError or TypeError if class attributes are not of the types that the role declares."""
     for name, hint in get_type_hints(role).items():
         if get_origin(hint) is ClassVar:
-            if isinstance(getattr_static(system, name), property):  # might answer differently, or fail, later
-                raise ModError(
-                    "{name} is a property; give the value itself.", name=f"{type(system).__name__}.{name}"
-                )
-            as_declared(getattr(system, name), get_args(hint)[0], f"{type(system).__name__}.{name}")
-    made: System = system
-    return made
+            called = f"{(made if isinstance(made, type) else type(made)).__name__}.{name}"
+            if isinstance(getattr_static(made, name, None), property):  # might answer otherwise, or fail, later
+                raise ModError("{name} is a property; give the value itself.", name=called)
+            check(getattr(made, name, None), get_args(hint)[0], called)
 
 
 def _nothing(name: str) -> System:
@@ -85,31 +80,30 @@ def guarded_system(mod: Mod, made: System) -> System:
     or leaves what a Field cannot take, such as NaN, its commands are dropped whole, and the columns that it declares
     in `writes` and `adds` are restored.
     """
-    system = check_declarations(made)
-    what, process = tr("the system '{name}'", name=system.name), system.process
-    system.mod = mod
-    _guard_question(mod, system, "needs", bool, otherwise=False)
-    if isinstance(system, StepSystem):
-        _guard_question(mod, system, "arrays", Mapping[str, NDArray[Any]], otherwise={})
-        _guard_question(mod, system, "leaves_flight_exact", bool, otherwise=False)
-    else:
-        vars(system)["process"] = lambda frame: _change_whole(
-            mod, system, what, frame.session.model, lambda: _in_frame(process, frame)
+    role = next((role for role in _ROLES if isinstance(made, role)), None)
+    if role is None:
+        name = type(made).__name__
+        raise ModError("{name} is not a System; derive it from a class in pinjoint.systems.base.", name=name)
+    check_declarations(made, role)
+    made.mod, own = mod, vars(made)
+    what, process = tr("the system '{name}'", name=made.name), made.process
+    for name in _QUESTIONS:
+        if hasattr(role, name):
+            asked = tr("{method} of '{name}'", method=name, name=made.name)
+            declared, plain = result_of(getattr(role, name)), getattr(role, name)(made, None)
+            own[name] = mod.guarded(asked, getattr(made, name), otherwise=plain, declared=declared)
+    needs = own["needs"]
+    own["needs"] = lambda model: needs(model) and not mod.off
+    if not isinstance(made, StepSystem):
+        own["process"] = lambda frame: _change_whole(
+            mod, made, what, frame.session.model, lambda: _in_frame(process, frame)
         )
-    if isinstance(system, Law):
-        _guard_question(mod, system, "cutoff", float, otherwise=math.inf)
-    if isinstance(system, Event):
-        happen = system.happen
-        vars(system)["happen"] = lambda model, *elements: _change_whole(
-            mod, system, what, model, lambda: happen(model, *elements)
+    if isinstance(made, Event):
+        happen = made.happen
+        own["happen"] = lambda model, *elements: _change_whole(
+            mod, made, what, model, lambda: happen(model, *elements)
         )
-    return system
-
-
-def _guard_question(mod: Mod, system: System, name: str, declared: Any, otherwise: Any) -> None:
-    """Let a question about a model that a system answers switch its mod off if it fails."""
-    own, what = getattr(system, name), tr("{method} of '{name}'", method=name, name=system.name)
-    vars(system)[name] = lambda model: mod.call(what, own, model, otherwise=otherwise, declared=declared)
+    return made
 
 
 def _change_whole(mod: Mod, system: System, what: str, model: Model, change: Callable[[], object]) -> None:
@@ -122,7 +116,7 @@ def _change_whole(mod: Mod, system: System, what: str, model: Model, change: Cal
             if mod.source == INCLUDED:
                 change()
             else:
-                interruptible(change, model, PATIENCE)
+                interruptible(change, model)
                 _check_state(model, tables)
         return True
 
@@ -152,7 +146,7 @@ def view_kept(context: Context) -> Iterator[None]:
     try:
         yield
         check_view(context.view)
-        as_declared(context.notice, str, tr("the session's notice"))
+        check(context.notice, str, tr("the session's notice"))
     except BaseException:
         vars(view).update(attributes, camera=camera)
         context.view, context.notice = view, notice
@@ -171,15 +165,14 @@ def check_view(view: View) -> None:
         )
 
 
-def interruptible(change: Callable[[], object], model: Model, patience: float) -> None:
+def interruptible(change: Callable[[], object], model: Model) -> None:
     """Run what changes a model by commands, and restore entities that it deleted past the tables.
 
-    A command is never interrupted; code that does nothing but give commands is stopped before the first one after
-    `patience` (s).
+    A command is never interrupted; code that does nothing but give commands is stopped before the first one that is late.
     """
-    model.before_command = stop_after(patience)
+    model.before_command = check_limit
     try:
-        as_declared(change(), None, tr("what it returned"))
+        check_has_run(change(), tr("what it returned"))
     finally:
         model.before_command = None
         model.check_entities()
@@ -191,18 +184,16 @@ def interruptible(change: Callable[[], object], model: Model, patience: float) -
 def guarded_history(mod: Mod, kind: HistoryKind) -> HistoryKind:
     """The history of a mod, whose Python functions switch the mod off if they fail."""
 
-    def guarded(name: str, declared: Any, otherwise: Any, *mistakes: type[Exception]) -> Any:
-        own = getattr(kind, name)
+    def guarded(name: str, declared: Any, otherwise: Any, own: Any = None, mistakes: Any = ()) -> Any:
         what = tr("{method} of the history '{name}'", method=name, name=kind.name)
-        return lambda *given: mod.call(
-            what, own, *given, otherwise=otherwise, declared=declared, mistakes=mistakes
-        )
+        how = {"otherwise": otherwise, "declared": declared, "mistakes": mistakes}
+        return mod.guarded(what, own or getattr(kind, name), **how)
 
     return replace(
         kind,
-        check=guarded("check", Any, None, FieldError),
+        check=guarded("check", None, None, mistakes=(FieldError,)),
         ends=guarded("ends", float, -math.inf),
-        breaks=guarded("breaks", Iterable[float], ()),
+        breaks=guarded("breaks", tuple[float, ...], (), own=lambda history: tuple(kind.breaks(history))),
         static=guarded("static", float, 0.0) if callable(kind.static) else kind.static,
         mod=mod,
     )
@@ -210,10 +201,11 @@ def guarded_history(mod: Mod, kind: HistoryKind) -> HistoryKind:
 
 def guarded_integrator(mod: Mod, integrator: Integrator) -> Integrator:
     """The integrator of a mod, wrapped so that it is no longer chosen once the mod is switched off."""
-    own = integrator.stable_step
+    own, what = integrator.stable_step, tr("the stable step of the integrator '{name}'", name=integrator.name)
 
     def stable_step(frequency: float, decay: float) -> float:
-        size: float = as_declared(own(frequency, decay), float, "it")
+        size = own(frequency, decay)
+        check(size, float, "it")
         if not size >= 0.0:
             raise WrongValue(
                 "it is {size} s; return a number of at least 0 (0: no step is stable)", size=str(size)
@@ -221,11 +213,11 @@ def guarded_integrator(mod: Mod, integrator: Integrator) -> Integrator:
         return size
 
     def called(frequency: float, decay: float) -> float:
-        what = tr("the stable step of the integrator '{name}'", name=integrator.name)
-        size: float = mod.call(what, stable_step, frequency, decay, otherwise=math.nan)
-        return VelocityVerlet.stable_step(frequency, decay) if math.isnan(size) else size
+        size: float | None = mod.call(what, stable_step, frequency, decay)
+        return VelocityVerlet.stable_step(frequency, decay) if size is None else size
 
-    check_declarations(integrator).mod = mod
+    check_declarations(integrator, Integrator)
+    integrator.mod = mod
     vars(integrator)["stable_step"] = called
     return integrator
 
@@ -237,15 +229,11 @@ def guarded_shape(mod: Mod, kind: type[Handle], shape: Shape) -> Shape:
 
     def pieces(table: Table[Any]) -> Pieces:
         made = shape(table)
-        return check_pieces(
-            table, as_declared(made, Pieces, source) if isinstance(made, Pieces) else made, source
-        )
+        if isinstance(made, Pieces):
+            check_fields(made, Pieces)
+        return check_pieces(table, made, source)
 
-    def called(table: Table[Any]) -> Pieces:
-        found: Pieces = mod.call(tr("the shape of {table}", table=kind.table), pieces, table, otherwise=nothing)
-        return found
-
-    return called
+    return mod.guarded(tr("the shape of {table}", table=kind.table), pieces, otherwise=nothing)
 
 
 def guard_checkers(mod: Mod, fields: Iterable[Field[Any]]) -> None:

@@ -5,7 +5,8 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Iterable, Sequence
 from dataclasses import replace
-from inspect import getattr_static
+from functools import partial
+from itertools import islice
 from typing import Any
 
 from pinjoint.commands.arguments import BAD_INPUT, UsageError
@@ -16,9 +17,9 @@ from pinjoint.components.view import Plot, Readout, View
 from pinjoint.components.wording import printable
 from pinjoint.documents import models
 from pinjoint.editor.context import Context, Scene
-from pinjoint.mods.declared import as_declared, result_of
-from pinjoint.mods.guard import check_view, interruptible, view_kept
-from pinjoint.mods.mod import INCLUDED, PATIENCE, Mod
+from pinjoint.mods.declared import check, check_has_run, result_of
+from pinjoint.mods.guard import check_declarations, check_view, interruptible, made_anew, view_kept
+from pinjoint.mods.mod import INCLUDED, Mod
 from pinjoint.paths import PathError
 from pinjoint.systems.edit import Refusal
 from pinjoint.systems.input.actions import ACTIONS, Perform
@@ -30,6 +31,7 @@ Panel = Callable[[Context], Readout | Sequence[Readout] | None]
 
 MISTAKES = (UsageError, models.ModelError, FieldError, PathError, SystemExit)  # of a person at the command line
 LONGEST = 400  # characters of a text in the window
+MOST_MARKS = 1_000_000  # of a layer: an iterator may have no end, in code that nothing interrupts
 
 
 # --- what is done ----------------------------------------------------------------------------------------
@@ -47,27 +49,17 @@ def guarded_action(mod: Mod, name: str, function: Perform) -> Perform:
     def changed(context: Context, pixel: Vector) -> None:
         model = context.model
         with model.transaction(name), view_kept(context):
-            interruptible(lambda: function(context, pixel), model, PATIENCE)
+            interruptible(lambda: function(context, pixel), model)
 
     return act
 
 
 def guarded_command(mod: Mod, name: str, run: Callable[[list[str]], int]) -> Callable[[list[str]], int]:
     """A command of a mod for the command line, which may run as long as it likes."""
-
-    def command(words: list[str]) -> int:
-        status: int = mod.call(
-            tr("the command '{name}'", name=name),
-            run,
-            list(words),
-            otherwise=BAD_INPUT,
-            declared=int,
-            patience=math.inf,
-            mistakes=MISTAKES,
-        )
-        return status
-
-    return command
+    what = tr("the command '{name}'", name=name)
+    return mod.guarded(
+        what, run, otherwise=BAD_INPUT, declared=int, patience=math.inf, mistakes=MISTAKES
+    )  # of a list of its own
 
 
 # --- what is seen ------------------------------------------------------------------------------------------
@@ -75,15 +67,23 @@ def guarded_command(mod: Mod, name: str, run: Callable[[list[str]], int]) -> Cal
 
 def guarded_layer(mod: Mod, draw: Layer) -> Layer:
     """A layer of a mod, whose marks are cut to what is seen; what it adds to the sheet itself is not drawn."""
+    called = tr("what the layer draws")
 
     def drawn(sheet: Sheet) -> list[Mark]:
         if mod.source == INCLUDED:
             return list(draw(sheet))
-        own = replace(sheet, marks=list(sheet.marks), labels=[], legend=[], notes=[])
-        marks = as_declared(draw(own), Iterable[Mark], tr("what the layer draws"))
+        made = draw(replace(sheet, marks=list(sheet.marks), labels=[], legend=[], notes=[]))
+        check(made, Iterable[Mark], called)
+        marks = list(islice(made, MOST_MARKS + 1))
+        if len(marks) > MOST_MARKS:
+            raise WrongValue(
+                "{called} has more than {count:,} entries; give fewer", called=called, count=MOST_MARKS
+            )
+        for mark in marks:
+            check(mark, Mark, called)
         return [part for mark in marks for part in framed(mark, sheet.viewport, sheet.unit)]
 
-    return lambda sheet: mod.call(tr("its drawing layer"), drawn, sheet, otherwise=[])
+    return mod.guarded(tr("its drawing layer"), drawn, otherwise=[])
 
 
 def guarded_panel(mod: Mod, read: Panel) -> Callable[[Context], Sequence[Readout]]:
@@ -91,11 +91,12 @@ def guarded_panel(mod: Mod, read: Panel) -> Callable[[Context], Sequence[Readout
     called = tr("what {function} returned", function=getattr(read, "__name__", "a panel"))
 
     def readouts(context: Context) -> Sequence[Readout]:
-        made = as_declared(read(context), Readout | Sequence[Readout] | None, called)
+        made = read(context)
+        check(made, Readout | Sequence[Readout] | None, called)
         several = () if made is None else (made,) if isinstance(made, Readout) else made
         return tuple(map(_checked_readout, several))
 
-    return lambda context: mod.call(tr("its panel"), readouts, context, otherwise=())
+    return mod.guarded(tr("its panel"), readouts, otherwise=())
 
 
 def _checked_readout(readout: Readout) -> Readout:
@@ -134,71 +135,52 @@ def readable(text: str) -> str:
 # --- scenes ------------------------------------------------------------------------------------------------
 
 
-_METHODS = tuple(name for name, method in vars(Scene).items() if callable(method) and name[0] != "_")
-_READ = ("heading", "message", "boxes")  # as attributes or properties
-_CLASS = {"name": str, "targets": tuple[str, ...], "sources": tuple[str, ...], "systems": tuple[str, ...]}
+_METHODS = {name for name, method in vars(Scene).items() if callable(method) and name[0] != "_"}
+_READ = {"heading": str, "message": str, "boxes": dict[str, str]}  # as attributes or properties
 
 
 def guarded_scene(mod: Mod, kind: type[Scene]) -> Callable[[], Scene]:
-    """What makes the scene of a mod for every session; once the mod is switched off it does nothing and leads to pause."""
-    for name, declared in _CLASS.items():
-        as_declared(getattr(kind, name, None), declared, f"{kind.__name__}.{name}")
+    """What makes the scene of a mod for every session; once the mod is switched off it does nothing and leads to pause.
+
+    Where a method of it fails, that of all scenes takes its place; what cannot be shown is empty.
+    """
+    check_declarations(kind, Scene)
     kind()  # raises here what it would raise in every session
-    guards: dict[str, Any] = {name: _guarded_method(mod, kind, name) for name in _METHODS}
-    guards |= {name: _guarded_property(mod, kind, name) for name in _READ}
-    guarded: type[Scene] = type(kind.__name__, (kind,), {**guards, "mod": mod})
-    plain: type[Scene] = type(kind.__name__, (Scene,), {"name": kind.name, "sources": kind.sources, "mod": mod})
-
-    def make() -> Scene:
-        made = mod.call(tr("making the scene '{name}'", name=kind.name), guarded)
-        return made if made is not None else plain()
-
-    return make
-
-
-def _guarded_method(mod: Mod, kind: type[Scene], name: str) -> Callable[..., Any]:
-    """A method of a scene; if it fails, that of all scenes takes its place."""
-    own, plain = getattr(kind, name), getattr(Scene, name)
-    declared = result_of(plain)
-    mistakes = (LookupError,) if name == "click_box" else ()
-
-    def asked(scene: Scene, *arguments: Any) -> Any:
-        made = as_declared(own(scene, *arguments), declared, tr("what {function} returned", function=name))
-        return None if declared is None else _shown(made)
-
-    def method(scene: Scene, *arguments: Any) -> Any:
-        what = tr("the scene '{name}'", name=kind.name)
-        made = mod.call(what, asked, scene, *arguments, otherwise=mod, mistakes=mistakes)
-        return plain(scene, *arguments) if made is mod else made
-
-    return method
-
-
-def _guarded_property(mod: Mod, kind: type[Scene], name: str) -> property:
-    """An attribute or property of a scene that is read; if it cannot be shown, it is empty."""
-    own, plain = getattr_static(kind, name), getattr_static(Scene, name)
-    declared = result_of(plain.fget) if isinstance(plain, property) and plain.fget else type(plain)
-    empty: Any = {} if name == "boxes" else ""
-
-    def asked(scene: Scene) -> Any:
-        made = own.__get__(scene) if isinstance(own, property) else vars(scene).get(name, own)
-        return _shown(as_declared(made, declared, name))
-
-    def write(scene: Scene, value: Any) -> None:
-        if isinstance(own, property):
-            own.__set__(scene, value)
-        else:
-            vars(scene)[name] = value
-
     what = tr("the scene '{name}'", name=kind.name)
-    return property(lambda scene: mod.call(what, asked, scene, otherwise=empty), write)
+
+    def asked(scene: Scene, name: str, *arguments: Any) -> Any:
+        own = super(guarded, scene).__getattribute__(name)
+        declared = _READ.get(name) or result_of(getattr(Scene, name))
+        made = own if name in _READ else own(*arguments)
+        called = name if name in _READ else tr("what {function} returned", function=name)
+        if declared is None:
+            check_has_run(made, called)
+            return None
+        check(made, declared, called)
+        return _shown(made)
+
+    def answer(scene: Scene, name: str, *arguments: Any) -> Any:
+        mistakes = (LookupError,) if name == "click_box" else ()
+        made = mod.call(what, asked, scene, name, *arguments, otherwise=mod, mistakes=mistakes)
+        return getattr(Scene, name)(scene, *arguments) if made is mod else made
+
+    def read(scene: Scene, name: str) -> Any:
+        if name in _METHODS:
+            return partial(answer, scene, name)
+        if name in _READ:
+            return mod.call(what, asked, scene, name, otherwise={} if name == "boxes" else "")
+        return super(guarded, scene).__getattribute__(name)
+
+    guarded: type[Scene] = type(kind.__name__, (kind,), {"__getattribute__": read, "mod": mod})
+    plain: type[Scene] = type(kind.__name__, (Scene,), {"name": kind.name, "sources": kind.sources, "mod": mod})
+    return made_anew(mod, tr("making the scene '{name}'", name=kind.name), guarded, plain)
 
 
 def _shown(made: Any) -> Any:
     """What a scene shows. Raises TypeError for a View with what cannot be drawn."""
     if isinstance(made, str):
         return readable(made)
-    for view in made if isinstance(made, tuple) else ():
+    for view in made if isinstance(made, list | tuple) else ():
         if isinstance(view, tuple):  # a stage
             _shown(view)
         elif isinstance(view, View):

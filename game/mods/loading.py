@@ -15,7 +15,7 @@ from pinjoint.documents.preferences import preferred_keys
 from pinjoint.interrupts import is_persons, mark_interrupts
 from pinjoint.mods import finding
 from pinjoint.mods.app import App, check_plugin
-from pinjoint.mods.declared import as_declared
+from pinjoint.mods.declared import check_has_run
 from pinjoint.mods.finding import in_order, required
 from pinjoint.mods.mod import MANIFEST, Mod, ModError
 from pinjoint.mods.surroundings import Surroundings
@@ -122,7 +122,7 @@ def _plug_in(mod: Mod, app: App) -> None:
     """Import a mod and let it register what it has. Raises ModError, or whatever its code raises."""
     app.catalogues()
     module = _import(mod)
-    as_declared(check_plugin(getattr(module, "plugin", None))(app), None, tr("what plugin(app) returned"))
+    check_has_run(check_plugin(getattr(module, "plugin", None))(app), tr("what plugin(app) returned"))
     Schedule(all_systems())
 
 

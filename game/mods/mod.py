@@ -6,7 +6,8 @@ import logging
 import math
 import os
 import traceback
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any, TypeVar
@@ -16,8 +17,8 @@ from pinjoint.components.language import english, tr
 from pinjoint.components.mistake import Mistake
 from pinjoint.components.wording import is_identifier, printable, quoted
 from pinjoint.interrupts import is_persons
-from pinjoint.mods.declared import as_declared
-from pinjoint.mods.watchdog import is_running, within
+from pinjoint.mods.declared import check, check_has_run
+from pinjoint.mods.limit import within
 
 T = TypeVar("T")
 
@@ -85,6 +86,15 @@ class Mod:
             places = "".join(traceback.format_tb(error.__traceback__)).rstrip()
             LOG.debug("Traceback of the mod '%s':\n%s", self.name, places)
 
+    @contextmanager
+    def aside(self) -> Iterator[None]:
+        """As if it were switched off, inside the `with`."""
+        before, self.problem = self.problem, "aside"
+        try:
+            yield
+        finally:
+            self.problem = before
+
     def describe(self, error: BaseException) -> str:
         """An error with the file and the line of this mod in which it happened."""
         place, message = self.place_of(error), self._message(error)
@@ -119,24 +129,31 @@ class Mod:
         function: Callable[..., Any],
         *arguments: Any,
         otherwise: Any = None,
-        declared: Any = Any,
+        declared: Any = None,
         patience: float = PATIENCE,
         mistakes: tuple[type[BaseException], ...] = (),
     ) -> Any:
-        """What a function of the mod returns, made plain; all that the mod does passes here.
+        """What a function of the mod returns; all that the mod does passes here.
 
         It is `otherwise` if the mod is off, or if the function raises anything (SystemExit and KeyboardInterrupt
         included; only Ctrl+C goes on), runs longer than `patience` (s) or returns what is not of the type `declared`,
-        which switches the mod off. mistakes: errors that tell a person what to correct; they are raised.
+        if one is, which switches the mod off. mistakes: errors that tell a person what to correct; they are raised.
         """
+
+        def called() -> Any:
+            made = function(*arguments)
+            if declared is None:
+                check_has_run(made, tr("what it returned"))
+            else:
+                check(made, declared, tr("what it returned"))
+            return made
+
         if self.off:
             return otherwise
         try:
             if self.source == INCLUDED:
                 return function(*arguments)
-            return self.within(
-                patience, lambda: as_declared(function(*arguments), declared, tr("what it returned"))
-            )
+            return self.within(patience, called)
         except mistakes:
             raise
         except BaseException as error:  # of code that is not ours
@@ -145,11 +162,15 @@ class Mod:
             self.fail(what, error)
             return otherwise
 
+    def guarded(self, what: str, function: Callable[..., Any], **how: Any) -> Callable[..., Any]:
+        """A function of the mod, to be called as if it were ours: see `call`."""
+        return lambda *given: self.call(what, function, *given, **how)
+
     def within(self, patience: float, function: Callable[[], T]) -> T:
         """The result of a function; after `patience` TooLong is raised in the mod's code, or in a library that it calls."""
         if not math.isfinite(patience) or self.folder is None:
             return function()
-        return within(patience, is_running(f"{self.folder}{os.sep}"), function)
+        return within(patience, f"{self.folder}{os.sep}", function)
 
 
 def _short(path: str) -> str:

@@ -183,12 +183,6 @@ def action_for(scene: str, key: str) -> str | None:
     return found[0].name if found else None
 
 
-def only_in_pause(scene: str, key: str) -> str:
-    """What a key does in pause, if it does nothing in the scene in which time passes; "" else."""
-    found = ACTIONS.at(PAUSE, key) if scene == LIVE[0] and ACTIONS.at(scene, key) is None else None
-    return tr(found[1].title) if found else ""
-
-
 def key_named(text: str) -> str:
     """The name that bindings use for a key such as "K", "Esc" or "Ctrl+Z". Raises ValueError if there is no such key.
 
@@ -207,12 +201,6 @@ def key_named(text: str) -> str:
     if len(name) == 1 and "ctrl+" not in held:
         held.clear()
     return "".join(sorted(held)) + name  # ctrl comes before shift
-
-
-def repeats(scene: str, key: str) -> bool:
-    """True if holding a key performs its action again and again in a scene."""
-    found = ACTIONS.at(scene, key)
-    return found is not None and found[0].repeats
 
 
 def help_lines(scene: str) -> list[tuple[str, str]]:

@@ -10,7 +10,7 @@ import pygame
 
 from pinjoint.components.field import Vector
 from pinjoint.systems.base import Phase, System
-from pinjoint.systems.input.actions import FILES, MENU, TEXT, repeats
+from pinjoint.systems.input.actions import ACTIONS, FILES, MENU, TEXT
 
 CLICK_REACH = 4.0  # points that the pointer may move while a button is down; more: a drag
 DOUBLE_CLICK = 0.4  # s between two clicks that count as a double click
@@ -125,7 +125,8 @@ class PygameInput(System):
         key, repeated = _key_name(event), event.key in self._held
         self._held.add(event.key)
         scene = frame.session.scene if frame.session.view.menu is None else MENU
-        if key and (not repeated or repeats(scene, key)):
+        found = ACTIONS.at(scene, key)
+        if key and (not repeated or (found is not None and found[0].repeats)):
             frame.pressed.append((key, frame.session.pointer))
 
     def _drag(self, event: pygame.event.Event, frame: Any, ratio: float) -> None:

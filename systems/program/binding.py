@@ -8,6 +8,7 @@ import math
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from enum import Enum
+from types import ModuleType
 from typing import Any
 
 import numpy as np
@@ -22,7 +23,7 @@ from pinjoint.systems import is_ours
 from pinjoint.systems.base import Commit, Event, Law, StepSystem
 from pinjoint.systems.entries import ACCOUNTS
 from pinjoint.systems.interpreter import plain_function
-from pinjoint.systems.program.chance import source_of_chance
+from pinjoint.systems.program.identity import reached_from, used_by
 
 _TO_COMMITS = ("elongation", "axial_force", "time", "dt")
 PROVIDED_TO: Mapping[str, tuple[str, ...]] = {  # by what the kernel is called for
@@ -234,7 +235,7 @@ def _bound(system: StepSystem, model: Model, kernel: str) -> Bound:
             "The kernel of {system} is not compiled; put `@compiled` of pinjoint.api above it.",
             system=system.name,
         )
-    if system.mod is not None and (chance := source_of_chance(function)):
+    if system.mod is not None and (chance := _source_of_chance(function)):
         raise ProgramError(
             "The kernel of {system} draws random numbers ({source}), so that no run could be repeated. Draw them"
             " before the run, with a seed, and hand them over by `arrays`.",
@@ -263,6 +264,17 @@ def _bound(system: StepSystem, model: Model, kernel: str) -> Bound:
         for parameter in bound.parameters:
             _check_parameter(bound, parameter, model)
     return bound
+
+
+def _source_of_chance(kernel: Callable[..., Any]) -> str:
+    """The first thing by which a kernel, or one that it calls, draws random numbers; "" if there is none."""
+    for function in reached_from([kernel]):
+        for name, value in {} if isinstance(function, type) else used_by(plain_function(function)).items():
+            owner = getattr(value, "__self__", value)  # of functions such as random.random, a generator
+            module = owner.__name__ if isinstance(owner, ModuleType) else type(owner).__module__
+            if module == "random" or module.startswith("numpy.random"):
+                return name
+    return ""
 
 
 def _column_in(array: NDArray[Any], model: Model) -> str:

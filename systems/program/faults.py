@@ -3,14 +3,13 @@
 from __future__ import annotations
 
 import traceback
-from collections.abc import Callable, Iterable
-from numbers import Real
+from collections.abc import Iterable
 from typing import Any
 
 from pinjoint.components.language import marked, tr
 from pinjoint.components.model import Model
-from pinjoint.systems.base import Integrator
-from pinjoint.systems.interpreter import NoPlainForm, in_lists, plain_function, rewrite
+from pinjoint.systems.base import Integrator, Mod
+from pinjoint.systems.interpreter import NoPlainForm, plain_function, rewrite
 from pinjoint.systems.program.binding import PROVIDED, Bound, ProgramError, shape_given
 from pinjoint.systems.program.compiler import Choice, Compile
 
@@ -28,6 +27,15 @@ _RESULTS = {
     "event of rods": marked("one number, whose sign counts"),
     "event of particles": marked("one number, whose sign counts"),
 }
+
+
+def blame_mod(error: ProgramError) -> bool:
+    """Switch off the mod whose system cannot join the step program; False if the system is no mod's."""
+    mod: Mod | None = error.system.mod if error.system is not None else None
+    if mod is None:
+        return False
+    mod.switch_off(str(error), error)
+    return True
 
 
 def _dtype_of(b: Bound, parameter: str, model: Model) -> Any:
@@ -57,23 +65,6 @@ def check_plain_forms(bound: Iterable[Bound]) -> None:
             ) from reason
 
 
-def wrong_result(b: Bound, made: Any) -> str:
-    """What is wrong with what a kernel returned, interpreted, as a sentence; "" if nothing is."""
-    numbers = made if isinstance(made, tuple) else (made,)
-    if len(numbers) == _count(b) and all(isinstance(number, Real) for number in numbers):
-        return ""
-    return _wrong_result(b, tr("nothing") if made is None else f"{made!r:.40}")
-
-
-def _wrong_result(b: Bound, made: str) -> str:
-    return tr(
-        "The kernel of {system} returns {made}; it must return {wanted}.",
-        system=b.system.name,
-        made=made,
-        wanted=tr(_RESULTS[b.purpose]),
-    )
-
-
 def _count(b: Bound) -> int:
     """How many numbers a kernel must return."""
     return 2 if b.purpose in ("particles", "pairs", "commit", "ends") else 1
@@ -85,10 +76,13 @@ def explain(
     """Why a program failed: the first kernel that fails by itself or returns something of a wrong type."""
     if isinstance(error, ProgramError):
         return error
+    others = [b for b in bound if not b.is_ours]
     for b in bound:
-        problem = problem_of(b, model) if compiled else failure_of(b, error) if _lines(b, error) else ""
+        problem = problem_of(b, model) if compiled else _failure(b, error) if _lines(b, error) else ""
         if problem:
             return ProgramError(problem, b.system)
+    if len(others) == 1 and integrator.mod is None:
+        return ProgramError(_failure(others[0], error), others[0].system)
     name, brief = integrator.name, _brief(error)
     if compiled:
         message = tr("The step program of {integrator} does not compile: {error}", integrator=name, error=brief)
@@ -108,7 +102,7 @@ def _lines(b: Bound, error: Exception) -> list[int]:
     return [line for line in here if code.co_firstlineno <= line <= last]
 
 
-def failure_of(b: Bound, error: Exception) -> str:
+def _failure(b: Bound, error: Exception) -> str:
     """An error that a kernel raised, as a sentence."""
     code = plain_function(b.function).__code__
     line = (_lines(b, error) or [code.co_firstlineno])[-1]
@@ -119,20 +113,6 @@ def failure_of(b: Bound, error: Exception) -> str:
         file="/".join(code.co_filename.split("/")[-2:]),
         line=line,
     )
-
-
-def form_of(b: Bound) -> Callable[..., Any]:
-    """A kernel as Python calls it with numbers: interpreted, or compiled where there is no source of it."""
-    try:
-        plain = in_lists(b.function)
-    except NoPlainForm:
-        if Choice.compile is Compile.NEVER:
-            raise
-        from pinjoint.systems.machine_code import machine_code
-
-        compiled: Callable[..., Any] = machine_code(b.function)
-        return compiled
-    return plain if b.each != "loads" else lambda time, values, first: plain(time, values.tolist(), first)
 
 
 def problem_of(b: Bound, model: Model) -> str:
@@ -149,7 +129,12 @@ def problem_of(b: Bound, model: Model) -> str:
 
     numbers = tuple(getattr(made, "types", (made,)))
     if len(numbers) != _count(b) or not all(isinstance(n, types.Number | types.Boolean) for n in numbers):
-        return _wrong_result(b, str(made))
+        return tr(
+            "The kernel of {system} returns {made}; it must return {wanted}.",
+            system=b.system.name,
+            made=str(made),
+            wanted=tr(_RESULTS[b.purpose]),
+        )
     return ""
 
 

@@ -37,7 +37,7 @@ def meaning_of(functions: Iterable[Callable[..., Any]]) -> str:
             f"{plain.__module__}.{plain.__qualname__}",
             repr(getattr(function, "targetoptions", {})),
             _described(plain.__code__),
-            *(f"{name} = {_constant(value)}" for name, value in sorted(_used_by(plain).items())),
+            *(f"{name} = {_constant(value)}" for name, value in sorted(used_by(plain).items())),
         ]
     return "\n".join(parts)
 
@@ -51,11 +51,11 @@ def reached_from(functions: Iterable[Callable[..., Any]]) -> Iterator[Callable[.
             seen.add(function)
             yield function
             if not isinstance(function, type):
-                used = _used_by(plain_function(function))
+                used = used_by(plain_function(function))
                 pending += [value for _, value in sorted(used.items()) if hasattr(value, "py_func")]
 
 
-def _used_by(plain: Callable[..., Any]) -> dict[str, Any]:
+def used_by(plain: Callable[..., Any]) -> dict[str, Any]:
     """The names that a function takes from outside: closure, globals, and attributes of modules among these."""
     outside = inspect.getclosurevars(plain)
     used: dict[str, Any] = {**outside.globals, **outside.nonlocals}

@@ -28,10 +28,9 @@ from pinjoint.systems.program.binding import Bound, ProgramError, StepRole, bind
 from pinjoint.systems.program.block_writer import BlockWriter
 from pinjoint.systems.program.compiler import GeneratedModule, generated
 from pinjoint.systems.program.controlled_writer import ControlledWriter
-from pinjoint.systems.program.faults import check_plain_forms, explain, failure_of
+from pinjoint.systems.program.faults import check_plain_forms, explain
 from pinjoint.systems.program.names import PUSHED, STATE
 from pinjoint.systems.program.near_pairs import NearPairs
-from pinjoint.systems.program.reference_laws import in_turn
 from pinjoint.systems.program.writer import VERY_MANY, Writer, sides_of
 
 _ORIGIN = ("origin", "step_limit")
@@ -160,18 +159,9 @@ class Program:
             raise self._explained(error) from error
 
     def _explained(self, error: Exception) -> ProgramError:
-        """Which kernel an error comes from: machine code does not tell, so that they are called one by one."""
+        """What an error means, and which system it comes from."""
         compiled = self.module.is_loaded
-        found = explain(self._writer.kernels, self.integrator, self.model, error, compiled=compiled)
-        if found.system is not self.integrator:
-            return found
-        try:
-            for _ in in_turn(self.systems, self.model):
-                pass
-        except ProgramError as raised:
-            return raised
-        others = [b for b in self._writer.kernels if not b.is_ours]
-        return ProgramError(failure_of(others[0], error), others[0].system) if len(others) == 1 else found
+        return explain(self._writer.kernels, self.integrator, self.model, error, compiled=compiled)
 
     def _of_no_rods(self) -> list[Column]:
         whole = {"pair_reach": np.array([0.0, math.inf])}  # of no pairs there is no list
@@ -440,7 +430,7 @@ class Program:
         return taken
 
     def _failed(self, error: Exception) -> tuple[int, StopReason]:
-        """End a step in which a kernel raised an error as one that led nowhere, so that the culprit is looked for."""
+        """End a step in which a kernel raised an error as one that led nowhere, so that its mod is looked for."""
         self.failure = self.failure or self._explained(error)
         self._arrays["displacement"][...] = math.nan
         self._mark_changes()
@@ -606,7 +596,7 @@ class Program:
             self._observe()
         except ProgramError:
             raise
-        except Exception as error:  # the next step fails, too, and then the culprit is looked for
+        except Exception as error:  # the next step fails, too, and then the mod that did it is looked for
             if all(b.is_ours for b in self._writer.kernels):
                 raise
             self.failure = self._explained(error)

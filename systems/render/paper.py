@@ -3,10 +3,9 @@
 from __future__ import annotations
 
 import io
-from bisect import bisect_left
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
-from functools import cache
+from operator import itemgetter
 from typing import Any
 from xml.sax.saxutils import escape
 
@@ -27,13 +26,13 @@ REGULAR, BOLD = "Inter regular", "Inter semibold"
 MARGIN = 16 * mm
 WIDTH = A4[0] - 2 * MARGIN  # points of a column of text
 PIXEL = 0.64  # points of a pixel of a picture
-_MANY = 4  # pages, of which more would only be drawn again to see whether they may be larger
 GUTTER = 4 * mm  # between what stands side by side
 REST = 54 * mm  # the least width of a text that takes what is left of a row
 _FRAME = 6.0  # points that frames of reportlab leave inside margins
 _GREY = Color(0.35, 0.38, 0.45)
 _LEAST = 7.5  # points of type; wider tables are divided
 _PADDING = 2.6  # points to either side of what is in a table
+_BRACKET, _BESIDE = 2.0, 2.5  # points: how far brackets of matrices reach, and beside their numbers
 
 _STYLES = {  # font, size and leading relative to text, grey, space before and after in lines, indented
     "title": (BOLD, 1.6, 1.9, False, 0.0, 0.0, 0.0),
@@ -94,20 +93,12 @@ class Layout:
         return found
 
 
-LAYOUTS = tuple(  # from the largest to the smallest
-    Layout(size, figure * mm, flat)
-    for size, figure, flat in (
-        (9.5, 80, 0.0),
-        (9.2, 68, 0.0),
-        (9.0, 62, 1.6),
-        (8.6, 54, 1.6),
-        (8.2, 46, 1.6),
-        (8.6, 50, 2.6),
-        (8.2, 44, 2.6),
-        (7.8, 40, 2.6),
-        (7.5, 38, 2.6),
-        (7.5, 36, 9.0),
-    )
+LAYOUTS = (  # from the most comfortable to one by which most fits on a page
+    Layout(9.2, 68 * mm, 0.0),
+    Layout(9.0, 62 * mm, 1.6),
+    Layout(8.4, 50 * mm, 1.6),
+    Layout(7.8, 40 * mm, 2.6),
+    Layout(7.5, 36 * mm, 9.0),
 )
 
 
@@ -165,11 +156,8 @@ def _beside(row: Sequence[Block]) -> Flowable:
     made = Table([[list(parts) for _, parts in row]], colWidths=columns, hAlign="LEFT")
     made.setStyle(
         [
-            ("LEFTPADDING", (0, 0), (-1, -1), 0),
+            *_padded(0, 2),
             ("RIGHTPADDING", (0, 0), (-2, -1), gutter),
-            ("RIGHTPADDING", (-1, 0), (-1, -1), 0),
-            ("TOPPADDING", (0, 0), (-1, -1), 0),
-            ("BOTTOMPADDING", (0, 0), (-1, -1), 2),
             ("VALIGN", (0, 0), (-1, -1), "TOP"),
         ]
     )
@@ -225,76 +213,62 @@ def _fitting(cells: Sequence[Sequence[str]], whole: float) -> list[list[int]]:
     return groups
 
 
-class Matrices(Flowable):  # type: ignore[misc]
+def matrices(parts: Sequence[str | Sequence[Sequence[str]]], layout: Layout) -> Block:
     """Matrices and signs in one line, such as [δ]{X} + {δ₀} = {0}: a list of rows for each matrix, a text for each sign."""
 
-    _STEP, _GAP, _REACH, _INDENT = 11.0, 5.0, 2.0, 8.0
-
-    def __init__(self, parts: Sequence[str | Sequence[Sequence[str]]], layout: Layout) -> None:
-        super().__init__()
-        self._parts = parts
-        self._font = max(0.92 * layout.size, _LEAST)
-        self.widest = sum(self._wide(part) + self._GAP for part in parts) + self._INDENT
-        self._font *= min(1.0, WIDTH / self.widest)
-        rows = max(len(part) for part in parts if not isinstance(part, str))
-        self.width, self.height = min(self.widest, WIDTH), rows * self._STEP + 5.0
-
-    def _columns(self, part: Sequence[Sequence[str]], font: float) -> list[float]:
-        return [max(stringWidth(cell, REGULAR, font) for cell in column) for column in zip(*part, strict=True)]
-
-    def _wide(self, part: str | Sequence[Sequence[str]]) -> float:
-        if isinstance(part, str):
-            return float(stringWidth(part, REGULAR, self._font))
-        return sum(self._columns(part, self._font)) + self._GAP * (len(part[0]) - 1) + 4 * self._REACH
-
-    def wrap(self, width: float, height: float) -> tuple[float, float]:
-        """Its size in points."""
-        return self.width, self.height
-
-    def draw(self) -> None:
-        """Draw it at the origin of the canvas."""
-        page, font = self.canv, self._font
-        page.setFont(REGULAR, font)
-        page.setFillColor(black)
-        page.setStrokeColor(black)
-        page.setLineWidth(0.7)
-        middle, x = self.height / 2, self._INDENT
-        for part in self._parts:
-            wide = self._wide(part)
+    def made(size: float) -> Block:
+        cells: list[Any] = []
+        widths: list[float] = []
+        for part in parts:
             if isinstance(part, str):
-                page.drawString(x, middle - 0.35 * font, part)
-            else:
-                self._matrix(part, x, middle, wide)
-            x += wide + self._GAP
+                cells.append(part)
+                widths.append(stringWidth(part, REGULAR, size) + 2 * _BESIDE)
+                continue
+            numbers = [
+                max(stringWidth(cell, REGULAR, size) for cell in column) for column in zip(*part, strict=True)
+            ]
+            columns = [_BRACKET, *(width + 2 * _BESIDE for width in numbers), _BRACKET]
+            matrix = Table([["", *row, ""] for row in part], colWidths=columns, rowHeights=1.4 * size)
+            matrix.setStyle(_in_brackets(size))
+            cells.append([matrix])
+            widths.append(sum(columns) + _BESIDE)
+        line = Table([cells], colWidths=widths, hAlign="LEFT", spaceBefore=3, spaceAfter=3)
+        font = ("FONT", (0, 0), (-1, -1), REGULAR, size, size)
+        line.setStyle([font, ("VALIGN", (0, 0), (-1, -1), "MIDDLE"), *_padded(0, 0)])
+        return sum(widths), [line]
 
-    def _matrix(self, part: Sequence[Sequence[str]], x: float, middle: float, wide: float) -> None:
-        page, font = self.canv, self._font
-        high = len(part) * self._STEP / 2
-        for side, inward in ((x, self._REACH), (x + wide, -self._REACH)):
-            page.line(side, middle - high, side, middle + high)
-            for end in (middle - high, middle + high):
-                page.line(side, end, side + inward, end)
-        right = x + 2 * self._REACH
-        for at, column in enumerate(self._columns(part, font)):
-            right += column
-            for row, cells in enumerate(part):
-                page.drawRightString(right, middle + high - (row + 0.5) * self._STEP - 0.35 * font, cells[at])
-            right += self._GAP
+    size = max(0.92 * layout.size, _LEAST)
+    block = made(size)
+    return block if block[0] <= WIDTH else made(size * WIDTH / block[0])
+
+
+def _in_brackets(size: float) -> list[tuple[Any, ...]]:
+    """The style of a matrix, whose first and last column are its brackets."""
+    style: list[tuple[Any, ...]] = [
+        ("FONT", (0, 0), (-1, -1), REGULAR, size, size),
+        ("ALIGN", (0, 0), (-1, -1), "RIGHT"),
+        ("VALIGN", (0, 0), (-1, -1), "MIDDLE"),
+        *_padded(0, 0),
+        ("RIGHTPADDING", (1, 0), (-2, -1), _BESIDE),
+    ]
+    for column, upright in ((0, "LINEBEFORE"), (-1, "LINEAFTER")):
+        for side, first, last in ((upright, 0, -1), ("LINEABOVE", 0, 0), ("LINEBELOW", -1, -1)):
+            style.append((side, (column, first), (column, last), 0.7, black))
+    return style
+
+
+def _padded(right: float, below: float) -> list[tuple[Any, ...]]:
+    sides = {"LEFT": 0.0, "RIGHT": right, "TOP": 0.0, "BOTTOM": below}
+    return [(f"{side}PADDING", (0, 0), (-1, -1), points) for side, points in sides.items()]
 
 
 def as_paper(title: str, made_of: Callable[[Layout], Sequence[Flowable]], foot: str) -> bytes:
-    """What is made in a layout, on one page of A4 in the largest layout with which it fits, else on as few as it takes, as
-    the contents of a PDF file; foot: below every page."""
+    """The contents of a PDF file: what is made in a layout, in the largest with which it takes the fewest pages of A4.
 
-    @cache
-    def built(layout: Layout) -> tuple[int, bytes]:
-        return _built(title, made_of(layout), foot)
-
-    fewest, made = built(LAYOUTS[-1])
-    if fewest > _MANY:
-        return made
-    largest = bisect_left(LAYOUTS, True, key=lambda layout: built(layout)[0] <= fewest)
-    return built(LAYOUTS[largest])[1]
+    foot: below every page.
+    """
+    _, made = min((_built(title, made_of(layout), foot) for layout in LAYOUTS), key=itemgetter(0))
+    return made
 
 
 def _built(title: str, parts: Sequence[Flowable], foot: str) -> tuple[int, bytes]:

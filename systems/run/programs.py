@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
-from contextlib import contextmanager
+from collections.abc import Callable, Iterator
+from contextlib import ExitStack, contextmanager
 
-from pinjoint.components.language import tr
+from pinjoint.components.language import joined, tr
 from pinjoint.components.model import Model
 from pinjoint.components.rod import bears_between, is_warm
 from pinjoint.components.settings import AUTOMATIC
@@ -19,7 +19,7 @@ from pinjoint.systems.edit.pull import Pull
 from pinjoint.systems.physics.automatic import choose
 from pinjoint.systems.physics.integrators import INTEGRATORS
 from pinjoint.systems.program.binding import ProgramError
-from pinjoint.systems.program.culprit import blame_mod
+from pinjoint.systems.program.faults import blame_mod
 from pinjoint.systems.program.parallel import make_program
 from pinjoint.systems.program.program import Program
 from pinjoint.systems.program.writer import form_of
@@ -159,10 +159,42 @@ class Programs:
                 self._bound, self.collides = self._bound_to(plan), _collides(plan)
                 self.bindings += 1
             except ProgramError as error:
-                if not blame_mod(error):
+                if not blame_mod(error) and not self.blame_by_leaving_out(self._makes_program, str(error)):
                     raise
                 self._integrator = None  # the integrator may be that mod's
         return self._bound
+
+    def blame_by_leaving_out(self, works: Callable[[], bool], problem: str) -> bool:
+        """Leave out the mods of the plan one after the other, and switch off the one without which something works.
+
+        problem: a sentence that says what does not. False if it does not even work without all of them.
+        """
+        mods = dict.fromkeys(system.mod for system in (*self.plan, self.integrator) if system.mod is not None)
+        culprit = None
+        try:
+            with ExitStack() as aside:
+                for mod in mods:
+                    aside.enter_context(mod.aside())
+                    self.void()
+                    if works():
+                        culprit = mod
+                        break
+        finally:
+            self.void()
+        if culprit is None:
+            return False
+        names = [system.name for system in (*self.plan, self.integrator) if system.mod is culprit]
+        told = tr("Without {systems} the steps lead on.", systems=", ".join(names))
+        self.void()
+        culprit.switch_off(joined([problem, told]))
+        return True
+
+    def _makes_program(self) -> bool:
+        try:
+            self._bound_to(self.plan)
+        except ProgramError:
+            return False
+        return True
 
     def return_to(self, state: Snapshot) -> None:
         """Put a state of the run back."""

@@ -2,14 +2,18 @@
 
 from __future__ import annotations
 
+from functools import partial
+
+import numpy as np
+
 from pinjoint.components import written
 from pinjoint.components.field import same
-from pinjoint.components.language import joined, tr
+from pinjoint.components.language import joined, marked, tr
 from pinjoint.components.model import Model
 from pinjoint.components.snapshot import Snapshot
-from pinjoint.systems.base import REVIEW_INTERVAL
-from pinjoint.systems.program.culprit import find_culprit
-from pinjoint.systems.program.program import MOTION, TURNING
+from pinjoint.systems.base import REVIEW_INTERVAL, StopReason
+from pinjoint.systems.program.faults import blame_mod
+from pinjoint.systems.program.program import MOTION, TURNING, Program
 from pinjoint.systems.run.programs import Programs
 from pinjoint.systems.run.sleep import Sleep
 from pinjoint.systems.run.step_size import StepSize
@@ -17,6 +21,7 @@ from pinjoint.systems.run.step_size import StepSize
 MOST_HALVINGS = 6  # of an automatic step before a run is given up
 
 MOVING = *MOTION, *TURNING, "rods.plastic_strain"
+NOT_FINITE = marked("The run leads to numbers that are not finite.")
 
 
 class Recovery:
@@ -42,20 +47,36 @@ class Recovery:
         before, self.safe, self._halvings = self.safe, state, 0
         return before is None or not all(same(before.columns[name], state.columns[name]) for name in MOVING)
 
-    def without_mod(self) -> bool:
-        """Switch off the mod whose numbers were not finite, and return to the good state; False if no mod is to blame.
+    def without_mod(self, *, unresolved: bool) -> bool:
+        """Switch off the mod without which the steps lead on, and return to the good state; False if there is none.
 
-        Whoever interrupts the search finds the good state, too, and not numbers that are blamed on an element.
+        A mod is to blame for no more than numbers that are not finite, and for steps that lead to none (unresolved): the
+        steps are tried again without one mod after the other. Whoever interrupts that finds the good state, too.
         """
         assert self.safe is not None
+        program, present = self._programs.compiled, Snapshot.take(self._model)
+        if not (unresolved or not _is_finite(program) or program.failure):
+            return False
+        steps = self._model.clock.steps - int(self.safe.columns["clock.steps"][0]) + 1
+        found = program.failure is not None and blame_mod(program.failure)
         try:
-            if find_culprit(self._programs.compiled, self.safe) is None:
-                return False
-        except BaseException:
+            found = found or self._programs.blame_by_leaving_out(partial(self._lead_on, steps), tr(NOT_FINITE))
+        finally:
             self._programs.return_to(self.safe)
-            raise
+        if not found:
+            self._programs.return_to(present)
+        return found
+
+    def _lead_on(self, steps: int) -> bool:
+        """Whether so many steps from the good state, as the plan now is, have finite results."""
+        assert self.safe is not None
         self._programs.return_to(self.safe)
-        return True
+        program = self._programs.dynamics
+        if not isinstance(program, Program):
+            return True
+        self._step_size.begin(self._step_size.first())
+        _, reason = program.advance(steps)
+        return reason not in (StopReason.DIVERGED, StopReason.UNRESOLVED) and _is_finite(program)
 
     def with_shorter_steps(self) -> bool:
         """Return to the good state and halve an automatic step, which proved too long as the geometry changed.
@@ -90,3 +111,8 @@ class Recovery:
         return tr(
             "Laws of mods act in the model: {laws}; see whether it runs without them.", laws=", ".join(laws)
         )
+
+
+def _is_finite(program: Program) -> bool:
+    numbers = (program.model.column(name) for name in (*MOTION, *TURNING))
+    return all(bool(np.isfinite(some).all()) for some in (*numbers, program.measures))

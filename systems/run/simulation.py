@@ -398,7 +398,7 @@ class Simulation:
     def _recover(self, reason: StopReason) -> None:
         """Return to the last good state and go on without a mod or with shorter steps, or give up."""
         unresolved = reason is StopReason.UNRESOLVED
-        if self._recovery.without_mod():
+        if self._recovery.without_mod(unresolved=unresolved):
             self.before_change()  # what is lost with the mod counts as an edit
         elif unresolved or not self._recovery.with_shorter_steps():
             self.reason, self.message = (

@@ -61,7 +61,7 @@ def test_large_motions_loose_particles_and_collapses_are_true_to_scale(name: str
     session.settings.displacement_scale = None
     session.exaggerate()
     # Before it buckles or snaps, a frame moves little; its file says how it is drawn.
-    small = {"three_bar_plastic": 100.0, "hyperstatic_yield": 20.0, "overshoot_yield": 5.0}
+    small = {"three_bar_plastic": 100.0, "hyperstatic_yield": 50.0, "overshoot_yield": 5.0}
     small |= {"eulers_columns": 100.0, "williams_toggle": 20.0, "gerber_beam": 50.0, "sway_resonance": 100.0}
     assert session.settings.displacement_scale == small.get(name, 1.0)
 
@@ -145,30 +145,6 @@ def test_warmth_and_moved_supports_are_expected() -> None:
     warm["particles"][1].pop("force")
     warm["rods"][0]["temperature_change"] = 40.0
     assert reviewed(warm).settings.displacement_scale > 10.0
-
-
-def test_neighbours_that_would_seem_to_touch_are_drawn_apart() -> None:
-    def pair(gap: float) -> float:
-        content = truss()
-        content["particles"] = [
-            *content["particles"],
-            *(
-                {**p, "name": p["name"] + "'", "position": [p["position"][0] + 2.0 + gap, p["position"][1]]}
-                for p in content["particles"]
-            ),
-        ]
-        content["rods"] = [
-            *content["rods"],
-            *(
-                {**r, "name": r["name"] + "'", "between": [e + "'" for e in r["between"]]}
-                for r in content["rods"]
-            ),
-        ]
-        return reviewed(content).settings.displacement_scale
-
-    assert pair(1.5) >= 100.0
-    assert pair(0.11) < pair(1.5)
-    assert pair(0.1) == 1.0
 
 
 def test_a_large_structure_is_looked_at_and_not_computed(monkeypatch: pytest.MonkeyPatch) -> None:

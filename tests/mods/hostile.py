@@ -144,7 +144,8 @@ HOSTILE: dict[str, Hostile] = {
     "zeros that are ones": Hostile(plugin("np.zeros = np.ones"), "It replaced or removed numpy.zeros", (LOAD,)),
     # --- what marks are ------------------------------------------------------------------------------------
     "a colour without opacity": Hostile(
-        layer("[Text('hi', 9, 9, 12, (255, 0, 0))]"), "Text.colour is (255, 0, 0); it must have 4 entries"
+        layer("[Text('hi', 9, 9, 12, (255, 0, 0))]"),
+        "Text.colour is (255, 0, 0); it must be of type tuple[int, int, int, int]",
     ),
     "a colour out of range": Hostile(layer("[Panel(9, 9, 9, 9, 1, (256, 0, 0, 9))]"), "go from 0 to 255"),
     "a colour by name": Hostile(layer("[Text('hi', 9, 9, 12, 'red')]"), "Text.colour is 'red'"),
@@ -165,7 +166,9 @@ HOSTILE: dict[str, Hostile] = {
     "an anchor that does not exist": Hostile(
         layer("[Text('hi', 9, 9, 12, ink, anchor='top')]"), "choose one of left, centre, right"
     ),
-    "a number among the marks": Hostile(layer("[5]"), "it must be one of Strokes, Fills"),
+    "a number among the marks": Hostile(
+        layer("[5]"), "what the layer draws is 5; it must be of type Strokes | Fills"
+    ),
     "no marks": Hostile(layer("None"), "what the layer draws is None"),
     "a layer that ends the program": Hostile(layer("sys.exit(3)"), "SystemExit: 3"),
     "a layer that interrupts": Hostile(
@@ -213,20 +216,20 @@ HOSTILE: dict[str, Hostile] = {
     ),
     # --- what panels are -----------------------------------------------------------------------------------
     "a number as a text": Hostile(
-        panel("Readout('bad', (('speed', 1.5),))"), "Readout.rows is 1.5; it must be a text"
+        panel("Readout('bad', (('speed', 1.5),))"), "Readout.rows is (('speed', 1.5),); it must be of type"
     ),
-    "rows of one": Hostile(panel("Readout('bad', (('speed',),))"), "it must have 2 entries"),
+    "rows of one": Hostile(panel("Readout('bad', (('speed',),))"), "Readout.rows is (('speed',),)"),
     "a text that ends the program when it is written": Hostile(panel("Readout(5)"), "Readout.title is 5"),
     "a button for nothing": Hostile(
         panel("Readout('bad', closes='nothing')"), "names 'nothing' to close it; there is no such action"
     ),
-    "a text as several panels": Hostile(panel("'bad'"), "it must be one of Readout"),
+    "a text as several panels": Hostile(panel("'bad'"), "returned is 'bad'; it must be of type Readout"),
     "curves of unequal lengths": Hostile(
         panel("Readout('bad', (), Plot('x', 'y', (('c', np.zeros(2), np.zeros(3)),)))"),
         "the curve 'c' has x of shape",
     ),
     "a curve of texts": Hostile(
-        panel("Readout('bad', (), Plot('x', 'y', (('c', ['a'], ['b']),)))"), "it must be an array of numbers"
+        panel("Readout('bad', (), Plot('x', 'y', (('c', ['a'], ['b']),)))"), "Plot.curves is (('c', "
     ),
     # --- scenes --------------------------------------------------------------------------------------------
     "a hint that is a number": Hostile(scene("hint = lambda self, session: 5"), "what hint returned is 5"),
@@ -241,7 +244,9 @@ HOSTILE: dict[str, Hostile] = {
         "View.heading is 5",
     ),
     "a focus on nothing": Hostile(scene("focus = lambda self, session: None"), "what focus returned is None"),
-    "boxes without texts": Hostile(scene("boxes = property(lambda self: {1: 2})"), "a key of boxes"),
+    "boxes without texts": Hostile(
+        scene("boxes = property(lambda self: {1: 2})"), "boxes is {1: 2}; it must be of type dict[str, str]"
+    ),
     "a scene that ends the program as it is entered": Hostile(
         scene("enter = lambda self, session: sys.exit(7)"), "SystemExit: 7"
     ),
@@ -302,7 +307,7 @@ HOSTILE: dict[str, Hostile] = {
     "what is no system": Hostile(plugin("app.system(dict)"), "dict", (LOAD,)),
     "a system instead of its class": Hostile(
         plugin("app.system(Bad())", "class Bad(System):\n    name = 'bad.s'\n"),
-        "it must be a function",
+        "it must be of type Callable",
         (LOAD,),
     ),
     # --- what is compiled ------------------------------------------------------------------------------------
@@ -310,7 +315,7 @@ HOSTILE: dict[str, Hostile] = {
         law("return random.random(), 0.0"), "draws random numbers (random)", (RUN,)
     ),
     "a kernel that draws by numpy": Hostile(
-        law("return np.random.normal(), 0.0"), "draws random numbers (np.random)", (RUN,)
+        law("return np.random.normal(), 0.0"), "draws random numbers (", (RUN,)
     ),
     "a kernel that imports": Hostile(
         law("import json\n    return 0.0, 0.0"), "The kernel of bad.law does not compile", (RUN,)
@@ -324,11 +329,13 @@ HOSTILE: dict[str, Hostile] = {
         law("return 0.0, 0.0, 0.0"), "it must return a pair, the force (fx, fy) in kN", (RUN,)
     ),
     "arrays that are a list": Hostile(
-        law("return 0.0, 0.0", "def arrays(self, model): return [1]"), "a dictionary", (RUN,)
+        law("return 0.0, 0.0", "def arrays(self, model): return [1]"),
+        "what it returned is [1]; it must be of type Mapping",
+        (RUN,),
     ),
     "arrays of texts": Hostile(
         law("return 0.0, 0.0", "def arrays(self, model): return {'a': ['b']}"),
-        "it must be an array of numbers",
+        "what it returned is {'a': ['b']}; it must be of type Mapping",
         (RUN,),
     ),
     "a flight that is a text": Hostile(
@@ -339,12 +346,12 @@ HOSTILE: dict[str, Hostile] = {
     ),
     "a history that breaks at texts": Hostile(
         history("{}, factor, 1.0, lambda history: 0.0, breaks=lambda history: 'ab'"),
-        "a list or a tuple",
+        "what it returned is ('a', 'b'); it must be of type tuple[float, ...]",
         (RUN,),
     ),
     # --- what is registered ------------------------------------------------------------------------------------
     "a key that is a number": Hostile(
-        plugin("app.action('bad.a', key=5)(print)"), "key is 5; it must be a text", (LOAD,)
+        plugin("app.action('bad.a', key=5)(print)"), "key is 5; it must be of type str", (LOAD,)
     ),
     "a title that is a list": Hostile(
         plugin("app.action('bad.a', key='j', title=['a'])(print)"), "title is ['a']", (LOAD,)

@@ -16,7 +16,7 @@ from pinjoint.components import Environment, World
 from pinjoint.components.camera import Viewport
 from pinjoint.components.commands import Command
 from pinjoint.documents import models
-from pinjoint.mods.declared import as_declared
+from pinjoint.mods.declared import check
 from pinjoint.systems.render.marks import Text
 from pinjoint.systems.render.picture import compose
 from pinjoint.systems.render.theme import load_theme
@@ -322,5 +322,7 @@ def test_aliases_of_types_are_what_they_mean() -> None:
     item: Any = TypeVar("item")
     several = alias("several", tuple[float, ...])
     column = alias("column", np.ndarray[tuple[Any, ...], np.dtype[item]], type_params=(item,))
-    assert as_declared([1, 2.5], several, "places") == (1.0, 2.5)
-    assert as_declared([1, 2], column[np.float64], "places").dtype == np.float64
+    check([1, 2.5], several, "places")
+    check(np.ones(2), column[np.float64], "places")
+    with pytest.raises(TypeError, match="places is"):
+        check(["a"], several, "places")

@@ -15,7 +15,7 @@ import pytest
 
 from pinjoint import Session, mods
 from pinjoint.interrupts import PATIENCE
-from pinjoint.systems.run import recovery
+from pinjoint.systems.run.recovery import Recovery
 from tests.mods.conftest import Write
 from tests.mods.test_isolation import LAW, TRUSS
 
@@ -103,7 +103,7 @@ def test_a_search_for_a_mod_to_blame_that_is_interrupted_leaves_the_good_state(
     def interrupted(*_: object) -> None:
         raise KeyboardInterrupt
 
-    monkeypatch.setattr(recovery, "find_culprit", interrupted)
+    monkeypatch.setattr(Recovery, "_lead_on", interrupted)
     with pytest.raises(KeyboardInterrupt):
         session.run(time=0.1)
     assert (session.particles.displacement == 0.0).all()

@@ -11,7 +11,7 @@ import pytest
 from pinjoint import Session, mods
 from pinjoint.commands.command_line import main
 from pinjoint.documents import models
-from pinjoint.mods import guard, interface, mod
+from pinjoint.mods import guard, mod
 from tests.mods.conftest import Write
 from tests.mods.hostile import HOSTILE, KEY, LOAD, RUN, WINDOW, Hostile
 from tests.mods.test_isolation import TRUSS
@@ -21,7 +21,7 @@ CASES = pytest.mark.parametrize("hostile", HOSTILE.values(), ids=HOSTILE)
 
 @pytest.fixture(autouse=True)
 def impatient(monkeypatch: pytest.MonkeyPatch) -> None:
-    for module in (guard, interface, mod):
+    for module in (guard, mod):
         monkeypatch.setattr(module, "PATIENCE", 0.3)
     monkeypatch.setitem(mod.Mod.call.__kwdefaults__, "patience", 0.3)
 

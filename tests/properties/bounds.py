@@ -2,7 +2,7 @@
 
 `python -m tests.properties.bounds editing windows --count 20` is `python -m tests.properties.fuzz` in such a process. It
 compiles all that it runs, in a cache folder of its own, for what was compiled without checks has none. A kernel called by an
-address cannot raise: numba prints the error and goes on with zero, so the process ends at once instead.
+address cannot raise: numba prints the error and goes on with zero, so its process ends at once instead.
 """
 
 from __future__ import annotations
@@ -29,13 +29,12 @@ sys.unraisablehook = end
 def checked(code: str, timeout: float | None = None) -> subprocess.CompletedProcess[str]:
     """Run this code with all indices of machine code checked."""
     with tempfile.TemporaryDirectory() as folder:
+        (Path(folder) / "sitecustomize.py").write_text(_GUARD, encoding="utf-8")
         own = {"NUMBA_BOUNDSCHECK": "1", "PINJOINT_COMPILE": "always", "XDG_CACHE_HOME": folder}
-        own["NUMBA_OPT"] = (
-            "0"  # a third of the time: checks are the same, and compiling is what takes long here
-        )
+        own["NUMBA_OPT"] = "0"  # compiling, which is what takes long here, takes a third; checks are the same
         return subprocess.run(
-            [sys.executable, "-c", _GUARD + code],
-            env=os.environ | own | {"PYTHONPATH": str(Path(__file__).parents[2])},
+            [sys.executable, "-c", code],
+            env=os.environ | own | {"PYTHONPATH": os.pathsep.join([folder, str(Path(__file__).parents[2])])},
             stdout=subprocess.PIPE,
             stderr=subprocess.STDOUT,
             text=True,

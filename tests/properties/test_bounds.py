@@ -22,7 +22,7 @@ def test_a_read_outside_by_name_is_caught() -> None:
     assert "IndexError" in done.stdout
 
 
-def test_a_read_outside_by_address_ends_the_process() -> None:
+def test_a_read_outside_by_address_ends_the_process_that_reads() -> None:
     # By its address, as programs call what others wrote: the C wrapper prints the error and returns 0.
     call = """
 from numba import njit
@@ -31,6 +31,7 @@ address = addressed(read)
 call = njit(lambda read, values, row: read(values, row))
 print(call(address, np.zeros(3), 3))
 """
-    done = checked(READS + call, timeout=300)
+    process = f"import subprocess, sys; sys.exit(subprocess.call([sys.executable, '-c', {READS + call!r}]))"
+    done = checked(process, timeout=300)
     assert done.returncode == OUTSIDE, done.stdout
     assert "IndexError" in done.stdout
