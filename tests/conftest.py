@@ -12,6 +12,7 @@ from hypothesis import HealthCheck, settings
 
 from pinjoint.components.language import ENGLISH, spoken
 from pinjoint.documents import library, preferences
+from pinjoint.systems.program import endless
 from pinjoint.systems.program.compiler import Choice
 
 ROOT = Path(__file__).resolve().parents[1]
@@ -40,6 +41,12 @@ def form_of_programs() -> Iterator[None]:
     before = Choice.compile
     yield
     assert Choice.compile is before, "close the window, or its Preparation, at the end of the test"
+
+
+@pytest.fixture(autouse=True)
+def kernels_of_tests(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Laws that tests declare begin interpreted, as ours do: compiling each would take most of the time of all tests."""
+    monkeypatch.setattr(endless, "is_ours", lambda module: str(module).startswith(("pinjoint.", "tests.")))
 
 
 @pytest.fixture(autouse=True)

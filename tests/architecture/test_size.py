@@ -21,7 +21,7 @@ MOST = {
     "public names": 2_434,
     "numbers": 1_551,  # other than 0, 1 and 2, in constants and defaults
     "registers": 46,  # containers that fill while the program runs, and caches of functions
-    "lines of tests": 52_749,
+    "lines of tests": 52_800,
 }
 
 

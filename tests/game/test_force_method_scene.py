@@ -110,27 +110,6 @@ def test_escape_leaves_at_once() -> None:
     assert session.scene == "pause"
 
 
-@pytest.mark.parametrize("size", [(640, 480), (1280, 800), (500, 900)])
-def test_every_part_is_drawn_at_any_size(size: tuple[int, int]) -> None:
-    from pinjoint.components.camera import Viewport
-
-    session = Session.open("hyperstatic")
-    session.view.camera.viewport = Viewport(0, 0, *size)
-    session.press("k")
-    theme = load_theme("light")
-    for part in range(1, 8):
-        guide = guide_of(session)
-        assert guide.part == part
-        session.update_view()
-        texts = [text for picture in compose_all(session.stages, theme) for text in picture.texts]
-        assert f"Part {part} of 7" in texts
-        if part == 2:
-            session.stages  # noqa: B018 - places the views
-            session.click(0.5, 1.0)
-        else:
-            session.press("k")
-
-
 def test_where_there_is_no_room_for_three_the_newest_set_is_shown_or_the_one_to_pick_from() -> None:
     session = Session.open("hyperstatic")
     session.resize(400, 300)

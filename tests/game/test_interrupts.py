@@ -1,5 +1,6 @@
 """Ctrl+C while the program loads, and while a script does."""
 
+import itertools
 import os
 import random
 import signal
@@ -124,11 +125,14 @@ COMMANDS = (
 )
 
 
-@pytest.mark.parametrize("command", COMMANDS, ids=lambda words: words[:8])
-@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
+@pytest.mark.parametrize(
+    ("command", "number"),
+    list(zip(COMMANDS, itertools.cycle([signal.SIGINT, signal.SIGTERM]), strict=False)),
+    ids=[command[:8] for command in COMMANDS],
+)
 def test_anything_ends_when_it_is_told_to(command: str, number: signal.Signals, tmp_path: Path) -> None:
     """While it loads, compiles, rewrites kernels, computes, or draws, with an empty cache."""
-    moment = random.Random(f"{command} {number}").uniform(0.5, 6.0)
+    moment = random.Random(f"{command} {number}").uniform(0.5, 4.0)
     folders = dict.fromkeys(("XDG_CACHE_HOME", "XDG_DATA_HOME", "XDG_CONFIG_HOME"), str(tmp_path))
     words = [str(ROOT / "assets" / "mods" / word) if word == "stiffening" else word for word in command.split()]
     with (tmp_path / "said").open("w+") as said:

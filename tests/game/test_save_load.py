@@ -14,7 +14,6 @@ from pathlib import Path
 import pytest
 
 from pinjoint import Session
-from pinjoint.components.box import Box
 from pinjoint.components.camera import Viewport
 from pinjoint.components.field import same
 from pinjoint.components.form import Tile
@@ -26,7 +25,6 @@ from pinjoint.scripts.script import Script, lessons, lessons_with_tasks
 from pinjoint.systems.render.marks import Text
 from pinjoint.systems.render.picture import compose
 from pinjoint.systems.render.theme import load_theme
-from tests.reference.boxes import overlapping, text_boxes
 from tests.reference.models import triangle
 from tests.systems.forms.test_properties import SIZES
 
@@ -525,42 +523,6 @@ def test_pictures_are_read_few_a_frame_and_only_where_they_are_seen(
 
 
 # --- where it is -------------------------------------------------------------------------------------
-
-
-@pytest.mark.parametrize("size", SIZES)
-@pytest.mark.parametrize("kind", ["welcome", "load", "save"])
-def test_nothing_overlaps_and_everything_can_be_scrolled_to(
-    session: Session, size: tuple[int, int], kind: str
-) -> None:
-    for name in ("a", "a name that is longer than any tile is wide, and then some more", "c"):
-        saved_as(session, name)
-    session.view.camera.viewport = Viewport(0, 0, *size)
-    session.view.pixel_ratio = 2.0 if size[0] > 2000 else 1.0
-    load = session.scenes["load"]
-    assert isinstance(load, Load)
-    load.welcome = kind == "welcome"
-    session.press("s" if kind == "save" else "d")
-    scene = scene_of(session)
-    scene.say("There is something to say here, and it is not short; it may not fit into the window at all.")
-    seen: set[int] = set()
-    for turn in range(len(scene.form.tiles) + 4):
-        if turn == 1 and kind != "save":
-            unfold(session)
-        session.update_view()
-        ((form, view),) = scene.stages(session)
-        picture = compose(form, view, load_theme())
-        texts = text_boxes(mark for mark in picture.marks if isinstance(mark, Text))
-        assert overlapping(texts) == []
-        for text, left, top, right, bottom in texts:
-            assert 0 <= left <= right <= size[0], text
-            assert 0 <= top <= bottom <= size[1], text
-        places = scene.layout(session).places
-        rects = [("", p.left, p.top, p.left + p.width, p.top + p.height) for p in places]
-        assert overlapping(rects) == []
-        assert any(isinstance(place.item, Box) for place in places)
-        seen |= {place.item.row for place in places if isinstance(place.item, Tile) and turn > 0}
-        session.press("wheel down" if turn else "wheel up")
-    assert seen == set(range(len(scene.form.tiles)))
 
 
 @pytest.mark.parametrize("size", SIZES)

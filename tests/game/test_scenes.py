@@ -10,7 +10,6 @@ from pinjoint.components.particle import Particle
 from pinjoint.components.rod import Rod
 from pinjoint.components.tags import DiagramShown
 from pinjoint.editor.scenes import all_scenes
-from pinjoint.systems.render.marks import Text
 from pinjoint.systems.render.picture import compose
 from pinjoint.systems.render.theme import load_theme
 from tests.reference import bits
@@ -367,23 +366,6 @@ def test_restart_before_any_run_does_nothing(session: Session) -> None:
     session.press("r")
     assert bits.different(bits.columns(session.model), before) == []
     assert not session.can_undo
-
-
-@pytest.mark.parametrize("scene_keys", [(), ("space",), ("k",), ("return",), ("s",), ("d",)])
-def test_the_help_says_everything_in_full_at_640_by_480(scene_keys: tuple[str, ...]) -> None:
-    session = Session.open("hyperstatic")
-    session.resize(640, 480)
-    for key in (*scene_keys, "f1"):
-        session.press(key)
-    session.update_view()
-    texts = [
-        mark.text
-        for shown, view in session.stages
-        for mark in compose(shown, view, load_theme("light")).marks
-        if isinstance(mark, Text)
-    ]
-    titles = {title for _, title in session.view.keys}
-    assert titles <= set(texts), titles - set(texts)
 
 
 def test_the_pages_of_keys_are_turned_by_wheel_and_click_and_each_says_which_it_is() -> None:

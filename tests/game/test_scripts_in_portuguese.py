@@ -9,28 +9,59 @@ from pathlib import Path
 import pytest
 
 from pinjoint.commands.command_line import main
-from pinjoint.components.language import language, spoken
+from pinjoint.components.language import english, language, spoken
 from pinjoint.components.model import Model
 from pinjoint.documents import library
 from pinjoint.lessons.checking import check_lesson
 from pinjoint.scripts.playing import Recorder, play, session_of
 from pinjoint.scripts.script import Script, ScriptError, lessons, lessons_with_tasks
 from pinjoint.session import Session
+from pinjoint.systems.render.marks import Stamps
+from pinjoint.systems.render.picture import compose_all
+from pinjoint.systems.render.theme import load_theme
 from tests.pseudo import pseudo
 
 SCRIPTED = sorted((Path(__file__).parents[1] / "scripted").glob("*.jsonl"))
 
 
 @pytest.mark.parametrize("source", [*lessons(), *SCRIPTED], ids=lambda source: Path(source).stem)
-def test_scripts_play_in_a_language_in_which_every_word_differs(source):
+def test_scripts_play_where_every_word_differs(source):
     with pseudo(), library.data_apart():
         assert not play(Script(source))
 
 
 @pytest.mark.parametrize("name", lessons_with_tasks())
-def test_tasks_of_lessons_are_solved_in_a_language_in_which_every_word_differs(name):
+def test_tasks_of_lessons_are_solved_where_every_word_differs(name):
     with pseudo(), library.data_apart():
         assert not check_lesson(Script(name), lambda: Session(Model()))
+
+
+def pressed_and_read() -> tuple[object, ...]:
+    """What a script reads while it presses keys: notices, boxes, panels and colours."""
+    session = Session.open("hyperstatic_yield")
+    session.select(session.rods["AB"])
+    said = []
+    for key in ("c", "ctrl+d", "ctrl+z", "ctrl+y", "delete", "ctrl+z", "ctrl+l", "m", "j", ".", "r"):
+        session.press(key)
+        said.append(str(english(session.notice)))
+    session.press("return")
+    session.click_box("tension only")
+    session.type("y")
+    boxes = session.boxes
+    session.press("escape")
+    session.press("escape")
+    session.press("space")
+    session.frame(0.01)
+    [picture, *_] = compose_all(session.stages, load_theme("light"))
+    inks = [mark.ink for mark in picture.marks if isinstance(mark, Stamps)]
+    return said, boxes, list(session.view.since), inks
+
+
+def test_what_scripts_read_is_as_in_english() -> None:
+    before = pressed_and_read()
+    assert before[1]["tension only"] == "yes"
+    with pseudo():
+        assert pressed_and_read() == before
 
 
 TAKEN = re.compile(r'"[a-z_]*seconds": [0-9.e-]+')  # how long it took

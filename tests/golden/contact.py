@@ -9,7 +9,7 @@ import pygame
 
 from tests.golden.scenes import SCENES, Window, painted
 from tests.golden.states import STATES, seen
-from tests.golden.test_layout import SIZES
+from tests.golden.test_texts import SIZES
 
 CELL = 640, 480  # pixels, of each picture on a sheet
 COLUMNS, ROWS = 3, 3

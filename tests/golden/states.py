@@ -10,6 +10,7 @@ from pinjoint.components.view import Page, Status, View
 from pinjoint.documents import models
 from pinjoint.documents.autosave import Autosave, unkept
 from pinjoint.documents.library import data_apart, data_folder, models_folder
+from pinjoint.editor.scenes.form import FormScene
 from pinjoint.editor.scenes.load import Load
 from pinjoint.editor.view_model import COMPILING
 from pinjoint.systems.render.marks import Picture
@@ -129,6 +130,22 @@ def _properties(source: object, *titles: str, select: str = "", typed: str = "x"
         for title in titles:
             session.click_box(title)
             session.type(typed)
+        return session
+
+    return scene
+
+
+def _refused(source: object, *names: str) -> Scene:
+    """Boxes of several elements, all of which hold what they cannot be."""
+
+    def scene(window: Window) -> Session:
+        session = opened(window, source)
+        session.select(*(element for element in [*session.particles, *session.rods] if element.name in names))
+        session.press("return")
+        form = session.scenes.active
+        assert isinstance(form, FormScene)
+        for box in form.form.boxes:
+            box.problem = "must be something else than what it is"
         return session
 
     return scene
@@ -265,6 +282,7 @@ STATES: dict[str, Scene] = {
     ),
     "properties-refused-below": _properties("isostatic", "mass", select="particles.A", typed="-5"),
     "properties-scrolled": _scrolled,
+    "properties-all-refused": _refused("isostatic", "A", "AB"),
     "properties-member": _properties(MEMBER, "section", select="rods.AB", typed="IPE 205"),
     "properties-clamped": _properties(MEMBER, "applied moment", select="particles.A"),
     "hinging": _hinging,

@@ -22,14 +22,7 @@ from tests.reference.nearness import Part, distance, near, parts_of
 from tests.systems.render.frame_models import FRAMES
 
 LIGHT = load_theme("light")
-SIZES = [
-    (640, 480, 1.0),
-    (1024, 640, 1.0),
-    (1280, 800, 1.0),
-    (1920, 1080, 1.0),
-    (420, 620, 1.0),
-    (1600, 1200, 2.0),
-]
+SIZES = [(640, 480, 1.0), (1280, 800, 1.0), (420, 620, 1.0), (1600, 1200, 2.0)]
 
 
 def at_the_start(session: Session) -> None:

@@ -289,7 +289,7 @@ def test_no_alarm_for_rods_prestressed_beyond_their_strength() -> None:
 @pytest.mark.parametrize("name", models.bundled())
 def test_no_alarm_in_bundled_models(name: str) -> None:
     session = Session.open(name)
-    assert session.run(steps=20_000) in ("time reached", "at rest"), session.message
+    assert session.run(steps=3_000) in ("time reached", "at rest"), session.message
     assert session.message.startswith("At rest") or session.message == ""
     assert_finite(session)
 

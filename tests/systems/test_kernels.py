@@ -42,18 +42,14 @@ def test_a_part_is_interpreted_where_python_calls_it() -> None:
 
 
 DIGEST = """
-import hashlib
-
 from pinjoint import Session
 from pinjoint.systems.kernels import PLAIN
+from tests.reference import bits
 
-for integrator in ("velocity_verlet", "rk4"):
-    session = Session.open("hyperstatic_yield")
-    session.settings.integrator = integrator
-    session.run(steps=40)
-    state = [session.model.particles.displacement, session.model.particles.velocity, session.model.rods.plastic_strain]
-    print(PLAIN, hashlib.sha256(b"".join(column.tobytes() for column in state)).hexdigest())
-    print(session.simulation.program.module.key)
+session = Session.open("isostatic")
+session.settings.integrator = "velocity_verlet"
+session.run(steps=40)
+print(PLAIN, bits.digest(session.model), session.simulation.program.module.key)
 """
 
 
@@ -63,7 +59,6 @@ def test_plain_numba_computes_the_same_bits(fresh_process: Callable[..., str]) -
         fresh_process(DIGEST, {"PINJOINT_PLAIN_NUMBA": switch, "PINJOINT_COMPILE": "always"}).split()
         for switch in ("1", "")
     )
-    for first in (0, 3):
-        assert (plain[first], own[first]) == ("True", "False")
-        assert plain[first + 1] == own[first + 1]
-        assert plain[first + 2] != own[first + 2]
+    assert (plain[0], own[0]) == ("True", "False")
+    assert plain[1] == own[1]
+    assert plain[2] != own[2]

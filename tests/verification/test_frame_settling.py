@@ -144,8 +144,7 @@ def test_braces_that_yield_or_go_slack_beside_members_that_bend(seed: int) -> No
             rod["compressive_strength"] = float(lot.uniform(15.0, 60.0))
     loaded = parse(document)
     found = settle(loaded, (0.5, 0.1)).final
-    if not found.balanced:
-        return
+    assume(found.balanced)  # else it collapses; hypothesis fails if too many do
     assert (found.axial_force <= loaded.rods.tension_limit * (1.0 + 1e-9)).all()
     assert (found.axial_force >= -loaded.rods.compression_limit * (1.0 + 1e-9)).all()
     for particle in loaded.particles:

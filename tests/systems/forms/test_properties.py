@@ -19,10 +19,6 @@ from pinjoint.editor.scenes.properties import Properties
 from pinjoint.scripts.playing import Recorder, play, session_of
 from pinjoint.scripts.script import Script
 from pinjoint.systems.render.form_layout import FormLayout
-from pinjoint.systems.render.marks import Text
-from pinjoint.systems.render.picture import compose
-from pinjoint.systems.render.theme import load_theme
-from tests.reference.boxes import overlapping, text_boxes
 from tests.reference.models import model, particle, rod, triangle
 
 SIZES = [(320, 240), (400, 800), (640, 480), (1000, 720), (1366, 768), (3840, 2160)]
@@ -700,35 +696,6 @@ def test_what_was_typed_in_a_window_can_be_played_again(tmp_path: Path) -> None:
 
 
 # --- where it is -------------------------------------------------------------------------------------
-
-
-@pytest.mark.parametrize("size", SIZES)
-@pytest.mark.parametrize("names", [("B",), ("AB",), (), ("A", "B", "AB", "BC")])
-def test_nothing_overlaps_and_everything_can_be_scrolled_to(
-    session: Session, size: tuple[int, int], names: tuple[str, ...]
-) -> None:
-    session.view.camera.viewport = Viewport(0, 0, *size)
-    session.view.pixel_ratio = 2.0 if size[0] > 2000 else 1.0
-    scene = open_of(session, *names)
-    for box in scene.form.boxes:
-        box.problem = "must be something else than what it is, whatever that may be"
-    seen: set[int] = set()
-    for _ in range(len(scene.form.boxes) + 3):
-        layout = layout_of(session)
-        session.update_view()
-        world, view = scene.stages(session)[-1]
-        picture = compose(world, view, load_theme())
-        texts = text_boxes(mark for mark in picture.marks if isinstance(mark, Text))
-        assert overlapping(texts) == []
-        v = picture.viewport
-        for text, left, top, right, bottom in texts:
-            assert v.left <= left <= right <= v.left + v.width, text
-            assert v.top <= top <= bottom <= v.top + v.height, text
-        places = [("", p.left, p.top, p.left + p.width, p.top + p.height) for p in layout.places]
-        assert overlapping(places) == []
-        seen |= {place.item.row for place in layout.places if isinstance(place.item, Box)}
-        session.press("wheel down")
-    assert seen == set(range(len(scene.form.boxes)))
 
 
 @pytest.mark.parametrize("size", SIZES)
