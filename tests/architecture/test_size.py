@@ -15,7 +15,7 @@ CONTAINERS = ("list", "dict", "set", "deque", "defaultdict", "OrderedDict", "Cou
 FUNCTION = ast.FunctionDef | ast.AsyncFunctionDef
 
 MOST = {
-    "lines": 66_412,
+    "lines": 66_388,
     "files": 406,
     "names": 3_972,  # functions, classes and constants of modules
     "public names": 2_388,
