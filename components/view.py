@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from copy import copy
 from dataclasses import dataclass, field, replace
 
 import numpy as np
@@ -231,6 +232,12 @@ class View:
     card: Card | None = None
     cuts: tuple[Cut, ...] = ()
     has_units: bool = True
+
+    @property
+    def looks(self) -> tuple[object, ...]:
+        """All that is shown, to be compared with what was: what changes in place is copied, all else is frozen."""
+        copies = {"camera": copy(self.camera), "keys": tuple(self.keys), "since": tuple(self.since.items())}
+        return tuple((vars(self) | copies | {"flashes": self.flashes.tobytes()}).values())
 
     def fit(self, model: Model) -> None:
         """Let the camera show the whole model, clear of the sliders, and with room for diagrams below the legend."""

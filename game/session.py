@@ -531,6 +531,7 @@ class Session(Context):
 
     def click(self, x: float, y: float, button: str = "click") -> None:
         """Click at a point of the model (m); `button` may be "ctrl+click", "double click" or "right click"."""
+        self._clicked = None  # a double click is meant for what is there, wherever the last click was
         self.press(button, self.point(x, y))
 
     def drag(self, start: Vector, end: Vector, button: str = "click") -> None:

@@ -10,7 +10,7 @@ import numpy as np
 
 from pinjoint.commands.arguments import Parser, UsageError, count
 from pinjoint.commands.options import ANSWERED, NOT_ANSWERED, add_model, session_of
-from pinjoint.commands.output import Row, add_output, aligned, as_written, write_result
+from pinjoint.commands.output import Row, add_output, aligned, write_result
 from pinjoint.components.language import joined, tr
 from pinjoint.components.model import Model
 from pinjoint.streams import tell
@@ -110,19 +110,18 @@ def _lines(found: Mapping[str, Any]) -> Iterator[str]:
         yield tr("These load factors are no answers but upper bounds, which may be far too high.")
     factor = tr("load factor, at most") if found["upper_bounds"] else tr("load factor")
     titles = [tr("buckling mode"), factor, tr("divided by the lowest"), tr("moves most")]
-    rows = [[*titles, tr("most compressed"), tr("effective length, m")]]
+    rows: list[Row] = [[*titles, tr("most compressed"), tr("effective length, m")]]
     for number, (value, mode, by) in enumerate(
         zip(factors, found["modes"], found["leading"], strict=True), start=1
     ):
         most = max(mode, key=lambda name: max(map(abs, mode[name])))
-        values = [as_written(value), as_written(value / factors[0]), most]
-        length = as_written(by["effective_length"])
-        rows.append([tr("mode {number}", number=number), *values, by["rod"], length])
+        title, whose = tr("mode {number}", number=number), (by["rod"], by["effective_length"])
+        rows.append([title, value, value / factors[0], most, *whose])
     yield from aligned(rows)
     pressed = {name: of for name, of in found["axial_force"].items() if of["critical"] < 0.0}
     if pressed:
         yield ""
-        table = [
+        table: list[Row] = [
             [
                 tr("axial force, kN"),
                 tr("at load factor 1"),
@@ -133,7 +132,7 @@ def _lines(found: Mapping[str, Any]) -> Iterator[str]:
         ]
         for name, of in pressed.items():
             lengths = [found[key].get(name) for key in ("effective_length", "effective_length_factor")]
-            table.append([name, *map(as_written, [of["steady"] + of["factor 1"], of["critical"], *lengths])])
+            table.append([name, of["steady"] + of["factor 1"], of["critical"], *lengths])
         yield from aligned(table)
     for note in found["notes"]:
         yield ""

@@ -10,7 +10,7 @@ import numpy as np
 
 from pinjoint.commands.arguments import Parser, UsageError
 from pinjoint.commands.options import ANSWERED, NOT_ANSWERED, session_of
-from pinjoint.commands.output import Row, add_output, aligned, as_written, writable, write_result, writing
+from pinjoint.commands.output import Row, add_output, aligned, writable, write_result, writing
 from pinjoint.components.language import tr
 from pinjoint.components.model import Model
 from pinjoint.components.view import CONVENTIONS, THESIS
@@ -198,7 +198,7 @@ def _lines(tables: Tables, convention: str, found: Mapping[str, Any]) -> Iterato
     from pinjoint.force_method.tables import PRODUCTS
 
     solution, units = tables.solution, tables.units
-    yield from aligned([[as_written(value) for value in row] for row in _rows(found)])
+    yield from aligned(_rows(found))
     if not solution.unknowns:
         return
     if convention == THESIS:

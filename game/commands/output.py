@@ -100,8 +100,10 @@ def formatted(
             data = plain(data, "result")
             return laid_out(data, depth=4) + "\n" if chosen == "json" else written.as_csv(rows(data))
     data = plain(data, "result", as_said=True)
-    made = lines(data) if lines else aligned(_cells(rows(data)))
-    return "".join(f"{line}\n" for line in made)
+    if lines is not None:
+        return "".join(f"{line}\n" for line in lines(data))
+    titles, *others = rows(data)
+    return "".join(f"{line}\n" for line in aligned([list(map(tr, titles)), *others]))
 
 
 def write(text: str, path: str | None) -> None:
@@ -129,19 +131,13 @@ def writing(place: object) -> Iterator[None]:
 # --- values as text ------------------------------------------------------------------------------------
 
 
-def _cells(rows: Iterable[Row]) -> list[list[str]]:
-    """Rows as tables show them, with the headings in the language of the person."""
-    titles, *others = rows
-    return [[tr(title) for title in titles], *([as_written(value) for value in row] for row in others)]
-
-
-def aligned(rows: Sequence[Sequence[str]]) -> Iterator[str]:
-    """Rows of texts in columns, the first to the left and the others to the right."""
-    rows = [[printable(cell) for cell in row] for row in rows]
-    widths = [max(map(len, column)) for column in zip(*rows, strict=True)]
-    for name, *numbers in rows:
-        cells = [name.ljust(widths[0]), *(n.rjust(w) for n, w in zip(numbers, widths[1:], strict=True))]
-        yield "  ".join(cells).rstrip()
+def aligned(rows: Iterable[Row]) -> Iterator[str]:
+    """Rows of values in columns, the first to the left and the others to the right."""
+    cells = [[printable(as_written(value)) for value in row] for row in rows]
+    widths = [max(map(len, column)) for column in zip(*cells, strict=True)]
+    for name, *numbers in cells:
+        placed = [name.ljust(widths[0]), *(n.rjust(w) for n, w in zip(numbers, widths[1:], strict=True))]
+        yield "  ".join(placed).rstrip()
 
 
 def as_written(value: Any) -> str:

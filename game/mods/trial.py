@@ -33,7 +33,7 @@ from pinjoint.systems.program.writer import read_sources
 
 SIZES = ((640, 480, 1.0), (160, 120, 2.0))  # pixels, and pixels to a point, of the pictures
 SCALES = (1.0, 1e4, 1e-4)  # by which a person may zoom
-PATIENCE = 120.0  # s that some steps of the small model may take, compiled in the first call
+PATIENCE = 30.0  # s that some steps of the small model may take
 
 
 def mistakes_of(mod: Mod) -> list[str]:

@@ -8,7 +8,6 @@ import math
 import numpy as np
 from numpy.typing import NDArray
 
-from pinjoint.components import written
 from pinjoint.components.bent import distributed_shares
 from pinjoint.components.language import tr
 from pinjoint.components.model import Model
@@ -22,7 +21,16 @@ from pinjoint.systems.render.sheet import DIRECTIONS, Rows, Sheet
 from pinjoint.systems.render.supports import NO_SUPPORT, crowding
 from pinjoint.systems.render.symbols import SUPPORT_DEPTH
 from pinjoint.systems.render.theme import Colour
-from pinjoint.systems.render.values import FEW_VALUES, FIRST, GAP, SMALLEST, half_sizes, most_important, write
+from pinjoint.systems.render.values import (
+    FEW_VALUES,
+    FIRST,
+    GAP,
+    SMALLEST,
+    half_sizes,
+    most_important,
+    said,
+    write,
+)
 
 MOST = 100  # particles, above which arrows would hide one another
 LONGEST, SHORTEST = 46.0, 13.0  # points: of the largest of its kind, and of any that is drawn
@@ -44,11 +52,10 @@ Values = NDArray[np.float64]
 
 
 def full_load(model: Model) -> Values:
-    """The force (kN) on each particle, its loads at full size included, (n, 2)."""
-    force: Values = model.particles.force.copy()
-    for axis in (0, 1):
-        force[:, axis] += np.bincount(model.loads.on, model.loads.force[:, axis], len(force))
-    return force
+    """The force (kN) and the moment (kN·m) on each particle, its loads at full size included, (n, 3)."""
+    found: Values = np.column_stack([model.particles.force, model.particles.moment])
+    np.add.at(found, model.loads.on, np.column_stack([model.loads.force, model.loads.moment]))
+    return found
 
 
 def whose(model: Model, rows: Rows, *, loads_only: bool = False) -> list[Owner]:
@@ -88,7 +95,7 @@ def steady(sheet: Sheet, key: tuple[str, int], largest: float) -> float:
 def draw_loads(sheet: Sheet) -> None:
     """The force on each particle, its loads at full size included, where no diagram shows it."""
     model = sheet.model
-    force = full_load(model)
+    force = full_load(model)[:, :2]
     loaded = (force[:, 0] != 0.0) | (force[:, 1] != 0.0)
     loaded[sheet.tagged(DiagramShown, "particles")] = False
     rows = sheet.particles[loaded[sheet.particles]]
@@ -216,7 +223,7 @@ def draw_particle_diagrams(sheet: Sheet, sides: NDArray[np.int64]) -> None:
 def largest_force(model: Model, view: View) -> float:
     """The largest force (kN) that an arrow may show: of loads at full size, and in diagrams of their parts and reactions."""
     particles = model.particles
-    largest = float(np.hypot(*full_load(model).T).max(initial=SMALLEST))
+    largest = float(np.hypot(*full_load(model)[:, :2].T).max(initial=SMALLEST))
     if view.forces_known and (view.all_diagrams or model.any_tagged(DiagramShown)):
         for forces in (particles.applied_force, particles.reaction):
             largest = max(largest, float(np.abs(forces).max(initial=0.0)))
@@ -312,7 +319,7 @@ def _write_forces(
     few = len(value) <= FEW_VALUES
     shown, worth = most_important(sheet, field, which, value, np.flatnonzero(sheet.sees(middle)))
     sizes = np.abs(value[shown]).tolist()
-    texts = [(written.force if few else written.number)(size, nothing=SMALLEST) for size in sizes]
+    texts = [said(sheet, size, "kN" if few else "") for size in sizes]
     font, out = sheet.font(12.0 if few else 11.0), outward[shown]
     half = half_sizes(sheet, texts, font)
     places = _places_by_arrows(middle[shown], length[shown], out, pulls[shown], half, sheet.unit)

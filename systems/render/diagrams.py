@@ -12,7 +12,6 @@ from typing import Literal
 import numpy as np
 from numpy.typing import NDArray
 
-from pinjoint.components import written
 from pinjoint.components.bent import (
     AXIAL,
     MOMENT,
@@ -46,6 +45,7 @@ from pinjoint.systems.render.values import (
     in_rows,
     most_important,
     reach,
+    said,
     write,
 )
 
@@ -138,7 +138,8 @@ def draw_diagrams(sheet: Sheet) -> None:
     if not shown.any():
         return
     rows, start, end = sheet.rods[shown], sheet.start[shown], sheet.end[shown]
-    quantity, force = sheet.view.quantity if sheet.is_frame else AXIAL, _forces(sheet)
+    quantity = sheet.view.quantity if sheet.is_frame else AXIAL
+    force = np.nan_to_num(sheet.model.rods.axial_force)
     if typical_length(start, end) < _SHORTEST * sheet.unit:
         if quantity == AXIAL:
             sheet.pulled, sheet.pushed = rows[force[rows] > SMALLEST], rows[force[rows] < -SMALLEST]
@@ -155,12 +156,6 @@ def draw_diagrams(sheet: Sheet) -> None:
         _draw(sheet, diagram)
         _mark_zeros(sheet, diagram)
         _write(sheet, diagram)
-
-
-def _forces(sheet: Sheet) -> Values:
-    """Axial forces (kN) of all rods."""
-    force: Values = np.nan_to_num(sheet.model.rods.axial_force)
-    return force
 
 
 # --- rectangles, where none bends --------------------------------------------------------------------
@@ -416,7 +411,7 @@ def _write(sheet: Sheet, diagram: _Diagram) -> None:
     few = len(seen) <= FEW_VALUES
     size, which, number, value = sheet.font(12.0 if few else 11.0), which[shown], number[shown], value[shown]
     nothing = SMALLEST if diagram.is_straight else max(_NOTHING * diagram.largest, SMALLEST)
-    texts = [_written(quantity, each, nothing, few) for each in value.tolist()]
+    texts = [_written(sheet, quantity, each, nothing, few) for each in value.tolist()]
     lines: Literal["cover", "spare"] = "spare" if few else "cover"
     half, height = half_sizes(sheet, texts, size), diagram.scale * np.abs(value)
     at, normal = diagram.at(which, shares[shown])
@@ -434,25 +429,19 @@ def _write(sheet: Sheet, diagram: _Diagram) -> None:
         worth = worth + np.where(np.abs(value) > _GREAT * diagram.largest, 2e9, 0.0)  # before arrows
     for k, row in enumerate(diagram.rows[which].tolist()):
         of, key, rank = ("rods", row), (field, int(keys[shown[k]])), -float(worth[k])
-        colour = _colour_of(sheet, quantity, float(value[k]))
+        sign = "zero" if abs(value[k]) <= SMALLEST else "tension" if value[k] > 0.0 else "compression"
+        colour = _colour(sheet, sign) if quantity == AXIAL else sheet.theme.text
         leads = anchors[k], normal[k]
         write(
             sheet, texts[k], places[k], colour, key, of, rank=rank, own=of, leads=leads, size=size, lines=lines
         )
 
 
-def _colour_of(sheet: Sheet, quantity: str, value: float) -> Colour:
-    if quantity != AXIAL:
-        return sheet.theme.text
-    sign = "zero" if abs(value) <= SMALLEST else "tension" if value > 0.0 else "compression"
-    return _colour(sheet, sign)
-
-
-def _written(quantity: str, value: float, nothing: float, few: bool) -> str:
+def _written(sheet: Sheet, quantity: str, value: float, nothing: float, few: bool) -> str:
     """A value as it is told: moments without sign, since their side says it; shear with both."""
-    text = written.number(abs(value) if quantity == MOMENT else value, nothing=nothing)
-    sign = "+" if quantity == SHEAR and value > 0.0 and text != "0" else ""
-    return f"{sign}{text}{f' {_UNITS[quantity]}' if few else ''}"
+    size = abs(value) if quantity == MOMENT else value
+    sign = "+" if quantity == SHEAR and value > nothing else ""
+    return f"{sign}{said(sheet, size, _UNITS[quantity] if few else '', nothing)}"
 
 
 def _told(sheet: Sheet, diagram: _Diagram) -> tuple[Rows, Rows, Values, Values]:

@@ -71,15 +71,8 @@ def _draw_rods(sheet: Sheet, known: Apart, long: NDArray[np.bool_], largest: flo
     _draw_bending(sheet, known, bearing, (start, end), along, largest)
     for index in np.flatnonzero(long & ~bearing).tolist():
         row, own = int(rods[index]), (start[index], end[index])
-        _write(
-            sheet,
-            "0 kN",
-            _by_line(sheet, "0 kN", *own),
-            sheet.theme.zero,
-            ("rods.end0", row),
-            ("rods", row),
-            own,
-        )
+        places, text_colour = beside(sheet, "0 kN", *own), sheet.theme.zero
+        _write(sheet, "0 kN", places, text_colour, ("rods.end0", row), ("rods", row), own)
     for pulled, name in ((True, "tension"), (False, "compression")):
         bears = long & ((force[rods] > SMALLEST) if pulled else (force[rods] < -SMALLEST))
         which = np.flatnonzero(bears)
@@ -92,11 +85,14 @@ def _draw_rods(sheet: Sheet, known: Apart, long: NDArray[np.bool_], largest: flo
             room = gap[which] - radius - OFF * u
             size = np.minimum(lengths(sheet, FORCES, np.abs(force[rods[which]]), largest), 0.5 * room - OFF * u)
             rim = joint[which] + (radius + OFF * u)[:, None] * out[which]
-            _draw_pair(sheet, rods[which], rim, rod_end[which], out[which], size, colour, pulled=pulled)
+            of = "rods", rods[which]  # in tension a rod pulls both: the arrows point at each other
+            for at, way in ((rim, out[which]), (rod_end[which], -out[which])):
+                tail = at if pulled else at + size[:, None] * way
+                draw_arrows(sheet, of, tail, way if pulled else -way, size, colour, ("rods.end", of[1]))
             for row, *line in zip(rods[which].tolist(), rim, rod_end[which], strict=True):
                 text, key = written.force(abs(float(force[row]))), (f"rods.end{side}", row)
                 own = line[0], line[1]
-                _write(sheet, text, _by_line(sheet, text, *own), colour, key, ("rods", row), own)
+                _write(sheet, text, beside(sheet, text, *own), colour, key, ("rods", row), own)
 
 
 def _draw_bodies(sheet: Sheet, start: Points, end: Points, gap: NDArray[np.float64]) -> None:
@@ -166,26 +162,6 @@ def _draw_bending(
             _write(sheet, text, places, colour, key_of_value, ("rods", row), (first, last))
 
 
-def _draw_pair(
-    sheet: Sheet,
-    rows: NDArray[np.intp],
-    rim: Points,
-    rod_end: Points,
-    out: Points,
-    size: NDArray[np.float64],
-    colour: Colour,
-    *,
-    pulled: bool,
-) -> None:
-    """The force of a rod on its joint and the opposite one on the rod, in the gap between them.
-
-    A rod in tension pulls both: the arrows point at each other. In compression they point apart.
-    """
-    for at, way in ((rim, out), (rod_end, -out)):
-        tail, along = (at, way) if pulled else (at + size[:, None] * way, -way)
-        draw_arrows(sheet, ("rods", rows), tail, along, size, colour, ("rods.end", rows))
-
-
 def _draw_others(sheet: Sheet, row: int, forces: list[Force], largest: float) -> None:
     """Loads, reactions and inertia of a joint, each on the side where rods and other arrows leave most room."""
     taken = _directions_of_rods(sheet, row)
@@ -230,15 +206,10 @@ def _directions_of_rods(sheet: Sheet, row: int) -> list[Points]:
     return found
 
 
-def _by_line(sheet: Sheet, text: str, start: Points, end: Points) -> Points:
-    """Where a value may stand beside a line: on either side of its middle, then nearer to its ends."""
-    return beside(sheet, text, start, end, (0.5, 0.75, 0.3, 1.0), 4.0)
-
-
 def _by_arrow(sheet: Sheet, text: str, start: Points, end: Points, way: Points) -> Points:
     """Where the value of an arrow may stand: beyond an end of it that lies that way, or beside it."""
     beyond = off(end, way, 4.0 * sheet.unit, half_sizes(sheet, [text]))
-    return np.concatenate([beyond, _by_line(sheet, text, start, end)])
+    return np.concatenate([beyond, beside(sheet, text, start, end)])
 
 
 def _write(

@@ -16,7 +16,7 @@ from pinjoint.systems.render.occupancy import FAINT, Occupancy
 ANCHORS = np.array([0.5, 0.35, 0.65, 0.2, 0.8])  # shares of a line where one that leads to it may end
 TRIED = 32  # values of a picture
 _MOST = 16  # lines, since more would confuse
-_TURNS = np.array([0, 1, -1, 2, -2, 3, -3, 4, -4, 5, -5, 6, -6, 7, -7, 8]) * np.pi / 8.0  # from the best way
+_TURNS = np.array([0, *(way * k for k in range(1, 8) for way in (1, -1)), 8]) * np.pi / 8.0  # from the best way
 _LENGTHS = (14.0, 26.0, 40.0, 58.0, 80.0)  # points
 _STEP, _HALF = 4.0, 1.5  # points between the places where a line is tested; half the room it needs there
 _FEW = 4  # places of a line that are tested first

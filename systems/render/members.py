@@ -7,17 +7,16 @@ from numpy.typing import NDArray
 
 from pinjoint.components import written
 from pinjoint.components.bent import axes
-from pinjoint.components.model import Model
 from pinjoint.components.rod import rigid_joints
 from pinjoint.components.tags import DiagramShown
-from pinjoint.systems.render.arrows import MOST, draw_arrows, head_length
+from pinjoint.systems.render.arrows import MOST, draw_arrows, full_load, head_length
 from pinjoint.systems.render.leaders import ANCHORS
 from pinjoint.systems.render.marks import Discs, Fills, Owners, Points, Strokes
 from pinjoint.systems.render.occupancy import STRONG
 from pinjoint.systems.render.sheet import Rows, Sheet
 from pinjoint.systems.render.symbols import RIM
 from pinjoint.systems.render.theme import Colour
-from pinjoint.systems.render.values import FIRST, SMALLEST, half_sizes, off, write
+from pinjoint.systems.render.values import FIRST, SMALLEST, half_sizes, off, said, write
 
 _HINGE = 3.5  # points, radius of a hinge beside a joint
 _SHORTEST = 5.0  # times its radius: the shortest rod at which a hinge is drawn
@@ -151,14 +150,6 @@ def _label_row(sheet: Sheet, row: int, tails: Points, along: Points, size: float
 # --- moments -----------------------------------------------------------------------------------------
 
 
-def full_moment(model: Model) -> Values:
-    """The moment (kN·m) on each particle, its loads at full size included, (n,)."""
-    moment: Values = model.particles.moment + np.bincount(
-        model.loads.on, model.loads.moment, model.particles.count
-    )
-    return moment
-
-
 def draw_moments(sheet: Sheet) -> None:
     """Curved arrows of the moments on joints that can bear them: of loads, and in diagrams of reactions."""
     model = sheet.model
@@ -168,7 +159,7 @@ def draw_moments(sheet: Sheet) -> None:
     if sheet.view.forces_known:
         shown[sheet.tagged(DiagramShown, "particles")] = True
         shown |= sheet.view.all_diagrams
-    applied = full_moment(model)
+    applied = full_load(model)[:, 2]
     if shown.any():
         applied = np.where(shown, model.particles.applied_moment, applied)
         _draw_moments(sheet, "reaction", np.where(shown, model.particles.reaction_moment, 0.0))
@@ -190,7 +181,7 @@ def _draw_moments(sheet: Sheet, name: str, moment: Values) -> None:
     for at, size, row, value in zip(
         sheet.centres[rows], radius.tolist(), rows.tolist(), moment[rows].tolist(), strict=True
     ):
-        text = written.moment(abs(value)) if name == "reaction" else ""
+        text = said(sheet, abs(value), "kN·m") if name == "reaction" else ""
         write_moment(sheet, at, size, value, colour, (key, row), text)
 
 
@@ -243,7 +234,7 @@ def write_moment(
     text: str = "",
 ) -> None:
     """Write the size of a moment outside its arrow; text: in place of the number as a person gave it."""
-    text = text or f"{written.given(abs(moment), written.DIGITS)} kN·m"
+    text = text or f"{written.given(abs(moment), written.DIGITS)}{' kN·m' if sheet.view.has_units else ''}"
     angle = np.radians([90.0, 52.5, 127.5, 15.0, 165.0, 0.0, 180.0, -40.0, 220.0])  # first corners of the arrow
     out = np.stack([np.cos(angle), -np.sin(angle)], axis=1)
     near = off(at, out, radius + 2.0 * sheet.unit, half_sizes(sheet, [text]))

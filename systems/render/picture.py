@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import re
 from collections.abc import Callable, Sequence
 
 from pinjoint.components.extensions import EXTENSIONS
@@ -153,8 +152,6 @@ def _composed(sheet: Sheet) -> tuple[Picture, list[ShownPanel]]:
     scale = place_scale(sheet, room) if model.particles.count and sheet.view.has_scale else None
     if shows_card(model, sheet.view):
         overlays += draw_card(sheet.view, theme)
-    if not sheet.view.has_units:
-        sheet.labels = [label._replace(text=_bare(label.text)) for label in sheet.labels]
     labels = place_labels(sheet.labels, sheet.occupancy, sheet.unit, sheet.placed)
     over = [
         *draw_scale(sheet, scale),
@@ -166,9 +163,3 @@ def _composed(sheet: Sheet) -> tuple[Picture, list[ShownPanel]]:
     sheet.placed |= sheet.scales
     marks = [*sheet.marks, *labels, *over]
     return Picture(sheet.viewport, theme.background, marks, tuple(sheet.legend)), panels
-
-
-def _bare(text: str) -> str:
-    """A value without its unit, as textbooks write those of unit forces: "1", "0.7071"."""
-    number = text.removesuffix("·m").removesuffix(" kN")
-    return re.sub(r"^(−?1)[.,]0+$", r"\1", number)

@@ -49,7 +49,7 @@ class PygameRender(System):
     def process(self, frame: Any) -> None:
         """Draw every stage of the scene, unless the picture would be the same as the last."""
         stages = frame.session.stages
-        looks = tuple(repr(view) for _, view in stages)
+        looks = tuple(view.looks for _, view in stages)
         shown = (id(self.surface), language(), looks, _revisions(stages))
         self.drawn = shown != self.shown or (self._sketch and self._canvas.draws_all)
         if self.drawn:

@@ -8,6 +8,7 @@ from typing import Literal
 import numpy as np
 from numpy.typing import NDArray
 
+from pinjoint.components import written
 from pinjoint.systems.render.labels import Key, Label, half_size
 from pinjoint.systems.render.marks import Owner, Points
 from pinjoint.systems.render.sheet import Rows, Sheet
@@ -30,6 +31,15 @@ def half_sizes(sheet: Sheet, texts: Iterable[str], size: int = 0) -> Points:
     return np.array([half_size(text, size, "semibold", sheet.unit) for text in texts]).reshape(-1, 2)
 
 
+def said(sheet: Sheet, value: float, unit: str, nothing: float = SMALLEST) -> str:
+    """A computed value with its unit, "kN" or "kN·m", if any; as short as it is where the view wants none: "1", "0.7071"."""
+    if not sheet.view.has_units:
+        return written.given(value if abs(value) > nothing else 0.0, written.DIGITS)
+    if not unit:
+        return written.number(value, nothing=nothing)
+    return (written.force if unit == "kN" else written.moment)(value, nothing=nothing)
+
+
 def reach(way: Points, half: Points) -> Values:
     """How far labels of `half` the size (…, 2) extend along unit vectors (…, 2), or points to all sides of them."""
     found: Values = (np.abs(way) * half).sum(axis=-1)
@@ -49,7 +59,14 @@ def in_rows(at: Points, way: Points, across: Sequence[Values], along: Points, sl
     return places
 
 
-def beside(sheet: Sheet, text: str, start: Points, end: Points, shares: Sequence[float], gap: float) -> Points:
+def beside(
+    sheet: Sheet,
+    text: str,
+    start: Points,
+    end: Points,
+    shares: Sequence[float] = (0.5, 0.75, 0.3, 1.0),
+    gap: float = 4.0,
+) -> Points:
     """Where a value may stand beside a line, so many points off, at shares of it: right as drawn, then left, (n, 2)."""
     way = end - start
     right = np.array([-way[1], way[0]]) / max(float(np.hypot(*way)), 1e-9)

@@ -14,7 +14,7 @@ import numpy as np
 
 from pinjoint.components import written
 from pinjoint.components.field import Column
-from pinjoint.components.language import tr
+from pinjoint.components.language import plural, tr
 from pinjoint.systems.base import Integrator, StopReason
 from pinjoint.systems.entries import SMALLEST_ENERGY, Measure
 from pinjoint.systems.physics.automatic import SMALL
@@ -199,6 +199,20 @@ def overlap_warning(deepest: float) -> str:
     return tr(
         "Discs of a pile were in one another by up to {share} of a radius: its places and energies are off accordingly.",
         share=written.share(deepest),
+    )
+
+
+def contact_warning(steps: int, most: float) -> str:
+    """The sentence that so many steps left contacts open, or discs in one another, by a share of a radius; "" if none."""
+    if not steps:
+        return ""
+    return plural(
+        "In one step no forces were found that close all contacts: they were left open, or discs in one another, by up to"
+        " {share} of a radius.",
+        "In {count} steps no forces were found that close all contacts: they were left open, or discs in one another, by up"
+        " to {share} of a radius.",
+        steps,
+        share=written.share(most),
     )
 
 

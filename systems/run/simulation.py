@@ -32,6 +32,7 @@ from pinjoint.systems.run.energy import Account, Energy
 from pinjoint.systems.run.policy import (
     at_rest_since,
     begin_steps,
+    contact_warning,
     energy_warning,
     is_sleep_review,
     overlap_warning,
@@ -549,7 +550,8 @@ class Simulation:
         if told:
             warning = joined([told, self.step_size.remedy(clock.step_size)])
         flying = self.programs.flying
-        return joined([warning, overlap_warning(flying.deepest) if flying is not None else "", self.note])
+        overlap = overlap_warning(flying.deepest) if flying is not None else ""
+        return joined([warning, overlap, contact_warning(*self._driven_collisions.unclosed), self.note])
 
     @property
     def said(self) -> str:

@@ -79,11 +79,6 @@ def sparse_order(ends: Rows, width: int, particles: int, index: Rows) -> Rows:
     return np.argsort(order)
 
 
-def compatibility(ends: Rows, axis: Array, particles: int) -> csc_matrix:
-    """Elongations from the displacements of all particles, (rods, 2n)."""
-    return spread_by_ends(np.concatenate([-axis, axis], axis=1), ends, particles)
-
-
 def spread_by_ends(entries: Array, ends: Rows, particles: int) -> csc_matrix:
     """A matrix (rows, width × n) of which each row has its entries (rows, 2 × width) at the coordinates of two particles."""
     from scipy.sparse import csc_matrix

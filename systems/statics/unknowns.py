@@ -16,7 +16,6 @@ from pinjoint.components.model import Model
 from pinjoint.components.particle import Particle
 from pinjoint.components.rod import Rod, bends
 from pinjoint.components.suggestions import missing
-from pinjoint.systems.statics.assembly import compatibility
 from pinjoint.systems.statics.equations import Array, Structure
 
 AXES = ("x", "y", "rotation")
@@ -166,39 +165,25 @@ def redundants(model: Model) -> list[Unknown]:
 
     Bending moments before bars, bars before supports. As many as the degree of static indeterminacy; none if isostatic.
     """
-    columns, unknowns = (_of_frame if bends(model) else _of_truss)(model)
+    columns, unknowns = _equilibrium(model)
     factor, order = qr(columns, mode="r", pivoting=True)
     sizes = np.abs(np.diag(factor))
     rank = int((sizes > _RANK * sizes.max(initial=0.0) / _KEPT).sum())
     return [unknowns[column] for column in sorted(order[rank:].tolist())]
 
 
-def _of_truss(model: Model) -> tuple[Array, list[Unknown]]:
-    """Columns of the equilibrium matrix, rods first, and their unknowns."""
-    structure = Structure.of(model)
-    used = np.zeros(model.particles.count, dtype=bool)
-    used[structure.ends] = True
-    supports = np.argwhere(structure.fixed & used[:, None])
-    of_supports = np.zeros((2 * model.particles.count, len(supports)))
-    of_supports[2 * supports[:, 0] + supports[:, 1], np.arange(len(supports))] = _KEPT
-    of_rods = compatibility(structure.ends, structure.original_axis, model.particles.count).toarray().T
-    reactions = [Unknown(model.particles[row], axis) for row, axis in supports.tolist()]
-    return np.hstack([of_rods, of_supports]), [*map(Unknown, model.rods), *reactions]
-
-
-def _of_frame(model: Model) -> tuple[Array, list[Unknown]]:
-    """The same where members bend: axial forces, moments at rigid ends, supports; moments by a mean length."""
+def _equilibrium(model: Model) -> tuple[Array, list[Unknown]]:
+    """Columns of the equilibrium matrix and their unknowns: rods, moments at rigid ends (by a mean length), supports."""
     held = Structure.of(model, "linear")
-    free = replace(held, fixed=np.zeros_like(held.fixed)).with_translations()
-    assert free.bending is not None
-    rigid = free.bending.rigid
+    free = replace(held, fixed=np.zeros_like(held.fixed), sparse=False).with_translations()
+    rigid = np.zeros(free.ends.shape, dtype=bool) if free.bending is None else free.bending.rigid
     lengths = np.concatenate([np.ones(len(rigid)), np.repeat(free.rest_length, rigid.sum(axis=1))])
     weights = np.concatenate([np.where(rigid.any(axis=1), _NEVER, 1.0), np.full(int(rigid.sum()), _FIRST)])
     of_rods = free.compatibility(free.unmoved).toarray() * (lengths * weights)[:, None] / free.measure
     place = {int(coordinate): at for at, coordinate in enumerate(free.index.tolist())}
-    supports = [(row, axis) for row, axis in np.argwhere(held.fixed).tolist() if 3 * row + axis in place]
+    supports = [at for at in np.argwhere(held.fixed).tolist() if at[0] * held.width + at[1] in place]
     of_supports = np.zeros((len(supports), free.size))
-    for at, (row, axis) in enumerate(supports):
-        of_supports[at, place[3 * row + axis]] = _KEPT
+    for number, (row, axis) in enumerate(supports):
+        of_supports[number, place[row * held.width + axis]] = _KEPT
     reactions = [Unknown(model.particles[row], axis) for row, axis in supports]
     return np.vstack([of_rods, of_supports]).T, [*map(Unknown, model.rods), *_of_ends(model), *reactions]

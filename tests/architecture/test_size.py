@@ -15,13 +15,13 @@ CONTAINERS = ("list", "dict", "set", "deque", "defaultdict", "OrderedDict", "Cou
 FUNCTION = ast.FunctionDef | ast.AsyncFunctionDef
 
 MOST = {
-    "lines": 66_931,
+    "lines": 66_918,
     "files": 406,
-    "names": 4_026,  # functions, classes and constants of modules
+    "names": 4_019,  # functions, classes and constants of modules
     "public names": 2_434,
-    "numbers": 1_551,  # other than 0, 1 and 2, in constants and defaults
+    "numbers": 1_548,  # other than 0, 1 and 2, in constants and defaults
     "registers": 46,  # containers that fill while the program runs, and caches of functions
-    "lines of tests": 52_749,
+    "lines of tests": 52_756,
 }
 
 

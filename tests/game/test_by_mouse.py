@@ -292,6 +292,9 @@ def test_a_double_click_elsewhere_is_two_clicks(session: Session) -> None:
     for key in ("click", "double click"):
         session.press(key, (button.left + 3.0, button.top + 3.0))
     assert session.document.live.clock.factor == 4.0
+    session.press("click", (button.left + 3.0, button.top + 3.0))
+    session.click(1.5, 1.5, "double click")  # which a script means as a whole
+    assert session.scene == "properties"
 
 
 def test_the_second_click_on_a_picture_is_not_meant_for_the_model_that_it_opened(session: Session) -> None:

@@ -191,7 +191,7 @@ def _state_lines(made: State) -> Iterator[str]:
             yield ""
             yield from aligned(_element_rows(group, made[group]))
     yield ""
-    energies = [[tr(_ENERGIES[name]), as_written(value)] for name, value in made["energy"].items()]
+    energies = [[tr(_ENERGIES[name]), value] for name, value in made["energy"].items()]
     yield from aligned([[tr("energy"), "J"], *energies])
     yield ""
     counts = {"residual": as_written(made["residual"]), "collisions": made["collisions"]}
@@ -201,7 +201,7 @@ def _state_lines(made: State) -> Iterator[str]:
         yield tr("unbalanced forces: {residual} of the largest force; impacts: {collisions}", **counts)
 
 
-def _element_rows(group: str, elements: Mapping[str, Mapping[str, Any]]) -> list[list[str]]:
+def _element_rows(group: str, elements: Mapping[str, Mapping[str, Any]]) -> Iterator[Row]:
     """Two rows of headings, then one row per element."""
     fields = {field.name: field for field in fields_of(_KINDS[group])}
     columns = [
@@ -216,12 +216,12 @@ def _element_rows(group: str, elements: Mapping[str, Mapping[str, Any]]) -> list
     titles = [
         tr(field.title) + ("" if axis is None else f" {tr(field.axes[axis])}") for field, axis, _, _ in columns
     ]
-    rows = [[tr(_KINDS[group].noun), *titles], ["", *(unit for _, _, unit, _ in columns)]]
+    yield tr(_KINDS[group].noun), *titles
+    yield "", *(unit for _, _, unit, _ in columns)
     for name, values in elements.items():
         cells = [name]
         for field, axis, _, factor in columns:
             value = values[field.name] if axis is None else values[field.name][axis]
             unscaled = value is None or isinstance(value, bool)
-            cells.append(as_written(value if unscaled else value * factor))
-        rows.append(cells)
-    return rows
+            cells.append(value if unscaled else value * factor)
+        yield cells

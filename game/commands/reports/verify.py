@@ -335,9 +335,8 @@ def _influence_lines(found: Found) -> Iterator[str]:
             name=name,
             unit=line["unit"],
         )
-        rows = [[tr("particle"), tr("along x"), tr("along y")]]
-        rows += [[particle, *map(as_written, pair)] for particle, pair in line["of"].items()]
-        yield from aligned(rows)
+        heads = tr("particle"), tr("along x"), tr("along y")
+        yield from aligned([heads, *((particle, *pair) for particle, pair in line["of"].items())])
         yield ""
 
 
@@ -428,17 +427,14 @@ def _verdict(found: Found) -> str:
     return tr("verified, simulation and exact theory agree to {simulation:.1e}", **worst)
 
 
-def _cells(title: str, factor: float, rows: dict[str, Found]) -> list[list[str]]:
+def _cells(title: str, factor: float, rows: dict[str, Found]) -> list[output.Row]:
     largest = max(abs(values[way] or 0.0) for values in rows.values() for way in _VALUES[:3])
-    cells = [[title, *(tr(_TITLES[way]) for way in _VALUES)]]
+    cells: list[output.Row] = [[title, *(tr(_TITLES[way]) for way in _VALUES)]]
     for name, values in rows.items():
         numbers = [
-            "—" if values[w] is None else _number(factor * values[w], factor * largest) for w in _VALUES[:3]
+            "—" if v is None else factor * v if abs(v) > NOTHING * largest else 0.0
+            for v in (values[way] for way in _VALUES[:3])
         ]
         errors = ["—" if values[w] is None else decimals(f"{values[w]:.1e}") for w in _VALUES[3:]]
         cells.append([name, *numbers, *errors])
     return cells
-
-
-def _number(value: float, largest: float) -> str:
-    return as_written(value if abs(value) > NOTHING * largest else 0.0)

@@ -93,6 +93,7 @@ class Whole(IntEnum):
     FOUND = 34  # pairs when they were listed last; NONE: the grid had no room for LAYERS
     LAYERS = 35  # of the grid, then
     LISTS = 36  # so far
+    UNCLOSED = 37  # steps since the run began whose contacts were left as they were, since no forces close them
 
 
 class Real(IntEnum):
@@ -121,6 +122,7 @@ class Real(IntEnum):
     BY = 20  # s; when the steps that are taken now have to end
     ROOM = 21  # m; how far particles may move while nothing can meet
     FASTEST = 22  # m/s; of them, in that time
+    UNCLOSED = 23  # of a radius; how far contacts were left open, or in one another, at most
 
 
 class Tried(IntEnum):

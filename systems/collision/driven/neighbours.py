@@ -137,6 +137,8 @@ class NeighbourList:
         driven, held = self.driven, persistent_contacts(self.model)
         known, self._is_stored = self._is_stored and held is self._held, False  # not stored: interrupted
         driven.whole[Whole.PHASE], driven.whole[Whole.EXAMINE] = Phase.BETWEEN, 0
+        if self.model.clock.steps == 0:
+            driven.whole[Whole.UNCLOSED], driven.real[Real.UNCLOSED] = 0, 0.0
         if known:
             return
         driven.lasting[:], driven.forces[:] = 0, 0.0

@@ -42,13 +42,17 @@ class Steps(Protocol):
 
 
 class DrivenCollisions:
-    """The stepper that takes the steps of a program of one model, and ends steps at impacts."""
+    """The stepper that takes the steps of a program of one model, and ends steps at impacts.
+
+    unclosed: how many steps left contacts as they were, since no forces close them; and how far at most, in radii.
+    """
 
     def __init__(self, model: Model, impacts: Impacts, steps: Steps) -> None:
         self.model = model
         self._steps = steps
         self._impacts = impacts
         self._neighbours = NeighbourList(model)
+        self.unclosed = 0, 0.0
 
     def advance(self, steps: int, until: float = math.inf) -> tuple[int, StopReason]:
         """Take up to `steps` steps that end by `until` (s), as every stepper does."""
@@ -90,8 +94,10 @@ class DrivenCollisions:
                 return reason
 
     def _fetch_impacts(self) -> None:
-        """Enter the impacts that were reported."""
-        whole, report = self._neighbours.driven.whole, self._neighbours.driven.report
+        """Enter the impacts that were reported, and note how contacts closed."""
+        driven = self._neighbours.driven
+        whole, report = driven.whole, driven.report
+        self.unclosed = int(whole[Whole.UNCLOSED]), float(driven.real[Real.UNCLOSED])
         count = int(whole[Whole.REPORTED])
         if count:
             details = report.details[:count]

@@ -15,10 +15,13 @@ from pinjoint.components.collision_state import PersistentContacts
 from pinjoint.components.particle import Particle
 from pinjoint.components.rod import spawn_rods
 from pinjoint.systems.collision.columns import Contact, Group
+from pinjoint.systems.collision.driven.columns import Order, Phase, Real, Whole
 from pinjoint.systems.collision.driven.compiled import DRIVEN, kernels
+from pinjoint.systems.collision.driven.kernels.contacts import MOST_STEP_CUTS, choose_contacts, judge_forces
 from pinjoint.systems.collision.driven.neighbours import NeighbourList
 from pinjoint.systems.collision.system import persistent_contacts
 from pinjoint.systems.edit.pull import hand_on
+from pinjoint.systems.entries import Account, Control
 from pinjoint.systems.physics.integrators import INTEGRATORS
 from pinjoint.systems.program.compiler import Compile
 from pinjoint.systems.program.program import Program
@@ -599,3 +602,25 @@ def test_an_impact_along_a_row_of_discs_ends(count: int) -> None:
     speed = session.particles.velocity[:count, 0]
     assert speed[:-1] == pytest.approx(np.zeros(count - 1), abs=1e-12)
     assert speed[-1] == pytest.approx(1.0, rel=1e-12)
+
+
+def test_contacts_that_no_forces_close_are_counted_and_told() -> None:
+    """A disc that is pressed into another while its step cannot be cut any more."""
+    discs = [{"name": name, "position": [x, 0.0], "radius": 0.05} for name, x in (("A", 0.0), ("B", 0.1))]
+    session = Session.open({"format": "pinjoint model", "version": 1, "particles": discs})
+    near = NeighbourList(session.model)
+    near.look_up()
+    near.list_within(0.0)
+    driven, place, speed = near.driven, near.displacement.copy(), near.velocity.copy()
+    driven.lasting[0] = 1
+    assert choose_contacts(driven, place)
+    control, account = np.zeros(len(Control)), np.zeros(len(Account))
+    control[Control.TIME], driven.whole[Whole.TURN], driven.whole[Whole.CUTS] = 1e-3, 1, MOST_STEP_CUTS
+    place[1, 0] -= 0.01 * 0.05
+    assert judge_forces(driven, control, account, place, speed) == Order.GO_ON
+    assert driven.whole[Whole.PHASE] == Phase.HELD  # the step is accepted
+    assert driven.whole[Whole.UNCLOSED] == 1
+    assert driven.real[Real.UNCLOSED] == pytest.approx(0.01, rel=1e-6)
+    session.simulation._driven_collisions.unclosed = 1, 0.01
+    assert "In one step no forces were found that close all contacts" in session.simulation.warning
+    assert "1.00 % of a radius" in session.simulation.warning

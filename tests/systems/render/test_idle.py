@@ -9,9 +9,11 @@ from typing import Any
 
 os.environ.setdefault("SDL_VIDEODRIVER", "dummy")
 
+import numpy as np
 import pytest
 
 import pinjoint.systems.edit.hover
+from pinjoint import Session
 from pinjoint.app import SELDOM, App
 from pinjoint.documents import models
 from pinjoint.systems.edit.picking import pick
@@ -58,6 +60,27 @@ def test_a_running_window_draws_every_frame_and_one_at_rest_none(app: App) -> No
     app.session.run(until="rest")
     frames(app, 2)
     assert frames(app, 20) == 0
+
+
+def test_one_of_a_thousand_flashes_is_drawn_anew(app: App) -> None:
+    view = app.session.view
+    before = view.looks
+    view.flashes = np.zeros((1200, 2))
+    assert view.looks != before
+    before = view.looks
+    view.flashes[600, 1] = 1e-9
+    assert view.looks != before
+    assert view.looks == view.looks
+
+
+def test_tables_of_the_force_method_are_drawn_once() -> None:
+    session = Session.open("hyperstatic")
+    for key in ("k", "k", "k", "k", "k"):
+        session.press(key)
+    session.update_view()
+    looks = [view.looks for _, view in session.stages]
+    session.update_view()
+    assert [view.looks for _, view in session.stages] == looks
 
 
 def test_what_lies_under_a_resting_pointer_is_looked_up_once(app: App, monkeypatch: pytest.MonkeyPatch) -> None:

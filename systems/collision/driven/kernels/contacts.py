@@ -171,7 +171,11 @@ def judge_forces(driven, control, account, place, speed):
         whole[Whole.PHASE] = Phase.TRYING
         return Order.GO_ON
     after = driven.ahead if whole[Whole.FORESEEN] else place
-    if not lost and (_measure(driven, after) or whole[Whole.CUTS] == MOST_STEP_CUTS):
+    closed = not lost and _measure(driven, after)
+    if not lost and not closed and whole[Whole.CUTS] == MOST_STEP_CUTS:
+        _note_unclosed(driven)
+        closed = True
+    if closed:
         if h > 0.5 * real[Real.CUT]:  # the next step may be longer than one that was cut
             real[Real.CUT] *= 2.0
         return Order.GO_ON
@@ -187,6 +191,18 @@ def judge_forces(driven, control, account, place, speed):
         begin_search(driven)
     whole[Whole.PHASE] = Phase.TRYING
     return Order.GO_ON
+
+
+@compiled
+def _note_unclosed(driven):
+    """Note that contacts stay as the forces that were tried leave them, and how far they are from closed."""
+    driven.whole[Whole.UNCLOSED] += 1
+    for c in range(driven.whole[Whole.CHOSEN]):
+        k = driven.chosen[c]
+        size = min(driven.size[driven.pairs[k, 0]], driven.size[driven.pairs[k, 1]])
+        gap = driven.search[Tried.GAP, c]
+        wrong = abs(gap) if driven.search[Tried.FORCES, c] > 0.0 else -gap
+        driven.real[Real.UNCLOSED] = max(driven.real[Real.UNCLOSED], wrong / size)
 
 
 @compiled
