@@ -158,7 +158,8 @@ ACTIONS = Actions()
 def actions_of(purpose: str, scenes: tuple[str, ...] = LIVE, **usual: Any) -> Callable[..., Callable[[P], P]]:
     """The decorator that registers functions of (context, pixel) as actions of a purpose, with what is usual of them.
 
-    It is given the name, a key (or keys) and a title if there are, else other scenes, further bindings, other facts.
+    It is given the name, a key (or keys) and a title if there are, other scenes, and other facts. Stacked, those above the
+    lowest bind further keys.
     """
 
     def action(
@@ -166,10 +167,11 @@ def actions_of(purpose: str, scenes: tuple[str, ...] = LIVE, **usual: Any) -> Ca
     ) -> Any:
         several = (keys,) if isinstance(keys, str) else keys
         bindings = [Binding(key, where, title) for key in several]
-        also = facts.pop("also", ())
 
         def register(perform: P) -> P:
-            ACTIONS[name] = Action(name, perform, (*bindings, *also), purpose, **usual | facts)
+            known = ACTIONS.get(name) or Action(name, perform, (), purpose, **usual | facts)
+            assert known.perform is perform, f"there is an action '{name}' already"
+            ACTIONS[name] = replace(known, bindings=(*known.bindings, *bindings))
             return perform
 
         return register

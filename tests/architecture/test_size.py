@@ -15,7 +15,7 @@ CONTAINERS = ("list", "dict", "set", "deque", "defaultdict", "OrderedDict", "Cou
 FUNCTION = ast.FunctionDef | ast.AsyncFunctionDef
 
 MOST = {
-    "lines": 66_918,
+    "lines": 66_894,
     "files": 406,
     "names": 4_019,  # functions, classes and constants of modules
     "public names": 2_434,

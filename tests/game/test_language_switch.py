@@ -89,4 +89,4 @@ def test_undo_says_in_the_present_language_what_was_done_in_another():
     for _ in range(2):
         session.press("ctrl+z")
         said.append(session.message)
-    assert said == ["Anulado: criar partícula", f"Anulado: módulo de Young de barra {rod.name}"]
+    assert said == ["Anulado: criar partícula", f"Anulado: módulo de elasticidade de barra {rod.name}"]

@@ -13,7 +13,7 @@ from pinjoint.editor.scenes.form import FormScene
 from pinjoint.editor.sliders import add_slider_for
 from pinjoint.systems.edit import Refusal
 from pinjoint.systems.forms import typing
-from pinjoint.systems.input.actions import FORMS, LOAD, PROPERTIES, SAVE, Binding, Perform, actions_of
+from pinjoint.systems.input.actions import FORMS, LOAD, PROPERTIES, SAVE, Perform, actions_of
 
 action = actions_of("Boxes", FORMS)
 FILES = (SAVE, LOAD)
@@ -34,13 +34,10 @@ def _on_form(act: Callable[[Any, Context], object]) -> Perform:
     return lambda context, pixel: act(_form_scene(context), context)
 
 
-action(
-    "accept",
-    "return",
-    "accept the value, or go back",
-    (PROPERTIES,),
-    also=(Binding("return", (SAVE,), "save"), Binding("return", (LOAD,), "open")),
-)(_on_form(lambda s, context: s.accept(context)))
+_accept = _on_form(lambda s, context: s.accept(context))
+action("accept", "return", "accept the value, or go back", (PROPERTIES,))(_accept)
+action("accept", "return", "save", (SAVE,))(_accept)
+action("accept", "return", "open", (LOAD,))(_accept)
 action("cancel", "escape", "restore the old value, or go back")(_on_form(lambda s, context: s.cancel(context)))
 action("next box", "tab", "go to the next box", repeats=True)(
     _on_form(lambda s, context: s.next_box(context, 1))
@@ -50,22 +47,17 @@ action("previous box", "shift+tab", "go to the previous box", repeats=True)(
 )
 
 
-@action(
-    "click form",
-    "click",
-    "select a box, or accept its value",
-    (PROPERTIES,),
-    also=(Binding("click", FILES, "choose"),),
-)
+@action("click form", "click", "choose", FILES)
+@action("click form", "click", "select a box, or accept its value", (PROPERTIES,))
 def _click_form(context: Context, pixel: Vector) -> None:
     _form_scene(context).click(context, pixel)
 
 
 def _goes(way: str, title: str) -> None:
     """The action of an arrow key."""
-    also = (Binding(way, FILES, "choose a picture"),)
     act = _on_form(lambda s, context: s.move(context, way))
-    action(f"go {way}", way, title, (PROPERTIES,), also=also, repeats=True)(act)
+    action(f"go {way}", way, title, (PROPERTIES,), repeats=True)(act)
+    action(f"go {way}", way, "choose a picture", FILES)(act)
 
 
 _goes("up", marked("go up, or to the previous choice"))

@@ -30,7 +30,6 @@ from pinjoint.systems.input.actions import (
     LIVE,
     PAUSE,
     SIMULATION,
-    Binding,
     Perform,
     actions_of,
 )
@@ -81,14 +80,10 @@ def _open(context: Context, pixel: Vector) -> None:
         ACTIONS["properties"].perform(context, pixel)
 
 
+@action("open menu", "shift+f10", where=IN_PICTURES)
+@action("open menu", "menu", "open the menu at the pointer", IN_PICTURES)
 @action(
-    "open menu",
-    ("right click", "menu"),
-    "open the menu at the pointer",
-    IN_PICTURES,
-    also=(Binding("shift+f10", IN_PICTURES),),
-    while_drawing=True,
-    in_menu=True,
+    "open menu", "right click", "open the menu at the pointer", IN_PICTURES, in_menu=True, while_drawing=True
 )
 def _open_menu(context: Context, pixel: Vector) -> None:
     """The menu of what is under the pointer, which is selected; a drawing, or a tool in hand, is ended instead."""
@@ -104,14 +99,8 @@ def _open_menu(context: Context, pixel: Vector) -> None:
     context.view.menu = menu_at(context, pixel)
 
 
-@action(
-    "drag",
-    "drag",
-    "move an element, or select in a box",
-    (PAUSE,),
-    while_drawing=True,
-    also=(Binding("drag", (SIMULATION,), "pull a particle, or select in a box"),),
-)
+@action("drag", "drag", "pull a particle, or select in a box", (SIMULATION,))
+@action("drag", "drag", "move an element, or select in a box", (PAUSE,), while_drawing=True)
 def _drag(context: Context, pixel: Vector) -> None:
     """With a tool, draw; else drag the element under the pointer; where there is none, a box to select in."""
     model, view = context.model, context.view
@@ -136,13 +125,13 @@ def _drag_to_add(context: Context, pixel: Vector) -> None:
     context.gesture = BoxSelect(context, pixel, adding=True)
 
 
-@action("drag to", "drag to", "", IN_LESSONS, while_drawing=True)
+@action("drag to", "drag to", where=IN_LESSONS, while_drawing=True)
 def _drag_to(context: Context, pixel: Vector) -> None:
     if context.gesture is not None:
         context.gesture.move(context, pixel)
 
 
-@action("drop", "drop", "", IN_LESSONS, while_drawing=True)
+@action("drop", "drop", where=IN_LESSONS, while_drawing=True)
 def _drop(context: Context, pixel: Vector) -> None:
     gesture, context.gesture = context.gesture, None
     if gesture is not None:
@@ -170,14 +159,8 @@ def _draw(context: Context, tool: str, pixel: Vector) -> None:
 # --- keys ------------------------------------------------------------------------------------------------
 
 
-@action(
-    "escape",
-    "escape",
-    "put the tool away, or pause",
-    (SIMULATION,),
-    while_drawing=True,
-    also=(Binding("escape", (PAUSE,), "put the tool away, or deselect"),),
-)
+@action("escape", "escape", "put the tool away, or deselect", (PAUSE,))
+@action("escape", "escape", "put the tool away, or pause", (SIMULATION,), while_drawing=True)
 def _escape(context: Context, pixel: Vector) -> None:
     """Cancel the drawing, else put the tool away, else hide a shape, else end the run or deselect."""
     if context.cancel_gesture():

@@ -9,12 +9,13 @@ from pinjoint.documents.models import ModelError
 from pinjoint.documents.open_documents import stamp_of
 from pinjoint.editor.context import Context
 from pinjoint.systems.edit import Refusal
-from pinjoint.systems.input.actions import LIVE, PAUSE, Binding, actions_of
+from pinjoint.systems.input.actions import PAUSE, actions_of
 
 action = actions_of("Files")
 
 
-@action("save", "s", "save as", (PAUSE,), also=(Binding("ctrl+shift+s", LIVE, "save as"),))
+@action("save", "ctrl+shift+s", "save as")
+@action("save", "s", "save as", (PAUSE,))
 def _save(context: Context, pixel: Vector) -> None:
     context.scenes.request_from_pause("save")
 
@@ -40,7 +41,8 @@ def _save_again(context: Context, pixel: Vector) -> None:
         context.notice = str(error)
 
 
-@action("load", "d", "open a model", (PAUSE,), also=(Binding("ctrl+o", LIVE, "open a model"),))
+@action("load", "ctrl+o", "open a model")
+@action("load", "d", "open a model", (PAUSE,))
 def _load(context: Context, pixel: Vector) -> None:
     context.scenes.request_from_pause("load")
 

@@ -20,7 +20,7 @@ from pinjoint.systems.edit.placing import snapped
 from pinjoint.systems.edit.rods import share_at
 from pinjoint.systems.edit.supports import SUPPORTS, Held, held, support
 from pinjoint.systems.edit.weight import weigh_along
-from pinjoint.systems.input.actions import ACTIONS, IN_PICTURES, MENU, PAUSE, Binding, Perform, actions_of
+from pinjoint.systems.input.actions import ACTIONS, IN_PICTURES, MENU, PAUSE, Perform, actions_of
 from pinjoint.systems.render.menu import menu_of
 
 action = actions_of("Menu", (MENU,), while_drawing=True, in_menu=True)
@@ -50,12 +50,8 @@ action("menu left", "left", "go to the column on the left", repeats=True)(_to_en
 action("menu right", "right", "go to the column on the right", repeats=True)(_to_entry("right"))
 
 
-@action(
-    "choose entry",
-    "return",
-    "choose the entry",
-    also=(Binding("click", (MENU,), "choose the entry; outside, close the menu"),),
-)
+@action("choose entry", "click", "choose the entry; outside, close the menu")
+@action("choose entry", "return", "choose the entry")
 def _choose_nothing(context: Context, pixel: Vector) -> None:
     """A press that comes to no entry, or to one that would do nothing; others perform the action of the entry."""
 

@@ -9,7 +9,7 @@ from pinjoint.components.language import LANGUAGES, language, speak, tr
 from pinjoint.editor.context import Context
 from pinjoint.editor.view_model import pages_of_help
 from pinjoint.systems.edit import Refusal
-from pinjoint.systems.input.actions import EVERY, IN_PICTURES, Binding, Perform, actions_of
+from pinjoint.systems.input.actions import EVERY, IN_PICTURES, Perform, actions_of
 from pinjoint.systems.render.theme import load_theme
 
 action = actions_of("View", EVERY, while_drawing=True)
@@ -73,8 +73,9 @@ def _magnify(by: int) -> Perform:
     return act
 
 
-_also = (Binding("ctrl+shift++", EVERY),)
-action("larger", "ctrl++", "make text larger or smaller", also=_also, repeats=True)(_magnify(1))
+_larger = _magnify(1)
+action("larger", "ctrl++", "make text larger or smaller", repeats=True)(_larger)
+action("larger", "ctrl+shift++")(_larger)
 action("smaller", "ctrl+-", "make text larger or smaller", repeats=True)(_magnify(-1))
 action("usual size", "ctrl+0", "reset the size of text")(_magnify(0))
 
