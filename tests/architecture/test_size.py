@@ -15,13 +15,13 @@ CONTAINERS = ("list", "dict", "set", "deque", "defaultdict", "OrderedDict", "Cou
 FUNCTION = ast.FunctionDef | ast.AsyncFunctionDef
 
 MOST = {
-    "lines": 66_894,
+    "lines": 66_388,
     "files": 406,
-    "names": 4_019,  # functions, classes and constants of modules
-    "public names": 2_434,
-    "numbers": 1_548,  # other than 0, 1 and 2, in constants and defaults
+    "names": 3_972,  # functions, classes and constants of modules
+    "public names": 2_388,
+    "numbers": 1_541,  # other than 0, 1 and 2, in constants and defaults
     "registers": 46,  # containers that fill while the program runs, and caches of functions
-    "lines of tests": 52_756,
+    "lines of tests": 52_767,
 }
 
 
