@@ -13,7 +13,8 @@ PERSONS = "editing", "windows", "--actions", "150"
 
 
 def test_anything_that_a_person_does_interpreted(fresh_process: Callable[..., str]) -> None:
-    fresh_process(fuzzing(*PERSONS, "--count", "3", "--seed", "105"), {"PINJOINT_COMPILE": "never"})
+    interpreted = {"PINJOINT_COMPILE": "never"}
+    fresh_process(fuzzing(*PERSONS, "--count", "3", "--seed", "105"), interpreted, timeout=800.0)
 
 
 def test_whatever_a_person_does_stays_within_arrays() -> None:

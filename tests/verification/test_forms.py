@@ -95,7 +95,7 @@ def test_bits_of_what_may_meet_do_not_depend_on_the_portions(
     assert len(found) == 1
 
 
-@pytest.mark.parametrize("title", ["frame, velocity_verlet", "frame, dop853", "portal, dop853"])
+@pytest.mark.parametrize("title", ["frame, velocity_verlet", "frame, esdirk4", "portal, dop853"])
 def test_machine_code_may_take_over_from_frames_at_any_step(title: str) -> None:
     document = MEETING[title]
     interpreted = state(document, STEPS, Compile.NEVER)

@@ -15,7 +15,6 @@ from pinjoint.documents.document import parse
 from pinjoint.systems.base import Law
 from pinjoint.systems.kernels import compiled
 from pinjoint.systems.physics.integrators import INTEGRATORS
-from pinjoint.systems.program.compiler import Choice, Compile
 from pinjoint.systems.program.parallel import make_program
 from pinjoint.systems.program.program import Program
 from pinjoint.systems.program.writer import FEW, MANY, VERY_MANY
@@ -88,20 +87,6 @@ def test_trusses_know_nothing_of_it(name: str, form: str) -> None:
     plan = session.simulation.programs.plan
     source = make_program(session.model, plan, INTEGRATORS[name], form).source
     assert not OF_TURNING.findall(source)
-
-
-@pytest.mark.parametrize("name", ["velocity_verlet", "dop853", "esdirk4"])
-def test_interpreted_and_compiled_have_the_same_bits(name: str, monkeypatch: pytest.MonkeyPatch) -> None:
-    states = []
-    for compiles in (False, True):
-        monkeypatch.setattr(Choice, "compile", Compile.SOON if compiles else Compile.NEVER)
-        session = Session(parse(beam(integrator=name)))
-        if compiles:
-            session.simulation.programs.compiled.load()
-        session.run(time=0.004)
-        assert session.simulation.programs.compiled.module.is_loaded == compiles
-        states.append(state_of(session))
-    assert states[0] == states[1]
 
 
 @pytest.mark.parametrize("name", ["velocity_verlet", "semi_implicit_euler", "taylor2"])
