@@ -328,6 +328,7 @@ class NoEnergy(Conservative):
     potential = staticmethod(njit(lambda apart: apart))
 
 
+@pytest.mark.usefixtures("kernels_of_mods")
 @pytest.mark.parametrize(
     ("law", "says"),
     [

@@ -457,6 +457,7 @@ class WideArray(OwnArray):
         return {"tie": np.ones((model.particles.count, 5, 13))}
 
 
+@pytest.mark.usefixtures("kernels_of_mods")
 @pytest.mark.parametrize(
     ("system", "says"),
     [
