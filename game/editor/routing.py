@@ -7,7 +7,7 @@ from pinjoint.components.view import Hit, Readout
 from pinjoint.editor.context import Context
 from pinjoint.systems.input.actions import FORMS, LIVE, MENU, action_for
 from pinjoint.systems.render.menu import pointed_at
-from pinjoint.systems.render.picture import hits
+from pinjoint.systems.render.picture import hits_at
 from pinjoint.systems.render.sliders import SLIDER
 from pinjoint.systems.render.theme import load_theme
 
@@ -29,8 +29,8 @@ def hit_at(context: Context, key: str, pixel: Vector) -> Hit | None:
         return None
     theme = load_theme(context.view.theme)
     for shown, view in reversed(context.stages):
-        for hit in reversed(hits(shown, view, theme)):
-            if hit.contains(pixel) and _takes(context, hit, key):
+        for hit in reversed(hits_at(shown, view, theme, pixel)):
+            if _takes(context, hit, key):
                 return hit if hit.action is not None else None
     return None
 

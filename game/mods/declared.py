@@ -13,7 +13,7 @@ import inspect
 import re
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from functools import cache, wraps
-from types import AsyncGeneratorType, CoroutineType, GeneratorType, UnionType
+from types import AsyncGeneratorType, CoroutineType, GeneratorType, MappingProxyType, UnionType
 from typing import Any, Literal, TypeVar, Union, get_args, get_origin, get_type_hints
 
 import numpy as np
@@ -43,10 +43,15 @@ def check(value: Any, declared: Any, called: str) -> None:
         raise TypeError(tr("{called} is {value}; it must be of type {type}", **told))
 
 
-def check_fields(value: Any, kind: type) -> None:
-    """Raise TypeError if a field of a dataclass or a named tuple is not of its declared type."""
+def check_fields(value: Any, kind: type, checked: Mapping[str, Any] = MappingProxyType({})) -> None:
+    """Raise TypeError if a field of a dataclass or a named tuple is not of its declared type.
+
+    checked: fields that were of theirs; those that are the same objects still, and do not change in place, are.
+    """
     for name, hint in _fields(kind).items():
-        check(getattr(value, name), hint, f"{kind.__name__}.{name}")
+        field = getattr(value, name)
+        if field is not checked.get(name, value) or type(field).__hash__ is None:
+            check(field, hint, f"{kind.__name__}.{name}")
 
 
 def check_has_run(value: Any, called: str) -> None:

@@ -6,7 +6,7 @@ What a person sees and does of mods is guarded in interface.py.
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from contextlib import contextmanager
 from copy import copy
 from dataclasses import replace
@@ -145,7 +145,7 @@ def view_kept(context: Context) -> Iterator[None]:
     attributes, camera = dict(vars(view)), copy(view.camera)
     try:
         yield
-        check_view(context.view)
+        check_view(context.view, attributes if context.view is view else {})
         check(context.notice, str, tr("the session's notice"))
     except BaseException:
         vars(view).update(attributes, camera=camera)
@@ -153,9 +153,9 @@ def view_kept(context: Context) -> Iterator[None]:
         raise
 
 
-def check_view(view: View) -> None:
-    """Raise TypeError or ValueError if a view holds what cannot be shown."""
-    check_fields(view, View)
+def check_view(view: View, shown: Mapping[str, Any]) -> None:
+    """Raise TypeError or ValueError if a view holds what cannot be shown, beside what it showed before."""
+    check_fields(view, View, shown)
     numbers = (*view.camera.centre, view.camera.scale, view.pixel_ratio)
     if not (all(map(math.isfinite, numbers)) and view.camera.scale > 0.0 < view.pixel_ratio):
         raise WrongValue(

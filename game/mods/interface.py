@@ -184,5 +184,5 @@ def _shown(made: Any) -> Any:
         if isinstance(view, tuple):  # a stage
             _shown(view)
         elif isinstance(view, View):
-            check_view(view)
+            check_view(view, {})
     return made

@@ -197,7 +197,8 @@ def key_named(text: str) -> str:
         held.add(MODIFIERS[modifier])
         name = name.removeprefix(modifier)
     name = ALSO_CALLED.get(name, name)
-    known = {b.key.removeprefix("ctrl+").removeprefix("shift+") for _, b in ACTIONS.bound()} | {*UNBOUND}
+    keys = (binding.key for action in ACTIONS.data.values() for binding in action.bindings if binding.key)
+    known = {key.removeprefix("ctrl+").removeprefix("shift+") for key in keys} | {*UNBOUND}
     if len(name) != 1 and name not in known:
         raise ValueError(missing(marked("keys"), text, sorted(key for key in known if len(key) > 1)))
     if len(name) == 1 and "ctrl+" not in held:

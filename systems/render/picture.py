@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 
 from pinjoint.components.extensions import EXTENSIONS
+from pinjoint.components.field import Vector
 from pinjoint.components.form import Form
 from pinjoint.components.model import Model
 from pinjoint.components.toolbar import Toolbar
@@ -25,7 +26,7 @@ from pinjoint.systems.render.page import draw_page
 from pinjoint.systems.render.pointed import draw_pointed
 from pinjoint.systems.render.readouts import put_readouts
 from pinjoint.systems.render.sheet import Sheet, measure
-from pinjoint.systems.render.sliders import put_sliders
+from pinjoint.systems.render.sliders import put_sliders, slider_hits
 from pinjoint.systems.render.structure import (
     draw_ghost,
     draw_grid,
@@ -89,22 +90,30 @@ def compose(
     return Picture(sheet.viewport, theme.background, draw_page(sheet))
 
 
-def hits(model: Model | Form | Toolbar, view: View, theme: Theme) -> Sequence[Hit]:
-    """Where a press does something in the picture of a stage; the model is drawn only where panels stand beside it."""
-    if not isinstance(model, Model) or view.card is not None or (view.readouts and view.legend):
-        return compose(model, view, theme).hits
-    paper = Paper(view.pixel_ratio)
-    _put_controls(paper, model, view, theme)
-    return paper.hits
+def hits_at(model: Model | Form | Toolbar, view: View, theme: Theme, pixel: Vector) -> list[Hit]:
+    """Where a press at a pixel does something in the picture of a stage, the topmost last.
+
+    The toolbar is composed only where it or what opens over it may lie, a model only where panels stand beside it.
+    """
+    if isinstance(model, Toolbar) and not (view.strip.contains(pixel) or view.help or view.menu):
+        return []
+    panels = bool(view.readouts) and view.legend and view.panels.contains(pixel)
+    if not isinstance(model, Model) or view.card is not None or panels:
+        found = compose(model, view, theme).hits
+    else:
+        paper = Paper(view.pixel_ratio)
+        _put_controls(paper, model, view, theme)
+        found = paper.hits
+    return [hit for hit in found if hit.contains(pixel)]
 
 
 def _put_controls(paper: Paper, model: Model, view: View, theme: Theme) -> None:
-    """What lies over a model wherever that is: the status bar, sliders, the card of an empty model."""
+    """What can be pressed over a model wherever that is: the status bar, sliders, the card of an empty model."""
     v, high = view.canvas, BAR * view.pixel_ratio
     if view.page is None:
         if not view.caption:  # one of several models has no status bar
             paper.hits.append(Hit(v.left, v.bottom - high, v.width, high, ""))
-        put_sliders(paper, view, theme)
+        paper.hits += slider_hits(view)
     if shows_card(model, view):
         put_card(paper, view, theme)
 
@@ -153,6 +162,7 @@ def _composed(sheet: Sheet) -> Picture:
     put_readouts(paper, sheet, room)
     overlays += draw_notice(sheet, room)
     scale = place_scale(sheet, room) if model.particles.count and sheet.view.has_scale else None
+    put_sliders(paper, sheet.view, theme)
     _put_controls(paper, model, sheet.view, theme)
     labels = place_labels(sheet.labels, sheet.occupancy, sheet.unit, sheet.placed)
     over = [

@@ -37,7 +37,12 @@ def put_sliders(paper: Paper, view: View, theme: Theme) -> None:
         sign = Text(control.button, sizes, ink, "semibold", "centre", wide=BUTTON)
         pressed = button(sign, SLIDER, theme, pressed=control.pressed, inset=3.0)
         paper.put(Plate(Row((said, pressed)), faded(theme.panel, 0.94), theme.line, radius=6.0), place)
-        paper.hits.append(Hit(*place.box, SLIDER, item=place, wheel=("slider up", "slider down"), again=True))
+
+
+def slider_hits(view: View) -> list[Hit]:
+    """Where they take presses: all over their panels, for it is the slider that knows its button."""
+    wheel = "slider up", "slider down"
+    return [Hit(*place.box, SLIDER, item=place, wheel=wheel, again=True) for place in view.slider_places]
 
 
 def _knob(place: Place, theme: Theme, hovered: bool, at: Rectangle, u: float) -> list[Mark]:

@@ -12,7 +12,7 @@ from pinjoint.components.model import Model
 from pinjoint.components.view import Readout
 from pinjoint.documents.library import data_apart
 from pinjoint.editor.scenes.form import FormScene
-from pinjoint.systems.render.picture import hits
+from pinjoint.systems.render.picture import compose
 from pinjoint.systems.render.theme import load_theme
 from tests.golden.scenes import SCENES, Scene, Window, opened, pressed
 from tests.golden.states import STATES
@@ -58,7 +58,7 @@ def handles(session: Session) -> Iterator[tuple[str, Vector]]:
     for shown, view in session.stages:
         if not isinstance(shown, Model) or view.page is not None:
             continue
-        for hit in hits(shown, view, load_theme(view.theme)):
+        for hit in compose(shown, view, load_theme(view.theme)).hits:
             if isinstance(hit.item, Readout) and hit.action:
                 yield f"panel {hit.item.title} {hit.item.plot}", hit.middle
         for place in view.slider_places:

@@ -4,14 +4,14 @@ from __future__ import annotations
 
 from pinjoint import Session
 from pinjoint.components.view import Hit
-from pinjoint.systems.render.picture import hits
+from pinjoint.systems.render.picture import compose
 from pinjoint.systems.render.theme import load_theme
 
 
 def hits_in(session: Session) -> list[Hit]:
     """All hits, the topmost last."""
     theme = load_theme(session.view.theme)
-    return [hit for shown, view in session.stages for hit in hits(shown, view, theme)]
+    return [hit for shown, view in session.stages for hit in compose(shown, view, theme).hits]
 
 
 def hits_for(session: Session, action: str) -> list[Hit]:
