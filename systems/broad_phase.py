@@ -35,7 +35,8 @@ def distance_to_segments(points: Floats, start: Floats, end: Floats) -> Floats:
     squared = along_x * along_x + along_y * along_y
     share = -(x * along_x + y * along_y) / np.where(squared > 0.0, squared, 1.0)
     share = np.minimum(np.maximum(share, 0.0), 1.0)  # np.clip takes a multiple of the time for a few
-    found: Floats = np.hypot(x + share * along_x, y + share * along_y)
+    x, y = x + share * along_x, y + share * along_y
+    found: Floats = np.sqrt(x * x + y * y)  # np.hypot takes ten times as long for many
     return found
 
 
