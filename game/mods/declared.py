@@ -44,10 +44,7 @@ def check(value: Any, declared: Any, called: str) -> None:
 
 
 def check_fields(value: Any, kind: type, checked: Mapping[str, Any] = MappingProxyType({})) -> None:
-    """Raise TypeError if a field of a dataclass or a named tuple is not of its declared type.
-
-    checked: fields that were of theirs; those that are the same objects still, and do not change in place, are.
-    """
+    """Raise TypeError if a field of plain data is not of its type; those `checked` that are still the same are."""
     for name, hint in _fields(kind).items():
         field = getattr(value, name)
         if field is not checked.get(name, value) or type(field).__hash__ is None:

@@ -26,7 +26,7 @@ from pinjoint.systems.render.page import draw_page
 from pinjoint.systems.render.pointed import draw_pointed
 from pinjoint.systems.render.readouts import put_readouts
 from pinjoint.systems.render.sheet import Sheet, measure
-from pinjoint.systems.render.sliders import put_sliders, slider_hits
+from pinjoint.systems.render.sliders import SLIDER, put_sliders
 from pinjoint.systems.render.structure import (
     draw_ghost,
     draw_grid,
@@ -97,14 +97,12 @@ def hits_at(model: Model | Form | Toolbar, view: View, theme: Theme, pixel: Vect
     """
     if isinstance(model, Toolbar) and not (view.strip.contains(pixel) or view.help or view.menu):
         return []
-    panels = bool(view.readouts) and view.legend and view.panels.contains(pixel)
+    paper, panels = Paper(view.pixel_ratio), view.readouts and view.legend and view.panels.contains(pixel)
     if not isinstance(model, Model) or view.card is not None or panels:
-        found = compose(model, view, theme).hits
+        paper.hits += compose(model, view, theme).hits
     else:
-        paper = Paper(view.pixel_ratio)
         _put_controls(paper, model, view, theme)
-        found = paper.hits
-    return [hit for hit in found if hit.contains(pixel)]
+    return [hit for hit in paper.hits if hit.contains(pixel)]
 
 
 def _put_controls(paper: Paper, model: Model, view: View, theme: Theme) -> None:
@@ -113,7 +111,8 @@ def _put_controls(paper: Paper, model: Model, view: View, theme: Theme) -> None:
     if view.page is None:
         if not view.caption:  # one of several models has no status bar
             paper.hits.append(Hit(v.left, v.bottom - high, v.width, high, ""))
-        paper.hits += slider_hits(view)
+        wheel, places = ("slider up", "slider down"), view.slider_places  # a slider knows its button
+        paper.hits += [Hit(*place.box, SLIDER, item=place, wheel=wheel, again=True) for place in places]
     if shows_card(model, view):
         put_card(paper, view, theme)
 

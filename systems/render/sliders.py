@@ -9,7 +9,7 @@ import numpy as np
 from pinjoint.components.camera import Rectangle
 from pinjoint.components.language import tr
 from pinjoint.components.slider import BUTTON, PAD, Place
-from pinjoint.components.view import Hit, View
+from pinjoint.components.view import View
 from pinjoint.systems.render.buttons import button
 from pinjoint.systems.render.layout import Column, Drawn, Paper, Plate, Row, Text
 from pinjoint.systems.render.marks import Mark, Stamps, boxes
@@ -37,12 +37,6 @@ def put_sliders(paper: Paper, view: View, theme: Theme) -> None:
         sign = Text(control.button, sizes, ink, "semibold", "centre", wide=BUTTON)
         pressed = button(sign, SLIDER, theme, pressed=control.pressed, inset=3.0)
         paper.put(Plate(Row((said, pressed)), faded(theme.panel, 0.94), theme.line, radius=6.0), place)
-
-
-def slider_hits(view: View) -> list[Hit]:
-    """Where they take presses: all over their panels, for it is the slider that knows its button."""
-    wheel = "slider up", "slider down"
-    return [Hit(*place.box, SLIDER, item=place, wheel=wheel, again=True) for place in view.slider_places]
 
 
 def _knob(place: Place, theme: Theme, hovered: bool, at: Rectangle, u: float) -> list[Mark]:

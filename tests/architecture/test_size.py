@@ -15,7 +15,7 @@ CONTAINERS = ("list", "dict", "set", "deque", "defaultdict", "OrderedDict", "Cou
 FUNCTION = ast.FunctionDef | ast.AsyncFunctionDef
 
 MOST = {
-    "lines": 66_051,
+    "lines": 66_063,
     "files": 407,
     "names": 3_946,  # functions, classes and constants of modules
     "public names": 2_386,
