@@ -11,7 +11,7 @@ from itertools import islice
 from typing import Any
 
 from pinjoint.components.field import Role
-from pinjoint.components.language import tr
+from pinjoint.components.language import english, tr
 from pinjoint.components.model import Model
 from pinjoint.documents.format import ModelError
 from pinjoint.editor.host import Waiting
@@ -171,8 +171,8 @@ class Preparation(System):
 
     def _tell(self, session: Any) -> None:
         for sentence in (*cache.REFUSED, *cache.TROUBLE, *UNCOMPILED):
-            if sentence not in self._said:
-                self._said.add(sentence)
+            if english(sentence) not in self._said:
+                self._said.add(english(sentence))
                 session.notice = sentence
                 return
 

@@ -24,7 +24,7 @@ from pathlib import Path
 from types import ModuleType, SimpleNamespace
 from typing import Any
 
-from pinjoint.components.language import begun, tr
+from pinjoint.components.language import begun, english, tr
 from pinjoint.components.mistake import Mistake
 from pinjoint.systems import cache
 from pinjoint.systems.interpreter import NoPlainForm, Rewriting, plain_function, rewrite
@@ -352,7 +352,7 @@ class GeneratedModule:
 
 
 def tell(sentence: str) -> None:
-    if sentence not in UNCOMPILED:
+    if english(sentence) not in map(english, UNCOMPILED):
         UNCOMPILED.append(sentence)
         LOG.warning(sentence)
 

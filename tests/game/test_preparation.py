@@ -88,6 +88,8 @@ def compiler(monkeypatch: pytest.MonkeyPatch) -> Compiler:
     monkeypatch.setattr(GeneratedModule, "load_kept", lambda module: found.load(module))
     monkeypatch.setattr(GeneratedModule, "is_loaded", property(lambda module: module in found.loaded))
     monkeypatch.setattr(Choice, "compile", Compile.SOON)
+    monkeypatch.setattr(programs, "_modules", {})  # what earlier tests compiled is loaded
+    monkeypatch.setattr(programs, "_interpreted", [])
     monkeypatch.setattr(programs, "UNCOMPILED", [])
     monkeypatch.setattr(preparation, "UNCOMPILED", programs.UNCOMPILED)
     monkeypatch.setattr(pygame_input, "IDLE_PAUSE", 0.0)
