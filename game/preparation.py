@@ -18,7 +18,7 @@ from pinjoint.editor.host import Waiting
 from pinjoint.elsewhere import Elsewhere, slower
 from pinjoint.prepare import UNITS, Job, described, in_a_line, problem_of
 from pinjoint.systems import cache
-from pinjoint.systems.base import Phase, StepSystem, System
+from pinjoint.systems.base import Law, Phase, StepSystem, System
 from pinjoint.systems.collision.driven.compiled import DRIVEN
 from pinjoint.systems.collision.free.discs import EVENTS, HORIZONS, PILES
 from pinjoint.systems.collision.free.flight import may_pile
@@ -252,7 +252,7 @@ def _jobs_of(simulation: Simulation) -> list[Job]:
     """What a simulation runs with, and what it will once something rests on a structure."""
     model, plan = simulation.model, simulation.plan
     if simulation.integrator.exact:
-        piles = may_pile(model, any(isinstance(system, Pull) for system in plan))
+        piles = may_pile(model, any(isinstance(system, Law) for system in plan))
         return [(unit.name,) for unit in (EVENTS, HORIZONS, *([PILES] if piles else []))]
     jobs = [_job(simulation, plan)]
     if any(system.impulsive for system in plan):  # particles that do not fly free may meet

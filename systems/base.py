@@ -24,6 +24,7 @@ from enum import Enum, IntEnum
 from typing import Any, ClassVar, Protocol
 
 import esper
+import numpy as np
 from numpy.typing import NDArray
 
 from pinjoint.components.handle import Handle
@@ -143,7 +144,10 @@ class StepSystem(System):
     between: ClassVar[str] = ""
 
     def leaves_flight_exact(self, model: Model) -> bool:
-        """True if particles fly on exact paths between impacts all the same, for which no integrator is needed."""
+        """True if particles fly on exact paths between impacts all the same, for which no integrator is needed.
+
+        A law that does so gives its forces by `held_forces`.
+        """
         return False
 
     def arrays(self, model: Model) -> Mapping[str, NDArray[Any]]:
@@ -189,6 +193,10 @@ class Law(StepSystem):
     def cutoff(self, model: Model) -> float:
         """Distance (m) from which on a law of pairs has no force; infinite: all pairs act on each other."""
         return math.inf
+
+    def held_forces(self, model: Model) -> NDArray[np.float64]:
+        """Forces (kN) that exact flight holds constant during a step, shape (particles, 2), or (2,) for the same on all."""
+        return np.zeros(2)
 
 
 class Commit(StepSystem):

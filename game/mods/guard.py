@@ -10,10 +10,12 @@ from collections.abc import Callable, Iterable, Iterator, Mapping
 from contextlib import contextmanager
 from copy import copy
 from dataclasses import replace
+from functools import partial
 from inspect import getattr_static
 from typing import Any, ClassVar, TypeVar, get_args, get_origin, get_type_hints
 
 import numpy as np
+from numpy.typing import NDArray
 
 from pinjoint.components.field import Column, Field, FieldError, Role
 from pinjoint.components.handle import Handle
@@ -37,7 +39,7 @@ T = TypeVar("T")
 PATIENCE = 2.0  # s that a frame system may take; a longer one is interrupted
 
 _ROLES = (Law, Commit, Event, Integrator, StepSystem, System)
-_QUESTIONS = ("needs", "arrays", "leaves_flight_exact", "cutoff")  # that systems answer
+_QUESTIONS = ("needs", "arrays", "leaves_flight_exact", "cutoff", "held_forces")  # that systems answer
 
 
 # --- systems -------------------------------------------------------------------------------------------
@@ -87,6 +89,8 @@ def guarded_system(mod: Mod, made: System) -> System:
     check_declarations(made, role)
     made.mod, own = mod, vars(made)
     what, process = tr("the system '{name}'", name=made.name), made.process
+    if isinstance(made, Law):
+        own["held_forces"] = partial(_forces_of_each, made.held_forces)
     for name in _QUESTIONS:
         if hasattr(role, name):
             asked = tr("{method} of '{name}'", method=name, name=made.name)
@@ -104,6 +108,11 @@ def guarded_system(mod: Mod, made: System) -> System:
             mod, made, what, model, lambda: happen(model, *elements)
         )
     return made
+
+
+def _forces_of_each(held_forces: Callable[[Model], NDArray[np.float64]], model: Model) -> NDArray[np.float64]:
+    """What a law answered, for each particle. Raises ValueError if it is not finite, or of another shape."""
+    return np.broadcast_to(np.asarray_chkfinite(held_forces(model)), (model.particles.count, 2))
 
 
 def _change_whole(mod: Mod, system: System, what: str, model: Model, change: Callable[[], object]) -> None:

@@ -101,9 +101,8 @@ class Pull(Law):
         )
         return x, y
 
-    def forces(self, count: int) -> NDArray[np.float64]:
-        """The force of the hand on each of `count` particles (kN), shape (count, 2)."""
-        forces = np.zeros((count, 2))
+    def held_forces(self, model: Model) -> NDArray[np.float64]:
+        forces = np.zeros((model.particles.count, 2))
         if self.hand is not None:
             forces[self.hand.particle.row] = self.force
         return forces

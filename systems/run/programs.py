@@ -10,12 +10,11 @@ from pinjoint.components.model import Model
 from pinjoint.components.rod import bears_between, is_warm
 from pinjoint.components.settings import AUTOMATIC
 from pinjoint.components.snapshot import Snapshot
-from pinjoint.systems.base import Integrator, Phase, StepSystem
+from pinjoint.systems.base import Integrator, Law, Phase, StepSystem
 from pinjoint.systems.collision.free.discs import Discs
 from pinjoint.systems.collision.free.flight import Flight
 from pinjoint.systems.collision.impacts import Impacts
 from pinjoint.systems.collision.system import FreeFlight
-from pinjoint.systems.edit.pull import Pull
 from pinjoint.systems.physics.automatic import choose
 from pinjoint.systems.physics.integrators import INTEGRATORS
 from pinjoint.systems.program.binding import ProgramError
@@ -220,8 +219,7 @@ class Programs:
     def _make(self, plan: list[StepSystem]) -> Dynamics:
         if not self.integrator.exact:
             return self._made_by(self.integrator, plan)
-        hand = next((system for system in plan if isinstance(system, Pull)), None)
-        return Flight(self._model, self._impacts, hand)
+        return Flight(self._model, self._impacts, [law for law in plan if isinstance(law, Law)])
 
     def _made_by(self, integrator: Integrator, plan: list[StepSystem]) -> Program:
         """The program of a plan with an integrator. Raises ProgramError for whatever is wrong with that of a mod."""

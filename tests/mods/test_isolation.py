@@ -147,7 +147,7 @@ def test_a_system_that_deletes_everything(session: Any, body: str) -> None:
     made.select(made.particles["C"])
     made.frame(0.01)
     assert [made.model.describe(handle) for handle in made.selected] in (["particle C"], [])
-    check_switched_off(made, before, "Error: ")
+    check_switched_off(made, before, "the system 'apple.bad' failed: ")
     made.model.delete([made.particles["C"]])
     assert made.rods.count == 0
     made.undo()
@@ -409,6 +409,53 @@ def test_where_a_run_diverges_the_laws_of_mods_are_named(write_mod: Write) -> No
     session = Session.open(PULLED, mods=[write_mod("apple", law)])
     assert session.run(time=1.0) == "diverged"
     assert "Laws of mods act in the model: apple.harder; see whether it runs without them." in session.message
+
+
+HELD = """
+import numpy as np
+from numba import njit
+from pinjoint.systems.base import Law
+
+class Wind(Law):
+    name = "apple.wind"
+    each = "particles"
+    kernel = njit(error_model="numpy")(lambda particles_mass: (2.0, 0.0))
+    reads = ("particles.mass",)
+
+    def leaves_flight_exact(self, model):
+        return True
+
+    def held_forces(self, model):
+        return {forces}
+
+def plugin(app):
+    app.system(Wind)
+"""
+DISCS = {
+    "format": "pinjoint model",
+    "version": 1,
+    "particles": [{"name": name, "position": [x, 0.0], "mass": 5.0} for name, x in (("A", 0.0), ("B", 1.0))],
+}
+
+
+@pytest.mark.parametrize("forces", ["np.array([2.0, 0.0])", "np.full((model.particles.count, 2), [2.0, 0.0])"])
+def test_the_law_of_a_mod_moves_discs_on_exact_paths(write_mod: Write, forces: str) -> None:
+    """As the hand that pulls does: its forces act, and their work is all energy that there is."""
+    session = Session.open(DISCS, mods=[write_mod("apple", HELD.format(forces=forces))])
+    session.run(time=0.1)
+    assert session.simulation.integrator.exact
+    force, mass, time = 2000.0, 5.0, session.model.clock.time
+    for name in "AB":
+        assert session.particles[name].velocity == pytest.approx((force / mass * time, 0.0), rel=1e-9)
+    assert session.energy.work == pytest.approx(session.energy.kinetic, rel=1e-9)
+
+
+@pytest.mark.parametrize("forces", ["1 / 0", "'no'", "np.zeros(3)", "np.full(2, np.nan)", "None"])
+def test_forces_that_cannot_be_held_switch_a_mod_off(write_mod: Write, forces: str) -> None:
+    session = Session.open(DISCS, mods=[write_mod("apple", HELD.format(forces=forces))])
+    with pytest.raises(mods.ModError, match=r"held_forces of 'apple\.wind' failed"):
+        session.run(time=0.1)
+    assert not session.model.particles.displacement.any()
 
 
 PAIRS = """

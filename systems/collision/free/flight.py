@@ -6,7 +6,7 @@ import math
 import sys
 import time
 from collections import deque
-from typing import Protocol
+from collections.abc import Sequence
 
 import numpy as np
 from numpy.typing import NDArray
@@ -17,7 +17,7 @@ from pinjoint.components.handle import Handle
 from pinjoint.components.load import loads_end
 from pinjoint.components.model import Model
 from pinjoint.components.obstacles import obstacles
-from pinjoint.systems.base import REVIEW_INTERVAL, Event, StopReason
+from pinjoint.systems.base import REVIEW_INTERVAL, Event, Law, StopReason
 from pinjoint.systems.collision.columns import FLIGHT, PILE_COUNTS, PILE_NUMBERS, Number, Reason
 from pinjoint.systems.collision.free.discs import EVENTS, HORIZONS, Discs, ImpactColumns, state_on
 from pinjoint.systems.collision.impacts import MOST_KEPT, Impacts, TooManyImpacts
@@ -29,37 +29,30 @@ CHECK_INTERVAL = 128  # steps, at multiples of which a run may end at rest
 
 
 def may_pile(model: Model, pulled: bool) -> bool:
-    """True if a hand that pulls, or forces, press particles together for long."""
+    """True if laws, such as a hand that pulls, or constant forces press particles together for long."""
     return pulled or bool(model.particles.constant_force.any())
-
-
-class PullingHand(Protocol):
-    """A force on particles besides their constant forces; see systems/edit/pull.py."""
-
-    def forces(self, count: int) -> NDArray[np.float64]:
-        """Force on each of so many particles (kN), shape (count, 2)."""
 
 
 class Flight:
     """The particles of one model on their exact paths from impact to impact.
 
     measures, compile_seconds: as of Program. unbalanced: force on each particle as last observed (kN).
-    The paths are part of the model's state: clock.collision_state. pull: a hand's force, constant during a step, so that
-    paths are exact within it.
+    The paths are part of the model's state: clock.collision_state. laws: a hand's, for one, whose forces are held
+    constant during a step, so that paths are exact within it.
     """
 
     lasting = ""  # nothing changes with time for ever
     watches_events = False
     follows_state = False  # contacts keep particles at rest, too
 
-    def __init__(self, model: Model, impacts: Impacts, pull: PullingHand | None = None) -> None:
+    def __init__(self, model: Model, impacts: Impacts, laws: Sequence[Law] = ()) -> None:
         started = time.perf_counter()
         self.model = model
         self.measures = np.zeros(len(Measure))
         self.unbalanced = np.zeros((model.particles.count, 2))
         self.unbalanced_moment = np.zeros(0)  # nothing turns
         self._impacts = impacts
-        self._pull = pull
+        self._laws = laws
         for module in (EVENTS, HORIZONS):
             module.begin(model.particles.count)
         self.bind()
@@ -112,14 +105,14 @@ class Flight:
                 particles.radius,
                 np.where(particles.fixed, 0.0, 1.0 / particles.mass[:, None]),
                 displacement=particles.displacement,
-                acceleration=particles.mobility * (particles.constant_force + self._hands_force()),
+                acceleration=particles.mobility * (particles.constant_force + self._held_forces()),
                 restitution=self.model.settings.restitution,
                 time=clock.time,
                 obstacles=obstacles(self.model),
                 lost=clock.dissipated_impact,
             )
             saved = clock.collision_state
-            if self._pull is None and isinstance(saved, FreeFlightState) and self._fits(saved):
+            if not self._laws and isinstance(saved, FreeFlightState) and self._fits(saved):
                 self._flying.resume(saved)
             self._state_revision = self.model.newest(Role.STATE)
         assert self._flying is not None
@@ -140,7 +133,7 @@ class Flight:
     def advance(self, steps: int, until: float = math.inf) -> tuple[int, StopReason]:
         """Let the time of up to `steps` steps pass, none of which ends after `until` (s), as every stepper does.
 
-        Steps are only the times at which the state is observed: the motion does not depend on them unless a hand pulls.
+        Steps are only the times at which the state is observed: the motion does not depend on them unless laws act.
         """
         return self._take(steps, until, math.inf)
 
@@ -152,16 +145,16 @@ class Flight:
         return reason
 
     def _take(self, steps: int, until: float, landing: float) -> tuple[int, StopReason]:
-        if self._pull is None:
+        if not self._laws:
             return self._pass(steps, until, landing)
         taken, reason = 0, StopReason.DONE
-        while taken < steps and reason is StopReason.DONE and self._pulled_step(until, landing):
+        while taken < steps and reason is StopReason.DONE and self._step_under_laws(until, landing):
             taken += 1
         return taken, reason
 
-    def _pulled_step(self, until: float, landing: float) -> int:
-        """Take one step with the hand's force held constant, and enter its work."""
-        force, particles = self._hands_force(), self.model.particles
+    def _step_under_laws(self, until: float, landing: float) -> int:
+        """Take one step with the laws' forces held constant, and enter their work."""
+        force, particles = self._held_forces(), self.model.particles
         self._flying, before = None, particles.displacement.copy()
         taken, _ = self._pass(1, until, landing)
         if taken:
@@ -170,10 +163,10 @@ class Flight:
             self._state_revision = self.model.newest(Role.STATE)
         return taken
 
-    def _hands_force(self) -> NDArray[np.float64]:
-        """On each particle (kN)."""
-        count = self.model.particles.count
-        return np.zeros((count, 2)) if self._pull is None else self._pull.forces(count)
+    def _held_forces(self) -> NDArray[np.float64]:
+        """Of the laws, on each particle (kN)."""
+        none = np.zeros((self.model.particles.count, 2))
+        return sum((law.held_forces(self.model) for law in self._laws), none)
 
     def _pass(self, steps: int, until: float, landing: float) -> tuple[int, StopReason]:
         clock = self.model.clock
@@ -211,7 +204,7 @@ class Flight:
         if self._fresh and self.discs.now > target:  # that step went further before it was left
             self.bind()
         discs, found, reason = self.discs, self._found, Reason.BUSY
-        if self._pull is not None:
+        if self._laws:
             discs.numbers[Number.STOP] = target
         while reason is Reason.BUSY:
             reason, some = discs.advance(target, EVENTS_AT_ONCE)
@@ -222,7 +215,7 @@ class Flight:
                 raise TooManyImpacts
             while sum(map(len, found)) - len(found[0]) >= MOST_KEPT:
                 found.popleft()
-            if reason is Reason.BUSY and self._pull is None and time.perf_counter() > Choice.deadline:
+            if reason is Reason.BUSY and not self._laws and time.perf_counter() > Choice.deadline:
                 raise Unfinished
         if happened := self._happened:
             columns = [np.column_stack([f.time, f.pairs, f.impulse, f.loss, f.point]) for f in found]
@@ -235,7 +228,7 @@ class Flight:
 
     def _steps_until_rest(self, discs: Discs) -> float:
         """In how many steps a check will find everything at rest; infinite if it moves."""
-        if self._pull is not None or not discs.at_rest:
+        if self._laws or not discs.at_rest:
             return math.inf
         clock = self.model.clock
         since = math.ceil((discs.last_change - clock.origin) / clock.step_size) + clock.origin_steps
@@ -262,7 +255,7 @@ class Flight:
         """Bring forces, reactions and measures up to date."""
         particles = self.model.particles
         constant, fixed, velocity = particles.constant_force, particles.fixed, particles.velocity
-        force = constant + self._hands_force() + 0.001 * self.discs.contact_forces()
+        force = constant + self._held_forces() + 0.001 * self.discs.contact_forces()
         self.model.writable("particles.applied_force")[...] = force
         self.model.writable("particles.reaction")[...] = np.where(fixed, 0.0 - force, 0.0)
         free: NDArray[np.float64] = np.where(fixed, 0.0, force)
