@@ -43,6 +43,12 @@ class Clock(Handle):
     largest_speed: Field[float] = state(
         "m/s", doc="Largest Euclidean norm of all velocities, the scale of their error."
     )
+    largest_rotation: Field[float] = state(
+        "rad", doc="Largest Euclidean norm of all rotations, the scale of their error."
+    )
+    largest_spin: Field[float] = state(
+        "rad/s", doc="Largest Euclidean norm of all angular velocities, the scale of their error."
+    )
     origin: Field[float] = state("s", title="time origin", doc="Time at which the present step size began.")
     step_limit: Field[float] = state("s", doc="Largest step when the steps were last reviewed.")
     work: Field[float] = state("J", doc="Of varying loads, edits and constant forces up to the last edit.")

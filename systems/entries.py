@@ -65,8 +65,12 @@ class Control(IntEnum):
     TIME = 0  # s
     STEP_SIZE = 1  # s; of the step to try next
     STEP_ERROR = 2  # of the last step; 1 is the tolerance
-    LARGEST_DISPLACEMENT = 3  # Euclidean norm over all coordinates, so far (m)
+    LARGEST_DISPLACEMENT = 3  # Euclidean norm over all particles, so far (m)
     LARGEST_SPEED = 4  # the same of velocities (m/s)
+    LARGEST_ROTATION = (
+        5  # of rotations (rad), at least a share of what displacements amount to by the longest rod
+    )
+    LARGEST_SPIN = 6  # the same of angular velocities (rad/s)
 
 
 CONTROL = tuple(entry.name.lower() for entry in Control)
@@ -88,6 +92,9 @@ class Search(IntEnum):
     LARGEST_DISPLACEMENT = 7  # as in Control, if the step is accepted
     LARGEST_SPEED = 8
     LIMIT = 9  # s; the longest step allowed
+    LARGEST_ROTATION = 10
+    LARGEST_SPIN = 11
+    REACH = 12  # m; the longest rod, by which rotations compare with displacements
 
 
 class Side(IntEnum):

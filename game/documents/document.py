@@ -176,10 +176,6 @@ def _of_this_version(document: Any) -> Mapping[str, Any]:
             version=version,
             newest=VERSION,
         )
-    state = document.get("state")
-    if isinstance(state, Mapping):  # rotations had scales of their own
-        kept = {key: value for key, value in state.items() if key not in ("largest_rotation", "largest_spin")}
-        return {**document, "state": kept}
     return document
 
 

@@ -16,9 +16,10 @@ _RUNGE_KUTTA = "pinjoint.systems.program.templates.runge_kutta"
 _IMPLICIT = "pinjoint.systems.program.templates.implicit"
 _FIXED_STEPS = "pinjoint.systems.program.templates.fixed_steps"
 
-_PLAIN = (f"{_FIXED_STEPS}:push",)
-_SEARCHED = ("extrapolate", "accelerate", "error_of", "combine", "begin_search", "narrow", "follow")
-_CONTROLLED = tuple(f"{_RUNGE_KUTTA}:{part}" for part in _SEARCHED)
+_CHECKS = (f"{_FIXED_STEPS}:is_check_due", f"{_FIXED_STEPS}:steps_to_check")
+_PLAIN = (*_CHECKS, f"{_FIXED_STEPS}:push")
+_SEARCHED = ("extrapolate", "accelerate", "error_of", "combine", "begin_search", "narrow", "aim", "follow")
+_CONTROLLED = (*_CHECKS, *(f"{_RUNGE_KUTTA}:{part}" for part in _SEARCHED))
 _SOLVED = ("relax", "precondition", "multiply", "correct", "size_of", "implicit_stages=stages")
 
 
@@ -101,7 +102,6 @@ def runge_kutta_constants(tableau: Tableau, proportional: float = 0.0, lengthen:
         "SMALLEST_SHARE": 1e-12,  # of the step to try, below which the run is given up
         "EVENT_FLOOR": 1e-11,  # share of a strength within which an event is located
         "EVENT_WIDTH": 1e-10,  # share of a step within which it is
-        "SLACK": 0.0,
     }
 
 
@@ -113,6 +113,8 @@ class RungeKutta4(Integrator):
     """
 
     name = "physics.rk4"
+    kernel = f"{_RUNGE_KUTTA}:controlled"
+    entry = f"{_RUNGE_KUTTA}:advance"
     parts = (*_CONTROLLED, f"{_RUNGE_KUTTA}:explicit_stages=stages", f"{_RUNGE_KUTTA}:attempt")
     order: ClassVar[int] = 4
     controlled = True

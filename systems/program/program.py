@@ -6,9 +6,9 @@ import inspect
 import math
 import time
 import weakref
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Iterable, Sequence
 from functools import cached_property
-from typing import Any, NamedTuple
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -21,15 +21,14 @@ from pinjoint.components.model import Model
 from pinjoint.systems.base import Event, Integrator, StepSystem, StopReason
 from pinjoint.systems.collision.driven.columns import Phase, Real, Whole
 from pinjoint.systems.entries import ACCOUNT, ACCOUNTS, CONTROL, Mark, Measure, Search, Side
-from pinjoint.systems.physics.bending import arm_of, levers
+from pinjoint.systems.physics.bending import levers
 from pinjoint.systems.physics.kernels import conserved
 from pinjoint.systems.program.between import Between
-from pinjoint.systems.program.binding import Bound, ProgramError, StepRole, bind, find
+from pinjoint.systems.program.binding import Bound, ProgramError, bind, find
 from pinjoint.systems.program.block_writer import BlockWriter
 from pinjoint.systems.program.compiler import GeneratedModule, generated
 from pinjoint.systems.program.controlled_writer import ControlledWriter
 from pinjoint.systems.program.faults import check_plain_forms, explain
-from pinjoint.systems.program.names import PUSHED, STATE
 from pinjoint.systems.program.near_pairs import NearPairs
 from pinjoint.systems.program.writer import VERY_MANY, Writer, sides_of
 
@@ -44,22 +43,21 @@ OBSERVED = {
 _OF_BENDING = "particles.applied_moment", "particles.reaction_moment", "rods.end_moment"
 _GIVEN = {
     "fixed": "particles.fixed",
+    "clamped": "particles.fixed_rotation",
     "tension": "rods.tension_limit",
     "compression": "rods.compression_limit",
 }
-_ACTING = (
-    ("particles.applied_force", "particles.applied_moment"),
-    ("particles.reaction", "particles.reaction_moment"),
-)
 COLUMNS_OBSERVED = {  # by the parameter of observe() that they are
     **{f"rods_{name}": f"rods.{name}" for name in ("axial_force", "length", "strain")},
     "applied": "particles.applied_force",
     "reaction": "particles.reaction",
+    "applied_moment": "particles.applied_moment",
+    "reaction_moment": "particles.reaction_moment",
     "rods_end_moment": "rods.end_moment",
     "yielding": "rods.yielding",
     **_GIVEN,
 }
-_TANGENTS = 8  # rows of rod_work in models that bend: see rods.tangent_of_ends in templates
+_TANGENTS = 8  # rows of rod_work in models that bend: see templates/turning.py
 _REASONS = tuple(StopReason)
 
 
@@ -85,28 +83,6 @@ def _between(systems: Iterable[StepSystem]) -> Between | None:
     """What acts between the steps of a program of these systems."""
     found: list[Any] = [find(system.between, system) for system in systems if system.between]
     return found[0] if found else None
-
-
-class Coordinates(NamedTuple):
-    """An array of coordinates, shape (n, 3), and the columns that its numbers belong to.
-
-    What moves is as it is; what turns is multiplied by `scale`, a power of two, so that no bits are lost.
-    """
-
-    whole: Column
-    moves: Column
-    turns: Column
-    scale: float
-
-    def load(self) -> None:
-        """Take the numbers from the columns."""
-        self.whole[:, :2] = self.moves
-        np.multiply(self.turns, self.scale, out=self.whole[:, 2])
-
-    def store(self) -> None:
-        """Bring the columns up to date."""
-        self.moves[...] = self.whole[:, :2]
-        np.divide(self.whole[:, 2], self.scale, out=self.turns)
 
 
 class Program:
@@ -153,7 +129,7 @@ class Program:
             self._take(0, math.inf, math.inf)
             self._observe()
             if self._writer.commits:  # with no rods: a commit changes history
-                state = [self._arrays[name][:0] for name in STATE]
+                state = [self._arrays[name][:0] for name in self._writer.state]
                 self.module.form.commit(0.0, 0.0, *state, np.zeros(len(ACCOUNT)), *self._of_no_rods())
         except Exception as error:  # numba raises many kinds
             raise self._explained(error) from error
@@ -203,14 +179,15 @@ class Program:
         self._near = NearPairs(model, [b.cutoff for b in self._writer.pairs]) if self._writer.pairs else None
         extra |= self._near.arrays if self._near is not None else {}
         if self.between is not None:
-            shape = self._rows("particles"), self._writer.coordinates
-            extra |= {name: np.zeros(shape) for name in PUSHED}
-            self._support = extra["support"][:, :2]
-            self._support[:] = self.between.support(model)[self._held_rows]
-        self._arm = arm_of(model) if self._writer.bends else 1.0
+            self._support = np.ascontiguousarray(self.between.support(model)[self._held_rows])
+            extra |= {"support": self._support, "unpushed": np.zeros_like(self._support)}
         if self._writer.bends:
             self._stop_turning()
-            extra |= self._of_bending(extra)
+            turning = self._column("particles.turning")
+            extra |= {
+                "lever": np.ascontiguousarray(levers(self.model)[self._held_rows]),
+                "particles_turning": turning.reshape(-1, 1),
+            }
         self._sides = [(b, self._sides_of(b)) for b in self._writer.events]
         extra |= {sides_of(b): sides for b, sides in self._sides}
         self._columns = [
@@ -222,11 +199,10 @@ class Program:
         self.changes_end = math.inf if self.lasting else loads_end(model)
         self._breaks = np.array([*load_breaks(model), math.inf])
         self._arrays = {name: np.zeros(shape) for name, shape in self.scratch.items()}
-        self._moved = self._joined(zip(MOTION, TURNING, strict=True), self._arm)
-        for coordinates in self._moved:
-            coordinates.load()
-        moved = [c.whole for c in self._moved] or map(self._storage, MOTION)
-        self._arrays |= zip(STATE, moved, strict=False)
+        self._arrays |= {path.partition(".")[2]: self._storage(path) for path in MOTION}
+        if self._writer.bends:
+            self._arrays |= {path.partition(".")[2]: self._storage(path).reshape(-1, 1) for path in TURNING}
+            self._arrays["search"][Search.REACH] = self.model.rods.rest_length.max()
         self._arrays |= {"control": self._control, "account": self._account, "measures": self.measures}
         self._bind_arguments()
         self._bind_observed()
@@ -234,47 +210,6 @@ class Program:
         controls = self.integrator.estimates_error and settings.time_step is None
         self.tolerance = settings.tolerance if controls else 0.0
         self._state_revision = -1
-
-    # --- rotations ---------------------------------------------------------------------------------
-
-    def _of_bending(self, given: Mapping[str, Any]) -> dict[str, Any]:
-        """Columns with the rotations as third coordinates, and what compares them with displacements."""
-        arm, column = self._arm, self._column
-        mass, lever = column("particles.mass"), levers(self.model)[self._held_rows]
-        loads = (b.prefix for b in self._writer.of[StepRole.LOAD])
-        return {
-            "per_arm": np.array([1.0 / arm]),
-            "lever": np.column_stack([np.ones((len(lever), 2)), arm * lever]),
-            "particles_mobility": np.column_stack(
-                [column("particles.mobility"), arm * arm * column("particles.turning")]
-            ),
-            "particles_masses": np.column_stack([mass, mass, column("particles.inertia") / (arm * arm)]),
-            "particles_constant_force": np.column_stack(
-                [column("particles.constant_force"), column("particles.constant_moment") / arm]
-            ),
-            **{
-                f"{load}_force": np.column_stack([given[f"{load}_force"], given[f"{load}_moment"] / arm])
-                for load in loads
-            },
-        }
-
-    def _joined(self, pairs: Iterable[tuple[str, str]], scale: float) -> list[Coordinates]:
-        """Arrays of coordinates for pairs of columns, "table.field", of what moves and what turns; none without bending."""
-        if not self._writer.bends:
-            return []
-        shape = self._rows("particles"), self._writer.coordinates
-        held = self._storage
-        return [Coordinates(np.zeros(shape), held(moves), held(turns), scale) for moves, turns in pairs]
-
-    def _load(self) -> None:
-        """Before a call, bring what the program holds up to date with the model."""
-        for coordinates in self._moved:
-            coordinates.load()
-
-    def _store(self) -> None:
-        """After a call, bring the model's columns up to date."""
-        for coordinates in self._moved:
-            coordinates.store()
 
     # --- events ------------------------------------------------------------------------------------
 
@@ -316,12 +251,12 @@ class Program:
     @property
     def unbalanced(self) -> Column:
         """The sum of all forces on each particle but those of dampers and drag (kN), as last observed."""
-        return self._unbalanced[:, :2]
+        return self._unbalanced
 
     @property
     def unbalanced_moment(self) -> Column:
         """The same of moments on each particle (kN·m), shape (n,); none where nothing bends."""
-        moment: Column = self._arm * self._unbalanced[:, 2:].sum(axis=1)
+        moment: Column = self._unbalanced_moment[:, 0]
         return moment
 
     def _rows(self, table: str) -> int:
@@ -347,13 +282,15 @@ class Program:
     def scratch(self) -> dict[str, tuple[int, ...]]:
         """Shapes of the arrays that its functions write to and nobody reads afterwards, by name."""
         particles, rods = self._rows("particles"), self._rows("rods")
-        coordinates, of_rods = self._writer.coordinates, self.integrator.rod_rows
+        turns = self._writer.bends
         return {
-            **dict.fromkeys(("force", "resisting", "predicted"), (particles, coordinates)),
-            "direction": (rods, coordinates),
+            **dict.fromkeys(("force", "resisting", "predicted"), (particles, 2)),
+            "direction": (rods, 3 if turns else 2),
+            **dict.fromkeys(("moment", "twisting", "predicted_spin"), (particles if turns else 0, 1)),
+            "turns": (self.integrator.particle_rows if turns else 0, particles, 1),
             **dict.fromkeys(("power", "gained", "stage_power"), (len(ACCOUNTS),)),
-            "work": (self.integrator.particle_rows, particles, coordinates),
-            "rod_work": (_TANGENTS if of_rods and self._writer.bends else of_rods, rods),
+            "work": (self.integrator.particle_rows, particles, 2),
+            "rod_work": (_TANGENTS if turns and self.integrator.rod_rows else self.integrator.rod_rows, rods),
             "marks": (
                 max(rods, particles),
                 len(Mark) * len([*self._writer.branching, *self._writer.events]),
@@ -387,14 +324,12 @@ class Program:
         for path in _GIVEN.values():
             self.model.column(path)  # brings it up to date
         storage = {name: self._storage(path) for name, path in COLUMNS_OBSERVED.items()}
-        self._acting = self._joined(_ACTING, 1.0 / self._arm)
-        if self._writer.bends:
-            storage |= zip(("applied", "reaction"), (c.whole for c in self._acting), strict=True)
-            storage["fixed"] = np.column_stack([storage["fixed"], self._column("particles.fixed_rotation")])
-        else:
+        storage["applied_moment"] = storage["applied_moment"].reshape(-1, 1)
+        if not self._writer.bends:
             self._forget_moments()
-        apart = {name: np.zeros_like(self._arrays[name]) for name in (*STATE[2:], "power")}
-        self._unbalanced = apart["force"]
+        names = ("force", "resisting", "direction", "power", "moment", "twisting")
+        apart = {name: np.zeros_like(self._arrays[name]) for name in names}
+        self._unbalanced, self._unbalanced_moment = apart["force"], apart["moment"]
         yields = self.model.settings.plasticity
         self._observed = self._after("dt", "observe", yields=yields, **storage, **apart)
 
@@ -415,19 +350,17 @@ class Program:
     def advance(self, steps: int, until: float = math.inf, landing: float = math.inf) -> tuple[int, StopReason]:
         """Take up to `steps` steps; returns how many, and why it stopped.
 
-        None ends after `until` (s), and one that would pass `landing` (s) is cut to end there.
+        An integrator that controls its steps takes none that would end after `until` (s), and one that would
+        pass `landing` (s) is cut to end there; for others the steps are clock.step_size long.
         """
-        self._load()
         try:
-            taken = self._advance(steps, until, landing)
+            return self._advance(steps, until, landing)
         except ProgramError:
             raise
         except Exception as error:
             if all(b.is_ours for b in self._writer.kernels):
                 raise
-            taken = self._failed(error)
-        self._store()
-        return taken
+            return self._failed(error)
 
     def _failed(self, error: Exception) -> tuple[int, StopReason]:
         """End a step in which a kernel raised an error as one that led nowhere, so that its mod is looked for."""
@@ -451,31 +384,37 @@ class Program:
     def _take(self, steps: int, until: float, landing: float) -> tuple[int, StopReason]:
         """Take up to `steps` steps, in one call."""
         self._catch_up()
+        controlled, (time, size) = self.integrator.controlled, self._control[:2].tolist()
+        if until < math.inf and not controlled:
+            steps = min(steps, max(int((until - time) / size * (1.0 + 1e-12)), 0))
+            if steps == 0:
+                return 0, StopReason.DONE
         if self.between is not None:
             real = self._idle[0].real
             real[Real.UNTIL], real[Real.END] = until, landing
             return self._enter(self._idle, steps, alone=True)
         origin, limit = self._origin.tolist()
         total, since = self._counts.tolist()
-        time = self._control.item(0)
+        chosen = (self.tolerance, limit or math.inf) if controlled else (size,)
+        bounds = (float(until), float(landing)) if controlled else ()
         taken, reason = self.module.form.advance(
             steps,
             self._is_fresh,
             total,
             total - since,
             origin,
-            self.tolerance,
-            limit or math.inf,
+            *chosen,
             self._breaks,
-            float(until),
-            float(landing),
+            *bounds,
             self.changes_end,
             *self._arguments,
         )
+        if taken and not controlled:
+            self._control[0] = origin + (total - since + taken) * size
         now = self._control.item(0)
         if taken or now > time:
             self._counts[0] = total + taken
-            if self.tolerance or now == landing:
+            if controlled and (self.tolerance or now == landing):
                 self._origin[0], self._counts[1] = now, total + taken
             self._mark_changes()
         self._state_revision = self.model.newest(Role.STATE)
@@ -488,7 +427,6 @@ class Program:
         and whether they are done: Whole.NEED may say what is needed before it goes on.
         """
         driven = arrays[0]
-        self._load()
         wanted = steps if self.module.is_loaded else min(steps, self.module.portion)
         if driven.whole[Whole.PHASE] == Phase.BETWEEN:
             self._catch_up()
@@ -501,8 +439,7 @@ class Program:
         except Exception as error:
             if all(b.is_ours for b in self._writer.kernels):
                 raise
-            taken, reason = self._failed(error)
-        self._store()
+            return self._failed(error)[1], True
         if not self.module.is_loaded:
             self.module.did(taken)
         waits = driven.whole[Whole.NEED] != 0
@@ -525,8 +462,7 @@ class Program:
             *self.between.functions(compiled=form.is_machine),
             *arrays,
             *self._motion,
-            self.tolerance,
-            limit,
+            *((self.tolerance, limit) if self.integrator.controlled else ()),
             self._breaks,
             self.changes_end,
             *self._arguments,
@@ -584,10 +520,8 @@ class Program:
         """Bring history up to date in a state that no step has led to, outside the energy account."""
         if self._writer.commits:
             time = float(self._control[0])
-            self._load()
             outside = self._after("dt", "commit", account=np.zeros(len(ACCOUNT)))
             self.module.form.commit(time, 0.0, *outside, *self._columns)
-            self._store()
             self._mark_changes()
 
     def observe(self) -> None:
@@ -604,11 +538,8 @@ class Program:
     def _observe(self) -> None:
         if self.between is not None and not self._is_fresh:  # the state was put back, or changed
             self._support[:] = self.between.support(self.model)[self._held_rows]
-        self._load()
         time, size = self._control[:2].tolist()
         self.module.form.observe(time, size, *self._observed, *self._columns)
-        for coordinates in self._acting:
-            coordinates.store()
         for table, names in OBSERVED.items():
             self.model.tables[table].mark(names, Role.DERIVED)
 

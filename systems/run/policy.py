@@ -34,7 +34,7 @@ TOLD_OVERLAP = 2e-3  # of a radius; smaller: tells of piles of like discs, too, 
 TOLD_SHARE = 0.1  # of all energy ever supplied; smaller: warns of lattices by automatic steps of Verlet
 
 # Columns of the clock; 0 where error control begins anew.
-ERROR_CONTROL = ("step_error", "largest_displacement", "largest_speed")
+ERROR_CONTROL = ("step_error", "largest_displacement", "largest_speed", "largest_rotation", "largest_spin")
 
 # Steps between reviews of islands; fewer: asleep sooner, but a review costs as much as ten steps.
 SLEEP_INTERVAL = 1024

@@ -15,13 +15,13 @@ CONTAINERS = ("list", "dict", "set", "deque", "defaultdict", "OrderedDict", "Cou
 FUNCTION = ast.FunctionDef | ast.AsyncFunctionDef
 
 MOST = {
-    "lines": 66_063,
+    "lines": 66_576,
     "files": 407,
-    "names": 3_946,  # functions, classes and constants of modules
-    "public names": 2_386,
-    "numbers": 1_523,  # other than 0, 1 and 2, in constants and defaults
+    "names": 3_993,  # functions, classes and constants of modules
+    "public names": 2_431,
+    "numbers": 1_530,  # other than 0, 1 and 2, in constants and defaults
     "registers": 45,  # containers that fill while the program runs, and caches of functions
-    "lines of tests": 52_770,
+    "lines of tests": 52_806,
 }
 
 

@@ -1,23 +1,26 @@
-"""Runge–Kutta integrators: one step with error control and events for every tableau.
+"""Runge–Kutta integrators: one loop with error control and events for every tableau.
 
 Constants besides those of every template: the tableau's, STAGES, NODES, … (systems/physics/tableaus.py), and the loop's
-(systems/physics/integrators.py). `work` has rows of shape (particles, D): the accelerations of the stages, the
+(systems/physics/integrators.py). `work` has rows of shape (particles, 2): the accelerations of the stages, the
 displacement and velocity at a stage and then of the result, and what implicit stages need. `marks` has a row for
 each rod. The function that computes the stages is called `stages` in the program.
 """
 
-# ruff: noqa: F821, F841
+# ruff: noqa: F821
 # mypy: ignore-errors
 
 
 def explicit_stages(time, dt, allowed, state, scratch, *columns):
     """Accelerations of the stages after the first; returns True: they can always be computed."""
     trial, speed = work[STAGES], work[STAGES + 1]
+    insert(trial_turns)
     for s in range(1, STAGES):
         extrapolate(s, dt, displacement, velocity, work, trial, speed)
+        insert(extrapolate_turns)
         at = time + NODES[s] * dt
-        evaluate(at, dt, trial, speed, *forces, stage_power, *columns)
+        evaluate(at, dt, *tried, *forces, stage_power, *columns)
         accelerate(force, resisting, work[s], particles_mobility)
+        insert(accelerate_turns)
         if POWERS or LOADS:
             for k in range(gained.shape[0]):
                 gained[k] += RESULT_V[0, s] * stage_power[k]
@@ -27,7 +30,7 @@ def explicit_stages(time, dt, allowed, state, scratch, *columns):
 def extrapolate(s, dt, displacement, velocity, work, trial, speed):
     """trial, speed ← displacement and velocity at stage `s`, from the accelerations of the stages before it."""
     for i in range(displacement.shape[0]):
-        for d in range(D):
+        for d in range(2):
             p = 0.0
             q = 0.0
             for j in range(s):
@@ -41,9 +44,13 @@ def extrapolate(s, dt, displacement, velocity, work, trial, speed):
 def accelerate(force, resisting, acceleration, particles_mobility):
     """acceleration ← that of the particles under the forces of a state (m/s²)."""
     for i in range(force.shape[0]):
-        for d in range(D):
-            total = force[i, d] + resisting[i, d] if RATES else force[i, d]
-            acceleration[i, d] = total * particles_mobility[i, d]
+        fx = force[i, 0]
+        fy = force[i, 1]
+        if RATES:
+            fx += resisting[i, 0]
+            fy += resisting[i, 1]
+        acceleration[i, 0] = fx * particles_mobility[i, 0]
+        acceleration[i, 1] = fy * particles_mobility[i, 1]
 
 
 def combine(dt, tolerance, displacement, velocity, work, control, search):
@@ -63,7 +70,7 @@ def combine(dt, tolerance, displacement, velocity, work, control, search):
     also_x = 0.0
     also_v = 0.0
     for i in range(displacement.shape[0]):
-        for d in range(D):
+        for d in range(2):
             p = 0.0
             q = 0.0
             for j in range(STAGES):
@@ -90,8 +97,8 @@ def combine(dt, tolerance, displacement, velocity, work, control, search):
                     q += RESULT_X[2, j] * work[j, i, d]
                 also_x += q * q
                 also_v += p * p
-    search[Search.LARGEST_DISPLACEMENT] = max(control[Control.LARGEST_DISPLACEMENT], math.sqrt(size_x))
-    search[Search.LARGEST_SPEED] = max(control[Control.LARGEST_SPEED], math.sqrt(size_v))
+    search[Search.LARGEST_DISPLACEMENT] = max(control[Control.LARGEST_DISPLACEMENT], insert(norm_x))
+    search[Search.LARGEST_SPEED] = max(control[Control.LARGEST_SPEED], insert(norm_v))
     return error_of(
         dt,
         tolerance,
@@ -176,7 +183,7 @@ def attempt(time, end, tolerance, smallest, control, state, scratch, *columns):
     gap = 0.0
     rejected = False
     if EVENTS:
-        gap = mark(h, displacement, velocity, marks, *columns)
+        gap = mark(h, *placed, *moving, marks, *columns)
         begin_search(search, h, gap)
     while h >= smallest:
         ahead = end
@@ -186,13 +193,15 @@ def attempt(time, end, tolerance, smallest, control, state, scratch, *columns):
         for k in range(gained.shape[0]):
             gained[k] = RESULT_V[0, 0] * power[k]
         allowed = (tolerance if tolerance > 0.0 else FIXED_TOLERANCE) * control[Control.LARGEST_SPEED]
+        insert(allow_turns)
         solved = stages(time, h, allowed, *state, *scratch, *columns)
         error = combine(h, tolerance, displacement, velocity, work, control, search)
+        insert(combine_turns)
         if not solved or not error < math.inf:
             error = BEYOND
         elif EVENTS and search[Search.ENDED] == 0.0:
             first = search[Search.FAR] == 0.0
-            wanted = narrow(search, h, passed(h, work[STAGES], work[STAGES + 1], marks, first, *columns))
+            wanted = narrow(search, h, passed(h, *reached, marks, first, *columns))
             if wanted < smallest:  # the event is where the step begins
                 search[Search.ENDED] = 1.0
                 wanted = search[Search.LENGTH]
@@ -213,29 +222,70 @@ def attempt(time, end, tolerance, smallest, control, state, scratch, *columns):
     return 0.0, time, 0.0, True
 
 
-def step():
-    """A step that meets the tolerance and passes no event."""
-    least = max(SMALLEST_SHARE * min(size, end - time), np.nextafter(time, math.inf) - time)
-    h, time, error, rejected = attempt(time, end, tolerance, least, control, *state, *scratch, *columns)
-    if h == 0.0:
-        return taken, StopReason.UNRESOLVED.value
-    for i in range(displacement.shape[0]):
-        for d in range(D):
-            displacement[i, d] = work[STAGES, i, d]
-            velocity[i, d] = work[STAGES + 1, i, d]
-    if POWERS or LOADS:
-        for k in range(gained.shape[0]):
-            account[k] += 1000.0 * h * gained[k]
-    if COMMITS:
-        remember(time, h, displacement, account, *columns)
-    evaluate(time, h, *state, power, *columns)
-    accelerate(force, resisting, work[0], particles_mobility)
-    control[Control.LARGEST_DISPLACEMENT] = search[Search.LARGEST_DISPLACEMENT]
-    control[Control.LARGEST_SPEED] = search[Search.LARGEST_SPEED]
+def controlled(steps, first, origin, tolerance, limit, bounds, control, state, scratch, account, *columns):
+    """Take up to `steps` steps that end by `until` (s); returns (steps taken, StopReason).
+
+    tolerance: relative, of one step; 0: all steps have the length control[Control.STEP_SIZE]. breaks: times that
+    no step passes, ascending, the last one infinite. landing: another such time (s), after which steps of fixed
+    length are counted from there. A fixed step that breaks interrupt goes on to its end in pieces; none of them is taken
+    where that end is after `until`.
+    """
+    time = control[Control.TIME]
+    search[Search.LIMIT] = limit
+    taken = 0
+    coming = 0
+    while taken < steps:
+        step = control[Control.STEP_SIZE]
+        goal, reach = aim(time, step, origin, first + taken, tolerance)
+        while breaks[coming] <= time:
+            coming += 1
+        stop = breaks[coming]
+        if time < landing < stop:
+            stop = landing
+        end = stop if reach >= stop else goal
+        if end > until or (tolerance == 0.0 and min(goal, landing) > until):
+            break
+        least = max(SMALLEST_SHARE * min(step, end - time), np.nextafter(time, math.inf) - time)
+        h, ahead, error, rejected = attempt(time, end, tolerance, least, control, *state, *scratch, *columns)
+        if h == 0.0:
+            control[Control.TIME] = time
+            return taken, StopReason.UNRESOLVED.value
+        time = ahead
+        for i in range(displacement.shape[0]):
+            for d in range(2):
+                displacement[i, d] = work[STAGES, i, d]
+                velocity[i, d] = work[STAGES + 1, i, d]
+        insert(accept_turns)
+        if POWERS or LOADS:
+            for k in range(gained.shape[0]):
+                account[k] += 1000.0 * h * gained[k]
+        if COMMITS:
+            remember(time, h, *placed, account, *columns)
+        evaluate(time, h, *state, power, *columns)
+        accelerate(force, resisting, work[0], particles_mobility)
+        insert(begin_turns)
+        control[Control.LARGEST_DISPLACEMENT] = search[Search.LARGEST_DISPLACEMENT]
+        control[Control.LARGEST_SPEED] = search[Search.LARGEST_SPEED]
+        insert(largest_turns)
+        if tolerance > 0.0:
+            taken += 1
+            follow(control, h, limit, error, rejected)
+        elif time >= goal or time == landing:
+            taken += 1
+        if STOPS and happened(*placed, *moving, *scratch, *columns):
+            control[Control.TIME] = time
+            return taken, StopReason.EVENT.value
+    control[Control.TIME] = time
+    return taken, StopReason.DONE.value
+
+
+def aim(time, step, origin, age, tolerance):
+    """When a step would end, and up to when a break ends it instead: no step of a sliver is left before the break."""
     if tolerance > 0.0:
-        follow(control, h, limit, error, rejected)
-    counted = total + taken + 1
-    compared = control[Control.STEP_SIZE]
+        goal = time + step
+        return goal, goal + 0.01 * step
+    goal = origin + (age + 1) * step
+    return goal, goal
 
 
 def follow(control, h, limit, error, rejected):
@@ -256,3 +306,66 @@ def follow(control, h, limit, error, rejected):
     else:
         control[Control.STEP_SIZE] = min(max(h * factor, step if h < step else 0.0), limit)
     control[Control.STEP_ERROR] = max(error, LEAST_ERROR)
+
+
+def advance(
+    steps,
+    fresh,
+    total,
+    first,
+    origin,
+    tolerance,
+    limit,
+    bounds,
+    loads_end,
+    control,
+    state,
+    scratch,
+    account,
+    measures,
+    *columns,
+):
+    """Take up to `steps` steps that end by `until` (s); returns (steps taken, StopReason).
+
+    fresh: the forces are still those of the present state. total: all steps so far. first: steps since the time origin,
+    which moves with every step whose size is controlled. Checks happen after 1, 2, 4, … steps in all, and whenever the
+    total is a multiple of CHECK_INTERVAL: at counts that do not depend on how the steps are divided into calls.
+    """
+    if not fresh:
+        evaluate(control[Control.TIME], control[Control.STEP_SIZE], *state, power, *columns)
+        accelerate(force, resisting, work[0], particles_mobility)
+        insert(begin_turns)
+    taken = 0
+    while taken < steps:
+        wanted = min(steps - taken, steps_to_check(total + taken, total + taken))
+        done, ended = integrate(
+            wanted,
+            first + taken,
+            origin,
+            tolerance,
+            limit,
+            *bounds,
+            control,
+            *state,
+            *scratch,
+            account,
+            *columns,
+        )
+        taken += done
+        if ended == StopReason.UNRESOLVED:
+            return taken, ended
+        now = total + taken
+        if done > 0 and is_check_due(now, now):
+            measure(*placed, *moving, *pulled, *resisted, measures, *columns)
+            reason = judge(
+                measures, account, control[Control.STEP_SIZE], SHADOW, 0.0, control[Control.TIME] >= loads_end
+            )
+            if reason != StopReason.DONE:
+                return taken, reason.value
+        if done > 0 and now % REVIEW_INTERVAL == 0:
+            return taken, StopReason.REVIEW.value
+        if ended == StopReason.EVENT:
+            return taken, ended
+        if done < wanted:
+            break
+    return taken, StopReason.DONE.value
