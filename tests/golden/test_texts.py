@@ -174,7 +174,10 @@ def sizes(name: str, language: str) -> Iterable[str]:
         return [size for size in SIZES if size != "full HD"]
     if language == "pt":
         return ["small", "full HD"]
-    return ["usual"] if name in TOOLS else ["small", "usual"]
+    hinted = (
+        name in TOOLS or name == "pulling"
+    )  # of hints a third longer the lower edge of a small window has no room
+    return ["usual"] if hinted else ["small", "usual"]
 
 
 def found(name: str, language: str, known: set[str]) -> Iterator[str]:

@@ -46,11 +46,11 @@ HANGING = {
 
 
 @pytest.mark.parametrize("name", NAMES)
-def test_an_example_loads_and_has_less_than_60_lines(name: str, unloaded: None) -> None:
+def test_an_example_loads_and_has_less_than_65_lines(name: str, unloaded: None) -> None:
     (mod,) = mods.load([FOLDER / name])
     assert (mod.name, mod.problem, mod.notes) == (name, "", [])
     assert mod.description
-    assert len((FOLDER / name / "__init__.py").read_text(encoding="utf-8").splitlines()) < 60
+    assert len((FOLDER / name / "__init__.py").read_text(encoding="utf-8").splitlines()) < 65
 
 
 def test_wind_accelerates_a_ball_towards_its_speed(unloaded: None) -> None:

@@ -131,14 +131,14 @@ def test_where_the_compiler_is_damaged_a_law_is_interpreted_and_that_is_told(
 
 
 FAULTS = [
-    ("return particles_displacement[0] - particles_displacement[0], particles_mass, 0.0", "it must return a pair"),
+    ("return particles_displacement[0] - particles_displacement[0], particles_mass, 0.0", "failed: ValueError: too many"),
     ("return particles_displacement", ""),
     ("return (0.0 * particles_mass) ** -2, 0.0", "failed: ZeroDivisionError"),
     ("return particles_displacement[int(particles_mass) + 5], 0.0", "failed: IndexError: tuple index out of range"),
     ("if particles_displacement[0] > 1e-7:\n        raise ValueError('x')\n    return 0.0, 0.0", "failed: ValueError: x"),
     ("assert particles_displacement[0] < 1e-7, 'too far'\n    return 0.0, 0.0", "failed: AssertionError: too far"),
-    ("return (0.5e-7 - particles_displacement[0]) ** 0.5, 0.0", "gave nan for particle C"),
-    ("return 0.1 / (particles_mass - particles_mass), 0.0", "gave inf for particle A"),
+    ("return (0.5e-7 - particles_displacement[0]) ** 0.5, 0.0", "Without apple.force the steps lead on"),
+    ("return 0.1 / (particles_mass - particles_mass), 0.0", "Without apple.force the steps lead on"),
 ]  # fmt: skip
 
 
