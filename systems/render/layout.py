@@ -50,17 +50,19 @@ class Paper:
 
 
 class Part:
-    """A part of a tree. grow: the share that it takes of what its row or column has left, or lacks."""
+    """A part of a tree, of so many points. grow: the share that it takes of what its row or column has left, or lacks."""
 
+    wide: float = 0.0
+    high: float = 0.0
     grow: float = 0.0
 
     def width(self, u: float) -> float:
         """The pixels that it needs, with u pixels per point."""
-        return 0.0
+        return self.wide * u
 
     def height(self, u: float, width: float) -> float:
         """The pixels that it needs where it is so wide."""
-        return 0.0
+        return self.high * u
 
     def put(self, paper: Paper, place: Rectangle) -> None:
         """Make its marks and hits in a rectangle."""
@@ -74,19 +76,13 @@ class Gap(Part):
     high: float = 0.0
     grow: float = 0.0
 
-    def width(self, u: float) -> float:
-        return self.wide * u
-
-    def height(self, u: float, width: float) -> float:
-        return self.high * u
-
 
 @dataclass(frozen=True)
 class Text(Part):
     """A text in the middle of the height of its place, in at most so many lines, the last of them shortened.
 
     points: the size of its type; of several the first in which it is whole in one line. apart: points from line to line.
-    wide: points across, if not as many as it needs.
+    wide: points across; 0: as many as it needs.
     """
 
     text: str
@@ -97,7 +93,7 @@ class Text(Part):
     lines: int = 1
     grow: float = 0.0
     apart: float = 0.0
-    wide: float | None = None
+    wide: float = 0.0
 
     def size(self, u: float, width: float = math.inf) -> int:
         """The size of its type in pixels."""
@@ -105,7 +101,7 @@ class Text(Part):
         return next((size for size in sizes if text_width(self.text, size, self.weight) <= width), sizes[-1])
 
     def width(self, u: float) -> float:
-        if self.wide is not None:
+        if self.wide:
             return self.wide * u
         return max(text_width(line, self.size(u), self.weight) for line in self.text.split("\n"))
 
@@ -140,12 +136,6 @@ class Drawn(Part):
     wide: float = 0.0
     high: float = 0.0
     grow: float = 0.0
-
-    def width(self, u: float) -> float:
-        return self.wide * u
-
-    def height(self, u: float, width: float) -> float:
-        return self.high * u
 
     def put(self, paper: Paper, place: Rectangle) -> None:
         if paper.draws:

@@ -15,7 +15,7 @@ CONTAINERS = ("list", "dict", "set", "deque", "defaultdict", "OrderedDict", "Cou
 FUNCTION = ast.FunctionDef | ast.AsyncFunctionDef
 
 MOST = {
-    "lines": 66_576,
+    "lines": 66_566,
     "files": 407,
     "names": 3_993,  # functions, classes and constants of modules
     "public names": 2_431,
