@@ -90,6 +90,8 @@ def compiler(monkeypatch: pytest.MonkeyPatch) -> Compiler:
     monkeypatch.setattr(Choice, "compile", Compile.SOON)
     monkeypatch.setattr(programs, "_modules", {})  # what earlier tests compiled is loaded
     monkeypatch.setattr(programs, "_interpreted", [])
+    for said in ("REFUSED", "TROUBLE"):  # by earlier tests
+        monkeypatch.setattr(cache, said, [])
     monkeypatch.setattr(programs, "UNCOMPILED", [])
     monkeypatch.setattr(preparation, "UNCOMPILED", programs.UNCOMPILED)
     monkeypatch.setattr(pygame_input, "IDLE_PAUSE", 0.0)
@@ -610,7 +612,7 @@ def test_another_process_speaks_the_language_of_the_window() -> None:
 
 def test_what_was_said_is_not_said_again_in_another_language(app: App, compiler: Compiler) -> None:
     end(compiler.processes[0], "", -9)
-    until(app, lambda: bool(app.session.notice))
+    until(app, lambda: "status -9" in app.session.notice)
     app.session.notice = ""
     with spoken("pt"):
         frames(app, 5)
