@@ -55,16 +55,6 @@ def test_a_lesson_is_as_its_author_means(name: str) -> None:
     assert script.description
 
 
-def test_any_triangle_is_a_first_structure(session: Session) -> None:
-    course = begun(session, "01_first_structure")
-    for x, y in ((5, 5), (-3, 2), (1, -4), (0, 0)):
-        session.press("p", session.point(x, y))
-    session.update_view()
-    assert course.accepted
-    session.press("f5")
-    assert course.at == 1
-
-
 def test_a_refused_selection_is_said_wholly_in_the_language(session: Session) -> None:
     with spoken("pt"):
         course = begun(session, "02_tension_or_compression", 2)
@@ -485,7 +475,7 @@ def test_the_start_page_offers_to_continue_what_was_begun(session: Session) -> N
 # --- the card --------------------------------------------------------------------------------------------
 
 
-@pytest.mark.parametrize("size", [(640, 480), (1024, 640), (1280, 800), (1920, 1080)])
+@pytest.mark.parametrize("size", [(640, 480), (1280, 800)])
 @pytest.mark.parametrize("name", lessons_with_tasks())
 def test_every_task_is_legible_in_windows_of_all_sizes(
     session: Session, size: tuple[int, int], name: str

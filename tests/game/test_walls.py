@@ -16,7 +16,6 @@ from pinjoint.documents import models
 from pinjoint.documents.format import ModelError
 from pinjoint.systems.collision.system import normals
 from pinjoint.systems.render.marks import Strokes
-from pinjoint.systems.render.picture import compose
 from pinjoint.systems.render.theme import load_theme
 from pinjoint.systems.render.thumbnails import thumbnail
 from tests.reference.hits import push
@@ -163,17 +162,6 @@ def test_its_properties_are_boxes() -> None:
     session.press("escape")
     [floor] = walls_of(session)
     assert (floor.restitution, floor.end) == (0.25, (1.5, 0.0))
-
-
-def test_it_is_drawn_and_marked() -> None:
-    session = room(FLOOR)
-    theme = load_theme("light")
-    marks = compose(session.model, session.view, theme).marks
-    assert any(isinstance(mark, Strokes) and mark.width == 4.0 for mark in marks)
-    session.select(*walls_of(session))
-    picture = compose(session.model, session.view, theme)
-    assert any(isinstance(mark, Strokes) and mark.colour[:3] == theme.selected[:3] for mark in picture.marks)
-    assert "floor" in picture.texts
 
 
 def test_small_pictures_show_it() -> None:

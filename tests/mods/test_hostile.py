@@ -12,6 +12,7 @@ from pinjoint import Session, mods
 from pinjoint.commands.command_line import main
 from pinjoint.documents import models
 from pinjoint.mods import guard, mod
+from pinjoint.systems.input import pygame_input
 from tests.mods.conftest import Write
 from tests.mods.hostile import HOSTILE, KEY, LOAD, RUN, WINDOW, Hostile
 from tests.mods.test_isolation import TRUSS
@@ -21,6 +22,7 @@ CASES = pytest.mark.parametrize("hostile", HOSTILE.values(), ids=HOSTILE)
 
 @pytest.fixture(autouse=True)
 def impatient(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(pygame_input, "IDLE_PAUSE", 0.0)
     for module in (guard, mod):
         monkeypatch.setattr(module, "PATIENCE", 0.3)
     monkeypatch.setitem(mod.Mod.call.__kwdefaults__, "patience", 0.3)

@@ -317,9 +317,3 @@ EQUILIBRIA: dict[str, dict[str, list[dict[str, Any]]]] = {
         ],
     },
 }
-
-# The triangle at EA, exact geometry, with 9.81 m/s² acting on its masses as well.
-TRIANGLE_WITH_SELF_WEIGHT: dict[str, Any] = {
-    "axial_kN": {"AB": -28.40324219251584, "BC": -198.08788967044165, "CA": 20.11073062853645},
-    "reactions_kN": {"A": [0.0, 20.16047671717933], "C": [-120.0, 140.13082953389733]},
-}

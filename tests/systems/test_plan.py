@@ -147,14 +147,6 @@ def test_every_system_is_planned_or_left_out_once(capsys: pytest.CaptureFixture[
     assert "physics.rk4" in running
 
 
-def test_free_discs_fly_exactly(capsys: pytest.CaptureFixture[str]) -> None:
-    assert planned(capsys, "collision_iii")["phases"]["step"] == [
-        "run.time",
-        "collision.discs",
-        "collision.free_flight",
-    ]
-
-
 def test_the_plan_is_a_table_too(capsys: pytest.CaptureFixture[str]) -> None:
     assert main(["plan", "isostatic", "--format", "csv"]) == 0
     rows = list(csv.DictReader(io.StringIO(capsys.readouterr().out)))

@@ -165,24 +165,6 @@ def test_as_many_steps_are_taken_as_asked_for(integrator: str, tolerance: float)
     assert len(session.impacts) > 10
 
 
-def test_undo_returns_the_same_bits_through_impacts_and_contact() -> None:
-    session, straight = Session.open(truss({})), Session.open(truss({}))
-    straight.run(steps=160)
-    session.run(steps=60)
-    middle = state(session)
-    session.run(steps=100)
-    assert state(session) == state(straight)
-    session.undo()
-    assert state(session) == middle
-    session.redo()
-    assert state(session) == state(straight)
-    session.run(steps=40)
-    assert session.step(-30)
-    session.run(steps=30)
-    straight.run(steps=40)
-    assert state(session) == state(straight)
-
-
 def test_interrupts_leave_no_contacts_that_the_state_does_not_hold(monkeypatch: pytest.MonkeyPatch) -> None:
     """Each comes after the program returned and before what began to persist is noted."""
     session, straight = Session.open(truss({})), Session.open(truss({}))
