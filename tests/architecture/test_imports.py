@@ -1,7 +1,5 @@
 """Who may import whom: components ← systems ← game ← tests, no circles, heavy libraries only where they are used."""
 
-from __future__ import annotations
-
 import ast
 import re
 import subprocess

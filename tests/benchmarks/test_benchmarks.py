@@ -1,7 +1,5 @@
 """Benchmarks measure what they say; how fast it is, is not tested."""
 
-from __future__ import annotations
-
 import importlib
 import json
 import math

@@ -1,7 +1,5 @@
 """Autosave: unsaved work outlives a killed program, no file is ever damaged, and a clean end leaves nothing."""
 
-from __future__ import annotations
-
 import errno
 import os
 import signal

@@ -1,7 +1,5 @@
 """Batches: variants computed together have the bits of single runs, or are left to these."""
 
-from __future__ import annotations
-
 from pathlib import Path
 from typing import Any
 

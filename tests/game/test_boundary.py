@@ -1,7 +1,5 @@
 """The boundary of a window: whatever raises inside is told of once, the model is kept, and a person goes on."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path

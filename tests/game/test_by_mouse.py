@@ -1,7 +1,5 @@
 """Everything by mouse: menus, double clicks, buttons that close, clicks that go no further, files that are dropped."""
 
-from __future__ import annotations
-
 import io
 from pathlib import Path
 

@@ -1,7 +1,5 @@
 """What is said of a run when it happens, and the list of it."""
 
-from __future__ import annotations
-
 import json
 from itertools import pairwise
 from pathlib import Path

@@ -1,7 +1,5 @@
 """The force method as a person goes through it, by the real scenes and keys."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import numpy as np

@@ -1,7 +1,5 @@
 """What works for trusses works for frames: copies, undo, moving, deleting, restarting, scripts, and clear refusals."""
 
-from __future__ import annotations
-
 import json
 
 import pytest

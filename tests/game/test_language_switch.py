@@ -1,7 +1,5 @@
 """F2 changes the language of all that a window shows, in every scene."""
 
-from __future__ import annotations
-
 import pytest
 
 from pinjoint.components.language import language, spoken

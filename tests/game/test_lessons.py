@@ -1,7 +1,5 @@
 """Lessons with tasks: every bundled one as its author meant it, other right answers, and wrong ones."""
 
-from __future__ import annotations
-
 import re
 from pathlib import Path
 from typing import Any

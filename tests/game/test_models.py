@@ -1,7 +1,5 @@
 """Model files: what is read, what is refused and how that is said, how it is written."""
 
-from __future__ import annotations
-
 import gc
 import json
 import math

@@ -1,7 +1,5 @@
 """What is kept of a person's choices, and the cycle of themes."""
 
-from __future__ import annotations
-
 import json
 from pathlib import Path
 

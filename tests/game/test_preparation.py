@@ -1,7 +1,5 @@
 """A window begins runs interpreted while another process compiles, and goes on with what was compiled there."""
 
-from __future__ import annotations
-
 import json
 import os
 import subprocess

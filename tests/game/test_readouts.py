@@ -1,7 +1,5 @@
 """Readouts beside the model: theory of the selected elements and the worst of all, and the energy account."""
 
-from __future__ import annotations
-
 import pytest
 
 from pinjoint import Session

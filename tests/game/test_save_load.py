@@ -1,7 +1,5 @@
 """Save and load: names, files, what is asked and what is said, and that no work is lost."""
 
-from __future__ import annotations
-
 import itertools
 import json
 import os

@@ -1,7 +1,5 @@
 """Sessions as a script drives them, with good and with bad input."""
 
-from __future__ import annotations
-
 import copy
 import pickle
 from collections.abc import Callable

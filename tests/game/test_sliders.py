@@ -1,7 +1,5 @@
 """Sliders on the canvas: what they move, live and undoable, how they are made, removed, saved and refused."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import pytest

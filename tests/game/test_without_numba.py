@@ -1,7 +1,5 @@
 """PINJOINT_COMPILE=never: no compiler is needed, not even importable; and what is said of other values."""
 
-from __future__ import annotations
-
 import os
 import subprocess
 import sys

@@ -1,7 +1,5 @@
 """Contact sheets to look at: `python -m tests.golden.contact FOLDER` draws everything at many sizes."""
 
-from __future__ import annotations
-
 import argparse
 from pathlib import Path
 

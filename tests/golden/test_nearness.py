@@ -1,7 +1,5 @@
 """Every value stands nearer to its own rod or arrow than to any other, in every bundled model and window."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Iterator
 
 import numpy as np

@@ -3,8 +3,6 @@
 For a short list of what is not: python -m tests.golden.test_texts
 """
 
-from __future__ import annotations
-
 import re
 import sys
 from collections.abc import Callable, Iterable, Iterator

@@ -1,7 +1,5 @@
 """Mods that are mistaken or mean: what each does, what is said of it, and where that is found."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 
 KEY = "ctrl+shift+j"  # that the tests press in pause, and in the scene that it leads to

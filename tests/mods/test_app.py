@@ -1,7 +1,5 @@
 """What a mod registers works as what comes with Pinjoint does."""
 
-from __future__ import annotations
-
 import sys
 import typing
 from pathlib import Path

@@ -1,7 +1,5 @@
 """What follows where a mod fails: exit statuses, what is said and what is not, threads, Ctrl+C, and the names of modules."""
 
-from __future__ import annotations
-
 import json
 import os
 import signal

@@ -1,7 +1,5 @@
 """The mods in assets/mods do what they say, and are short."""
 
-from __future__ import annotations
-
 from pathlib import Path
 from typing import Any
 
@@ -14,35 +12,21 @@ from pinjoint.sweeps import sweep
 from pinjoint.systems.render.picture import compose
 from pinjoint.systems.render.theme import load_theme
 from tests.mods.conftest import Write
+from tests.reference.models import model, particle, rod
 
 FOLDER = Path(__file__).parents[2] / "assets" / "mods"
 NAMES = sorted(path.parent.name for path in FOLDER.glob("*/mod.toml"))
 VERLET = {"integrator": "velocity_verlet"}  # the quickest to compile
-BALL: dict[str, Any] = {
-    "format": "pinjoint model",
-    "version": 1,
-    "settings": VERLET,
-    "particles": [{"name": "A", "position": [0, 0]}],
-}
+BALL: dict[str, Any] = model([particle("A", 0, 0)], [], settings=VERLET)
 
-HANGING = {
-    "format": "pinjoint model",
-    "version": 1,
-    "settings": VERLET,
-    "particles": [
-        {"name": "A", "position": [0, 0], "fixed": [True, True]},
-        {"name": "B", "position": [1, 0], "fixed": [False, True], "force": [15.0, 0.0], "mass": 100.0},
+HANGING = model(
+    [
+        particle("A", 0, 0, fixed=[True, True]),
+        particle("B", 1, 0, fixed=[False, True], force=[15.0, 0.0], mass=100.0),
     ],
-    "rods": [
-        {
-            "name": "AB",
-            "between": ["A", "B"],
-            "stiffness": 100.0,
-            "damping": 5.0,
-            "components": {"stiffening.Material": {"cubic": 50.0}},
-        }
-    ],
-}
+    [rod("A", "B", stiffness=100.0, damping=5.0, components={"stiffening.Material": {"cubic": 50.0}})],
+    settings=VERLET,
+)
 
 
 @pytest.mark.parametrize("name", NAMES)

@@ -1,7 +1,5 @@
 """The modders' guide, followed literally in an empty folder; and the examples in docstrings."""
 
-from __future__ import annotations
-
 import doctest
 import importlib
 import os

@@ -1,7 +1,5 @@
 """Hostile mods: each is named, switched off and survived, in the window and without it, and `mods check` finds it."""
 
-from __future__ import annotations
-
 import sys
 from collections.abc import Iterator
 from typing import Any

@@ -1,7 +1,5 @@
 """Mods that fail while the program runs: each is named with its reason, switched off, and the model is intact."""
 
-from __future__ import annotations
-
 import math
 from typing import Any
 
@@ -11,6 +9,7 @@ from pinjoint import Session, mods
 from pinjoint.documents.models import document
 from pinjoint.mods import guard
 from tests.mods.conftest import Write
+from tests.reference.models import model, particle, rod
 
 TRUSS: dict[str, Any] = {
     "format": "pinjoint model",
@@ -351,25 +350,14 @@ class Harder(Law):
 def plugin(app):
     app.system(Harder)
 """
-PULLED: dict[str, Any] = {
-    "format": "pinjoint model",
-    "version": 1,
-    "settings": {"integrator": "velocity_verlet", "time_step": 2e-6},
-    "particles": [
-        {"name": "A", "position": [0, 0], "fixed": [True, True]},
-        {"name": "B", "position": [1, 0], "fixed": [False, True], "mass": 1, "velocity": [2.0, 0]},
+PULLED: dict[str, Any] = model(
+    [
+        particle("A", 0, 0, fixed=[True, True]),
+        particle("B", 1, 0, fixed=[False, True], mass=1, velocity=[2.0, 0]),
     ],
-    "rods": [
-        {
-            "name": "r",
-            "between": ["A", "B"],
-            "stiffness": 1000,
-            "damping": 0,
-            "tensile_strength": 1,
-            "compressive_strength": 1,
-        }
-    ],
-}
+    [rod("A", "B", name="r", stiffness=1000, damping=0, tensile_strength=1, compressive_strength=1)],
+    settings={"integrator": "velocity_verlet", "time_step": 2e-06},
+)
 
 
 def test_the_work_of_a_law_that_takes_the_axial_force_is_accounted_for(write_mod: Write) -> None:
@@ -429,11 +417,7 @@ class Wind(Law):
 def plugin(app):
     app.system(Wind)
 """
-DISCS = {
-    "format": "pinjoint model",
-    "version": 1,
-    "particles": [{"name": name, "position": [x, 0.0], "mass": 5.0} for name, x in (("A", 0.0), ("B", 1.0))],
-}
+DISCS = model([{"name": name, "position": [x, 0.0], "mass": 5.0} for name, x in (("A", 0.0), ("B", 1.0))], [])
 
 
 @pytest.mark.parametrize("forces", ["np.array([2.0, 0.0])", "np.full((model.particles.count, 2), [2.0, 0.0])"])

@@ -1,7 +1,5 @@
 """Which mods are loaded, in which order, and what is said of the others. Nothing of these stays loaded."""
 
-from __future__ import annotations
-
 import io
 import os
 import subprocess

@@ -1,7 +1,5 @@
 """Probes: what they read, when, how it is drawn and written."""
 
-from __future__ import annotations
-
 import csv
 import math
 from pathlib import Path

@@ -1,7 +1,5 @@
 """Editing by random actions: nothing crashes, the model stays sound, undo and redo are exact."""
 
-from __future__ import annotations
-
 from typing import Any
 
 from hypothesis import HealthCheck, settings

@@ -1,7 +1,5 @@
 """A model under random editing, compared after every step with a document of plain dictionaries."""
 
-from __future__ import annotations
-
 import copy
 import math
 from collections.abc import Iterator

@@ -1,7 +1,5 @@
 """The plan: which systems run in a scene with a model; scenes are honoured by every kind of system."""
 
-from __future__ import annotations
-
 import csv
 import io
 import json

@@ -10,6 +10,7 @@ from pinjoint.components.field import FieldError
 from pinjoint.components.model import Model
 from pinjoint.documents.document import document, parse
 from pinjoint.paths import PathError, apply_override, locate_one
+from tests.reference import models
 
 EI, EA, LENGTH, DENSITY = 10.0, 2e4, 2.0, 6.15
 
@@ -19,13 +20,11 @@ def rod(**facts: Any) -> Model:
     held = {"name": "A", "position": [0.0, 0.0], "fixed": [True, True], "fixed_rotation": True}
     member = {"name": "AB", "between": ["A", "B"], "stiffness": EA, "bending_stiffness": EI, **facts}
     return parse(
-        {
-            "format": "pinjoint model",
-            "version": 1,
-            "particles": [held, {"name": "B", "position": [LENGTH, 0.0]}],
-            "rods": [member],
-            "loads": [{"name": "p", "on": "B", "force": [0.0, -1.0], "moment": 3.0}],
-        }
+        models.model(
+            [held, models.particle("B", LENGTH, 0.0)],
+            [member],
+            loads=[{"name": "p", "on": "B", "force": [0.0, -1.0], "moment": 3.0}],
+        )
     )
 
 

@@ -1,7 +1,5 @@
 """Tables: columns, their views, the order of rows and the index of names."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import numpy as np

@@ -1,7 +1,5 @@
 """World: handles, commands, transactions, versions, derived columns, tags, and esper contexts."""
 
-from __future__ import annotations
-
 import gc
 import weakref
 from typing import Any

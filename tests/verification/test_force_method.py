@@ -1,7 +1,5 @@
 """The force method: hyperstatic forces, superposition, and unknowns that are none."""
 
-from __future__ import annotations
-
 import math
 from typing import Any
 

@@ -1,7 +1,5 @@
 """The force method where members bend, and its virtual work: closed forms, linear theory, Maxwell's reciprocity."""
 
-from __future__ import annotations
-
 import json
 from typing import Any
 

@@ -1,7 +1,5 @@
 """Programs compute the same bits interpreted and compiled, and when the one follows the other, at any step."""
 
-from __future__ import annotations
-
 import math
 
 import pytest

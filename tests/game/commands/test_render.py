@@ -1,7 +1,5 @@
 """`pinjoint render`: pictures for reports."""
 
-from __future__ import annotations
-
 import os
 
 os.environ.setdefault("SDL_VIDEODRIVER", "dummy")

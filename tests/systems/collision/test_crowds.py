@@ -1,7 +1,5 @@
 """Crowds: discs under drag of which many touch take steps together."""
 
-from __future__ import annotations
-
 import math
 from pathlib import Path
 from typing import Any

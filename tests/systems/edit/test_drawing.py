@@ -1,7 +1,5 @@
 """Particles and rods, as a person draws them."""
 
-from __future__ import annotations
-
 import math
 
 import pytest

@@ -1,7 +1,5 @@
 """Going through time: steps, pace, restart."""
 
-from __future__ import annotations
-
 import pytest
 
 from pinjoint import Session

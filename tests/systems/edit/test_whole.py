@@ -1,7 +1,5 @@
 """Whole sessions by hand, and what holds for every action."""
 
-from __future__ import annotations
-
 import numpy as np
 
 from pinjoint import Session

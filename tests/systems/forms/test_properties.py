@@ -1,7 +1,5 @@
 """Properties: boxes from Fields, typing into them, and all of them applied at once."""
 
-from __future__ import annotations
-
 import itertools
 
 import pytest

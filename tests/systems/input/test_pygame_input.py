@@ -1,7 +1,5 @@
 """What a person does with mouse and keys in a window, as presses of the session."""
 
-from __future__ import annotations
-
 import os
 from collections.abc import Iterator
 from pathlib import Path

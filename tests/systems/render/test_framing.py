@@ -1,7 +1,5 @@
 """Marks of others are cut to what is seen: the picture is the same, and none is too much for a canvas."""
 
-from __future__ import annotations
-
 import os
 import time
 from typing import Any

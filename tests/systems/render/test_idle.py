@@ -1,7 +1,5 @@
 """Nothing is drawn, and nothing looked for under the pointer, while nothing changes."""
 
-from __future__ import annotations
-
 import gc
 import os
 from collections.abc import Iterator

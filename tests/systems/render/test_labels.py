@@ -1,7 +1,5 @@
 """Names and values, and where they find room."""
 
-from __future__ import annotations
-
 import itertools
 
 import numpy as np

@@ -1,7 +1,5 @@
 """What the window draws in another language: keys with their names, and the glossary. Nothing is kept from before."""
 
-from __future__ import annotations
-
 from pinjoint.session import Session
 from pinjoint.systems.render.buttons import written_key
 from pinjoint.systems.render.help import terms

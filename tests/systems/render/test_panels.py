@@ -1,7 +1,5 @@
 """Panels stand beside the structure, in windows of any size, and none of them vanishes without a word."""
 
-from __future__ import annotations
-
 import itertools
 import json
 from pathlib import Path

@@ -1,7 +1,5 @@
 """What stands about a fitted model is not covered by the sliders."""
 
-from __future__ import annotations
-
 import pytest
 
 from pinjoint import Session

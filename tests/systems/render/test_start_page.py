@@ -1,7 +1,5 @@
 """The start page: nothing of it is cut, and its rows look intended, at every size that is promised."""
 
-from __future__ import annotations
-
 from itertools import pairwise
 
 import pytest

@@ -1,7 +1,5 @@
 """Particles, rods, supports and grids in a picture."""
 
-from __future__ import annotations
-
 import subprocess
 import sys
 

@@ -1,7 +1,5 @@
 """The toolbar: what it offers, where, and that a click does what the key does."""
 
-from __future__ import annotations
-
 import pytest
 
 from pinjoint import Session

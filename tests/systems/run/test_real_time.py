@@ -1,7 +1,5 @@
 """A run that is watched: frames take as many steps as fit, and what is done to a large model is seen first."""
 
-from __future__ import annotations
-
 import math
 from types import SimpleNamespace
 from typing import Any
