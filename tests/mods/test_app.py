@@ -304,14 +304,6 @@ def test_an_action_with_an_icon_has_a_button_whatever_became_of_its_key(
     assert "apple.toggle" not in [tool.action for group in session.view.toolbar.groups for tool in group]
 
 
-@pytest.mark.parametrize("icon", ["[('circle', (0, 0, 1))]", "[('line', (0, 0, 1))]", "[('disc', (0, 0))]"])
-def test_an_icon_that_cannot_be_drawn_is_refused(write_mod: Write, icon: str) -> None:
-    from pinjoint.mods import ModError
-
-    with pytest.raises(ModError, match=r"The icon of 'apple\.toggle': .* is not a part of an icon; write"):
-        opened(write_mod, TOGGLED.format(key="y", icon=icon))
-
-
 @pytest.mark.skipif(sys.version_info < (3, 12), reason="aliases of types are new in Python 3.12")
 def test_aliases_of_types_are_what_they_mean() -> None:
     """numpy's NDArray is one since numpy 2.5; mods' arrays were refused."""

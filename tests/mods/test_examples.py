@@ -53,14 +53,6 @@ def test_wind_accelerates_a_ball_towards_its_speed(unloaded: None) -> None:
     assert session.view.readouts[0].rows == (("speed", "12 m/s"),)
 
 
-def test_wind_passes_the_check_of_systems(unloaded: None) -> None:
-    mods.load([FOLDER / "wind"])
-    from wind import Push  # type: ignore[import-not-found]  # a mod that was just loaded
-
-    document = {**BALL, "particles": [{**BALL["particles"][0], "components": {"wind.Sail": {"area": 1.0}}}]}
-    assert check_system(Push, [document]).needed == 1
-
-
 def test_a_stiffening_rod_rests_where_its_law_says(unloaded: None) -> None:
     """F = EA (ε + β ε³): with EA = 100 kN and β = 50, a strain of 0.1 takes 15 kN."""
     session = Session.open(HANGING, mods=[FOLDER / "stiffening"])

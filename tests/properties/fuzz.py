@@ -58,7 +58,7 @@ MOUSE = (
 )
 OFTEN = {  # keys that are pressed more often than others, so that every scene is seen as much as any
     "simulation": ("l", "p", "i", "drag", "space"),
-    "pause": (*"pplllcfvkkkeh", "ctrl+r", "ctrl+j", "ctrl+m", "return", "space", "space"),
+    "pause": (*"pplllcfv", "ctrl+r", "ctrl+j", "ctrl+m", *"kkk", "return", "space", "space", *"eh"),
     "properties": ("escape", "tab", "tab", "return", "up", "down"),
     "save": ("escape", "return", "return"),
     "load": ("escape", "escape", "down", "return", "return"),

@@ -458,24 +458,6 @@ def test_an_element_is_made_by_its_model_only() -> None:
 # --- tags --------------------------------------------------------------------------------------------------
 
 
-def test_tags_mark_existing_entities_in_order_of_creation() -> None:
-    model = triangle()
-    log = logged(model)
-    a, b, c = model.particles
-    rod = model.rods["AB"]
-    for handle in (rod, c, a, a):
-        model.tag(handle, Selected)
-    model.tag(b, DiagramShown)
-    assert model.tagged(Selected) == [a, c, rod]
-    assert model.tagged(DiagramShown) == [b]
-    model.delete([a])
-    assert model.tagged(Selected) == [c]
-    model.tag(a, DiagramShown)
-    assert model.tagged(DiagramShown) == [b]
-    model.apply(log.pop())
-    assert model.tagged(Selected) == [a, c, rod]
-
-
 def test_the_revision_of_tags_tells_when_marks_changed() -> None:
     model = triangle()
     a = model.particles["A"]
