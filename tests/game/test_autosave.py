@@ -11,9 +11,11 @@ from contextlib import contextmanager
 from pathlib import Path
 
 import numpy as np
+import pygame
 import pytest
 
 from pinjoint import Session
+from pinjoint.app import App
 from pinjoint.documents import library, models
 from pinjoint.documents.autosave import Autosave, recovered_name
 from pinjoint.documents.open_documents import ModelFile
@@ -51,7 +53,7 @@ def data(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
 @contextmanager
 def window(model: Path, interval: float = INTERVAL) -> Iterator[subprocess.Popen[str]]:
     """A running window in another process, killed at the end if it still runs."""
-    environment = os.environ | {"SDL_VIDEODRIVER": "dummy", "SDL_AUDIODRIVER": "dummy"}
+    environment = os.environ | {"SDL_AUDIODRIVER": "dummy"}
     command = [sys.executable, "-c", WINDOW, str(model), str(interval)]
     process = subprocess.Popen(command, cwd=ROOT, env=environment, stdout=subprocess.PIPE, text=True)
     try:
@@ -142,13 +144,7 @@ def test_no_moment_of_being_killed_damages_a_file(tmp_path: Path, data: Path) ->
             assert recovered.rods.count == large.rods.count
 
 
-def test_closing_the_window_keeps_what_nobody_saved(
-    model_file: Path, data: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    monkeypatch.setenv("SDL_VIDEODRIVER", "dummy")
-    pygame = pytest.importorskip("pygame")
-    from pinjoint.app import App
-
+def test_closing_the_window_keeps_what_nobody_saved(model_file: Path, data: Path) -> None:
     keeper = Autosave(interval=0.0)
     app = App(models.load(model_file), ModelFile(None, "work"), keeper)
     app.session.rods[0].stiffness = 5.0
@@ -209,6 +205,7 @@ def passing(keeper: Autosave, session: Session) -> str:
     assert keeper._thread is not None
     keeper._thread.join(10.0)
     session.frame(0.0)
+    keeper._thread.join(10.0)  # of the next one
     return session.notice
 
 

@@ -46,7 +46,6 @@ def test_a_window_remembers_the_choice(monkeypatch, tmp_path):
     from pinjoint.app import App
     from pinjoint.documents import models
 
-    monkeypatch.setenv("SDL_VIDEODRIVER", "dummy")
     monkeypatch.setenv(CONFIG_VARIABLE, str(tmp_path))
     app = App(models.load("isostatic"))
     app.frame(0.0)

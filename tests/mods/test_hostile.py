@@ -48,8 +48,7 @@ def modelled() -> Any:
 
 
 @CASES
-def test_in_a_window(hostile: Hostile, bad: Any, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setenv("SDL_VIDEODRIVER", "dummy")
+def test_in_a_window(hostile: Hostile, bad: Any) -> None:
     from pinjoint.app import App
 
     mods.load([bad(hostile)])

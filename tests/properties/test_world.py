@@ -498,4 +498,4 @@ class Editing(RuleBasedStateMachine):
 
 
 TestEditing = Editing.TestCase
-TestEditing.settings = settings(max_examples=80, stateful_step_count=30, deadline=None)
+TestEditing.settings = settings(max_examples=50, stateful_step_count=30, deadline=None)

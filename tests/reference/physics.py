@@ -151,17 +151,6 @@ class Simulation:
         self.dissipated_damping += time_step * (before.damping_power + after.damping_power) / 2
         self.dissipated_drag += time_step * (before.drag_power + after.drag_power) / 2
 
-    def advance_with_quadrature(
-        self, end: float, u: np.ndarray, v: np.ndarray, stages: list[tuple[float, Forces, np.ndarray]]
-    ) -> None:
-        """Accept (u, v) at the time `end`; book work and dissipation of (weight, forces, velocity) stages."""
-        time_step = end - self.time
-        for weight, forces, velocity in stages:
-            self.work += time_step * weight * NEWTONS_PER_KN * float(np.sum(forces.applied * velocity))
-            self.dissipated_damping += time_step * weight * forces.damping_power
-            self.dissipated_drag += time_step * weight * forces.drag_power
-        self._accept(end, u, v)
-
     def _accept(self, end: float, u: np.ndarray, v: np.ndarray) -> None:
         self.time = end
         self.u, self.v = u, v

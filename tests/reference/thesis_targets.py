@@ -1,8 +1,8 @@
 """Equilibria of the thesis' structures to 15 digits, from two independent solvers that agree to 1e-12.
 
-EA 164 640 kN, or ten times that; 215 kN strength in the plastic cases. "linear" is first-order theory, "exact" exact geometry;
-one block per load factor in turn: N axial forces (tension positive) and R reactions in kN, u displacements in mm, y up, e plastic
-strains.
+EA 164 640 kN, or ten times that; 215 kN strength in the plastic cases. "linear" is first-order theory, "exact"
+exact geometry; one block per load factor in turn: N axial forces (tension positive) and R reactions in kN,
+u displacements in mm, y up, e plastic strains.
 """
 
 from typing import Any

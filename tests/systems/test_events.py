@@ -117,21 +117,6 @@ def test_nothing_happens_twice_nor_where_nothing_changes_sign() -> None:
     )
 
 
-# --- the same everywhere -----------------------------------------------------------------------------------
-
-
-@pytest.mark.parametrize("rate", [7.0, 60.0, 241.0])
-def test_a_rod_breaks_at_the_same_time_to_the_bit_in_frames_and_in_a_run(rate: float) -> None:
-    run, frames = Breaking(), Breaking()
-    one = Session.open(pulled(), [run])
-    one.run(time=0.2)
-    other = Session.open(pulled(), [frames])
-    other.press("space")
-    while other.time < 0.1:
-        other.frame(1.0 / rate)
-    assert frames.times == run.times
-
-
 # --- taken back, saved, switched off ---------------------------------------------------------------------------
 
 

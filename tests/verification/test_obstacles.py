@@ -234,7 +234,7 @@ COORDINATE = st.floats(-2, 2).map(lambda x: round(x, 3))
     velocity=st.tuples(COORDINATE, COORDINATE),
     pull=st.sampled_from([(0.0, 0.0), (0.0, 9.81), (1.0, 2.0)]),
 )
-@settings(max_examples=150)
+@settings(max_examples=80)
 def test_the_first_touch_is_that_of_the_slow_search(
     first: Point, span: Point, velocity: Point, pull: Point
 ) -> None:

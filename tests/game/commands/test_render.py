@@ -1,9 +1,5 @@
 """`pinjoint render`: pictures for reports."""
 
-import os
-
-os.environ.setdefault("SDL_VIDEODRIVER", "dummy")
-
 import xml.etree.ElementTree as ET
 from pathlib import Path
 

@@ -383,16 +383,6 @@ def test_jammed_rows_come_to_rest_under_drag(
     assert session.model.clock.energy_scale < 10.0 * abs(supplied)  # a larger one would make motion round-off
 
 
-@pytest.mark.parametrize("integrator", ["esdirk4", "dop853"])
-def test_an_integrator_of_either_kind_brings_a_ball_to_rest_on_a_truss(integrator: str) -> None:
-    session = Session.open(truss({}, integrator=integrator))
-    session.model.rods[0].damping = session.model.rods[1].damping = 20.0
-    assert session.run(until="rest") == "at rest"
-    assert session.rods["AB"].axial_force == pytest.approx(-0.0587925291, rel=1e-7)
-    assert abs(session.energy.imbalance) < 1e-6 * session.energy.work
-    assert_lies(session)
-
-
 def test_a_ball_rests_on_a_cable() -> None:
     """Where it settles: the cable, loaded by its weight at mid span, is in balance with it."""
     rope = {"stiffness": 100, "damping": 2.0, "density": 1, "tension_only": True}

@@ -115,7 +115,7 @@ def slowly(near: NeighbourList, span: float) -> list[list[int]]:
     return within(margin).tolist()
 
 
-@settings(max_examples=60)
+@settings(max_examples=30)
 @given(
     seed=st.integers(0, 2**32),
     count=st.integers(1, 40),

@@ -1,9 +1,5 @@
 """Pictures on a surface, without a display."""
 
-import os
-
-os.environ.setdefault("SDL_VIDEODRIVER", "dummy")
-
 import numpy as np
 import pygame
 import pytest
