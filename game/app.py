@@ -190,8 +190,9 @@ class App:
         self.session.window = self
         self.session.faults_seen = 0  # so that mods that were left out are shown
         self.session.autosave = self.autosave = autosave
-        self.session.preparation = self.preparation = preparation
+        self.preparation = preparation
         if preparation is not None:
+            self.session.waits_for = preparation.waits_for
             preparation.open()
         self._theme, self._language = theme, language()
         self._convention = self.session.view.convention

@@ -14,7 +14,7 @@ from pinjoint.components.field import Role
 from pinjoint.components.language import english, tr
 from pinjoint.components.model import Model
 from pinjoint.documents.format import ModelError
-from pinjoint.editor.host import Waiting
+from pinjoint.editor.context import Waiting
 from pinjoint.elsewhere import Elsewhere, slower
 from pinjoint.prepare import UNITS, Job, described, in_a_line, problem_of
 from pinjoint.systems import cache

@@ -31,7 +31,6 @@ from pinjoint.documents import models
 from pinjoint.documents.format import ModelError
 from pinjoint.documents.open_documents import ModelFile, Source, file_of
 from pinjoint.editor.context import Context
-from pinjoint.editor.dropping import open_dropped
 from pinjoint.editor.frame import Actions, Exaggerate, Frame, HeadlessFrame, ShowView
 from pinjoint.editor.routing import Layer, for_tools, hit_at, layer, meaning
 from pinjoint.editor.scenes import all_scenes, scene_systems
@@ -71,6 +70,7 @@ if TYPE_CHECKING:  # they import scipy
     from pinjoint.systems.statics.path import Curve
     from pinjoint.systems.statics.verify import Comparison
 
+MODEL, SCRIPT = ".json", ".jsonl"  # files that a person may drop on the window
 FARTHEST = 1e9  # pixels from the corner of the window to which a click may be
 LARGEST_SIDE, LARGEST_RATIO = 65_536, 64.0  # of a window, in pixels, and in pixels per point
 DEFAULT_LIMIT = 60.0  # s of simulated time in which a model is expected to come to rest
@@ -461,7 +461,7 @@ class Session(Context):
         opened, problems = [], []
         for path in map(Path, paths):
             try:
-                open_dropped(self, path)
+                self._open_file(path)
             except (ModelError, ScriptError) as error:
                 problems.append(str(error))
             else:
@@ -476,6 +476,26 @@ class Session(Context):
         if isinstance(scene, FileScene):
             scene.say(self.notice)
         self.offer_tools()
+
+    def _open_file(self, path: Path) -> None:
+        """Open a model file, or play a recorded session. Raises ModelError or ScriptError; then nothing has changed.
+
+        The document in use stays open unless it is empty.
+        """
+        if path.is_dir():
+            raise ModelError("'{name}' is a folder; drop the model files that are in it.", name=path.name)
+        if path.suffix.lower() not in (MODEL, SCRIPT):
+            raise ModelError(
+                "'{name}' is not a model: Pinjoint opens model files ({model}) and recorded sessions ({script}).",
+                name=path.name,
+                model=MODEL,
+                script=SCRIPT,
+            )
+        script = Script(path) if path.suffix.lower() == SCRIPT else None
+        if script is None or not script.has_tasks:  # a lesson opens its models itself
+            source = path if script is None else script.source
+            self.adopt(models.load(source), file_of(source), keep=self.model.particles.count > 0)
+        self.lesson = script or self.lesson
 
     def resize(self, width: int, height: int, pixel_ratio: float = 1.0) -> None:
         """Adapt to a new size of the window, in pixels, with `pixel_ratio` pixels per point. Raises ValueError."""

@@ -11,9 +11,8 @@ from pinjoint.components.language import begun, english, joined, listed, marked,
 from pinjoint.components.model import Model
 from pinjoint.components.tags import Hovered
 from pinjoint.components.view import MARGIN, Preview, Readout, Status, drawn_places, drawn_positions
-from pinjoint.editor.context import Context
+from pinjoint.editor.context import Context, Waiting
 from pinjoint.editor.gestures.drawing import end_pointed_at, hint_of_tool
-from pinjoint.editor.host import Waiting
 from pinjoint.editor.readouts import own_readouts
 from pinjoint.systems.base import StopReason
 from pinjoint.systems.edit import Refusal
@@ -36,7 +35,7 @@ MOST_FLASHES = 500  # impacts marked at a time
 def show(context: Context, elapsed: float) -> None:
     """Let the view show the session as it is now, so many seconds after the last time."""
     view, scene = context.view, context.scenes.active
-    view.forces_known = context.waited_for(context.simulation) is None
+    view.forces_known = context.waits_for(context.simulation) is None
     awaited = _awaited(context)
     said = _told(awaited) or (scene.message if scene.mod is not None else "")
     lately = context.document.chronicle.told(elapsed) if context.scene in LIVE else ""
@@ -65,7 +64,7 @@ def show(context: Context, elapsed: float) -> None:
         hint=_drawing_hint(context) or scene.hint(context),
         problem=_problem(context),
         notice=said or joined([lately, *lasting]),
-        share=awaited.share if awaited is not None else None,
+        share=min(awaited.seconds / awaited.expected, 0.99) if awaited is not None else None,
     )
 
 
@@ -158,7 +157,7 @@ def _point_out(context: Context) -> None:
 
 def _awaited(context: Context) -> Waiting | None:
     """What the run waits for, None if it does not (any more)."""
-    waited = context.waited_for(context.awaited) if context.awaited is not None else None
+    waited = context.waits_for(context.awaited) if context.awaited is not None else None
     if waited is None:
         context.awaited = None
     return waited
@@ -174,7 +173,7 @@ def _told(waited: Waiting | None) -> str:
 
 def _flashes(context: Context) -> NDArray[np.float64]:
     """Where particles collided within the last FLASH seconds shown (m), shape (k, 2)."""
-    impacts = context.impacts
+    impacts = context.simulation.impacts
     if not context.busy or len(impacts) == 0:
         return np.zeros((0, 2))
     since = context.time - FLASH * context.document.live.clock.shown_pace

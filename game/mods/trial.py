@@ -181,7 +181,7 @@ class _Trial:
 
     def _run(self, integrator: str) -> None:
         session = Session(_sample(self.mod))
-        session.settings.integrator = integrator
+        session.model.settings.integrator = integrator
         session.run(steps=STEPS)
         if session.message and self.mod.off is False and session.simulation.halted:
             self._note(

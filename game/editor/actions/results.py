@@ -126,9 +126,9 @@ def _next_shape(context: Context, pixel: Vector) -> None:
     context.view.shape = context.document.shapes.shown
 
 
-@action("new slider", "ctrl+l", "add a slider for selected load or stiffness", while_drawing=False)
-def _new_slider(context: Context, pixel: Vector) -> None:
-    add_usual_slider(context)
+action("new slider", "ctrl+l", "add a slider for selected load or stiffness", while_drawing=False)(
+    lambda context, pixel: add_usual_slider(context)
+)
 
 
 @action(

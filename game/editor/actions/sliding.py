@@ -2,18 +2,14 @@
 
 from __future__ import annotations
 
+from functools import partial
+
 from pinjoint.components.field import Vector
 from pinjoint.components.language import tr
 from pinjoint.editor.context import Context
 from pinjoint.editor.gestures.sliding import Slide
-from pinjoint.editor.sliders import (
-    SCALE,
-    move_to,
-    remove_slider,
-    scale_to,
-    slider_of,
-)
-from pinjoint.systems.input.actions import Perform, actions_of
+from pinjoint.editor.sliders import SCALE, move_to, remove_slider, scale_to, slider_of
+from pinjoint.systems.input.actions import actions_of
 
 action = actions_of("More")
 WHEEL = 0.02  # of its length, by which the wheel moves a slider
@@ -58,18 +54,14 @@ def automatic(context: Context) -> None:
     scale_to(context, settings.displacement_scale if is_automatic else None)
 
 
-def _step(by: float) -> Perform:
-    def act(context: Context, pixel: Vector) -> None:
-        place = context.slider_at(pixel)
-        if place is None or place.control.share is None:
-            return
+def _step(by: float, context: Context, pixel: Vector) -> None:
+    place = context.slider_at(pixel)
+    if place is not None and place.control.share is not None:
         value = slider_of(context, place.control.key).value_at(place.control.share + by)
         with context.document.history.as_one(("slider", place.control.key)):
             move_to(context, place.control.key, value)
 
-    return act
 
-
-action("slider up")(_step(WHEEL))
-action("slider down")(_step(-WHEEL))
+action("slider up")(partial(_step, WHEEL))
+action("slider down")(partial(_step, -WHEEL))
 action("automatic displacement scale")(lambda context, pixel: automatic(context))

@@ -18,6 +18,7 @@ from pinjoint.systems.edit.moving import Movable
 from pinjoint.systems.edit.picking import Grip, inside
 from pinjoint.systems.edit.placing import check_free, snapped, snapped_to_points
 from pinjoint.systems.edit.pull import hand_on
+from pinjoint.systems.physics.pace import natural_pace
 
 
 class Placing(Gesture):
@@ -106,18 +107,20 @@ class PullParticle(Gesture):
     hint = marked("pull with the pointer     let go to release it")
 
     def __init__(self, context: Context, particle: Particle) -> None:
-        if context.settings.displacement_scale == 0.0:
+        if context.model.settings.displacement_scale == 0.0:
             raise Refusal(
                 "Displacements are drawn at scale 0, so nothing can be pulled; set the displacement scale above 0."
             )
         self._particle = particle
         context.simulation.advance(0)
         context.document.assessment.disturb("pulled")
-        context.document.timeline.hold(hand_on(context.model, context.view, particle, lambda: context.pace))
+        context.document.timeline.hold(
+            hand_on(context.model, context.view, particle, lambda: natural_pace(context.model))
+        )
 
     def move(self, context: Context, pixel: Vector) -> None:
         x, y = context.view.camera.to_model(pixel)
-        original, scale = self._particle.position, context.settings.displacement_scale
+        original, scale = self._particle.position, context.model.settings.displacement_scale
         hand = context.pull.hand
         if hand is not None:
             anchor = ((x - original[0]) / scale, (y - original[1]) / scale)
@@ -133,7 +136,7 @@ class PullParticle(Gesture):
         hand = context.pull.hand
         if hand is None or not self._particle.exists:
             return None
-        scale = context.settings.displacement_scale
+        scale = context.model.settings.displacement_scale
         start, end = (
             (self._particle.position[0] + scale * u[0], self._particle.position[1] + scale * u[1])
             for u in (self._particle.displacement, hand.anchor)

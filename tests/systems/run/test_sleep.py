@@ -276,7 +276,7 @@ def test_what_is_struck_wakes_at_the_impact() -> None:
     off.run(time=0.35)
     for session in (on, off):
         session.run(time=0.1)
-        assert session.impacts.time[0] == pytest.approx(0.4, abs=1e-9)
+        assert session.simulation.impacts.time[0] == pytest.approx(0.4, abs=1e-9)
     assert asleep(on) == {"beside"}
     assert on.impacts.time.tolist() == off.impacts.time.tolist()
     largest = np.abs(off.particles.displacement).max()
@@ -297,7 +297,7 @@ def test_what_sleeps_is_not_foreseen_to_move_as_it_did_when_it_was_last_looked_a
     assert asleep(on) == {"struck"}
     for session in runs:
         session.run(time=0.3)
-        assert len(session.impacts) > 0
+        assert len(session.simulation.impacts) > 0
     assert on.impacts.time[0] == pytest.approx(off.impacts.time[0], abs=1e-9)
 
 
