@@ -41,7 +41,7 @@ from pinjoint.editor.view_model import follows, show
 from pinjoint.lessons.course import Course
 from pinjoint.lessons.tasks import Lesson
 from pinjoint.mods import load_all
-from pinjoint.mods.heeding import blamed_on_mod, heeding_mods
+from pinjoint.mods.mod import blamed_on_mod, heeding_mods
 from pinjoint.scripts.expectation import expect
 from pinjoint.scripts.script import Script, ScriptError
 from pinjoint.systems.base import EVENT_INTERVAL, Phase, StopReason, System

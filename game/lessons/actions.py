@@ -6,7 +6,7 @@ from typing import Any
 
 from pinjoint.components.field import Vector
 from pinjoint.lessons.course import Course
-from pinjoint.lessons.shelf import after
+from pinjoint.lessons.progress import after
 from pinjoint.scripts.script import Script, ScriptError
 from pinjoint.systems.edit import Refusal
 from pinjoint.systems.input.actions import IN_LESSONS, actions_of
@@ -84,7 +84,7 @@ def _leave(session: Session, pixel: Vector) -> None:
 action("erase answer", while_drawing=True)(lambda session, pixel: _course(session).erase())
 for _number in range(MOST_ANSWERS):
     action(f"answer {_number + 1}", while_drawing=True)(
-        lambda session, pixel, number=_number: _course(session).choose(number)  # type: ignore[misc]
+        lambda session, pixel, number=_number: _course(session).choose(number)
     )
 action("lesson up", while_drawing=True)(lambda session, pixel: _course(session).scroll(-2))
 action("lesson down", while_drawing=True)(lambda session, pixel: _course(session).scroll(2))

@@ -118,9 +118,9 @@ def _judge_state(session: Session, task: Task) -> Verdict:
 
 def _judge_selection(truth: Session, task: Task, answer: tuple[str, ...]) -> Verdict:
     right, values = _asked_for(truth, task.asked[0])
-    chosen = [handle for handle in values if _named(handle) in answer]
+    chosen = [handle for handle in values if named(handle) in answer]
     wrong = next((handle for handle in chosen if handle not in right), None)
-    others = set(answer) - {_named(handle) for handle in values}
+    others = set(answer) - {named(handle) for handle in values}
     if wrong is not None:
         said = tr(
             "{what} does not belong: {value}.", what=begun(truth.model.describe(wrong)), value=values[wrong]
@@ -192,7 +192,7 @@ def _asked_for(truth: Session, asked: str) -> tuple[list[Handle], dict[Handle, s
         path, relation = parts_of(asked)[0], asked[len(parts_of(asked)[0]) :]
         values = each(truth, path)
         right = [
-            handle for handle, _ in values if holds(truth, (path.replace("*", _named(handle), 1) + relation,))
+            handle for handle, _ in values if holds(truth, (path.replace("*", named(handle), 1) + relation,))
         ]
     target, _ = locate(truth.model, path.strip(), readable)
     unit, factor = target.field.shown
@@ -235,16 +235,11 @@ def shown(session: Session, path: str) -> str:
     value = read(session, path)
     if isinstance(value, int | str | np.integer) or value is None:
         return str(value)
-    unit, _, _ = _said_of(session, path)
+    unit, _, _ = said_of(session, path)
     return f"{_number(_shown_number(session, path))} {unit}".rstrip()
 
 
-def unit_of(session: Session, path: str) -> str:
-    """The unit in which a person reads and types the quantity at a path; "" if it has none."""
-    return _said_of(session, path)[0]
-
-
-def _said_of(session: Session, path: str) -> tuple[str, float, str]:
+def said_of(session: Session, path: str) -> tuple[str, float, str]:
     """The unit on screen, the factor to it, and the name of the quantity at a path."""
     word, _, of_all = path.partition(" ")
     try:
@@ -266,7 +261,7 @@ def _shown_number(session: Session, path: str) -> float:
     value = read(session, path)
     if not isinstance(value, int | float):
         raise WrongValue("{path} is {value}, not one number.", path=path, value=value)
-    return float(value) * _said_of(session, path)[1]
+    return float(value) * said_of(session, path)[1]
 
 
 def _number(value: float) -> str:
@@ -306,7 +301,7 @@ def _lacking(session: Session, condition: str) -> str:
         present = shown(session, path)
     except (ValueError, LookupError) as error:
         return tr("Not yet: {reason}", reason=str(error.args[0]) if error.args else str(error))
-    unit, factor, name = _said_of(session, path)
+    unit, factor, name = said_of(session, path)
     with_unit = f"{_written(value, factor)} {unit}".rstrip()
     wanted = tr(_RELATIONS[relation], value=with_unit)
     return tr("{name} is {present} now; {wanted}.", name=name, present=present, wanted=wanted)
@@ -320,5 +315,6 @@ def _written(value: str, factor: float) -> str:
         return value
 
 
-def _named(handle: Handle) -> str:
+def named(handle: Handle) -> str:
+    """The name of an element; "" of what has none."""
     return str(getattr(handle, "name", ""))

@@ -22,21 +22,19 @@ from pinjoint.documents import models
 from pinjoint.documents.mod_data import Upgrade
 from pinjoint.editor.gestures.drawing import drawing_of
 from pinjoint.editor.scenes import Scene, all_scenes
-from pinjoint.mods.declared import checks_arguments
+from pinjoint.mods.declared import check
 from pinjoint.mods.guard import (
-    guard_checkers,
-    guarded_history,
-    guarded_integrator,
-    guarded_maker,
-    guarded_shape,
-)
-from pinjoint.mods.interface import (
     Panel,
+    guard_checkers,
     guarded_action,
     guarded_command,
+    guarded_history,
+    guarded_integrator,
     guarded_layer,
+    guarded_maker,
     guarded_panel,
     guarded_scene,
+    guarded_shape,
 )
 from pinjoint.mods.mod import INCLUDED, Mod, ModError
 from pinjoint.systems.base import Integrator, System
@@ -46,7 +44,6 @@ from pinjoint.systems.render.icons import Part, check_icon
 from pinjoint.systems.render.sheet import Layer
 
 
-@checks_arguments
 class App:
     """The program, as a mod's `plugin(app)` sees it: one method for each kind of extension.
 
@@ -240,6 +237,7 @@ class App:
                 name=name,
             )
         key = _checked_key(key)
+        check(title, str, "title")
         before = ACTIONS[name]
         self._undo.append(lambda: ACTIONS.__setitem__(name, before))
         for other, taken in ACTIONS.bind(name, Binding(key, tuple(scenes), title or name)):

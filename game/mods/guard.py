@@ -1,38 +1,44 @@
-"""Guards around what mods add to models and their runs: when it fails, the mod is switched off and the session goes on.
-
-What a person sees and does of mods is guarded in interface.py.
-"""
+"""Guards around all that mods add: when it fails, the mod is switched off and the session goes on."""
 
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterable, Iterator, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from copy import copy
 from dataclasses import replace
 from functools import partial
 from inspect import getattr_static
+from itertools import islice
 from typing import Any, ClassVar, TypeVar, get_args, get_origin, get_type_hints
 
 import numpy as np
-from numpy.typing import NDArray
 
-from pinjoint.components.field import Column, Field, FieldError, Role
+from pinjoint.commands.arguments import BAD_INPUT, UsageError
+from pinjoint.components.field import Column, Field, FieldError, Role, Vector
 from pinjoint.components.handle import Handle
-from pinjoint.components.language import tr
+from pinjoint.components.language import english, in_both, tr
 from pinjoint.components.load import HistoryKind
 from pinjoint.components.mistake import WrongValue
 from pinjoint.components.model import Model
 from pinjoint.components.obstacles import Pieces, Shape, check_pieces
 from pinjoint.components.snapshot import Snapshot
 from pinjoint.components.table import Table
-from pinjoint.components.view import View
-from pinjoint.editor.context import Context
+from pinjoint.components.view import Plot, Readout, View
+from pinjoint.components.wording import printable
+from pinjoint.documents import models
+from pinjoint.editor.context import Context, Scene
 from pinjoint.mods.declared import check, check_fields, check_has_run, result_of
 from pinjoint.mods.limit import check_limit
 from pinjoint.mods.mod import INCLUDED, Mod, ModError
+from pinjoint.paths import PathError
 from pinjoint.systems.base import Commit, Event, Integrator, Law, StepSystem, System
+from pinjoint.systems.edit import Refusal
+from pinjoint.systems.input.actions import ACTIONS, Perform
 from pinjoint.systems.physics.integrators import VelocityVerlet
+from pinjoint.systems.render.framing import framed
+from pinjoint.systems.render.marks import Mark
+from pinjoint.systems.render.sheet import Layer, Sheet
 
 T = TypeVar("T")
 
@@ -49,7 +55,13 @@ def guarded_maker(mod: Mod, system: Callable[[], System]) -> Callable[[], System
     """What makes a system of a mod for every session; one that cannot be made any more does nothing."""
     name = guarded_system(mod, system()).name
     what = tr("making the system '{name}'", name=name)
-    return made_anew(mod, what, lambda: guarded_system(mod, system()), lambda: _nothing(name))
+
+    def nothing() -> System:
+        made = System()
+        vars(made).update(name=name, unneeded=tr("its mod is switched off"), needs=lambda model: False)
+        return made
+
+    return made_anew(mod, what, lambda: guarded_system(mod, system()), nothing)
 
 
 def made_anew(mod: Mod, what: str, make: Callable[[], T], nothing: Callable[[], T]) -> Callable[[], T]:
@@ -68,13 +80,6 @@ def check_declarations(made: Any, role: type) -> None:
             check(getattr(made, name, None), get_args(hint)[0], called)
 
 
-def _nothing(name: str) -> System:
-    """A system of that name that no model needs."""
-    made = System()
-    vars(made).update(name=name, unneeded=tr("its mod is switched off"), needs=lambda model: False)
-    return made
-
-
 def guarded_system(mod: Mod, made: System) -> System:
     """The system of a mod, wrapped so that it is left out once the mod is switched off.
 
@@ -89,8 +94,11 @@ def guarded_system(mod: Mod, made: System) -> System:
     check_declarations(made, role)
     made.mod, own = mod, vars(made)
     what, process = tr("the system '{name}'", name=made.name), made.process
-    if isinstance(made, Law):
-        own["held_forces"] = partial(_forces_of_each, made.held_forces)
+    if isinstance(made, Law):  # finite, for each particle
+        held = made.held_forces
+        own["held_forces"] = lambda model: np.broadcast_to(
+            np.asarray_chkfinite(held(model)), (model.particles.count, 2)
+        )
     for name in _QUESTIONS:
         if hasattr(role, name):
             asked = tr("{method} of '{name}'", method=name, name=made.name)
@@ -98,9 +106,14 @@ def guarded_system(mod: Mod, made: System) -> System:
             own[name] = mod.guarded(asked, getattr(made, name), otherwise=plain, declared=declared)
     needs = own["needs"]
     own["needs"] = lambda model: needs(model) and not mod.off
+
+    def frame_kept(frame: Any) -> object:
+        with view_kept(frame.session):
+            return process(frame)
+
     if not isinstance(made, StepSystem):
         own["process"] = lambda frame: _change_whole(
-            mod, made, what, frame.session.model, lambda: _in_frame(process, frame)
+            mod, made, what, frame.session.model, lambda: frame_kept(frame)
         )
     if isinstance(made, Event):
         happen = made.happen
@@ -108,11 +121,6 @@ def guarded_system(mod: Mod, made: System) -> System:
             mod, made, what, model, lambda: happen(model, *elements)
         )
     return made
-
-
-def _forces_of_each(held_forces: Callable[[Model], NDArray[np.float64]], model: Model) -> NDArray[np.float64]:
-    """What a law answered, for each particle. Raises ValueError if it is not finite, or of another shape."""
-    return np.broadcast_to(np.asarray_chkfinite(held_forces(model)), (model.particles.count, 2))
 
 
 def _change_whole(mod: Mod, system: System, what: str, model: Model, change: Callable[[], object]) -> None:
@@ -126,25 +134,15 @@ def _change_whole(mod: Mod, system: System, what: str, model: Model, change: Cal
                 change()
             else:
                 interruptible(change, model)
-                _check_state(model, tables)
+                for table in (model.tables[name] for name in tables):  # such as NaN, which no Field takes
+                    for field in table.fields_in(Role.STATE):
+                        if field.dtype is not object:
+                            column: Column = table.column(field.name)
+                            field.check_column(column, table.count, lambda row: model.describe(table[row]))  # noqa: B023
         return True
 
     if not mod.call(what, changed, otherwise=False, patience=PATIENCE) and before is not None:
         before.restore(model)
-
-
-def _check_state(model: Model, tables: Iterable[str]) -> None:
-    """Raise FieldError if the state of these tables holds what their Fields cannot take, such as NaN."""
-    for table in (model.tables[name] for name in tables):
-        for field in table.fields_in(Role.STATE):
-            if field.dtype is not object:
-                column: Column = table.column(field.name)
-                field.check_column(column, table.count, lambda row, table=table: model.describe(table[row]))  # type: ignore[misc]
-
-
-def _in_frame(process: Callable[[Any], object], frame: Any) -> object:
-    with view_kept(frame.session):
-        return process(frame)
 
 
 @contextmanager
@@ -249,21 +247,175 @@ def guard_checkers(mod: Mod, fields: Iterable[Field[Any]]) -> None:
     """Let the checkers of a mod's Fields refuse values only by FieldError; without the mod, every value is kept."""
     for field in fields:
         if field.checker is not None:
-            field.checker = _guarded_checker(mod, field, field.checker)
+            field.checker = partial(_checked, mod, field, field.checker)
 
 
-def _guarded_checker(mod: Mod, field: Field[Any], own: Callable[[Any, str], Any]) -> Callable[[Any, str], Any]:
-    def checker(value: Any, where: str) -> Any:
-        was_off = mod.off
-        what = tr("the checker of {field}", field=field.name)
-        made = mod.call(what, own, value, where, otherwise=value, mistakes=(FieldError,))
-        if mod.off and not was_off:
-            raise FieldError(
-                "{where}: {field} cannot be checked; {problem}",
-                where=where,
-                field=field.title,
-                problem=mod.problem,
+def _checked(mod: Mod, field: Field[Any], own: Callable[[Any, str], Any], value: Any, where: str) -> Any:
+    was_off, what = mod.off, tr("the checker of {field}", field=field.name)
+    made = mod.call(what, own, value, where, otherwise=value, mistakes=(FieldError,))
+    if mod.off and not was_off:
+        raise FieldError(
+            "{where}: {field} cannot be checked; {problem}", where=where, field=field.title, problem=mod.problem
+        )
+    return made
+
+
+Panel = Callable[[Context], Readout | Sequence[Readout] | None]
+
+MISTAKES = (UsageError, models.ModelError, FieldError, PathError, SystemExit)  # of a person at the command line
+LONGEST = 400  # characters of a text in the window
+MOST_MARKS = 1_000_000  # of a layer: an iterator may have no end, in code that nothing interrupts
+
+
+# --- what is done ----------------------------------------------------------------------------------------
+
+
+def guarded_action(mod: Mod, name: str, function: Perform) -> Perform:
+    """An action of a mod: one step of undo, dropped whole if it fails."""
+    what = tr("the action '{name}'", name=name)
+
+    def act(context: Context, pixel: Vector) -> None:
+        if mod.off:
+            raise Refusal("The mod '{name}' is switched off: {problem}", name=mod.name, problem=mod.problem)
+        mod.call(what, changed, context, pixel, mistakes=(Refusal, FieldError))
+
+    def changed(context: Context, pixel: Vector) -> None:
+        model = context.model
+        with model.transaction(name), view_kept(context):
+            interruptible(lambda: function(context, pixel), model)
+
+    return act
+
+
+def guarded_command(mod: Mod, name: str, run: Callable[[list[str]], int]) -> Callable[[list[str]], int]:
+    """A command of a mod for the command line, which may run as long as it likes."""
+    what = tr("the command '{name}'", name=name)
+    return mod.guarded(
+        what, run, otherwise=BAD_INPUT, declared=int, patience=math.inf, mistakes=MISTAKES
+    )  # of a list of its own
+
+
+# --- what is seen ------------------------------------------------------------------------------------------
+
+
+def guarded_layer(mod: Mod, draw: Layer) -> Layer:
+    """A layer of a mod, whose marks are cut to what is seen; what it adds to the sheet itself is not drawn."""
+    called = tr("what the layer draws")
+
+    def drawn(sheet: Sheet) -> list[Mark]:
+        if mod.source == INCLUDED:
+            return list(draw(sheet))
+        made = draw(replace(sheet, marks=list(sheet.marks), labels=[], legend=[], notes=[]))
+        check(made, Iterable[Mark], called)
+        marks = list(islice(made, MOST_MARKS + 1))
+        if len(marks) > MOST_MARKS:
+            raise WrongValue(
+                "{called} has more than {count:,} entries; give fewer", called=called, count=MOST_MARKS
             )
-        return made
+        for mark in marks:
+            check(mark, Mark, called)
+        return [part for mark in marks for part in framed(mark, sheet.viewport, sheet.unit)]
 
-    return checker
+    return mod.guarded(tr("its drawing layer"), drawn, otherwise=[])
+
+
+def guarded_panel(mod: Mod, read: Panel) -> Callable[[Context], Sequence[Readout]]:
+    """The panels that a function of a mod makes, as several or none."""
+    called = tr("what {function} returned", function=getattr(read, "__name__", "a panel"))
+
+    def readouts(context: Context) -> Sequence[Readout]:
+        made = read(context)
+        check(made, Readout | Sequence[Readout] | None, called)
+        several = () if made is None else (made,) if isinstance(made, Readout) else made
+        return tuple(map(_checked_readout, several))
+
+    return mod.guarded(tr("its panel"), readouts, otherwise=())
+
+
+def _checked_readout(readout: Readout) -> Readout:
+    """A readout whose texts can be printed. Raises ValueError for curves that cannot be drawn, and for what closes it
+    and is no action.
+    """
+    rows = tuple((readable(tr(name)), readable(value)) for name, value in readout.rows)
+    if readout.closes and readout.closes not in ACTIONS:
+        raise WrongValue(
+            "the panel '{title}' names '{action}' to close it; there is no such action",
+            title=readout.title,
+            action=readout.closes,
+        )
+    plot = readout.plot and _checked_plot(readout.plot)
+    return Readout(readable(tr(readout.title)), rows, plot, readout.closes)
+
+
+def _checked_plot(plot: Plot) -> Plot:
+    for name, x, y in plot.curves:
+        if x.ndim != 1 or x.shape != y.shape:
+            raise WrongValue(
+                "the curve '{name}' has x of shape {x} and y of shape {y}; both must be (n,)",
+                name=name,
+                x=str(x.shape),
+                y=str(y.shape),
+            )
+    curves = tuple((readable(tr(name)), x, y) for name, x, y in plot.curves)
+    return replace(plot, x_title=readable(tr(plot.x_title)), y_title=readable(tr(plot.y_title)), curves=curves)
+
+
+def readable(text: str) -> str:
+    """A text of a mod as it can be shown."""
+    return in_both(printable(text[:LONGEST]), printable(str(english(text))[:LONGEST]))
+
+
+# --- scenes ------------------------------------------------------------------------------------------------
+
+
+_METHODS = {name for name, method in vars(Scene).items() if callable(method) and name[0] != "_"}
+_READ = {"heading": str, "message": str, "boxes": dict[str, str]}  # as attributes or properties
+
+
+def guarded_scene(mod: Mod, kind: type[Scene]) -> Callable[[], Scene]:
+    """What makes the scene of a mod for every session; once the mod is switched off it does nothing and leads to pause.
+
+    Where a method of it fails, that of all scenes takes its place; what cannot be shown is empty.
+    """
+    check_declarations(kind, Scene)
+    kind()  # raises here what it would raise in every session
+    what = tr("the scene '{name}'", name=kind.name)
+
+    def asked(scene: Scene, name: str, *arguments: Any) -> Any:
+        own = super(guarded, scene).__getattribute__(name)
+        declared = _READ.get(name) or result_of(getattr(Scene, name))
+        made = own if name in _READ else own(*arguments)
+        called = name if name in _READ else tr("what {function} returned", function=name)
+        if declared is None:
+            check_has_run(made, called)
+            return None
+        check(made, declared, called)
+        return _shown(made)
+
+    def answer(scene: Scene, name: str, *arguments: Any) -> Any:
+        mistakes = (LookupError,) if name == "click_box" else ()
+        made = mod.call(what, asked, scene, name, *arguments, otherwise=mod, mistakes=mistakes)
+        return getattr(Scene, name)(scene, *arguments) if made is mod else made
+
+    def read(scene: Scene, name: str) -> Any:
+        if name in _METHODS:
+            return partial(answer, scene, name)
+        if name in _READ:
+            return mod.call(what, asked, scene, name, otherwise={} if name == "boxes" else "")
+        return super(guarded, scene).__getattribute__(name)
+
+    guarded: type[Scene] = type(kind.__name__, (kind,), {"__getattribute__": read, "mod": mod})
+    plain: type[Scene] = type(kind.__name__, (Scene,), {"name": kind.name, "sources": kind.sources, "mod": mod})
+    return made_anew(mod, tr("making the scene '{name}'", name=kind.name), guarded, plain)
+
+
+def _shown(made: Any) -> Any:
+    """What a scene shows. Raises TypeError for a View with what cannot be drawn."""
+    if isinstance(made, str):
+        return readable(made)
+    for view in made if isinstance(made, list | tuple) else ():
+        if isinstance(view, tuple):  # a stage
+            _shown(view)
+        elif isinstance(view, View):
+            check_view(view, {})
+    return made

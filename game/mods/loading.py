@@ -4,10 +4,14 @@ from __future__ import annotations
 
 import importlib
 import importlib.util
+import math
 import sys
+import threading
 from collections.abc import Iterable, Sequence
 from pathlib import Path
 from types import ModuleType
+
+import numpy as np
 
 from pinjoint.components.extensions import EXTENSIONS
 from pinjoint.components.language import tr
@@ -18,7 +22,6 @@ from pinjoint.mods.app import App, check_plugin
 from pinjoint.mods.declared import check_has_run
 from pinjoint.mods.finding import in_order, required
 from pinjoint.mods.mod import MANIFEST, Mod, ModError
-from pinjoint.mods.surroundings import Surroundings
 from pinjoint.systems.catalogue import all_systems
 from pinjoint.systems.input.actions import ACTIONS
 from pinjoint.systems.schedule import Schedule
@@ -121,15 +124,11 @@ def _load(mod: Mod) -> None:
 def _plug_in(mod: Mod, app: App) -> None:
     """Import a mod and let it register what it has. Raises ModError, or whatever its code raises."""
     app.catalogues()
-    module = _import(mod)
-    check_has_run(check_plugin(getattr(module, "plugin", None))(app), tr("what plugin(app) returned"))
-    Schedule(all_systems())
-
-
-def _import(mod: Mod) -> ModuleType:
     if not mod.source.startswith("package "):
         _find(mod)
-    return importlib.import_module(mod.module)
+    module = importlib.import_module(mod.module)
+    check_has_run(check_plugin(getattr(module, "plugin", None))(app), tr("what plugin(app) returned"))
+    Schedule(all_systems())
 
 
 def _find(mod: Mod) -> None:
@@ -139,7 +138,7 @@ def _find(mod: Mod) -> None:
     if not file.is_file():
         raise ModError("It has no __init__.py; write one with a function plugin(app).")
     origin = finding.origin_of_module(mod.name)
-    if origin is not None and not _is_from(origin, file):
+    if origin is not None and Path(origin).resolve() != file.resolve():
         raise ModError("There is a Python module '{name}' already; give the mod another name.", name=mod.name)
     if mod.name in sys.modules:
         return
@@ -151,10 +150,6 @@ def _find(mod: Mod) -> None:
     spec.loader.exec_module(module)
 
 
-def _is_from(origin: str, file: Path) -> bool:
-    return Path(origin).resolve() == file.resolve()
-
-
 def _forget(mod: Mod) -> None:
     """Let the modules of a mod be imported anew; one of its name that is not its own stays."""
     root = sys.modules.get(mod.module)
@@ -163,3 +158,60 @@ def _forget(mod: Mod) -> None:
         return
     for name in [name for name in sys.modules if name == mod.module or name.startswith(f"{mod.module}.")]:
         del sys.modules[name]
+
+
+# --- what a mod shares with the program ---------------------------------------------------------------------
+
+
+_STREAMS = ("stdin", "stdout", "stderr")
+_LIBRARIES = (math, np)  # by which everything computes
+
+
+class Surroundings:
+    """Modules, streams, threads and functions of libraries as they are before code of a mod runs."""
+
+    def __init__(self) -> None:
+        self._modules, self._threads = dict(sys.modules), set(threading.enumerate())
+        self._streams = {name: getattr(sys, name) for name in _STREAMS}
+        self._functions = [(library, dict(vars(library))) for library in _LIBRARIES]
+
+    def check(self) -> None:
+        """Raise ModError if the mod changed anything of it, or left a thread running."""
+        for name, stream in self._streams.items():
+            if getattr(sys, name, None) is not stream:
+                raise ModError(
+                    "It replaced or removed sys.{name}, which the program needs; leave it as it is.", name=name
+                )
+            if getattr(stream, "closed", False):
+                raise ModError("It closed sys.{name}, which the program needs; leave it open.", name=name)
+        for name, module in self._modules.items():
+            if sys.modules.get(name) is not module:
+                raise ModError(
+                    "It replaced or removed the module '{name}' in sys.modules, which others use; leave it there.",
+                    name=name,
+                )
+        for library, functions in self._functions:
+            for name, function in functions.items():
+                if vars(library).get(name) is not function:
+                    raise ModError(
+                        "It replaced or removed {name}, by which others compute; leave it as it is.",
+                        name=f"{library.__name__}.{name}",
+                    )
+        for thread in set(threading.enumerate()) - self._threads:
+            if thread.is_alive() and not thread.daemon:
+                raise ModError(
+                    "Its plugin(app) left the thread '{name}' running, which would keep the program from ending; start"
+                    " the thread with daemon=True.",
+                    name=thread.name,
+                )
+
+    def put_back(self) -> None:
+        """Undo what can be undone; Python leaves the files of standard streams open that are closed."""
+        sys.modules.update(self._modules)
+        for library, functions in self._functions:
+            vars(library).update(functions)
+        for number, (name, stream) in enumerate(self._streams.items()):
+            if getattr(stream, "closed", False):
+                mode = "r" if name == "stdin" else "w"
+                stream = open(number, mode, encoding=stream.encoding, errors="replace", closefd=False)  # noqa: SIM115
+            setattr(sys, name, stream)

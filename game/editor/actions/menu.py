@@ -18,9 +18,8 @@ from pinjoint.systems.edit import Refusal
 from pinjoint.systems.edit.dividing import DIVISIONS, divide, divide_at
 from pinjoint.systems.edit.picking import pick_rod
 from pinjoint.systems.edit.placing import snapped
-from pinjoint.systems.edit.rods import share_at
+from pinjoint.systems.edit.rods import share_at, weigh_along
 from pinjoint.systems.edit.supports import NAMES, SUPPORTS, Held, held, support
-from pinjoint.systems.edit.weight import weigh_along
 from pinjoint.systems.input.actions import ACTIONS, IN_PICTURES, MENU, PAUSE, actions_of
 from pinjoint.systems.render.menu import entry_beside, pointed_at
 from pinjoint.systems.render.theme import load_theme

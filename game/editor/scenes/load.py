@@ -13,7 +13,7 @@ from pinjoint.documents.open_documents import ModelFile
 from pinjoint.editor.context import Context
 from pinjoint.editor.scenes.files import FileScene, Offer, saved_models
 from pinjoint.lessons import progress
-from pinjoint.lessons.shelf import count_of, is_done, shelf
+from pinjoint.lessons.progress import count_of, is_done, shelf
 from pinjoint.scripts.script import Script, lessons
 
 WELCOME = marked("Welcome to Pinjoint. What would you like to begin with?")

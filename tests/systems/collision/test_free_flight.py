@@ -171,7 +171,7 @@ def test_undo_redo_and_stepping_back_return_the_same_bits() -> None:
     assert state(session) == end
     session.run(steps=100)
     assert state(session) == state(straight)
-    assert session.simulation.impacts.as_csv() == straight.impacts.as_csv()
+    assert session.simulation.impacts.as_csv() == straight.simulation.impacts.as_csv()
 
 
 def test_an_undone_edit_leaves_no_trace() -> None:
