@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Iterable, Iterator, Sequence
-from contextlib import AbstractContextManager, contextmanager, nullcontext
+from contextlib import contextmanager
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, NoReturn
 
@@ -228,15 +228,13 @@ class Session(Context):
             if not self.time_passes:
                 document.history.end_run()
 
-    def without_frames(self) -> AbstractContextManager[None]:
-        """While time passes inside, systems of phase EVENTS run every EVENT_INTERVAL steps, and when it has passed."""
-        scene = self.simulation.programs.scene
-        follows = not self.performing and self.schedule.runs_headless(Phase.EVENTS, scene, self.model)
-        return self._followed() if follows else nullcontext()
-
     @contextmanager
-    def _followed(self) -> Iterator[None]:
+    def without_frames(self) -> Iterator[None]:
+        """While time passes inside, systems of phase EVENTS run every EVENT_INTERVAL steps, and when it has passed."""
         simulation, frame = self.simulation, HeadlessFrame(self, 0.0)
+        if self.performing or not self.schedule.runs_headless(Phase.EVENTS, frame.scene, self.model):
+            yield
+            return
 
         def follow() -> int:
             beyond = self.model.clock.steps % EVENT_INTERVAL

@@ -516,19 +516,13 @@ class Context:
 
     def undo(self) -> str:
         """Take back the last edit or run, or the opening of the document; returns what it was, or ""."""
-        return (
-            self._through_log(self.document.history.undo())
-            if self.document.history.can_undo
-            else self._to_document(-1)
-        )
+        history = self.document.history
+        return self._to_document(-1) if not history.can_undo else self._through_log(history.undo())
 
     def redo(self) -> str:
         """Repeat what was taken back; returns what it was, "" if there is nothing."""
-        return (
-            self._through_log(self.document.history.redo())
-            if self.document.history.can_redo
-            else self._to_document(1)
-        )
+        history = self.document.history
+        return self._to_document(1) if not history.can_redo else self._through_log(history.redo())
 
     def _through_log(self, title: str) -> str:
         self._go_on()

@@ -30,16 +30,12 @@ def hit_at(context: Context, key: str, pixel: Vector) -> Hit | None:
     theme = load_theme(context.view.theme)
     for shown, view in reversed(context.stages):
         for hit in reversed(hits_at(shown, view, theme, pixel)):
-            if _takes(context, hit, key):
+            taken = (
+                hit.wheel is not None if key in WHEEL else key != "right click" or hit.action != "close menu"
+            )
+            if taken and not (isinstance(hit.item, Readout) and context.performing):
                 return hit if hit.action is not None else None
     return None
-
-
-def _takes(context: Context, hit: Hit, key: str) -> bool:
-    """True if a hit keeps a key from what lies below it; while a script is shown, panels do not."""
-    if isinstance(hit.item, Readout) and context.performing:
-        return False
-    return hit.wheel is not None if key in WHEEL else key != "right click" or hit.action != "close menu"
 
 
 def layer(context: Context, hit: Hit | None) -> Layer:
@@ -63,9 +59,11 @@ def meaning(context: Context, key: str, pixel: Vector, hit: Hit | None) -> Meani
         return (entry.action, view.menu.at) if entry is not None and entry.enabled else (action, pixel)
     if view.help and key == "escape":
         return "close help", pixel
-    return (
-        action_for(LIVE[0], key) if for_tools(context, key, pixel) else scene_meaning(context.scene, key)
-    ), pixel
+    scene = LIVE[0] if for_tools(context, key, pixel) else context.scene
+    found = action_for(scene, key)
+    if found is None and key == "double click":  # where it means nothing special, it is another click
+        found = action_for(scene, "click")
+    return found, pixel
 
 
 def _pressed(context: Context, key: str, hit: Hit) -> str | None:
@@ -107,9 +105,3 @@ def for_tools(context: Context, key: str, pixel: Vector) -> bool:
         return False
     beside = key == "right click" and context.scene in FORMS and not context.focus[1].covers(pixel)
     return beside or view.strip.contains(pixel)
-
-
-def scene_meaning(scene: str, key: str) -> str | None:
-    """The action of a key in a scene; where a second click means nothing special, it is another click."""
-    found = action_for(scene, key)
-    return action_for(scene, "click") if found is None and key == "double click" else found

@@ -23,7 +23,6 @@ from pinjoint.systems.render.overlays import BAR
 from pinjoint.systems.render.theme import load_theme
 
 COMPILING = marked("Compiling the program for this model, once: about {seconds:.0f} s left.")
-COMPILED_SOON = marked("Compiling the program for this model, once: nearly done.")
 STILL = ("pause", "properties")  # scenes of the model in which time stands still
 FLASH = 0.15  # s shown, for which an impact is marked
 MOST_WATCHED = 2000  # particles, up to which it is told that they left the picture
@@ -57,11 +56,13 @@ def show(context: Context, elapsed: float) -> None:
     view.swing = context.document.shapes.swing(elapsed) if view.shape is not None else 1.0
     _show_readouts(context)
     _point_out(context)
+    drawing = tr(context.gesture.hint) if context.gesture is not None else hint_of_tool(context)
+    drawing = drawing if context.scene in LIVE else ""
     view.status = Status(
         time=context.time,
         speed=context.document.live.clock.shown_pace if context.busy else 0.0,
         state=_state_word(context),
-        hint=_drawing_hint(context) or scene.hint(context),
+        hint=drawing or scene.hint(context),
         problem=_problem(context),
         notice=said or joined([lately, *lasting]),
         share=min(awaited.seconds / awaited.expected, 0.99) if awaited is not None else None,
@@ -168,7 +169,9 @@ def _told(waited: Waiting | None) -> str:
     if waited is None:
         return ""
     left = waited.expected - waited.seconds
-    return tr(COMPILING, seconds=left) if left > 1.0 else tr(COMPILED_SOON)
+    if left > 1.0:
+        return tr(COMPILING, seconds=left)
+    return tr("Compiling the program for this model, once: nearly done.")
 
 
 def _flashes(context: Context) -> NDArray[np.float64]:
@@ -189,12 +192,6 @@ def _preview(context: Context) -> Preview | None:
     except Refusal as error:
         context.gesture, context.notice = None, str(error)
         return None
-
-
-def _drawing_hint(context: Context) -> str:
-    if context.scene not in LIVE:
-        return ""
-    return tr(context.gesture.hint) if context.gesture is not None else hint_of_tool(context)
 
 
 def _state_word(context: Context) -> str:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from pathlib import Path
 from typing import NamedTuple
 
@@ -71,23 +71,13 @@ def keep(lesson: str, task: int, score: float | None = None) -> None:
     choices.keep(path(), lesson, entry)
 
 
-def own_lessons() -> list[Path]:
-    """The files in the folder for a person's own lessons, by name; none if it cannot be read."""
-    try:
-        return sorted((data_folder() / "lessons").glob("[!.]*.jsonl"))
-    except OSError:
-        return []
-
-
 def shelf() -> list[Script]:
     """Ours, then the person's own; what cannot be read is left out, and says why when it is opened."""
     found = [Script(name) for name in lessons_with_tasks()]
-    for path in own_lessons():
-        try:
-            script = Script(path)
-        except ScriptError:
-            continue
-        found += [script] if script.has_tasks else []
+    with suppress(OSError):  # of the folder
+        for path in sorted((data_folder() / "lessons").glob("[!.]*.jsonl")):
+            with suppress(ScriptError):
+                found += [script] if (script := Script(path)).has_tasks else []
     return found
 
 
