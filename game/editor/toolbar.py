@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 
 from pinjoint.components.extensions import EXTENSIONS
 from pinjoint.components.field import Vector
@@ -16,7 +16,7 @@ from pinjoint.editor.gestures.drawing import tool_in_hand
 from pinjoint.systems.edit.dividing import DIVISIONS
 from pinjoint.systems.edit.rods import is_rigid, share_at
 from pinjoint.systems.forms.properties import heading
-from pinjoint.systems.input.actions import ACTIONS, FORCE_METHOD, FORMS, LIVE
+from pinjoint.systems.input.actions import ACTIONS, FORCE_METHOD, FORMS
 
 PLACE = "place"  # the tools of mods stand at the end of its group, their other buttons in a group of their own
 
@@ -78,93 +78,59 @@ def tool(context: Context, name: str, title: str = "") -> Tool | None:
 
 
 Entry = str | tuple[str, str]  # an action, or an action and the title that suits the place
-Groups = Sequence[Sequence[Entry]]
-
-_PLOT = "probes.plot"  # offered where the mod that plots is there
-_RESULTS = (
-    ("properties", marked("properties")),
-    ("toggle diagrams", marked("force diagram")),
-    (_PLOT, marked("plot")),
-    ("new slider", marked("slider for its load or stiffness")),
-)
-_SUPPORTS = ("free", "pin", "hold y", "hold x")
-_CLAMPS = ("clamp", "guide y", "guide x", "hold rotation")
-_FROM_HERE = (
-    ("force", marked("load: click where its arrow ends")),
-    ("moment", marked("moment: click left or right of it")),
-    ("velocity", marked("velocity: click where its arrow ends")),
-    ("rod", marked("rod from here")),
-)
-_PARTS = (("copy", marked("copy")), ("duplicate", marked("duplicate")), ("delete", marked("delete")))
-_DIVISIONS = ("split", *DIVISIONS.values())
-_OF_RODS = (
-    ("toggle cable", marked("cable: tension only")),
-    ("release", marked("release it in the force method")),
-)
+Groups = Iterable[Sequence[Entry]]
 
 
 def menu_at(context: Context, pixel: Vector) -> Menu:
     """The menu of the selected elements, or of the canvas, opened at a pixel."""
-    entries = [
-        [entry if isinstance(entry, tuple) else (entry, "") for entry in group]
-        for group in _groups(context, pixel)
-    ]
-    tools = [tuple(filter(None, (tool(context, *entry) for entry in group))) for group in entries]
-    return Menu(_title(context), tuple(group for group in tools if group), pixel, pointed=pixel)
-
-
-def _title(context: Context) -> str:
-    if context.scene not in LIVE or not context.has_selected:
-        return ""
-    return begun(heading(context.model, context.selected))
-
-
-def _groups(context: Context, pixel: Vector) -> Groups:
+    groups = _of_selection(context, pixel) if context.has_selected else _of_canvas(context)
+    title = begun(heading(context.model, context.selected)) if context.has_selected else ""
     if context.scene == FORCE_METHOD:
-        unknown = [("pick unknown", marked("release this"))]
-        return [unknown, *actions_of_toolbar(context)]
-    return _of_selection(context, pixel) if context.has_selected else _of_canvas(context)
+        groups, title = [[("pick unknown", marked("release this"))], *actions_of_toolbar(context)], ""
+    entries = ([(entry, "") if isinstance(entry, str) else entry for entry in group] for group in groups)
+    tools = (tuple(filter(None, (tool(context, *entry) for entry in group))) for group in entries)
+    return Menu(title, tuple(group for group in tools if group), pixel, pointed=pixel)
 
 
 def _of_selection(context: Context, pixel: Vector) -> Groups:
     """What the elements have in common comes first."""
-    selected, particles, rods = context.selected, context.selected_of(Particle), context.selected_of(Rod)
-    alone = len(selected) == 1
-    turns = (
-        bool(rigid_joints(context.model)[[particle.row for particle in particles]].any())
-        if particles
-        else False
-    )
-    from_here = [entry for entry in _FROM_HERE if turns or entry[0] != "moment"]
-    bent = any(rod.bending_stiffness > 0.0 for rod in rods)
-    return [
-        _RESULTS if particles or rods else _RESULTS[:1],
-        (*_SUPPORTS, *(_CLAMPS if turns else ())) if particles else (),
-        from_here if particles and alone else (),
-        _joints(context, rods[0], pixel)
-        if rods and alone
-        else [("rigid", marked("rigid at both ends"))]
-        if rods
-        else (),
-        (("force", marked("distributed load: click where its arrow ends")), "weight along")
-        if rods and alone
-        else (),
-        (_DIVISIONS if alone else _DIVISIONS[1:]) if bent else (),
-        (_OF_RODS if alone else _OF_RODS[:1]) if rods else (),
-        _PARTS,
+    particles, rods, alone = context.selected_of(Particle), context.selected_of(Rod), len(context.selected) == 1
+    turns = bool(particles) and bool(rigid_joints(context.model)[[one.row for one in particles]].any())
+    results = [
+        ("toggle diagrams", marked("force diagram")),
+        ("probes.plot", marked("plot")),  # where the mod that plots is there
+        ("new slider", marked("slider for its load or stiffness")),
     ]
+    yield [("properties", marked("properties")), *(results if particles or rods else ())]
+    if particles:
+        clamps = ("clamp", "guide y", "guide x", "hold rotation") if turns else ()
+        yield ["free", "pin", "hold y", "hold x", *clamps]
+    if particles and alone:
+        yield [
+            ("force", marked("load: click where its arrow ends")),
+            *([("moment", marked("moment: click left or right of it"))] if turns else ()),
+            ("velocity", marked("velocity: click where its arrow ends")),
+            ("rod", marked("rod from here")),
+        ]
+    if rods:
+        hinge = [("hinge", _hinge_of(context, rods[0], pixel))] if alone else []
+        yield [*hinge, ("rigid", marked("rigid at both ends"))]
+    if rods and alone:
+        yield [("force", marked("distributed load: click where its arrow ends")), "weight along"]
+    if any(rod.bending_stiffness > 0.0 for rod in rods):
+        yield [*(["split"] if alone else ()), *DIVISIONS.values()]
+    if rods:
+        release = [("release", marked("release it in the force method"))] if alone else []
+        yield [("toggle cable", marked("cable: tension only")), *release]
+    yield [("copy", marked("copy")), ("duplicate", marked("duplicate")), ("delete", marked("delete"))]
 
 
-def _joints(context: Context, rod: Rod, pixel: Vector) -> Sequence[Entry]:
-    """What can be done with the joints of a rod at its ends, first with the nearer one."""
+def _hinge_of(context: Context, rod: Rod, pixel: Vector) -> str:
+    """What a hinge would make of the nearer end of a rod."""
     end = int(share_at(rod, context.view.camera.to_model(pixel)) > 0.5)
-    particle = rod.ends[end].name
-    here = (
-        tr("hinge at {particle}", particle=particle)
-        if is_rigid(rod, end)
-        else tr("make rigid at {particle}", particle=particle)
-    )
-    return [("hinge", here), ("rigid", marked("rigid at both ends"))]
+    if is_rigid(rod, end):
+        return tr("hinge at {particle}", particle=rod.ends[end].name)
+    return tr("make rigid at {particle}", particle=rod.ends[end].name)
 
 
 def _of_canvas(context: Context) -> Groups:

@@ -5,7 +5,6 @@ from __future__ import annotations
 import importlib.util
 import sys
 from collections.abc import Iterable, Iterator, Sequence
-from graphlib import CycleError, TopologicalSorter
 from pathlib import Path
 
 from pinjoint.components.language import tr
@@ -103,26 +102,24 @@ def required(mod: Mod) -> list[str]:
 
 def _sorted(mods: dict[str, Mod]) -> Iterator[str]:
     """Names of mods, each after those that it requires; every mod that requires itself gets that problem."""
-    while True:
-        usable = [mod for _, mod in sorted(mods.items()) if not mod.off]
-        graph = {mod.name: [name for name in required(mod) if name in mods] for mod in usable}
-        sorter = TopologicalSorter(graph | {name: [] for name, mod in mods.items() if mod.off})
-        try:
-            sorter.prepare()
-        except CycleError as error:
-            chain: list[str] = error.args[1][::-1]
-            for name in chain[:-1]:
-                mods[name].problem = tr(
-                    "These mods require each other: {chain}; remove one of the requirements.",
-                    chain=" → ".join(chain),
-                )
+    left = sorted(mods)
+    while left:
+        usable = [mods[name] for name in left if not mods[name].off]
+        awaited = {mod.name: [name for name in required(mod) if name in left] for mod in usable}
+        ready = next((name for name in left if not awaited.get(name)), None)
+        if ready is not None:
+            left.remove(ready)
+            yield ready
             continue
-        break
-    ready: list[str] = []
-    while sorter.is_active():
-        ready = sorted([*ready, *sorter.get_ready()])
-        yield ready[0]
-        sorter.done(ready.pop(0))
+        chain = [left[0]]
+        while chain[-1] not in chain[:-1]:
+            chain.append(awaited[chain[-1]][0])
+        chain = chain[chain.index(chain[-1]) :]
+        for name in chain[:-1]:
+            mods[name].problem = tr(
+                "These mods require each other: {chain}; remove one of the requirements.",
+                chain=" → ".join(chain),
+            )
 
 
 def _parts(entry: str) -> tuple[str, str]:

@@ -191,26 +191,25 @@ def interruptible(change: Callable[[], object], model: Model) -> None:
 def guarded_history(mod: Mod, kind: HistoryKind) -> HistoryKind:
     """The history of a mod, whose Python functions switch the mod off if they fail."""
 
-    def guarded(name: str, declared: Any, otherwise: Any, own: Any = None, mistakes: Any = ()) -> Any:
-        what = tr("{method} of the history '{name}'", method=name, name=kind.name)
-        how = {"otherwise": otherwise, "declared": declared, "mistakes": mistakes}
-        return mod.guarded(what, own or getattr(kind, name), **how)
-
-    return replace(
-        kind,
-        check=guarded("check", None, None, mistakes=(FieldError,)),
-        ends=guarded("ends", float, -math.inf),
-        breaks=guarded("breaks", tuple[float, ...], (), own=lambda history: tuple(kind.breaks(history))),
-        static=guarded("static", float, 0.0) if callable(kind.static) else kind.static,
-        mod=mod,
-    )
+    functions: dict[str, Any] = {}
+    for name, declared, otherwise in (
+        ("check", None, None),
+        ("ends", float, -math.inf),
+        ("breaks", tuple[float, ...], ()),
+        ("static", float, 0.0),
+    ):
+        if callable(own := getattr(kind, name)):
+            what = tr("{method} of the history '{name}'", method=name, name=kind.name)
+            mistakes = (FieldError,) if name == "check" else ()
+            functions[name] = mod.guarded(what, own, otherwise=otherwise, declared=declared, mistakes=mistakes)
+    return replace(kind, **functions, mod=mod)
 
 
 def guarded_integrator(mod: Mod, integrator: Integrator) -> Integrator:
     """The integrator of a mod, wrapped so that it is no longer chosen once the mod is switched off."""
     own, what = integrator.stable_step, tr("the stable step of the integrator '{name}'", name=integrator.name)
 
-    def stable_step(frequency: float, decay: float) -> float:
+    def checked(frequency: float, decay: float) -> float:
         size = own(frequency, decay)
         check(size, float, "it")
         if not size >= 0.0:
@@ -219,13 +218,12 @@ def guarded_integrator(mod: Mod, integrator: Integrator) -> Integrator:
             )
         return size
 
-    def called(frequency: float, decay: float) -> float:
-        size: float | None = mod.call(what, stable_step, frequency, decay)
+    def stable_step(frequency: float, decay: float) -> float:
+        size: float | None = mod.call(what, checked, frequency, decay)
         return VelocityVerlet.stable_step(frequency, decay) if size is None else size
 
     check_declarations(integrator, Integrator)
-    integrator.mod = mod
-    vars(integrator)["stable_step"] = called
+    vars(integrator).update(mod=mod, stable_step=stable_step)
     return integrator
 
 

@@ -346,7 +346,7 @@ HOSTILE: dict[str, Hostile] = {
     ),
     "a history that breaks at texts": Hostile(
         history("{}, factor, 1.0, lambda history: 0.0, breaks=lambda history: 'ab'"),
-        "what it returned is ('a', 'b'); it must be of type tuple[float, ...]",
+        "what it returned is 'ab'; it must be of type tuple[float, ...]",
         (RUN,),
     ),
     # --- what is registered ------------------------------------------------------------------------------------

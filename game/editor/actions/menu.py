@@ -19,7 +19,7 @@ from pinjoint.systems.edit.dividing import DIVISIONS, divide, divide_at
 from pinjoint.systems.edit.picking import pick_rod
 from pinjoint.systems.edit.placing import snapped
 from pinjoint.systems.edit.rods import share_at, weigh_along
-from pinjoint.systems.edit.supports import NAMES, SUPPORTS, Held, held, support
+from pinjoint.systems.edit.supports import SUPPORTS, Held, held, support
 from pinjoint.systems.input.actions import ACTIONS, IN_PICTURES, MENU, PAUSE, actions_of
 from pinjoint.systems.render.menu import entry_beside, pointed_at
 from pinjoint.systems.render.theme import load_theme
@@ -80,8 +80,8 @@ def _hold(wanted: Held, context: Context, pixel: Vector) -> None:
     context.notice = tr("{element}: {value}", element=all_of(context, particles), value=tr(named))
 
 
-for _name, _wanted in SUPPORTS.items():
-    _title = NAMES[_wanted] if any(_wanted) else marked("free: no support")
+for _wanted, (_name, _title) in SUPPORTS.items():
+    _title = _title if any(_wanted) else marked("free: no support")
     offer(_name, "", _title, pressed=partial(_are_held, _wanted))(partial(_hold, _wanted))
 
 

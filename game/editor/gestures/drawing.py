@@ -28,7 +28,7 @@ from pinjoint.systems.edit.arrows import (
 from pinjoint.systems.edit.picking import PARTICLE_REACH, pick_end, pick_particle, pick_rod, ring_of
 from pinjoint.systems.edit.placing import place, place_at, snapped, snapped_to_points
 from pinjoint.systems.edit.rods import check_ends, distance, is_rigid, join
-from pinjoint.systems.edit.supports import NAMES, Held, next_support, support, support_towards
+from pinjoint.systems.edit.supports import SUPPORTS, Held, next_support, support, support_towards
 from pinjoint.systems.forms.properties import heading
 from pinjoint.systems.input.actions import ACTIONS
 
@@ -393,7 +393,7 @@ class DrawSupport(Drawing):
         start = x + rim * side[0], y + rim * side[1]
         end = start[0] + side[0] / camera.scale, start[1] + side[1] / camera.scale
         symbols = ("guided", "clamped") if wanted[2] else ("roller", "pinned")
-        return Preview(symbols[all(wanted[:2])], start, end, tr(NAMES[wanted]))
+        return Preview(symbols[all(wanted[:2])], start, end, tr(SUPPORTS[wanted][1]))
 
     def _wanted(self, context: Context, pixel: Vector) -> Held | None:
         """What a ground at a pixel holds; None if the pixel lies on the particle."""
