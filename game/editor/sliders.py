@@ -22,7 +22,7 @@ from pinjoint.components.slider import Aim, Control, SetSliders, Slider, SliderS
 from pinjoint.documents.sliders import unmovable
 from pinjoint.editor.context import Context
 from pinjoint.systems.edit import Refusal
-from pinjoint.systems.edit.arrows import extent, usual_force
+from pinjoint.systems.edit.arrows import extent, usual
 from pinjoint.systems.input.actions import LIVE
 
 SCALE = -1  # the key of the control of the displacement scale
@@ -211,7 +211,7 @@ def _around(model: Model, field: Field[Any], value: float, aims: tuple[Aim, ...]
         return Slider(aims, 0.5 * value, 1.5 * value)
     if value != 0.0:
         return Slider(aims, 0.0, math.copysign(round_up(2.0 * abs(value)), value))
-    reach = round_up(usual_force(model)) if field.name == "force" else NOTHING.get(field.unit, 1.0)
+    reach = round_up(usual(model, "force")) if field.name == "force" else NOTHING.get(field.unit, 1.0)
     return Slider(aims, -reach, reach)
 
 

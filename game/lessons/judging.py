@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 import re
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -79,8 +79,9 @@ def judge(session: Session, task: Task, beginning: Document, answer: Answer = No
         return _judge_state(session, task)
     if answer is None or answer == ():
         return Verdict(False, tr(_NOTHING[task.kind]))
-    truth = copy_of(session, beginning, task.after)
-    return _JUDGES[task.kind](truth, task, answer)
+    given: Any = answer
+    judges = {SELECT: _judge_selection, NUMBER: _judge_number, CHOICES: _judge_choice}
+    return judges[task.kind](copy_of(session, beginning, task.after), task, given)
 
 
 _NOTHING = {  # what is said while there is no answer
@@ -167,13 +168,6 @@ def _judge_choice(truth: Session, task: Task, answer: str) -> Verdict:
         "No: “{text}” is not what the calculation gives.", text=tr(choice.text)
     )
     return Verdict(False, said)
-
-
-_JUDGES: dict[str, Callable[[Session, Task, Any], Verdict]] = {
-    SELECT: _judge_selection,
-    NUMBER: _judge_number,
-    CHOICES: _judge_choice,
-}
 
 
 def _asked_for(truth: Session, asked: str) -> tuple[list[Handle], dict[Handle, str]]:

@@ -37,18 +37,16 @@ action("pause")(lambda context, pixel: context.scenes.request("pause"))
 
 def _arrow(way: float, far: bool, context: Context, pixel: Vector) -> None:
     """An arrow key: once there is a run, right is forward in time; before, it moves what is selected."""
-    if not (context.document.at_beginning and nudge(context, (way, 0.0), far=far)):
-        _step(context, round(way) * (_far(context) if far else 1))
-
-
-def _far(context: Context) -> int:
-    """Steps of one skip; fewer in large models, to keep the wait short."""
-    model = context.model
-    elements, size = model.particles.count + model.rods.count + 1, model.clock.step_size
-    most = max(MOST_WORK // elements, 1)
-    if elements > MANY or size == 0.0:
-        return most if size > 0.0 else 1
-    return min(max(round(FAR * natural_pace(model) / size), 1), most)
+    if context.document.at_beginning and nudge(context, (way, 0.0), far=far):
+        return
+    model, steps = context.model, 1
+    size = model.clock.step_size
+    if far and size > 0.0:  # fewer in large models, to keep the wait short
+        elements = model.particles.count + model.rods.count + 1
+        steps = max(MOST_WORK // elements, 1)
+        if elements <= MANY:
+            steps = min(max(round(FAR * natural_pace(model) / size), 1), steps)
+    _step(context, round(way) * steps)
 
 
 action("arrow right", "right", "step forward", (PAUSE,), repeats=True)(partial(_arrow, 1.0, False))

@@ -11,7 +11,6 @@ from pinjoint.components import written
 from pinjoint.components.field import Vector
 from pinjoint.components.handle import Handle
 from pinjoint.components.language import begun, joined, marked, plural, tr
-from pinjoint.components.model import Model
 from pinjoint.components.particle import Particle
 from pinjoint.components.rod import Rod, rigid_joints
 from pinjoint.components.view import BETWEEN, Preview, drawn_positions
@@ -20,10 +19,7 @@ from pinjoint.systems.edit import Refusal
 from pinjoint.systems.edit.arrows import (
     arrow_end,
     arrow_value,
-    usual_distributed_force,
-    usual_force,
-    usual_moment,
-    usual_speed,
+    usual,
 )
 from pinjoint.systems.edit.picking import PARTICLE_REACH, pick_end, pick_particle, pick_rod, ring_of
 from pinjoint.systems.edit.placing import place, place_at, snapped, snapped_to_points
@@ -176,7 +172,6 @@ class DrawArrow(Drawing):
     asks: ClassVar[str]
     says: ClassVar[str]
     unit: ClassVar[str]
-    usual: ClassVar[staticmethod[[Model], float]]  # the size that an arrow of comfortable length stands for
 
     def __init__(self, context: Context, origin: Particle | Vector, *elements: Any) -> None:
         super().__init__(context, origin)
@@ -187,7 +182,7 @@ class DrawArrow(Drawing):
 
     def value(self, context: Context, pixel: Vector) -> Any:
         """What the arrow to a pixel stands for."""
-        return arrow_value(context.view, self.start(context), pixel, self.usual(context.model))
+        return arrow_value(context.view, self.start(context), pixel, usual(context.model, self.field))
 
     def shown(self, value: Any) -> str:
         """The text of a value."""
@@ -203,15 +198,14 @@ class DrawArrow(Drawing):
 
     def preview(self, context: Context, pixel: Vector) -> Preview | None:
         value, start = self.value(context, pixel), self.start(context)
-        end = arrow_end(context.view, start, value, self.usual(context.model))
+        end = arrow_end(context.view, start, value, usual(context.model, self.field))
         return Preview(self.field.replace("_", " "), start, end, self.shown(value))
 
 
 class DrawForce(DrawArrow):
     """The constant force on a particle; beside one, the distributed force on a rod."""
 
-    tool = field = "force"
-    unit, usual = "kN", staticmethod(usual_force)
+    tool, field, unit = "force", "force", "kN"
     asks = marked("load on {particle}: click where its arrow ends (or F)     Esc cancel")
     says = marked("Load on {particle}: {value}")
 
@@ -230,7 +224,7 @@ class DrawForce(DrawArrow):
 class DrawDistributedForce(DrawArrow):
     """The distributed force on a rod, or on all selected rods if it is one of them, drawn from a point on it."""
 
-    tool, field, unit, usual = "force", "distributed_force", "kN/m", staticmethod(usual_distributed_force)
+    tool, field, unit = "force", "distributed_force", "kN/m"
     asks = marked("distributed load on {rods}: click where its arrow ends (or F)     Esc cancel")
     says = marked("{rods}: distributed load {load}")
 
@@ -248,8 +242,7 @@ class DrawDistributedForce(DrawArrow):
 class DrawMoment(DrawArrow):
     """The constant moment on a particle: to the left counter-clockwise, to the right clockwise."""
 
-    tool = field = "moment"
-    unit, usual = "kN·m", staticmethod(usual_moment)
+    tool, field, unit = "moment", "moment", "kN·m"
     asks = marked("moment on {particle}: click at its left (counter-clockwise) or right     Esc cancel")
     says = marked("Moment on {particle}: {value}")
 
@@ -279,8 +272,7 @@ class DrawMoment(DrawArrow):
 class DrawVelocity(DrawArrow):
     """The velocity of a particle; zero where it is held."""
 
-    tool = field = "velocity"
-    unit, usual = "m/s", staticmethod(usual_speed)
+    tool, field, unit = "velocity", "velocity", "m/s"
     asks = marked("velocity of {particle}: click where its arrow ends (or V)     Esc cancel")
     says = marked("Velocity of {particle}: {value}")
 

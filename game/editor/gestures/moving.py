@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from typing import Any
 
 import numpy as np
 
@@ -60,7 +61,13 @@ class Move(Placing):
         except (Refusal, FieldError) as error:
             context.notice = str(error)
         else:
-            context.notice = self._place_of(target)
+            particles, others, count = self._movable.particles, self._movable.others, len(self._movable)
+            leader: Any = particles[self._leader] if self._leader < len(particles) else others[0]
+            named = leader.name
+            if count > 1:
+                named = tr("{element} and {count} more", element=named, count=count - 1)
+            place = written.place(target, written.DIGITS)
+            context.notice = tr("{element}: {value}", element=named, value=place)
 
     def _check_free(self, context: Context, target: Vector) -> None:
         """Raise Refusal if the leading particle would come to lie on another."""
@@ -69,13 +76,6 @@ class Move(Placing):
             leader = particles[self._leader]
             x, y = np.subtract(drawn_positions(context.model)[leader.row], leader.position).tolist()
             check_free(context.model, context.view, (target[0] + x, target[1] + y), besides=particles)
-
-    def _place_of(self, target: Vector) -> str:
-        particles, count = self._movable.particles, len(self._movable)
-        leader = particles[self._leader] if self._leader < len(particles) else self._movable.others[0]
-        named: str = leader.name  # type: ignore[attr-defined]
-        named = tr("{element} and {count} more", element=named, count=count - 1) if count > 1 else named
-        return tr("{element}: {value}", element=named, value=written.place(target, written.DIGITS))
 
 
 class MovePoint(Placing):
