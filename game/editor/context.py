@@ -31,6 +31,7 @@ from pinjoint.documents.open_documents import ModelFile, OpenDocument, OpenDocum
 from pinjoint.editor.clipboard import Part
 from pinjoint.scripts.script import Script
 from pinjoint.systems.base import Mod
+from pinjoint.systems.collision.impacts import Impacts
 from pinjoint.systems.edit.pull import Pull
 from pinjoint.systems.render.picture import Stage
 from pinjoint.systems.run.energy import Energy
@@ -347,6 +348,11 @@ class Context:
     def energy(self) -> Energy:
         """The energy account of the run."""
         return self.simulation.energy
+
+    @property
+    def impacts(self) -> Impacts:
+        """The impacts of the run so far, in columns."""
+        return self.simulation.impacts
 
     @property
     def events(self) -> tuple[Happening, ...]:

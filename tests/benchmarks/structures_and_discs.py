@@ -109,7 +109,7 @@ def _row(name: str, alone: Session, struck: Session, seconds: float, later: floa
     return {
         "structure": name,
         "rods": struck.rods.count,
-        "impacts": len(struck.simulation.impacts),
+        "impacts": len(struck.impacts),
         "contacts": 0 if contacts is None else len(contacts.pairs),  # type: ignore[union-attr]
         "own_us_a_step": 1e6 * own / own_steps,
         "us_a_step": 1e6 * spent / steps,

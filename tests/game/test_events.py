@@ -231,16 +231,16 @@ def test_impacts_are_told_first_one_by_one_then_counted() -> None:
     [event] = session.events
     assert (event.kind, event.elements) == ("impact", ("particle 1", "particle 2"))
     assert event.message == "Impact of particle 1 and particle 2."
-    assert event.time == session.simulation.impacts.time[0]
+    assert event.time == session.impacts.time[0]
     session.restart()
     assert session.events == ()
 
     billiards = Session.open("billiards_break")
     billiards.run(time=0.5)
     *first, further = billiards.events
-    count = len(billiards.simulation.impacts)
+    count = len(billiards.impacts)
     assert [event.kind for event in first] == 3 * ["impact"]
-    told = int((billiards.simulation.impacts.time < first[-1].time * (1.0 + 1e-9)).sum())
+    told = int((billiards.impacts.time < first[-1].time * (1.0 + 1e-9)).sum())
     assert (further.kind, further.message) == ("impacts", f"{count - told} more impacts.")
-    assert further.time == billiards.simulation.impacts.time[-1]
+    assert further.time == billiards.impacts.time[-1]
     assert "more impacts" not in billiards.document.chronicle.told(0.0), "it would be told again and again"

@@ -29,7 +29,7 @@ def test_a_step_with_too_many_impacts_is_refused_and_nothing_has_happened(
         patch.setattr(actions, "MOST_IMPACTS", 100)
         session.press(key)
     assert "more than 100 impacts" in session.notice
-    assert (session.time, session.model.clock.collisions, len(session.simulation.impacts)) == (0.0, 0, 0)
+    assert (session.time, session.model.clock.collisions, len(session.impacts)) == (0.0, 0, 0)
     session.step()  # a script waits
     other.step()
     assert session.model.clock.collisions == other.model.clock.collisions > 1000

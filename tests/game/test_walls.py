@@ -189,7 +189,7 @@ def test_impacts_name_it_and_a_ball_comes_to_rest_on_it() -> None:
     session = room(FLOOR)
     assert session.run(until="rest") == "at rest"
     assert session.particles["ball"].displacement == pytest.approx((0, -1), abs=1e-8)
-    lines = session.simulation.impacts.as_csv().splitlines()
+    lines = session.impacts.as_csv().splitlines()
     assert lines[1].startswith("0.45152364098573")
     assert lines[1].split(",")[1:3] == ["ball", "floor"]
     assert session.energy.imbalance == pytest.approx(0, abs=1e-9)
@@ -277,7 +277,7 @@ def test_the_impact_of_what_drag_slows_down_is_found_in_the_step() -> None:
     session.run(time=0.7)
     distance = 1 - 0.05
     expected = -math.log(1 - 0.5 * distance / 2) / 0.5
-    assert session.simulation.impacts.time == pytest.approx([expected], rel=1e-9)
+    assert session.impacts.time == pytest.approx([expected], rel=1e-9)
     speed = -0.75 * (2 - 0.5 * distance) * math.exp(-0.5 * (0.7 - expected))
     assert session.particles["ball"].velocity[0] == pytest.approx(speed, rel=1e-8)
 
@@ -295,7 +295,7 @@ def test_no_node_of_a_fast_structure_gets_through() -> None:
         session.run(time=5e-4)
         for particle in session.particles:
             assert 0.01 * (1 - 1e-9) <= particle.position[0] + particle.displacement[0] <= 0.99 * (1 + 1e-9)
-    assert len(session.simulation.impacts) > 5
+    assert len(session.impacts) > 5
 
 
 def test_a_hand_cannot_pull_a_ball_through_it() -> None:
@@ -322,7 +322,7 @@ def test_a_saved_run_goes_on_bit_for_bit() -> None:
     for session in (first, second):
         session.run(time=0.5)
     assert first.particles.displacement.tobytes() == second.particles.displacement.tobytes()
-    assert len(second.simulation.impacts) > 0
+    assert len(second.impacts) > 0
 
 
 def test_editing_it_in_a_run_counts_from_then_on() -> None:

@@ -206,8 +206,8 @@ def test_what_a_shape_says_is_collided_with_and_what_fails_switches_the_mod_off(
     opened(write_mod, body, head + lines)
     session = Session.open(FALLING)
     session.run(time=0.5)
-    assert session.simulation.impacts.time[0] == pytest.approx(0.2**0.5)
-    assert session.simulation.impacts.as_csv().splitlines()[1].split(",")[1:3] == ["A", "g"]
+    assert session.impacts.time[0] == pytest.approx(0.2**0.5)
+    assert session.impacts.as_csv().splitlines()[1].split(",")[1:3] == ["A", "g"]
     mods.unload(mods.MODS[-1:])
 
 

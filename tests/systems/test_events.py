@@ -279,7 +279,7 @@ def test_what_a_step_that_is_taken_again_would_have_led_to_does_not_happen() -> 
     crossing = Crossing()
     session = Session.open(bouncing(-0.04), [crossing])
     session.run(time=0.3)
-    assert len(session.simulation.impacts) == 1
+    assert len(session.impacts) == 1
     assert crossing.seen == []
 
 
@@ -293,6 +293,6 @@ def test_events_happen_between_impacts_again_after_undo() -> None:
     assert first == (pytest.approx(-10.0 * math.log(0.99), rel=1e-9), "fell", 0)
     session.undo()
     session.run(time=0.4)
-    assert len(session.simulation.impacts) == 1
+    assert len(session.impacts) == 1
     assert crossing.seen[:2] == [first, first]
     assert [way for _, way, _ in crossing.seen] == ["fell", "fell", "rose"]

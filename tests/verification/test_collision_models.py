@@ -101,7 +101,7 @@ def test_the_gas_presses_on_its_walls() -> None:
 def test_the_ball_hops_down_the_stairs() -> None:
     session = Session.open("staircase")
     assert session.run(until="rest") == "at rest"
-    first = session.simulation.impacts.time[0]
+    first = session.impacts.time[0]
     fall = 1.8 - 0.05 - 1.25
     assert first == pytest.approx(math.sqrt(2 * fall / 9.81), rel=1e-13)
     ball, radius = session.particles["ball"], 0.05
@@ -127,10 +127,10 @@ def test_the_ball_strikes_the_truss_by_newtons_law() -> None:
     gravity, height = 9.81, 1.0
     fall = math.sqrt(2 * height / gravity)
     session.run(time=fall + 0.05)
-    assert session.simulation.impacts.time[0] == pytest.approx(fall, abs=2e-4)
+    assert session.impacts.time[0] == pytest.approx(fall, abs=2e-4)
     node = session.particles["F"].mass
     reduced = 40 * node / (40 + node)
-    assert session.simulation.impacts.impulse[0] == pytest.approx(1.5 * reduced * gravity * fall, rel=0.01)
+    assert session.impacts.impulse[0] == pytest.approx(1.5 * reduced * gravity * fall, rel=0.01)
     assert abs(session.energy.imbalance) <= 1e-3 * 40 * gravity * height
 
 

@@ -89,9 +89,9 @@ def test_energy_is_accounted_for() -> None:
     session = Session.open(truss({}))
     session.run(time=0.5)
     energy = session.energy
-    assert len(session.simulation.impacts) >= 3
+    assert len(session.impacts) >= 3
     assert energy.dissipated_impact > 0.05 * energy.work
-    assert energy.dissipated_impact == pytest.approx(session.simulation.impacts.energy_lost.sum(), rel=1e-3)
+    assert energy.dissipated_impact == pytest.approx(session.impacts.energy_lost.sum(), rel=1e-3)
     assert energy.imbalance == pytest.approx(0.0, abs=1e-7 * energy.work)
 
 
@@ -102,10 +102,10 @@ def test_all_integrators_agree() -> None:
         session.run(time=0.19)
         found[session.simulation.integrator.key] = session
     exact = found.pop("dop853")
-    assert len(exact.simulation.impacts) >= 4
+    assert len(exact.impacts) >= 4
     for session in found.values():
-        assert len(session.simulation.impacts) == len(exact.simulation.impacts)
-        np.testing.assert_allclose(session.simulation.impacts.time, exact.simulation.impacts.time, rtol=1e-4)
+        assert len(session.impacts) == len(exact.impacts)
+        np.testing.assert_allclose(session.impacts.time, exact.impacts.time, rtol=1e-4)
         np.testing.assert_allclose(
             session.model.particles.displacement, exact.model.particles.displacement, atol=1e-5
         )
@@ -121,10 +121,8 @@ def test_nothing_tunnels_through_a_node(speed: float) -> None:
     session.settings.restitution = 0.5
     session.run(time=3.0 / speed)
     node = session.particles["B"].mass
-    assert session.simulation.impacts.time[0] == pytest.approx(2.4 / speed, rel=1e-12)
-    assert session.simulation.impacts.impulse[0] == pytest.approx(
-        1.5 * speed * 2.0 * node / (2.0 + node), rel=1e-12
-    )
+    assert session.impacts.time[0] == pytest.approx(2.4 / speed, rel=1e-12)
+    assert session.impacts.impulse[0] == pytest.approx(1.5 * speed * 2.0 * node / (2.0 + node), rel=1e-12)
 
 
 @pytest.mark.parametrize("integrator", ["velocity_verlet", "rk4", "dop853"])
@@ -137,10 +135,10 @@ def test_a_run_ends_at_its_time_also_shortly_before_an_impact(integrator: str) -
     session = Session.open(document)
     session.run(time=0.095)
     assert session.time == 0.095
-    assert len(session.simulation.impacts) == 0
+    assert len(session.impacts) == 0
     assert session.particles["ball"].displacement[1] == pytest.approx(-0.095, rel=1e-12)
     session.run(time=0.01)
-    assert session.simulation.impacts.time.tolist() == pytest.approx([0.1], rel=1e-12)
+    assert session.impacts.time.tolist() == pytest.approx([0.1], rel=1e-12)
 
 
 def test_how_a_run_is_divided_does_not_matter_nor_is_anything_lost_by_saving(tmp_path: Path) -> None:
@@ -165,7 +163,7 @@ def test_as_many_steps_are_taken_as_asked_for(integrator: str, tolerance: float)
         session.run(steps=1)
         counts.append(session.model.clock.steps)
     assert counts == list(range(1, 301))
-    assert len(session.simulation.impacts) > 10
+    assert len(session.impacts) > 10
 
 
 def test_undo_returns_the_same_bits_through_impacts_and_contact() -> None:
@@ -211,7 +209,7 @@ def test_particles_joined_by_a_rod_pass_through_each_other() -> None:
     document["rods"].append({"name": "B-ball", "between": ["B", "ball"], "stiffness": 1.0, "damping": 1.0})
     session = Session.open(document)
     session.run(time=0.2)
-    assert len(session.simulation.impacts) == 0
+    assert len(session.impacts) == 0
 
 
 def test_nodes_that_overlap_are_left_alone() -> None:
@@ -223,7 +221,7 @@ def test_nodes_that_overlap_are_left_alone() -> None:
     ]
     session = Session.open(document)
     session.run(time=0.2)
-    assert len(session.simulation.impacts) == 0
+    assert len(session.impacts) == 0
     assert "overlap" not in session.message
 
 
@@ -262,7 +260,7 @@ def test_drag_slows_particles_between_impacts() -> None:
     }
     session = Session.open(document)
     session.run(time=1.0)
-    assert session.simulation.impacts.time[0] == pytest.approx(-np.log(1.0 - 0.45), rel=1e-9)
+    assert session.impacts.time[0] == pytest.approx(-np.log(1.0 - 0.45), rel=1e-9)
     assert session.particles["q"].velocity[0] == pytest.approx(2.0 * np.exp(-1.0), rel=1e-8)
 
 
@@ -291,7 +289,7 @@ def test_a_particle_under_drag_that_begins_in_contact_lies_there(below: str) -> 
     session = Session.open(document)
     session.run(time=0.1)
     assert session.particles["p"].displacement == pytest.approx((0.0, 0.0), abs=1e-12)
-    assert len(session.simulation.impacts) == 0
+    assert len(session.impacts) == 0
 
 
 # --- several things in contact at once ------------------------------------------------------------------------
@@ -446,7 +444,7 @@ def test_elastic_bounces_that_a_damper_calms_end() -> None:
     document = {"format": "pinjoint model", "version": 1, "environment": GRAVITY, "rods": [spring]}
     session = Session.open(document | {"particles": particles, "settings": {"restitution": 1.0}})
     assert session.run(until="rest", limit=10.0) == "at rest"
-    assert 100 < len(session.simulation.impacts) < 2000
+    assert 100 < len(session.impacts) < 2000
     contacts = persistent_contacts(session.model)
     assert contacts is not None
     weight, pressed = 9.81 * session.particles["node"].mass, 1000.0 * (0.6 - 0.53) / 0.6
@@ -479,7 +477,7 @@ def test_a_hand_presses_a_disc_onto_a_node() -> None:
         assert gap(session) > -1e-6 * 0.05
     session.document.timeline.hold(None)
     energy = session.energy
-    assert len(session.simulation.impacts) > 0
+    assert len(session.impacts) > 0
     assert abs(energy.imbalance) < 1e-6 * (abs(energy.work) + energy.dissipated_damping)
 
 

@@ -93,7 +93,7 @@ def test_energy_lost_in_impacts_is_accounted_for() -> None:
     session.run(time=1.0)
     energy = session.energy
     assert energy.dissipated_impact > 0.1 * energy.initial
-    assert session.simulation.impacts.energy_lost.sum() == pytest.approx(energy.dissipated_impact, rel=1e-12)
+    assert session.impacts.energy_lost.sum() == pytest.approx(energy.dissipated_impact, rel=1e-12)
     assert energy.imbalance == pytest.approx(0.0, abs=1e-6 * energy.initial)
 
 
@@ -119,7 +119,7 @@ def test_a_particle_held_in_y_answers_with_its_mass_along_x_only() -> None:
     session = Session.open(document)
     session.run(time=2.0)
     impulse = 2.0 * np.sqrt(0.5) / 1.5
-    assert session.simulation.impacts.impulse == pytest.approx([impulse], rel=1e-12)
+    assert session.impacts.impulse == pytest.approx([impulse], rel=1e-12)
     assert session.particles["p0"].velocity == pytest.approx(
         (1.0 - impulse * np.sqrt(0.5), -impulse * np.sqrt(0.5)), rel=1e-12
     )
@@ -154,12 +154,12 @@ def test_undo_redo_and_stepping_back_return_the_same_bits() -> None:
     session, straight = Session.open(gas(restitution=0.9)), Session.open(gas(restitution=0.9))
     straight.run(steps=500)
     session.run(steps=200)
-    middle, record = state(session), session.simulation.impacts.as_csv()
+    middle, record = state(session), session.impacts.as_csv()
     session.run(steps=300)
     end = state(session)
     assert end == state(straight)
     session.undo()
-    assert (state(session), session.simulation.impacts.as_csv()) == (middle, record)
+    assert (state(session), session.impacts.as_csv()) == (middle, record)
     session.run(steps=300)
     assert state(session) == end
     session.undo()
@@ -171,7 +171,7 @@ def test_undo_redo_and_stepping_back_return_the_same_bits() -> None:
     assert state(session) == end
     session.run(steps=100)
     assert state(session) == state(straight)
-    assert session.simulation.impacts.as_csv() == straight.simulation.impacts.as_csv()
+    assert session.impacts.as_csv() == straight.impacts.as_csv()
 
 
 def test_an_undone_edit_leaves_no_trace() -> None:
@@ -296,7 +296,7 @@ def test_a_hand_pulls_a_disc_into_others_on_exact_paths() -> None:
     session = Session.open(model([{"position": [0.11 * k, 0.0]} for k in range(9)]))
     pull(session, "p0", [(0.2, 0.01), (0.4, 0.0), (0.0, 0.3)])
     assert session.simulation.integrator.key == "free_flight"
-    assert len(session.simulation.impacts) >= 4
+    assert len(session.impacts) >= 4
     energy = session.energy
     assert energy.work > 0.0
     assert energy.work == pytest.approx(energy.kinetic, rel=1e-12)
@@ -332,7 +332,7 @@ def test_what_falls_as_a_hand_pulls_something_else_falls_no_faster() -> None:
     session = Session.open(model(discs, environment=GRAVITY, settings={"restitution": 0.0}))
     pull(session, f"p{len(blocks)}", [(0.1, 0.0)], steps=60)
     fallen, speed = session.particles.displacement[:-1, 1].mean(), session.particles.velocity[:-1, 1].mean()
-    assert len(session.simulation.impacts) > 500
+    assert len(session.impacts) > 500
     assert speed == pytest.approx(-9.81 * session.time, rel=1e-12)
     assert fallen == pytest.approx(-0.5 * 9.81 * session.time**2, rel=2e-3)
 

@@ -109,7 +109,7 @@ def test_a_step_that_is_left_in_its_midst_comes_to_the_same_bits(monkeypatch: py
     assert left > 0
     assert Choice.deadline == math.inf
     assert different(columns(session.model), columns(whole.model)) == []
-    assert list(session.simulation.impacts.time) == list(whole.simulation.impacts.time)
+    assert list(session.impacts.time) == list(whole.impacts.time)
 
 
 def test_a_step_left_in_its_midst_is_taken_anew_where_less_is_asked_for(

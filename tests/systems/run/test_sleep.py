@@ -276,9 +276,9 @@ def test_what_is_struck_wakes_at_the_impact() -> None:
     off.run(time=0.35)
     for session in (on, off):
         session.run(time=0.1)
-        assert session.simulation.impacts.time[0] == pytest.approx(0.4, abs=1e-9)
+        assert session.impacts.time[0] == pytest.approx(0.4, abs=1e-9)
     assert asleep(on) == {"beside"}
-    assert on.simulation.impacts.time.tolist() == off.simulation.impacts.time.tolist()
+    assert on.impacts.time.tolist() == off.impacts.time.tolist()
     largest = np.abs(off.particles.displacement).max()
     assert np.abs(on.particles.displacement - off.particles.displacement).max() <= AGREE * largest
     assert np.abs(on.particles.velocity - off.particles.velocity).max() <= 1e-6
@@ -297,8 +297,8 @@ def test_what_sleeps_is_not_foreseen_to_move_as_it_did_when_it_was_last_looked_a
     assert asleep(on) == {"struck"}
     for session in runs:
         session.run(time=0.3)
-        assert len(session.simulation.impacts) > 0
-    assert on.simulation.impacts.time[0] == pytest.approx(off.simulation.impacts.time[0], abs=1e-9)
+        assert len(session.impacts) > 0
+    assert on.impacts.time[0] == pytest.approx(off.impacts.time[0], abs=1e-9)
 
 
 damping = st.sampled_from([0.5, 2.0, 8.0, 20.0])
