@@ -617,6 +617,5 @@ class Context:
         Called after actions, never because of time or frames, so that a recording is replayed in the same picture.
         """
         view = self.view
-        own = view.theory or view.energy or view.events or view.free_bodies
-        wanted = own or any(readout.is_large for readout in self.panels())
-        view.share(self.model, shares=view.legend and wanted)
+        wanted = view.wanted or view.free_bodies or any(readout.is_large for readout in self.panels())
+        view.share(self.model, shares=view.legend and bool(wanted))

@@ -72,15 +72,11 @@ _INSTABILITIES = {"snap-through": marked("snap-through"), "bifurcation": marked(
 
 def own_readouts(context: Context) -> Iterator[Readout]:
     """The readouts that a person switched on, each with the action that switches it off."""
-    view = context.view
-    for shown, action, read in (
-        (view.free_bodies, "toggle free bodies", _equilibrium),
-        (view.theory, "toggle theory", _theory),
-        (view.energy, "toggle energy", _energy),
-        (view.events, "toggle events", _events),
-    ):
-        if shown:
-            yield from (replace(readout, closes=action) for readout in read(context))
+    panels = {"free bodies": _equilibrium, "theory": _theory, "energy": _energy, "events": _events}
+    shown = context.view.wanted | ({"free bodies"} if context.view.free_bodies else set())
+    for name, read in panels.items():
+        if name in shown:
+            yield from (replace(readout, closes=f"toggle {name}") for readout in read(context))
 
 
 def _events(context: Context) -> Iterator[Readout]:

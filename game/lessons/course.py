@@ -275,7 +275,11 @@ class Course:
     def _looks(self) -> object:
         """What changes whenever the task may have been done."""
         session = self._session
-        seen = [value for value in vars(session.view).values() if isinstance(value, bool | str | Shape | None)]
+        seen = [
+            value
+            for value in vars(session.view).values()
+            if isinstance(value, bool | str | Shape | frozenset | None)
+        ]
         chosen = self._selected() if self.task.kind == SELECT else ()
         return id(session.document), session.model.revision, session.simulation.halted, seen, chosen
 
