@@ -19,7 +19,7 @@ from pinjoint.components.language import english, joined, tr
 from pinjoint.components.mistake import Mistake
 from pinjoint.components.wording import is_identifier, printable, quoted
 from pinjoint.interrupts import is_persons
-from pinjoint.mods.declared import check, check_has_run
+from pinjoint.mods.declared import check, check_has_run, fits
 from pinjoint.mods.limit import within
 from pinjoint.systems.run.simulation import Simulation
 
@@ -32,7 +32,12 @@ MANIFEST = "mod.toml"
 LONGEST_MESSAGE = 500  # characters of what an error says
 PATIENCE = 10.0  # s that whatever a mod is asked may take, the compilation of functions of its own included
 
-_KEYS = ("name", "version", "description", "requires")  # of a manifest
+_KEYS = {
+    "name": str,
+    "version": str,
+    "description": str,
+    "requires": list[str],
+}  # of a manifest, and their types
 
 
 class ModError(Mistake, ValueError):
@@ -209,25 +214,21 @@ def _entries(path: Path) -> dict[str, Any]:
 
 
 def _fill(made: Mod, entries: dict[str, Any], named: str | None) -> None:
-    for key in entries:
+    for key, value in entries.items():
+        told = {"file": MANIFEST, "key": key, "value": quoted(value)}
         if key not in _KEYS:
             raise ModError(
                 "{file} has the key '{key}', which means nothing; use only {keys}.",
-                file=MANIFEST,
-                key=key,
+                **told,
                 keys=", ".join(_KEYS),
             )
-    for key in ("name", "version", "description"):
-        value = entries.get(key, "")
-        if not isinstance(value, str):
-            raise ModError(
-                '{file}: {key} is {value}; it must be a text, such as {key} = "…".',
-                file=MANIFEST,
-                key=key,
-                value=quoted(value),
-            )
+        if not fits(value, _KEYS[key]) and key != "requires":
+            raise ModError('{file}: {key} is {value}; it must be a text, such as {key} = "…".', **told)
+        if not fits(value, _KEYS[key]):
+            form = '["pinjoint>=0.1", "gusts"]'
+            raise ModError("{file}: requires is {value}; write a list such as {form}.", **told, form=form)
         if value or key != "name":
-            setattr(made, key, value)
+            setattr(made, key, value if key != "requires" else tuple(value))
     made.module = named or made.name
     check_name(made.name)
     if named is not None and made.name != named:
@@ -237,15 +238,6 @@ def _fill(made: Mod, entries: dict[str, Any], named: str | None) -> None:
             name=made.name,
             other=named,
         )
-    requires = entries.get("requires", [])
-    if not isinstance(requires, list) or not all(isinstance(entry, str) for entry in requires):
-        raise ModError(
-            "{file}: requires is {value}; write a list such as {form}.",
-            file=MANIFEST,
-            value=quoted(requires),
-            form='["pinjoint>=0.1", "gusts"]',
-        )
-    made.requires = tuple(requires)
     _check_versions(made)
 
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from functools import partial
 
-from pinjoint.components.field import FieldError, Vector
+from pinjoint.components.field import Vector
 from pinjoint.components.language import marked, tr
 from pinjoint.components.slider import Place
 from pinjoint.editor.context import Context
@@ -32,14 +32,10 @@ class Slide(Placing):
         if not held:
             self.move(context, pixel)
 
-    def move(self, context: Context, pixel: Vector) -> None:
-        slider = slider_of(context, self._key)
-        value = slider.value_at(self._place.share_at(pixel[0] + self._grip))
-        try:
-            with context.document.history.as_one(self):
-                move_to(context, self._key, value)
-        except FieldError as error:
-            context.notice = str(error)
+    def place(self, context: Context, pixel: Vector) -> str:
+        share = self._place.share_at(pixel[0] + self._grip)
+        move_to(context, self._key, slider_of(context, self._key).value_at(share))
+        return ""
 
 
 @action("drag slider")

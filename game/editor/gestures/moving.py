@@ -27,6 +27,17 @@ class Placing(Gesture):
 
     hint = marked("let go to place it     Esc put it back")
 
+    def place(self, context: Context, pixel: Vector) -> str:
+        """Change the document as a pointer there says; returns what is said of it. Raises Refusal or FieldError."""
+        raise NotImplementedError
+
+    def move(self, context: Context, pixel: Vector) -> None:
+        try:
+            with context.document.history.as_one(self):
+                context.notice = self.place(context, pixel) or context.notice
+        except (Refusal, FieldError) as error:
+            context.notice = str(error)
+
     def drop(self, context: Context, pixel: Vector) -> None:
         self.move(context, pixel)
 
@@ -50,24 +61,18 @@ class Move(Placing):
         self._leader = self._movable.index(hit)  # the row of the element under the pointer keeps to the grid
         self._grip = np.subtract(self._start[self._leader], context.view.camera.to_model(pixel))
 
-    def move(self, context: Context, pixel: Vector) -> None:
+    def place(self, context: Context, pixel: Vector) -> str:
         model, view = context.model, context.view
         wanted = np.add(view.camera.to_model(pixel), self._grip)
         target = snapped(model, view, (float(wanted[0]), float(wanted[1])))
-        try:
-            self._check_free(context, target)
-            with context.document.history.as_one(self):
-                self._movable.place(self._start + np.subtract(target, self._start[self._leader]))
-        except (Refusal, FieldError) as error:
-            context.notice = str(error)
-        else:
-            particles, others, count = self._movable.particles, self._movable.others, len(self._movable)
-            leader: Any = particles[self._leader] if self._leader < len(particles) else others[0]
-            named = leader.name
-            if count > 1:
-                named = tr("{element} and {count} more", element=named, count=count - 1)
-            place = written.place(target, written.DIGITS)
-            context.notice = tr("{element}: {value}", element=named, value=place)
+        self._check_free(context, target)
+        self._movable.place(self._start + np.subtract(target, self._start[self._leader]))
+        particles, others, count = self._movable.particles, self._movable.others, len(self._movable)
+        leader: Any = particles[self._leader] if self._leader < len(particles) else others[0]
+        named = leader.name
+        if count > 1:
+            named = tr("{element} and {count} more", element=named, count=count - 1)
+        return tr("{element}: {value}", element=named, value=written.place(target, written.DIGITS))
 
     def _check_free(self, context: Context, target: Vector) -> None:
         """Raise Refusal if the leading particle would come to lie on another."""
@@ -85,20 +90,17 @@ class MovePoint(Placing):
         context.select(grip.element)
         self._held = grip
 
-    def move(self, context: Context, pixel: Vector) -> None:
+    def place(self, context: Context, pixel: Vector) -> str:
         element, point = self._held.element, self._held.point
         target = snapped_to_points(context.model, context.view, pixel, besides=element)
-        try:
-            with context.document.history.as_one(self):
-                context.model.assign([element], point, [target])
-        except FieldError as error:
-            context.notice = str(error)
-        else:
-            named = tr(context.model.tables[element.table].fields[point].title)
-            place = written.place(target, written.DIGITS)
-            context.notice = tr(
-                "{element}, {point}: {place}", element=context.name(element), point=named, place=place
-            )
+        context.model.assign([element], point, [target])
+        named = tr(context.model.tables[element.table].fields[point].title)
+        return tr(
+            "{element}, {point}: {place}",
+            element=context.name(element),
+            point=named,
+            place=written.place(target, written.DIGITS),
+        )
 
 
 class PullParticle(Gesture):
