@@ -142,7 +142,7 @@ def move_to(context: Context, key: int, value: float) -> None:
     control = _control(model, key, slider)
     with model.transaction(control.title if control is not None else marked("slider")):
         for aim in slider.aims:
-            handles, values = aim.handles(model.tables), []
+            handles, values = aim.handles(model.tables), list[Any]()
             for x, y in (getattr(handle, aim.field) for handle in handles if aim.axis):
                 values.append((value, y) if aim.axis == "x" else (x, value))
             model.assign(handles, aim.field, values or [value] * len(handles))

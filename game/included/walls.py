@@ -73,7 +73,7 @@ def draw(sheet: Sheet) -> Iterator[Mark]:
     size, backing = sheet.font(12.0), faded(sheet.theme.background, BACKING)
     for row in np.union1d(selected, hovered).tolist():
         name = walls.names[row]
-        places = beside(sheet, name, *ends[row], (0.5, 0.3, 0.7), WIDTH)
+        places = beside(sheet, name, ends[row, 0], ends[row, 1], (0.5, 0.3, 0.7), WIDTH)
         label = Label(name, places, size, sheet.theme.text, 1e11, "semibold", backing, of=("walls", row))
         sheet.labels.append(label)
 

@@ -79,9 +79,12 @@ def judge(session: Session, task: Task, beginning: Document, answer: Answer = No
         return _judge_state(session, task)
     if answer is None or answer == ():
         return Verdict(False, tr(_NOTHING[task.kind]))
-    given: Any = answer
-    judges = {SELECT: _judge_selection, NUMBER: _judge_number, CHOICES: _judge_choice}
-    return judges[task.kind](copy_of(session, beginning, task.after), task, given)
+    judges: dict[str, Callable[[Session, Task, Any], Verdict]] = {
+        SELECT: _judge_selection,
+        NUMBER: _judge_number,
+        CHOICES: _judge_choice,
+    }
+    return judges[task.kind](copy_of(session, beginning, task.after), task, answer)
 
 
 _NOTHING = {  # what is said while there is no answer

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
 from dataclasses import replace
 from typing import Any, ClassVar
 
@@ -175,7 +174,7 @@ class DrawArrow(Drawing):
 
     def __init__(self, context: Context, origin: Particle | Vector, *elements: Any) -> None:
         super().__init__(context, origin)
-        self.elements: Sequence[Any] = elements or [origin]
+        self.elements: list[Any] = [*elements] or [origin]
         alone = len(self.elements) == 1
         named = self.elements[0].name if alone else heading(context.model, self.elements)
         self.hint = tr(self.asks, element=named, particle=named, rods=named)
