@@ -79,12 +79,12 @@ def judge(session: Session, task: Task, beginning: Document, answer: Answer = No
         return _judge_state(session, task)
     if answer is None or answer == ():
         return Verdict(False, tr(_NOTHING[task.kind]))
-    judges: dict[str, Callable[[Session, Task, Any], Verdict]] = {
-        SELECT: _judge_selection,
-        NUMBER: _judge_number,
-        CHOICES: _judge_choice,
-    }
-    return judges[task.kind](copy_of(session, beginning, task.after), task, answer)
+    truth = copy_of(session, beginning, task.after)
+    if isinstance(answer, tuple):
+        return _judge_selection(truth, task, answer)
+    if isinstance(answer, str):
+        return _judge_choice(truth, task, answer)
+    return _judge_number(truth, task, answer)
 
 
 _NOTHING = {  # what is said while there is no answer
