@@ -20,7 +20,6 @@ DIGITS = frozenset("0123456789.,-+")
 Layer = tuple[
     str, bool, int, str | None
 ]  # the scene, whether a menu and the help are open, and what is pressed
-Meaning = tuple[str | None, Vector]  # the name of an action, if any, and the pixel where it acts
 
 
 def hit_at(context: Context, key: str, pixel: Vector) -> Hit | None:
@@ -44,8 +43,11 @@ def layer(context: Context, hit: Hit | None) -> Layer:
     return context.scene, view.menu is not None, view.help > 0, hit.action if hit is not None else None
 
 
-def meaning(context: Context, key: str, pixel: Vector, hit: Hit | None) -> Meaning:
-    """What a key or button means at a pixel: to a lesson, an open menu, the help, what is hit there, or the scene."""
+def meaning(context: Context, key: str, pixel: Vector, hit: Hit | None) -> tuple[str | None, Vector]:
+    """The action, if any, that a key or button means at a pixel, and where it acts.
+
+    It means it to a lesson, an open menu, the help, what is hit there, or the scene.
+    """
     view = context.view
     if (answer := _to_lesson(context, key)) is not None:
         return answer or None, pixel

@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import math
 import re
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Iterable, Mapping
+from contextlib import suppress
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -103,9 +104,12 @@ def copy_of(session: Session, model: Document, lines: Iterable[Line]) -> Session
     return copy
 
 
-def holds(session: Session, conditions: Iterable[str]) -> bool:
-    """True if all conditions hold. Raises ValueError, LookupError."""
-    return all(not list(check(session, condition)) for condition in conditions)
+def holds(session: Session, condition: str, answer: float | None = None) -> bool:
+    """True if a condition holds, of the session or of the number that was typed. Raises ValueError, LookupError."""
+    path, relation, value, slack = parts_of(condition)
+    if path == "answer":
+        return answer is not None and compared(answer, relation, value, slack)
+    return not list(check(session, condition))
 
 
 # --- the four kinds --------------------------------------------------------------------------------------
@@ -113,7 +117,7 @@ def holds(session: Session, conditions: Iterable[str]) -> bool:
 
 def _judge_state(session: Session, task: Task) -> Verdict:
     state = copy_of(session, document(session.model), task.after) if task.after else session
-    failed = next((text for text in task.asked if not holds(state, (text,))), None)
+    failed = next((text for text in task.asked if not holds(state, text)), None)
     if failed is None:
         score = (float(read(state, task.score)), shown(state, task.score)) if task.score else None
         return Verdict(True, filled(task.right, state), score)
@@ -165,7 +169,7 @@ def _judge_choice(truth: Session, task: Task, answer: str) -> Verdict:
     if choice is None:
         texts = ", ".join(choice.text for choice in task.choices)
         raise NotFound("there is no choice '{text}'; use one of {texts}.", text=answer, texts=texts)
-    if choice.right if isinstance(choice.right, bool) else holds(truth, choice.right):
+    if choice.right if isinstance(choice.right, bool) else all(holds(truth, one) for one in choice.right):
         return Verdict(True, filled(task.right, truth))
     said = filled(choice.say, truth) or tr(
         "No: “{text}” is not what the calculation gives.", text=tr(choice.text)
@@ -188,9 +192,7 @@ def _asked_for(truth: Session, asked: str) -> tuple[list[Handle], dict[Handle, s
     else:
         path, relation = parts_of(asked)[0], asked[len(parts_of(asked)[0]) :]
         values = each(truth, path)
-        right = [
-            handle for handle, _ in values if holds(truth, (path.replace("*", named(handle), 1) + relation,))
-        ]
+        right = [handle for handle, _ in values if holds(truth, path.replace("*", named(handle), 1) + relation)]
     target, _ = locate(truth.model, path.strip(), readable)
     unit, factor = target.field.shown
     title = tr(target.field.title)
@@ -268,25 +270,12 @@ def _number(value: float) -> str:
 def _explained(task: Task, session: Session, answer: float | None = None) -> str:
     """What the lesson says of a wrong state or answer; "" if nothing."""
     for wrong in task.wrong:
-        if _all_hold(session, wrong.conditions, answer):
+        held = False
+        with suppress(ValueError, LookupError):  # of what cannot be tested here, such as a rod that was removed
+            held = all(holds(session, condition, answer) for condition in wrong.conditions)
+        if held:
             return filled(wrong.say, session, answer)
     return ""
-
-
-def _all_hold(session: Session, conditions: Sequence[str], answer: float | None) -> bool:
-    """As `holds`, also for conditions on the number that was typed; False if one cannot be tested here."""
-    for condition in conditions:
-        path, relation, value, slack = parts_of(condition)
-        try:
-            if path == "answer":
-                held = answer is not None and compared(answer, relation, value, slack)
-            else:
-                held = holds(session, (condition,))
-        except (ValueError, LookupError):
-            return False  # such as of a rod that was removed
-        if not held:
-            return False
-    return True
 
 
 def _lacking(session: Session, condition: str) -> str:
