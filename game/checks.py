@@ -370,8 +370,6 @@ class _Trial:
         self._check_keys()
         if self.found:
             return  # a run would only fail for the same reasons
-        with self._part():
-            _sample(self.mod)
         for scene in (PAUSE, SIMULATION, *(scene.name for scene in all_scenes() if scene.mod is self.mod)):
             with self._part():
                 self._live_in(scene)
@@ -379,13 +377,12 @@ class _Trial:
             for scene in binding.scenes if action.name.startswith(f"{self.mod.name}.") else ():
                 with self._part():
                     self._press(binding.key, scene)
-        for integrator in (s.key for s in systems if isinstance(s, Integrator)):
+        for integrator in (*(s.key for s in systems if isinstance(s, Integrator)), "velocity_verlet"):
             with self._part():
                 self._run(integrator)
-        with self._part():
-            self._run("velocity_verlet")
         for folder in EXTENSIONS.folders:
-            for file in sorted(folder.glob("*.json")) if self._owns(folder) else ():
+            own = self.mod.folder is not None and folder.resolve().is_relative_to(self.mod.folder)
+            for file in sorted(folder.glob("*.json")) if own else ():
                 with self._part():
                     models.load(file)
 
@@ -408,9 +405,6 @@ class _Trial:
     def _note(self, mistake: str) -> None:
         if mistake not in self.found:
             self.found.append(mistake)
-
-    def _owns(self, folder: Path) -> bool:
-        return self.mod.folder is not None and folder.resolve().is_relative_to(self.mod.folder)
 
     # --- what can be read ------------------------------------------------------------------------------
 
