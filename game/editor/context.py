@@ -28,7 +28,6 @@ from pinjoint.documents.autosave import Autosave
 from pinjoint.documents.chronicle import Happening
 from pinjoint.documents.format import missing_mods
 from pinjoint.documents.open_documents import ModelFile, OpenDocument, OpenDocuments, Source, file_of
-from pinjoint.editor.clipboard import Part
 from pinjoint.scripts.script import Script
 from pinjoint.systems.base import Mod
 from pinjoint.systems.collision.impacts import Impacts
@@ -271,9 +270,9 @@ H = TypeVar("H", bound=Handle)
 class Context:
     """The open documents with their runs, logs and files, what is seen of them, and what a person is doing with them.
 
-    schedule: all systems. notice: the last sentence said. copied: what was put on the clipboard last, as text and as
-    data. window, autosave: what a window gives; None without one. waits_for: what a simulation waits for, None if it can go
-    on. awaited: the simulation that is too large to go on before its step program is compiled.
+    schedule: all systems. notice: the last sentence said. window, autosave: what a window gives; None without one.
+    waits_for: what a simulation waits for, None if it can go on. awaited: the one that is too large to go on before its
+    step program is compiled.
     scenes: the mode, and its transitions. gesture: what is being drawn or dragged. performing: a script is shown in the
     window, so input is not for the scenes and no time passes by itself. footer: the strip below the picture meanwhile.
     lesson: the script that a person asked for. course: the lessons.course.Course that a person is in; beside: its card, in
@@ -287,7 +286,6 @@ class Context:
         self.pull = pull
         self.documents = OpenDocuments(model, schedule, pull, file)
         self._clipboard = ""
-        self.copied: tuple[str, Part] | None = None
         self.notice = ""
         self.window: Window | None = None
         self.autosave: Autosave | None = None
