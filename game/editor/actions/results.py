@@ -105,7 +105,7 @@ for _panel, _key, _title in (
 ):
     action(
         f"toggle {_panel}", _key, _title, pressed=lambda context, panel=_panel: panel in context.view.wanted
-    )(lambda context, pixel, panel=_panel: setattr(context.view, "wanted", context.view.wanted ^ {panel}))  # type: ignore[misc]
+    )(lambda context, pixel, panel=_panel: setattr(context.view, "wanted", context.view.wanted ^ {panel}))
 
 
 @action(
