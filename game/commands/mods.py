@@ -12,8 +12,7 @@ from pinjoint.commands.options import ANSWERED, NOT_ANSWERED
 from pinjoint.commands.output import Row, add_output, write_result
 from pinjoint.components.extensions import EXTENSIONS
 from pinjoint.components.language import tr
-from pinjoint.mods.finding import mods_folder
-from pinjoint.mods.loading import load
+from pinjoint.mods.loading import load, mods_folder
 from pinjoint.mods.mod import INCLUDED, Mod, ModError
 from pinjoint.mods.skeleton import write_skeleton
 from pinjoint.version import __version__

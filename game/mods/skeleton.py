@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from pinjoint.mods.finding import origin_of_module
+from pinjoint.mods.loading import origin_of_module
 from pinjoint.mods.mod import MANIFEST, ModError, check_name
 
 _FILES = {

@@ -4,11 +4,10 @@ from pinjoint.components.extensions import EXTENSIONS
 from pinjoint.components.language import marked, tr
 from pinjoint.components.tags import Selected
 from pinjoint.editor.context import PHYSICS, Context, Scene, Scenes
-from pinjoint.editor.scenes.files import Pictures
+from pinjoint.editor.scenes.files import Pictures, Save
 from pinjoint.editor.scenes.force_method import ForceMethod, Sets
 from pinjoint.editor.scenes.load import Load
 from pinjoint.editor.scenes.properties import Properties
-from pinjoint.editor.scenes.save import Save
 from pinjoint.systems.base import System
 from pinjoint.systems.render.picture import Stage
 
