@@ -32,6 +32,7 @@ from pinjoint.scripts.script import Script
 from pinjoint.systems.base import Mod
 from pinjoint.systems.collision.impacts import Impacts
 from pinjoint.systems.edit.pull import Pull
+from pinjoint.systems.physics.pace import natural_pace
 from pinjoint.systems.render.picture import Stage
 from pinjoint.systems.run.energy import Energy
 from pinjoint.systems.run.simulation import Simulation
@@ -392,6 +393,11 @@ class Context:
         return EXTENSIONS.faults[-1] if len(EXTENSIONS.faults) > self.faults_seen else ""
 
     # --- time --------------------------------------------------------------------------------------
+
+    @property
+    def pace(self) -> float:
+        """Simulated seconds per second shown that suit the model as it is now, whatever a person chose."""
+        return natural_pace(self.model)  # found anew: the clock's may be from any earlier frame
 
     def settle(self, factors: Sequence[float] | float = (1.0,)) -> str:
         """Go to the static equilibrium at each load factor in turn, without letting time pass.

@@ -17,7 +17,6 @@ from pinjoint.scripts.lines import Failure, play_line
 from pinjoint.scripts.script import Script
 from pinjoint.session import Session
 from pinjoint.systems.base import REVIEW_INTERVAL
-from pinjoint.systems.physics.pace import natural_pace
 
 FOOTER = 112.0  # points, height of the strip for the words of a script below the picture
 LARGER = 1.25  # factor of the type in that strip
@@ -186,7 +185,7 @@ class Performance:
         """Show the state of a run; returns its steps until the next picture."""
         simulation = self._screen.session.simulation
         if self._running_since is None:
-            self._running_since, self._natural = time.monotonic(), natural_pace(self._screen.session.model)
+            self._running_since, self._natural = time.monotonic(), self._screen.session.pace
         clock = simulation.model.clock
         now, end = clock.time, clock.time + clock.step_size
         simulation.before_steps.remove(self._watch_time)  # the run stands still during the picture

@@ -19,7 +19,6 @@ from pinjoint.systems.edit.moving import Movable
 from pinjoint.systems.edit.picking import Grip, inside
 from pinjoint.systems.edit.placing import check_free, snapped, snapped_to_points
 from pinjoint.systems.edit.pull import hand_on
-from pinjoint.systems.physics.pace import natural_pace
 
 
 class Placing(Gesture):
@@ -116,9 +115,7 @@ class PullParticle(Gesture):
         self._particle = particle
         context.simulation.advance(0)
         context.document.assessment.disturb("pulled")
-        context.document.timeline.hold(
-            hand_on(context.model, context.view, particle, lambda: natural_pace(context.model))
-        )
+        context.document.timeline.hold(hand_on(context.model, context.view, particle, lambda: context.pace))
 
     def move(self, context: Context, pixel: Vector) -> None:
         x, y = context.view.camera.to_model(pixel)
