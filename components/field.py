@@ -87,7 +87,7 @@ class Field(Generic[T]):
     title: what a person calls it; by default its name with spaces.
     dtype: float, bool, int, str, "reference" (row of another table, stored as uint32) or object.
     shape: () or (2,); wider where it is computed. axes: what its parts are called.
-    default: what an element has that is given none; left out, 0, False, "" or None, as suits the dtype.
+    default: what an element has that is given none; left out, None if that is allowed, else 0, False or "".
     minimum, maximum: inclusive limits; `above`: exclusive lower limit. Numbers that a person makes have limits
         anyway, so that all can be computed with: LARGEST, and SMALLEST where they are above 0.
     nullable: None is allowed and stored as NaN; `absent` is what a person calls it.
@@ -140,7 +140,7 @@ class Field(Generic[T]):
         self.derived = self.role is Role.DERIVED  # asked so often that comparing roles would be felt
         storage, default = _STORAGE[self.dtype]
         if self.default is ...:
-            self.default = default
+            self.default = None if self.nullable else default
         self.storage: np.dtype[Any] = np.dtype(storage)
         self._has_objects = self.storage.hasobject
         self.plain = not (self.shape or self.nullable or self._has_objects)

@@ -64,7 +64,6 @@ class Particle(Handle):
     )
     prescribed_mass: Field[float | None] = Field(
         "kg",
-        default=None,
         nullable=True,
         above=0.0,
         title="mass",
@@ -74,7 +73,6 @@ class Particle(Handle):
     )
     prescribed_inertia: Field[float | None] = Field(
         "kg·m²",
-        default=None,
         nullable=True,
         above=0.0,
         title="inertia",

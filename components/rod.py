@@ -46,7 +46,6 @@ class Rod(Handle):
     )
     prescribed_stiffness: Field[float | None] = Field(
         "kN",
-        default=None,
         nullable=True,
         above=0.0,
         title="stiffness",
@@ -56,7 +55,6 @@ class Rod(Handle):
     )
     youngs_modulus: Field[float | None] = Field(
         "kN/m²",
-        default=None,
         nullable=True,
         absent="unknown",
         above=0.0,
@@ -66,7 +64,6 @@ class Rod(Handle):
     )
     area: Field[float | None] = Field(
         "m²",
-        default=None,
         nullable=True,
         absent="unknown",
         above=0.0,
@@ -75,7 +72,6 @@ class Rod(Handle):
     )
     second_moment: Field[float | None] = Field(
         "m⁴",
-        default=None,
         nullable=True,
         absent="unknown",
         above=0.0,
@@ -85,7 +81,6 @@ class Rod(Handle):
     )
     section: Field[str | None] = Field(
         dtype=str,
-        default=None,
         nullable=True,
         absent="none",
         choices=SECTIONS,
@@ -94,7 +89,6 @@ class Rod(Handle):
     )
     material: Field[str | None] = Field(
         dtype=str,
-        default=None,
         nullable=True,
         absent="none",
         choices=MATERIALS,
@@ -103,7 +97,6 @@ class Rod(Handle):
     )
     prescribed_rest_length: Field[float | None] = Field(
         "m",
-        default=None,
         nullable=True,
         above=0.0,
         title="rest length",
@@ -114,7 +107,6 @@ class Rod(Handle):
     )
     tensile_strength: Field[float | None] = Field(
         "kN",
-        default=None,
         nullable=True,
         absent="unlimited",
         minimum=0.0,
@@ -122,7 +114,6 @@ class Rod(Handle):
     )
     compressive_strength: Field[float | None] = Field(
         "kN",
-        default=None,
         nullable=True,
         absent="unlimited",
         minimum=0.0,
@@ -154,7 +145,6 @@ class Rod(Handle):
     )
     prescribed_bending_stiffness: Field[float | None] = Field(
         "kN·m²",
-        default=None,
         nullable=True,
         minimum=0.0,
         title="bending stiffness",
@@ -179,14 +169,13 @@ class Rod(Handle):
     )
     bending_damping: Field[float | None] = Field(
         "kN·m·s",
-        default=None,
         nullable=True,
         minimum=0.0,
         doc="c in the damping moments at its ends, c [4 2; 2 4] × rates of the end slopes; automatic: damping × EI/EA.",
     )
     plastic_strain: Field[float] = state(doc="Permanent part of the strain.")
     yielded_at: Field[float | None] = state(
-        "s", default=None, nullable=True, absent="not yet", doc="When it first yielded in this run."
+        "s", nullable=True, absent="not yet", doc="When it first yielded in this run."
     )
     stiffness: Field[float] = derived(
         "kN",

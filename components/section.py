@@ -8,10 +8,10 @@ from __future__ import annotations
 import json
 import math
 import re
-from collections.abc import Callable, Collection
+from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cache
-from importlib.resources import files
+from pathlib import Path
 from typing import Any
 
 from pinjoint.components.field import LARGEST, FieldError
@@ -98,28 +98,6 @@ _SHAPES: dict[str, Callable[..., tuple[float, float, float]]] = {"I": rolled, "t
 # --- by name ---------------------------------------------------------------------------------------------
 
 
-@cache
-def _tables() -> tuple[dict[str, Section], dict[str, Material]]:
-    held = json.loads((files("pinjoint.assets") / "sections.json").read_text(encoding="utf-8"))
-    sections = [
-        _section(f"{family} {size}", _SHAPES[of["shape"]](*dimensions))
-        for family, of in held["families"].items()
-        for size, dimensions in of["sizes"].items()
-    ]
-    materials = [
-        Material(
-            name,
-            of["youngs_modulus"] * _GPA,
-            float(of["density"]),
-            of["tension"] * _MPA,
-            of["compression"] * _MPA,
-            of["expansion"],
-        )
-        for name, of in held["materials"].items()
-    ]
-    return {each.name: each for each in sections}, {each.name: each for each in materials}
-
-
 def _section(name: str, in_mm: tuple[float, float, float]) -> Section:
     area, second, plastic = (
         float(f"{value * 10.0 ** (-3 * power):.6g}") for value, power in zip(in_mm, (2, 4, 3), strict=True)
@@ -127,23 +105,23 @@ def _section(name: str, in_mm: tuple[float, float, float]) -> Section:
     return Section(name, area, second, plastic)
 
 
-class _Names(Collection[str]):
-    """The names of a table, which is not read before they are asked for."""
-
-    def __init__(self, table: int) -> None:
-        self._table = table
-
-    def __contains__(self, name: object) -> bool:
-        return name in _tables()[self._table]
-
-    def __iter__(self) -> Any:
-        return iter(_tables()[self._table])
-
-    def __len__(self) -> int:
-        return len(_tables()[self._table])
-
-
-SECTIONS, MATERIALS = _Names(0), _Names(1)
+_HELD = json.loads((Path(__file__).parents[1] / "assets" / "sections.json").read_text(encoding="utf-8"))
+SECTIONS = {
+    (name := f"{family} {size}"): _section(name, _SHAPES[of["shape"]](*dimensions))
+    for family, of in _HELD["families"].items()
+    for size, dimensions in of["sizes"].items()
+}
+MATERIALS = {
+    name: Material(
+        name,
+        of["youngs_modulus"] * _GPA,
+        float(of["density"]),
+        of["tension"] * _MPA,
+        of["compression"] * _MPA,
+        of["expansion"],
+    )
+    for name, of in _HELD["materials"].items()
+}
 
 
 def section_named(name: str) -> Section | None:
@@ -155,13 +133,13 @@ def section_named(name: str) -> Section | None:
         return _section(f"rectangle {b:.12g}×{h:.12g}", rectangle(b, h)) if sound else None
     if (square := _SQUARE.fullmatch(wanted)) and square[1] == f"shs {square[2]}":
         wanted = f"{square[1]}×{square[3]}"
-    return next((each for known, each in _tables()[0].items() if _folded(known) == wanted), None)
+    return next((each for known, each in SECTIONS.items() if _folded(known) == wanted), None)
 
 
 def material_named(name: str) -> Material | None:
     """The material of a name, whatever its capitals and spaces."""
     wanted = _folded(name)
-    return next((each for known, each in _tables()[1].items() if _folded(known) == wanted), None)
+    return next((each for known, each in MATERIALS.items() if _folded(known) == wanted), None)
 
 
 @cache

@@ -33,7 +33,6 @@ class Settings(Handle):
     )
     time_step: Field[float | None] = Field(
         "s",
-        default=None,
         nullable=True,
         above=0.0,
         doc="A fixed time step; automatic: as small as stability and accuracy need.",
@@ -55,7 +54,6 @@ class Settings(Handle):
         doc="Parts of the model at rest are left out of the computation until something reaches them.",
     )
     prescribed_displacement_scale: Field[float | None] = look(
-        default=None,
         nullable=True,
         minimum=0.0,
         title="displacement scale",

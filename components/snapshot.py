@@ -2,19 +2,28 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from functools import cached_property
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from pinjoint.components.field import Column, Role
+from pinjoint.components.field import Column, FieldError, Role
+from pinjoint.components.language import marked
 from pinjoint.components.world import Layout, World
 
+_REFUSAL = marked(
+    "{where}: this is not what Pinjoint saves here. Remove it: the run then goes on within its accuracy."
+)
 
-@dataclass(frozen=True)
-class Snapshot:
+
+@dataclass(frozen=True, eq=False, repr=False)
+class Snapshot(Mapping[str, Any]):
     """Copies of all state as it is stored, and which entities its rows belong to, by table.
+
+    As a mapping it is what a model file holds: a list of values for each column, "table.field".
 
     layout: the table and the columns that each array holds; several are numbers of a table with a single row.
     """
@@ -33,15 +42,29 @@ class Snapshot:
     @classmethod
     def initial(cls, world: World) -> Snapshot:
         """The state in which nothing has moved and no time has passed."""
-        layout = world.layout(Role.STATE, ())
-        arrays = [
-            fields[group[0]].allocate(world.tables[table].count)
-            if len(group) == 1
-            else np.array([fields[name].stored(fields[name].default) for name in group], dtype=np.float64)
-            for table, group in layout
-            for fields in (world.tables[table].fields,)
-        ]
-        return cls(layout, tuple(arrays), world.orders)
+        return cls.of_file({}, world, "")
+
+    @classmethod
+    def of_file(cls, saved: Mapping[str, Any], world: World, where: str) -> Snapshot:
+        """The state of which a model file holds these columns. Raises FieldError.
+
+        Columns of mods that are not loaded are left out; others that are missing have their defaults.
+        """
+        layout, arrays = [], []
+        for name, table in world.tables.items():
+            for field in table.fields_in(Role.STATE):
+                column, key = field.allocate(table.count), f"{name}.{field.name}"
+                if key in saved:
+                    values, path = saved[key], f"{where}.{key}"
+                    listed = isinstance(values, list | tuple) and len(values) == table.count
+                    if not listed or field.checker is check_departure:
+                        raise FieldError(_REFUSAL, where=path)
+                    column = field.check_column(
+                        list(values), table.count, lambda row, path=path: f"{path}[{row}]"
+                    )
+                layout.append((name, (field.name,)))
+                arrays.append(column)
+        return cls(tuple(layout), tuple(arrays), world.orders)
 
     @cached_property
     def columns(self) -> dict[str, Column]:
@@ -53,12 +76,37 @@ class Snapshot:
         }
 
     @property
-    def size(self) -> int:
+    def nbytes(self) -> int:
         """Bytes that it takes."""
         objects = (entry for array in self.arrays if array.dtype.hasobject for entry in array)
         return sum([array.nbytes for array in self.arrays]) + sum(
             getattr(entry, "nbytes", 0) for entry in objects
         )
+
+    @property
+    def steps(self) -> int:
+        """How many steps had been taken."""
+        return int(self.columns["clock.steps"][0])
+
+    def __iter__(self) -> Iterator[str]:
+        return (name for name, column in self.columns.items() if len(column) != 1 or column[0] is not None)
+
+    def __len__(self) -> int:
+        return len(list(self))
+
+    def __getitem__(self, name: str) -> Any:
+        column = self.columns[name]
+        if column.dtype.kind == "f" and np.isnan(column).any():
+            return [None if value != value else value for value in column.tolist()]
+        return column.tolist()
+
+    def __eq__(self, other: object) -> bool:
+        return isinstance(other, Snapshot) and dict(self) == dict(other)
+
+    __hash__ = None  # type: ignore[assignment]
+
+    def __repr__(self) -> str:
+        return f"<Snapshot after {self.steps} steps>"
 
     def column(self, world: World, name: str) -> Column:
         """A state column, "table.field", by the rows of now; entities that did not exist then get its default."""
@@ -82,3 +130,10 @@ class Snapshot:
         """True if the rows of a table belong to the same entities as then."""
         now = world.orders
         return self.entities is now or np.array_equal(self.entities[table], now[table])
+
+
+def check_departure(value: Any, where: str) -> Mapping[str, Any]:
+    """A snapshot, or what a model file holds of one, until `of_file` makes it one. Raises FieldError."""
+    if isinstance(value, Mapping):
+        return value
+    raise FieldError(_REFUSAL, where=where)

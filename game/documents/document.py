@@ -13,7 +13,6 @@ import numpy as np
 
 from pinjoint.completion import complete
 from pinjoint.components.commands import Assign
-from pinjoint.components.departure import Departure
 from pinjoint.components.extensions import EXTENSIONS
 from pinjoint.components.field import Column, Field, FieldError
 from pinjoint.components.grid import Grid
@@ -23,6 +22,7 @@ from pinjoint.components.model import Model
 from pinjoint.components.particle import Particle, check_spin, check_velocities
 from pinjoint.components.rod import Rod
 from pinjoint.components.section import NAMES, given_by
+from pinjoint.components.snapshot import Snapshot
 from pinjoint.components.suggestions import missing, remedy
 from pinjoint.components.table import fields_of
 from pinjoint.components.wording import cut, is_broken, quoted
@@ -112,7 +112,7 @@ def _read_departure(model: Model) -> None:
     """Make what the clock holds of a step that is under way a departure; it needs all elements."""
     saved = model.clock.departure
     if saved is not None:
-        model.writable("clock.departure")[0] = Departure.of_file(saved, model, "$.state.departure")
+        model.writable("clock.departure")[0] = Snapshot.of_file(saved, model, "$.state.departure")
 
 
 def _with_data_of_mods(document: Mapping[str, Any]) -> Mapping[str, Any]:

@@ -502,18 +502,18 @@ def test_derived_columns_are_computed_when_read_and_only_after_a_change() -> Non
     assert calls == {}
     for _ in range(3):
         _ = particle.mass, rod.rest_length, world.column("particles.mobility")
-    assert calls == {"derive_lengths": 1, "derive_masses": 1}
+    assert calls == {"lengths": 1, "masses": 1}
     particle.force = (1.0, 0.0)
     _ = particle.mass, rod.rest_length
-    assert calls == {"derive_lengths": 1, "derive_masses": 1}
+    assert calls == {"lengths": 1, "masses": 1}
     _ = particle.constant_force
     rod.density = 3.0
     _ = rod.rest_length, particle.constant_force
-    assert calls == {"derive_lengths": 1, "derive_masses": 2, "derive_constant_force": 2}
+    assert calls == {"lengths": 1, "masses": 2, "constant_loads": 2}
     particle.position = (0.0, 0.5)
-    assert calls["derive_lengths"] == 1
+    assert calls["lengths"] == 1
     _ = particle.constant_force
-    assert calls == {"derive_lengths": 2, "derive_masses": 3, "derive_constant_force": 3}
+    assert calls == {"lengths": 2, "masses": 3, "constant_loads": 3}
 
 
 def test_a_derivation_that_raised_is_tried_again() -> None:
