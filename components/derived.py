@@ -164,15 +164,15 @@ def limits(world: World) -> None:
 
 @derives(
     "particles",
-    "constant_force constant_moment",
-    "force moment acceleration mass environment.force environment.acceleration"
-    " rods.distributed_force rods.between rods.rest_length loads.on loads.force loads.moment loads.history",
+    "constant_force",
+    "force acceleration mass environment.force environment.acceleration"
+    " rods.distributed_force rods.between rods.rest_length loads.on loads.force loads.history",
 )
-def constant_loads(world: World) -> None:
-    """Own force, environment's force, mass × accelerations (kN) and distributed forces; own moment; constant loads."""
+def constant_forces(world: World) -> None:
+    """Own force, environment's force, mass × accelerations (kN), constant loads, and distributed forces."""
     particles, loads, rods = world.tables["particles"], world.tables["loads"], world.tables["rods"]
     environment = world.tables["environment"]
-    constant = [row for row, history in enumerate(loads.history) if history["kind"] == CONSTANT["kind"]]
+    constant = _constant_rows(loads)
     with np.errstate(over="ignore", invalid="ignore"):  # too large numbers are reported before a run
         acceleration = particles.acceleration + environment.acceleration
         force = particles.force + environment.force + particles.mass[:, None] * acceleration / 1000.0
@@ -181,9 +181,19 @@ def constant_loads(world: World) -> None:
             half = 0.5 * rods.distributed_force * rods.rest_length[:, None]
             np.add.at(force, rods.between.ravel(), np.repeat(half, 2, axis=0))
     world.writable("particles.constant_force")[...] = force
-    moment = world.writable("particles.constant_moment")
-    moment[...] = particles.moment
+
+
+@derives("particles", "constant_moment", "moment loads.on loads.moment loads.history")
+def constant_moments(world: World) -> None:
+    """Own moment and that of constant loads (kN·m)."""
+    loads = world.tables["loads"]
+    constant, moment = _constant_rows(loads), world.writable("particles.constant_moment")
+    moment[...] = world.tables["particles"].moment
     np.add.at(moment, loads.on[constant], loads.moment[constant])
+
+
+def _constant_rows(loads: Table[Any]) -> list[int]:
+    return [row for row, history in enumerate(loads.history) if history["kind"] == CONSTANT["kind"]]
 
 
 @derives("settings", "displacement_scale", "prescribed_displacement_scale automatic_displacement_scale")
@@ -336,5 +346,6 @@ DERIVATIONS = (
     bending,
     inertias,
     present_diagrams,
-    constant_loads,
+    constant_moments,
+    constant_forces,
 )

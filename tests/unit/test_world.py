@@ -509,11 +509,11 @@ def test_derived_columns_are_computed_when_read_and_only_after_a_change() -> Non
     _ = particle.constant_force
     rod.density = 3.0
     _ = rod.rest_length, particle.constant_force
-    assert calls == {"lengths": 1, "masses": 2, "constant_loads": 2}
+    assert calls == {"lengths": 1, "masses": 2, "constant_forces": 2}
     particle.position = (0.0, 0.5)
     assert calls["lengths"] == 1
     _ = particle.constant_force
-    assert calls == {"lengths": 2, "masses": 3, "constant_loads": 3}
+    assert calls == {"lengths": 2, "masses": 3, "constant_forces": 3}
 
 
 def test_a_derivation_that_raised_is_tried_again() -> None:
