@@ -34,7 +34,6 @@ class Store(Protocol):
     def column(self, name: str) -> Column: ...
     def refresh(self, name: str) -> None: ...
     def next_revision(self, *roles: Role) -> int: ...
-    def forget_layouts(self) -> None: ...
     def place(self, table: Table[Any], first: int) -> None: ...
 
 
@@ -69,6 +68,7 @@ class Table(Generic[H]):
         "handles",
         "kind",
         "name",
+        "state",
         "structure",
     )
 
@@ -77,6 +77,7 @@ class Table(Generic[H]):
         object.__setattr__(self, "name", name)  # assigning to it names the entities
         self.kind = kind
         self.fields: dict[str, Field[Any]] = {}
+        self.state: list[str] = []  # names of the columns that time makes
         self.count = 0
         self.structure = 0  # revision of the last creation or deletion
         self.entity: NDArray[np.int64] = np.empty(1 if kind.single else _SMALLEST_CAPACITY, dtype=np.int64)
@@ -92,7 +93,7 @@ class Table(Generic[H]):
         self._blocks = self._side_by_side() if kind.single else {}
 
     def _side_by_side(self) -> dict[tuple[str, ...], Column]:
-        """Store the numbers of a single row in one array for each type and role, to be copied together."""
+        """Store the numbers of a single row in one array for each type and role, as step programs take them."""
         alike: dict[tuple[Any, Role], list[str]] = {}
         for name, field in self.fields.items():
             if field.dtype in (float, int) and not field.shape:
@@ -122,7 +123,7 @@ class Table(Generic[H]):
                 name=field.name,
             )
         self.fields[field.name] = field
-        self.world.forget_layouts()
+        self.state += [field.name] if field.role is Role.STATE else []
         self._columns[field.name] = field.allocate(len(self.entity))
         self._first_of[field.name] = field.name
         self._versions[field.name] = 0
@@ -196,12 +197,6 @@ class Table(Generic[H]):
         """esper ids in row order, shape (count,)."""
         return read_only(self.entity[: self.count])
 
-    def groups(self, role: Role) -> list[tuple[str, ...]]:
-        """The names of all columns with this role, those together that are stored as one array."""
-        blocks = [block for block in self._blocks if self.fields[block[0]].role is role]
-        known = set(itertools.chain(*blocks))
-        return [*blocks, *((field.name,) for field in self.fields_in(role) if field.name not in known)]
-
     @property
     def names(self) -> list[str]:
         """Names in row order."""
@@ -222,12 +217,9 @@ class Table(Generic[H]):
         self._versions[self._first_of[name]] = self.world.next_revision(self.fields[name].role)
         return self._columns[name][: self.count]
 
-    def storage(self, *group: str) -> Column:
-        """The array of one column, shape (count, ...), or of a group of columns, to write to.
-
-        It is neither marked as changed nor brought up to date: the writer marks it.
-        """
-        return self._columns[group[0]][: self.count] if len(group) == 1 else self._blocks[group]
+    def storage(self, name: str) -> Column:
+        """The column to write to, shape (count, ...), neither brought up to date nor marked as changed: the writer does."""
+        return self._columns[name][: self.count]
 
     def together(self, names: Sequence[str]) -> Column:
         """Numbers of a single row, declared one after the other, as storage of shape (len(names),)."""

@@ -25,7 +25,6 @@ from pinjoint.components.tags import Rare
 from pinjoint.components.wording import cut
 
 H = TypeVar("H", bound=Handle)
-Layout = tuple[tuple[str, tuple[str, ...]], ...]
 
 _world_numbers = itertools.count(1)
 
@@ -55,7 +54,6 @@ class World:
         self.revision = 0
         self.structure = 0  # of the last creation or deletion
         self._orders: tuple[int, dict[str, NDArray[np.int64]]] = (-1, {})
-        self._layouts: dict[tuple[Role, tuple[str, ...]], Layout] = {}
         self._newest = dict.fromkeys(Role, 0)
         self.on_command: Callable[[Command], None] | None = None
         self.before_change: Callable[[], None] | None = None
@@ -110,22 +108,6 @@ class World:
     def newest(self, *roles: Role) -> int:
         """The revision of the newest change to any column with one of these roles."""
         return self._newest[roles[0]] if len(roles) == 1 else max(self._newest[role] for role in roles)
-
-    # --- all columns with a role ---------------------------------------------------------------------
-
-    def layout(self, role: Role, tables: tuple[str, ...]) -> Layout:
-        """How the columns with a role of these tables (none given: of all) are stored: groups by table."""
-        key = (role, tables)
-        if key not in self._layouts:
-            groups = (
-                (name, group) for name in tables or self.tables for group in self.tables[name].groups(role)
-            )
-            self._layouts[key] = tuple(groups)
-        return self._layouts[key]
-
-    def forget_layouts(self) -> None:
-        """Columns were added."""
-        self._layouts.clear()
 
     @property
     def orders(self) -> dict[str, NDArray[np.int64]]:

@@ -53,7 +53,7 @@ class Run:
 
 Entry = Edit | Run
 
-_NOTHING = Snapshot((), (), {})
+_NOTHING = Snapshot({}, {})
 
 
 class DiskStore:
