@@ -17,6 +17,7 @@ from collections.abc import Callable, Iterable, Iterator, Sequence
 from contextlib import contextmanager
 from pathlib import Path
 from string import Formatter
+from types import SimpleNamespace
 from typing import Any
 
 from pinjoint.components.extensions import EXTENSIONS
@@ -52,20 +53,13 @@ class Said(str):
         return Said, (str.__str__(self), marked, english(self))
 
 
-class _Spoken:
-    """The present language, and its catalogue."""
-
-    def __init__(self) -> None:
-        self.code = ENGLISH
-        self.catalogue = gettext.NullTranslations()
-
-
-_SPOKEN = _Spoken()
+_SPOKEN = SimpleNamespace(code=ENGLISH, catalogue=gettext.NullTranslations())  # the present language
 
 
 def language() -> str:
     """The code of the present language: "en"."""
-    return _SPOKEN.code
+    code: str = _SPOKEN.code
+    return code
 
 
 def speak(code: str) -> None:

@@ -392,18 +392,26 @@ def spawn_rods(world: World, between: ArrayLike, **columns: Any) -> list[Rod]:
 
 
 def _check_ends(table: Table[Any], rows: NDArray[np.intp]) -> None:
-    names = table.world.tables["particles"].column("name")
+    world, names = table.world, table.world.tables["particles"].column("name")
     ends = table.between[rows]
-    for row in ends[ends[:, 0] == ends[:, 1], 0][:1].tolist():
-        raise FieldError("A rod needs two different particles; both ends are {name}.", name=names[row])
-    first, second = table.between.astype(np.uint64).T
-    codes = np.sort((np.minimum(first, second) << np.uint64(32)) | np.maximum(first, second))
-    for code in codes[1:][codes[1:] == codes[:-1]][:1].tolist():
-        one, other = names[[code >> 32, code & 0xFFFFFFFF]]
+    for row in rows[ends[:, 0] == ends[:, 1]][:1].tolist():
         raise FieldError(
-            "There is a rod between {one} and {other} already; two particles share at most one.",
+            "{where}: both ends are {name}; a rod needs two different particles.",
+            where=world.describe(table[row], "between"),
+            name=names[table.between[row, 0]],
+        )
+    first, second = table.between.astype(np.uint64).T
+    pairs = (np.minimum(first, second) << np.uint64(32)) | np.maximum(first, second)
+    ordered = np.sort(pairs)
+    for pair in ordered[1:][ordered[1:] == ordered[:-1]][:1]:
+        *others, row = sorted(np.flatnonzero(pairs == pair).tolist(), key=lambda row: (row in rows, row))
+        one, two = names[table.between[row]]
+        raise FieldError(
+            "{where}: {other} joins {one} and {two} already; two particles share at most one rod.",
+            where=world.describe(table[row], "between"),
+            other=world.describe(table[others[-1]]),
             one=one,
-            other=other,
+            two=two,
         )
 
 

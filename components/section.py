@@ -72,24 +72,21 @@ def tube(d: float, t: float) -> tuple[float, float, float]:
 
 
 def box(b: float, t: float) -> tuple[float, float, float]:
-    """A, I and W_pl of a square hollow section, with corners of radius 1.5 t outside and t inside."""
-    return _less(_rounded(b, 1.5 * t), _rounded(b - 2.0 * t, t))
+    """A, I and W_pl of a square hollow section, with corners of radius 1.5 t outside and t inside.
+
+    Corners are cut away as the fillets of an I-section without flanges are added.
+    """
+    c = b - 2.0 * t
+    parts = rectangle(b, b), rolled(b, 0.0, 0.0, 0.0, 1.5 * t), rectangle(c, c), rolled(c, 0.0, 0.0, 0.0, t)
+    area, second, plastic = (
+        (outer - cut) - (inner - left) for outer, cut, inner, left in zip(*parts, strict=True)
+    )
+    return area, second, plastic
 
 
 def rectangle(b: float, h: float) -> tuple[float, float, float]:
     """A, I and W_pl of a solid rectangle."""
     return b * h, b * h**3 / 12.0, b * h**2 / 4.0
-
-
-def _rounded(side: float, r: float) -> tuple[float, float, float]:
-    """Of a solid square with rounded corners: an I-section without flanges, whose fillets are cut away."""
-    area, second, plastic = rectangle(side, side)
-    cut_away = rolled(side, 0.0, 0.0, 0.0, r)
-    return _less((area, second, plastic), cut_away)
-
-
-def _less(one: tuple[float, float, float], other: tuple[float, float, float]) -> tuple[float, float, float]:
-    return one[0] - other[0], one[1] - other[1], one[2] - other[2]
 
 
 _SHAPES: dict[str, Callable[..., tuple[float, float, float]]] = {"I": rolled, "tube": tube, "box": box}

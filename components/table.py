@@ -16,7 +16,6 @@ from pinjoint.components.mistake import NotFound, WrongValue
 from pinjoint.components.suggestions import missing
 
 _SMALLEST_CAPACITY = 8
-_TRIED = 64  # names at once, at least, in search of a free one
 
 
 class Store(Protocol):
@@ -30,7 +29,7 @@ class Store(Protocol):
     def write(self, handle: Any, field: Field[Any], value: Any) -> None: ...
     def assign(self, handles: Sequence[Any], field_name: str, values: Any) -> None: ...
     def row(self, handle: Any) -> int: ...
-    def describe(self, handle: Any) -> str: ...
+    def describe(self, handle: Any, field: str = ...) -> str: ...
     def column(self, name: str) -> Column: ...
     def refresh(self, name: str) -> None: ...
     def next_revision(self, *roles: Role) -> int: ...
@@ -244,17 +243,12 @@ class Table(Generic[H]):
     def free_names(self, count: int, besides: Iterable[str] = ()) -> list[str]:
         """The `count` names of the form "rod n" with the smallest n that neither are used nor among `besides`."""
         noun, used, others = self.kind.noun, self._by_name, set(besides)
-        found: list[str] = []
-        first = self._lowest_number
-        while (wanted := count - len(found)) > 0:
-            last = first + max(wanted, _TRIED)
-            tried = [f"{noun} {n}" for n in range(first, last)]
-            free = tried if used.keys().isdisjoint(tried) else [name for name in tried if name not in used]
-            if not free and first == self._lowest_number:
-                self._lowest_number = last
-            found += free if others.isdisjoint(free) else [name for name in free if name not in others]
-            first = last
-        return found[:count]
+        while f"{noun} {self._lowest_number}" in used:
+            self._lowest_number += 1
+        tried = (f"{noun} {n}" for n in itertools.count(self._lowest_number))
+        return list(
+            itertools.islice((name for name in tried if name not in used and name not in others), count)
+        )
 
     def taken(self, names: Collection[str]) -> set[str]:
         """Those of these names that entities have."""

@@ -64,6 +64,7 @@ class World:
         self._tagged: dict[type, NDArray[np.intp]] = {}  # by tag that is not Rare: esper ids, ascending
         self._tagged_rows: dict[type, tuple[Any, dict[str, NDArray[np.intp]]]] = {}  # with their revisions
         self.changing = False
+        self._naming: Callable[[int, str], str] | None = None
         self._open: list[Command] | None = None
         self._derivations: dict[str, Derivation] = {}
         self._derived_at: dict[Derivation, int] = {}  # revision at which it was last up to date
@@ -219,8 +220,19 @@ class World:
                 )
             given.add(name)
 
-    def describe(self, handle: Handle) -> str:
-        """A handle as a person calls it, such as "rod AB"."""
+    @contextmanager
+    def naming(self, where: Callable[[int, str], str]) -> Iterator[None]:
+        """While inside, call elements, and Fields of theirs, by their rows: as their document does that is read."""
+        self._naming = where
+        try:
+            yield
+        finally:
+            self._naming = None
+
+    def describe(self, handle: Handle, field: str = "") -> str:
+        """A handle, or a Field of it, as a person calls it in a message, such as "rod AB"."""
+        if self._naming is not None:
+            return self._naming(self.row(handle), field)
         table = self.tables[handle.table]
         if "name" not in table.fields:
             return tr(handle.noun)
