@@ -86,7 +86,12 @@ def open_window(
     expectations are returned.
     """
     path, source = record
-    autosave, trouble = _autosave()
+    autosave: Autosave | None = None
+    trouble = ""
+    try:
+        autosave = Autosave()
+    except OSError as error:  # nothing can be written
+        trouble = unkept(library.data_folder(), error)
     magnification, place = preferred_magnification(), preferred_place()
     app = App(model, file, autosave, theme or preferred_theme(), Preparation(), magnification, place)
     app.session.lesson = lesson
@@ -98,14 +103,6 @@ def open_window(
     if not file.name and lesson is None:
         app.welcome()
     return app.run()
-
-
-def _autosave() -> tuple[Autosave | None, str]:
-    """The autosave of this person; None and the reason where nothing can be written."""
-    try:
-        return Autosave(), ""
-    except OSError as error:
-        return None, unkept(library.data_folder(), error)
 
 
 def window_systems(folder: Path) -> list[System]:
