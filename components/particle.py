@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from pinjoint.components.field import CM, Field, FieldError, Vector, derived, state
+from pinjoint.components.field import CM, Field, FieldError, Vector, derived, if_known, state
 from pinjoint.components.handle import Handle
 from pinjoint.components.table import Store, Table, flags
 
@@ -62,29 +62,18 @@ class Particle(Handle):
     radius: Field[float] = Field(
         "m", default=0.05, above=0.0, doc="Radius of its disc, with which it collides.", shown=CM
     )
-    prescribed_mass: Field[float | None] = Field(
+    prescribed_mass: Field[float | None] = if_known(
         "kg",
-        nullable=True,
-        above=0.0,
-        title="mass",
-        key="mass",
         doc="Its mass; automatic: half the mass of each attached rod, or 1 kg without rods.",
         overrides="mass",
     )
-    prescribed_inertia: Field[float | None] = Field(
+    prescribed_inertia: Field[float | None] = if_known(
         "kg·m²",
-        nullable=True,
-        above=0.0,
-        title="inertia",
-        key="inertia",
         doc="Its moment of inertia; automatic: from the rods rigidly joined to it, so that no smaller steps are needed.",
         overrides="inertia",
     )
     mass: Field[float] = derived(
-        "kg",
-        default=DEFAULT_MASS,
-        doc="As given, or half the mass of each attached rod, or 1 kg without rods.",
-        overridden_by="prescribed_mass",
+        "kg", default=DEFAULT_MASS, doc="As given, or half the mass of each attached rod, or 1 kg without rods."
     )
     mobility: Field[Vector] = derived(
         "m/s²/kN", shape=(2,), doc="Acceleration per force in each direction: 1000/mass, 0 where constrained."
@@ -93,7 +82,6 @@ class Particle(Handle):
         "kg·m²",
         title="rotational inertia",
         doc="As given, or the sum of ρL₀ min(1.5 EI/EA, L₀²/24) over the rod ends rigidly joined to it.",
-        overridden_by="prescribed_inertia",
     )
     turning: Field[float] = derived(
         "rad/s²/(kN·m)",

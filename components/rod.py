@@ -9,7 +9,18 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from pinjoint.components.field import CM, ENDS, Column, Field, FieldError, Vector, derived, state
+from pinjoint.components.field import (
+    CM,
+    ENDS,
+    Column,
+    Field,
+    FieldError,
+    Vector,
+    by_end,
+    derived,
+    if_known,
+    state,
+)
 from pinjoint.components.handle import Handle
 from pinjoint.components.language import begun, marked, tr
 from pinjoint.components.particle import Particle, rods_without_length
@@ -44,37 +55,27 @@ class Rod(Handle):
         title="ends",
         doc="The particles at its two ends: names in files, rows in Python.",
     )
-    prescribed_stiffness: Field[float | None] = Field(
+    prescribed_stiffness: Field[float | None] = if_known(
         "kN",
-        nullable=True,
-        above=0.0,
-        title="stiffness",
-        key="stiffness",
         doc="EA, force per unit of strain; automatic: Young's modulus × area, or 164640 kN if either is unknown.",
         overrides="stiffness",
     )
-    youngs_modulus: Field[float | None] = Field(
+    youngs_modulus: Field[float | None] = if_known(
         "kN/m²",
-        nullable=True,
         absent="unknown",
-        above=0.0,
         title="Young's modulus",
         doc="E of the material: steel 210 GPa, aluminium 70, concrete 30, timber 11.",
         shown=("GPa", 1e-6),
     )
-    area: Field[float | None] = Field(
+    area: Field[float | None] = if_known(
         "m²",
-        nullable=True,
         absent="unknown",
-        above=0.0,
         doc="A of the cross-section: E·A is the stiffness, axial force / A the stress.",
         shown=("cm²", 1e4),
     )
-    second_moment: Field[float | None] = Field(
+    second_moment: Field[float | None] = if_known(
         "m⁴",
-        nullable=True,
         absent="unknown",
-        above=0.0,
         title="second moment",
         doc="I of the cross-section: E·I is the bending stiffness.",
         shown=("cm⁴", 1e8),
@@ -95,12 +96,8 @@ class Rod(Handle):
         checker=check_material,
         doc="Sets E and thermal expansion and, if the area is known, weight and strength.",
     )
-    prescribed_rest_length: Field[float | None] = Field(
+    prescribed_rest_length: Field[float | None] = if_known(
         "m",
-        nullable=True,
-        above=0.0,
-        title="rest length",
-        key="rest_length",
         doc="Length without force; automatic: the distance between the original positions.",
         shown=CM,
         overrides="rest_length",
@@ -147,8 +144,6 @@ class Rod(Handle):
         "kN·m²",
         nullable=True,
         minimum=0.0,
-        title="bending stiffness",
-        key="bending_stiffness",
         doc="EI, moment per curvature; 0: pinned at both ends; automatic: E × second moment, or 0 if either is unknown.",
         overrides="bending_stiffness",
     )
@@ -181,18 +176,12 @@ class Rod(Handle):
         "kN",
         default=DEFAULT_STIFFNESS,
         doc="EA: as given, or Young's modulus × area, or 164640 kN if either is unknown.",
-        overridden_by="prescribed_stiffness",
     )
     bending_stiffness: Field[float] = derived(
-        "kN·m²",
-        doc="EI: as given, or Young's modulus × second moment, or 0: pinned at both ends.",
-        overridden_by="prescribed_bending_stiffness",
+        "kN·m²", doc="EI: as given, or Young's modulus × second moment, or 0: pinned at both ends."
     )
     rest_length: Field[float] = derived(
-        "m",
-        doc="As given, or the distance between the original positions.",
-        shown=CM,
-        overridden_by="prescribed_rest_length",
+        "m", doc="As given, or the distance between the original positions.", shown=CM
     )
     difference: Field[tuple[float, float]] = derived(
         "m",
@@ -221,20 +210,14 @@ class Rod(Handle):
         axes=("ss", "se", "ee"),
         doc="Twice the strain of the axis per slopes: its share of bending.",
     )
-    turning_shares: Field[Vector] = derived(
-        shape=(2,), axes=ENDS, doc="Weight of each end in its mean rotation, from which full turns are counted."
+    turning_shares: Field[Vector] = by_end(
+        doc="Weight of each end in its mean rotation, from which full turns are counted."
     )
-    initial_slopes: Field[Vector] = derived(
-        "rad",
-        shape=(2,),
-        axes=ENDS,
-        doc="Slopes of its ends to its chord while no moment acts, caused by the temperature gradient.",
+    initial_slopes: Field[Vector] = by_end(
+        "rad", doc="Slopes of its ends to its chord while no moment acts, caused by the temperature gradient."
     )
-    load_shares: Field[Vector] = derived(
-        "m²",
-        shape=(2,),
-        axes=ENDS,
-        doc="What a slope of its ends adds to the area below its axis: (L₀², −L₀²)/12.",
+    load_shares: Field[Vector] = by_end(
+        "m²", doc="What a slope of its ends adds to the area below its axis: (L₀², −L₀²)/12."
     )
     tension_limit: Field[float] = derived("kN", doc="Tensile strength; infinite if unlimited.")
     compression_limit: Field[float] = derived("kN", doc="Compressive strength; infinite if unlimited.")
@@ -243,32 +226,20 @@ class Rod(Handle):
     )
     length: Field[float] = derived("m", doc="Present distance between the ends.", shown=CM)
     strain: Field[float] = derived(doc="Elongation / rest length, without thermal expansion.")
-    end_moment: Field[Vector] = derived(
-        "kN·m",
-        shape=(2,),
-        axes=ENDS,
-        doc="Moments on its ends, counter-clockwise; those of its dampers are not included.",
+    end_moment: Field[Vector] = by_end(
+        "kN·m", doc="Moments on its ends, counter-clockwise; those of its dampers are not included."
     )
-    end_axial_force: Field[Vector] = derived(
-        "kN",
-        shape=(2,),
-        axes=ENDS,
-        doc="Axial force at each end; the axial force of the rod is the mean of the two.",
+    end_axial_force: Field[Vector] = by_end(
+        "kN", doc="Axial force at each end; the axial force of the rod is the mean of the two."
     )
-    shear: Field[Vector] = derived(
-        "kN",
-        shape=(2,),
-        axes=ENDS,
-        doc="At its ends: force of the part before a cut on the part beyond it, positive to the left.",
+    shear: Field[Vector] = by_end(
+        "kN", doc="At its ends: force of the part before a cut on the part beyond it, positive to the left."
     )
-    bending_moment: Field[Vector] = derived(
-        "kN·m", shape=(2,), axes=ENDS, doc="At its ends; positive: the side on its right is in tension."
+    bending_moment: Field[Vector] = by_end(
+        "kN·m", doc="At its ends; positive: the side on its right is in tension."
     )
-    end_rotation: Field[Vector] = derived(
-        "rad",
-        shape=(2,),
-        axes=ENDS,
-        doc="By how much its ends have turned, counter-clockwise, also where they are hinged.",
+    end_rotation: Field[Vector] = by_end(
+        "rad", doc="By how much its ends have turned, counter-clockwise, also where they are hinged."
     )
     largest_moment: Field[Vector] = derived(
         "kN·m, m",

@@ -77,7 +77,7 @@ class Snapshot(Mapping[str, Any]):
         return (name for name, column in self.columns.items() if len(column) != 1 or column[0] is not None)
 
     def __len__(self) -> int:
-        return len(list(self))
+        return sum(1 for _ in self)
 
     def __getitem__(self, name: str) -> Any:
         column = self.columns[name]

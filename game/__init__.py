@@ -13,6 +13,7 @@ mods/ included/             extensions by others, and ours that are written like
 api.py                      what mods and scripts may rely on, in one place
 checks.py                   check_system: a test of any system, for mods
 paths.py                    what particles.B.force and the like mean, wherever a person writes one
+completion.py               registering what is written as mods are, before the first model
 preparation.py              what a window has compiled, and which models wait for that
 elsewhere.py                compiling in another process, and loading what it made in a thread
 """
@@ -24,15 +25,15 @@ if TYPE_CHECKING:  # each is loaded where it is asked for
     from pinjoint.checks import SystemCheckError, check_system
     from pinjoint.editor.context import Context
     from pinjoint.session import Session
+    from pinjoint.version import __version__
 
 __all__ = ["Context", "Session", "SystemCheckError", "__version__", "check_system"]
-
-__version__ = "0.1.0"
 
 _HOMES = {
     "Context": "pinjoint.editor.context",
     "Session": "pinjoint.session",
     "SystemCheckError": "pinjoint.checks",
+    "__version__": "pinjoint.version",
     "check_system": "pinjoint.checks",
 }
 
@@ -40,16 +41,6 @@ _HOMES = {
 def __getattr__(name: str) -> Any:
     if name not in _HOMES:
         raise AttributeError(f"module 'pinjoint' has no attribute '{name}'")
-    complete()
+    if name != "__version__":
+        import_module("pinjoint.completion").complete()
     return getattr(import_module(_HOMES[name]), name)
-
-
-def complete() -> None:
-    """Register walls, plots, histories and counts of impacts, once, before the first model is made, which can hold them.
-
-    They are written as mods are, and need what calls this, so that importing them must wait for the call.
-    """
-    from pinjoint.interrupts import quietly_interrupted
-
-    with quietly_interrupted():
-        import_module("pinjoint.included")

@@ -4,8 +4,8 @@ import os
 import sys
 import warnings
 
-from pinjoint import __version__
 from pinjoint.interrupts import end_in_time, ended_with, quietly_interrupted
+from pinjoint.version import __version__
 
 
 def main() -> int:

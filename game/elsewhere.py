@@ -20,13 +20,13 @@ from pathlib import Path
 
 import msgspec
 
-from pinjoint import Session
 from pinjoint.components.extensions import EXTENSIONS
 from pinjoint.components.language import language, speak, tr
 from pinjoint.components.model import Model
 from pinjoint.documents.document import parse
 from pinjoint.documents.facts import gathered
 from pinjoint.mods.loading import load
+from pinjoint.session import Session
 from pinjoint.systems import cache
 from pinjoint.systems.base import Integrator, StepSystem
 from pinjoint.systems.collision.driven.compiled import DRIVEN

@@ -7,12 +7,12 @@ import sys
 from collections.abc import Callable, Sequence
 from importlib import import_module
 
-from pinjoint import complete
 from pinjoint.commands import Command
 from pinjoint.commands.arguments import BAD_INPUT
 from pinjoint.commands.options import ANSWERED, NOT_ANSWERED, STOPPED, use_cores_as_asked
 from pinjoint.commands.output import write
 from pinjoint.commands.with_mods import load_as_asked
+from pinjoint.completion import complete
 from pinjoint.components.extensions import EXTENSIONS
 from pinjoint.components.language import marked, tr
 from pinjoint.components.mistake import Mistake

@@ -6,7 +6,6 @@ from collections.abc import Iterator, Sequence
 from pathlib import Path
 from typing import Any
 
-from pinjoint import __version__
 from pinjoint.commands.arguments import Parser
 from pinjoint.commands.options import ANSWERED, NOT_ANSWERED
 from pinjoint.commands.output import Row, add_output, write_result
@@ -17,6 +16,7 @@ from pinjoint.mods.loading import load
 from pinjoint.mods.mod import INCLUDED, Mod, ModError
 from pinjoint.mods.skeleton import write_skeleton
 from pinjoint.mods.trial import mistakes_of
+from pinjoint.version import __version__
 
 
 def command(words: Sequence[str]) -> int:

@@ -8,7 +8,6 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
-from pinjoint import __version__
 from pinjoint.commands.arguments import Parser, UsageError
 from pinjoint.commands.options import ANSWERED, NO_DISPLAY
 from pinjoint.commands.output import writable, writing
@@ -22,6 +21,7 @@ from pinjoint.documents.open_documents import ModelFile, file_of
 from pinjoint.scripts import script
 from pinjoint.scripts.lines import Failure
 from pinjoint.systems.render.theme import theme_names
+from pinjoint.version import __version__
 
 
 def _refuse_misspelt(word: str) -> None:

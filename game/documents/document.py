@@ -11,7 +11,7 @@ from typing import Any
 import msgspec
 import numpy as np
 
-from pinjoint import complete
+from pinjoint.completion import complete
 from pinjoint.components.commands import Assign
 from pinjoint.components.extensions import EXTENSIONS
 from pinjoint.components.field import Column, Field, FieldError

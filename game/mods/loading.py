@@ -9,7 +9,6 @@ from collections.abc import Iterable, Sequence
 from pathlib import Path
 from types import ModuleType
 
-from pinjoint import __version__
 from pinjoint.components.extensions import EXTENSIONS
 from pinjoint.components.language import tr
 from pinjoint.documents.preferences import preferred_keys
@@ -23,6 +22,7 @@ from pinjoint.mods.surroundings import Surroundings
 from pinjoint.systems.catalogue import all_systems
 from pinjoint.systems.input.actions import ACTIONS
 from pinjoint.systems.schedule import Schedule
+from pinjoint.version import __version__
 
 PATIENCE = 30.0  # s that loading one mod may take
 
