@@ -36,24 +36,17 @@ def folder() -> Path:
     trouble: OSError = PermissionError(errno.EACCES, os.strerror(errno.EACCES))
     try:
         for tried in (own, Path(tempfile.gettempdir()) / f"pinjoint-programs-{_user()}"):
-            if _can_be_used(tried):
-                return tried
+            with suppress(OSError):
+                tried.mkdir(mode=0o700, parents=True, exist_ok=True)
+                if problem := _folder_problem(tried):
+                    _refuse(tried, problem)
+                else:
+                    with tempfile.TemporaryFile(dir=tried):
+                        return tried
     except OSError as error:
         trouble = error
     _say(own, trouble)
     return NOWHERE
-
-
-def _can_be_used(tried: Path) -> bool:
-    try:
-        tried.mkdir(mode=0o700, parents=True, exist_ok=True)
-        if problem := _folder_problem(tried):
-            _refuse(tried, problem)
-            return False
-        with tempfile.TemporaryFile(dir=tried):
-            return True
-    except OSError:
-        return False
 
 
 def _user() -> int:
