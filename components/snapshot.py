@@ -55,9 +55,7 @@ class Snapshot(Mapping[str, Any]):
                     listed = isinstance(values, list | tuple) and len(values) == table.count
                     if not listed or field.checker is check_departure:
                         raise FieldError(_REFUSAL, where=path)
-                    column = field.check_column(
-                        list(values), table.count, lambda row, path=path: f"{path}[{row}]"
-                    )
+                    column = field.check_column(list(values), table.count, f"{path}[{{}}]".format)
                 columns[key] = column
         return cls(columns, world.orders)
 
