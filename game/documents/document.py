@@ -260,8 +260,12 @@ def _read(model: Model, section: _Section) -> None:
             model.apply(Assign(kind.table, name, (handles[0].entity,), column))
     else:
         fields = model.tables[kind.table].fields
-        with model.naming(lambda row, field: section.where(row, fields[field].key if field else "")):
-            handles = model.create(kind, len(section.elements), **columns)
+        try:
+            with model.naming(lambda row, field: section.where(row, fields[field].key if field else "")):
+                handles = model.create(kind, len(section.elements), **columns)
+        except FieldError as error:
+            said = str(error)  # rules of mods need not name the place
+            raise ModelError(said if said.startswith("$") else joined([f"{section.path}:", said])) from None
     if FOREIGN in section.keys:
         _keep_foreign(model, section, handles)
 
