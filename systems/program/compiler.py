@@ -64,8 +64,6 @@ SMALL = 50  # rods or discs up to which the interpreted form may well take all s
 LARGE = 300  # rods or discs from which on one step, interpreted, takes as long as a picture
 LONGEST_CALL = 0.05  # s, interpreted
 LONGEST_WORK = 2**15  # counted operations of a call that nothing divides: about as much, interpreted
-OPERATIONS_PER_BYTE = 130  # of the interpreter's code, that are interpreted while it is compiled
-BEFORE_COMPILING = 1.0  # s of interpreting, for each that compiling is expected to take
 SECONDS_PER_BYTE = 2e-4  # of the interpreter's code, that compiling takes
 
 
@@ -204,7 +202,8 @@ class GeneratedModule:
         """Choose the form for a single call of so many counted operations: a long one is not begun interpreted."""
         if Choice.compile is not Compile.SOON or work <= LONGEST_WORK or self._patience == math.inf:
             return
-        if not self._compiled and (self.is_compiled() or work > OPERATIONS_PER_BYTE * self._size):
+        seconds = work * LONGEST_CALL / LONGEST_WORK
+        if not self._compiled and (self.is_compiled() or seconds > self.expected_seconds()):
             self.load_or_tell()
 
     def load_or_tell(self) -> None:
@@ -270,7 +269,7 @@ class GeneratedModule:
         if Choice.compile is not Compile.SOON:
             self._patience = math.inf
             return
-        self._patience = 0.0 if self.is_compiled() else BEFORE_COMPILING * self.expected_seconds()
+        self._patience = 0.0 if self.is_compiled() else self.expected_seconds()
         if self.spent > self._patience:
             self.load_or_tell()
 
