@@ -17,7 +17,7 @@ import numpy as np
 from pinjoint.commands.arguments import BAD_INPUT, UsageError
 from pinjoint.components.field import Column, Field, FieldError, Role, Vector
 from pinjoint.components.handle import Handle
-from pinjoint.components.language import english, in_both, tr
+from pinjoint.components.language import Said, tr
 from pinjoint.components.load import HistoryKind
 from pinjoint.components.mistake import WrongValue
 from pinjoint.components.model import Model
@@ -396,7 +396,7 @@ def _checked_plot(plot: Plot) -> Plot:
 
 def readable(text: str) -> str:
     """A text of a mod as it can be shown."""
-    return in_both(printable(text[:LONGEST]), printable(str(english(text))[:LONGEST]))
+    return Said(printable(text[:LONGEST]), readable, text)
 
 
 def _shown(made: Any) -> Any:
