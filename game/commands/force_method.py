@@ -81,7 +81,7 @@ def command(words: Sequence[str]) -> int:
             " gives its forces: pinjoint run {model} --static.",
             model=options.model,
         )
-    tables = Tables.of(session.model, solution)
+    tables = Tables(session.model, solution)
     laws = session.schedule.left_out_of_statics(session.model)
     single, sets = options.release is not None and len(options.release) == 1, options.sets
     found = _data(tables, single=single, sets=sets or len(solution.unknowns) <= MOST_SETS)
@@ -136,29 +136,34 @@ def _work(tables: Tables) -> dict[str, Any]:
     """By rod: what the sums of virtual work are made of; n, m and terms of each unknown in the order of `released`."""
     from pinjoint.force_method.tables import PRODUCTS
 
-    work, found, count = tables.work, dict[str, Any](), len(tables.solution.unknowns)
-    for row, name in enumerate(tables.model.rods.names):
+    axial, bending = tables.solution.work.axial, tables.solution.work.bending
+    found, count, rods, base = (
+        dict[str, Any](),
+        len(tables.solution.unknowns),
+        tables.model.rods,
+        tables.solution.base,
+    )
+    for row, name in enumerate(rods.names):
         found[name] = {
-            "length": work.length[row],
-            "stiffness": work.stiffness[row],
-            "N0": work.base_axial[row],
-            "n": work.unit_axial[:, row],
-            "N0 n L/EA": work.of_base[:, row],
-            "without force": work.of_free[:, row],
+            "length": rods.rest_length[row],
+            "stiffness": rods.stiffness[row],
+            "N0": base.axial_force[row],
+            "n": axial.unit[:, row, 0],
+            "N0 n L/EA": axial.of_load[:, row],
+            "without force": axial.of_free[:, row] + bending.of_free[:, row],
         }
         if tables.bends:
             found[name] |= {
-                "bending_stiffness": work.bending_stiffness[row],
-                "M0": work.base_moment[row],
-                "m": work.unit_moment[:, row],
-                "M0 m/EI": work.of_bending[:, row],
+                "bending_stiffness": rods.bending_stiffness[row],
+                "M0": base.bending_moment[row],
+                "m": bending.unit[:, row],
+                "M0 m/EI": bending.of_load[:, row],
             }
     if 0 < count <= PRODUCTS:
-        for title, product in (("n n L/EA", work.of_units), ("m m/EI", work.of_unit_bending)):
-            if title[0] == "n" or tables.bends:
-                terms = np.array([[product(i, j) for j in range(count)] for i in range(count)])
-                for row, of_rod in enumerate(found.values()):
-                    of_rod[title] = terms[:, :, row]
+        for title, sums in (("n n L/EA", axial), ("m m/EI", bending))[: 1 + tables.bends]:
+            terms = np.array([[sums.of_units(i, j) for j in range(count)] for i in range(count)])
+            for row, of_rod in enumerate(found.values()):
+                of_rod[title] = terms[:, :, row]
     return found
 
 

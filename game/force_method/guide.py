@@ -15,7 +15,7 @@ from pinjoint.components.handle import Handle
 from pinjoint.components.language import tr
 from pinjoint.components.model import Model
 from pinjoint.components.particle import Particle
-from pinjoint.components.rod import Rod
+from pinjoint.components.rod import Rod, bends
 from pinjoint.components.round_numbers import round_down
 from pinjoint.components.table import Table
 from pinjoint.components.tags import Selected
@@ -30,8 +30,7 @@ from pinjoint.systems.run.simulation import Simulation
 from pinjoint.systems.schedule import Schedule
 from pinjoint.systems.statics.counting import counted
 from pinjoint.systems.statics.equations import largest
-from pinjoint.systems.statics.force_method import Solution, solve
-from pinjoint.systems.statics.released import SetState
+from pinjoint.systems.statics.force_method import SetState, Solution, solve, superposed
 from pinjoint.systems.statics.settle import settle
 from pinjoint.systems.statics.unknowns import ForceMethodError, Unknown, is_turned
 
@@ -186,7 +185,7 @@ class Guide:
         """The tables of the solution."""
         assert self.solution is not None
         if self._tables is None or self._tables.solution is not self.solution:
-            self._tables = Tables.of(self.model, self.solution)
+            self._tables = Tables(self.model, self.solution)
         return self._tables
 
     @property
@@ -204,7 +203,7 @@ class Guide:
         copy = loaded(self.model, released, amounts) if amounts else base_structure(self.model, released)
         known = self.sets[0].model.settings if released else None  # a person may have chosen its scale
         copy.settings.displacement_scale = known.prescribed_displacement_scale if known is not None else None
-        if len(state.end_moment):
+        if bends(self.model):
             view = view_like(self._view)
             view.all_diagrams, view.quantity = True, self.quantity
             return Still(still(copy, self.model, state), view)
@@ -330,12 +329,10 @@ class Guide:
     def _times(self, amounts: Sequence[float]) -> SetState:
         """The state of the released structure under so much of its unknowns."""
         assert self.solution is not None
-        states = self.solution.units
-        parts = {
-            name: sum(amount * getattr(unit, name) for amount, unit in zip(amounts, states, strict=True))
-            for name in vars(states[0])
-        }
-        return SetState(**parts)
+        state = superposed(self.solution.units, amounts)
+        for bar in (unknown for unknown in self.released if unknown.of_bar):
+            state.axial_force[bar.place] = 0.0  # cut
+        return state
 
     def _apply_forces(self) -> None:
         """The unknowns' values in place of the unit force (part 7)."""

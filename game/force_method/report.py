@@ -43,7 +43,7 @@ from pinjoint.systems.render.theme import load_theme
 from pinjoint.systems.statics.counting import counted
 from pinjoint.systems.statics.equations import largest
 from pinjoint.systems.statics.external import external_forces
-from pinjoint.systems.statics.released import SetState
+from pinjoint.systems.statics.force_method import SetState, superposed
 from pinjoint.systems.statics.unknowns import Unknown
 
 _BESIDE_IT, _ABOVE, _BELOW = 56.0, 46.0, 62.0  # pixels around a structure, for supports, loads and diagrams
@@ -211,7 +211,7 @@ class _Page:
         model, solution, layout = self.model, self.solution, self.layout
         quantity, unit = (MOMENT, "kN·m") if self.solved.bends else (AXIAL, "kN")
         symbol, unknowns = "M" if self.solved.bends else "N", list(solution.unknowns)
-        nothing = replace(solution.real, **{name: 0.0 * part for name, part in vars(solution.real).items()})
+        nothing = superposed([solution.real], [0.0])
         real = still(base_structure(model, []), model, nothing)
         released = base_structure(model, unknowns)
         blocks = [_figure(layout, real, tr("The structure, its supports and its loads"))]
@@ -283,7 +283,7 @@ class _Page:
             ends = tr("M and M′ are the moments at both ends of a rod; qL²/8 is how far M bulges between them.")
             heading.append(self._text(ends, "caption"))
             blocks += _printed(self.layout, solved.bending(every))
-            warm = solved.work.free.any()
+            warm = solved.solution.work.axial.of_free.any()
             axial = solved.virtual_work(every) if warm else solved.forces(every)
             blocks += _printed(self.layout, axial) if self._pulls else []
         else:
@@ -444,15 +444,15 @@ def _counted(solved: Tables) -> str:
 
 def _formulas(solved: Tables, *, pulls: bool) -> Iterator[str]:
     """What the sums are, for every pair of unknowns alike; pulls: there are axial forces."""
-    work, several = solved.work, len(solved.solution.unknowns) > 1
+    work, several = solved.solution.work, len(solved.solution.unknowns) > 1
 
     def pair(bending: str, axial: str) -> list[str]:
         return [f"∫ {bending} dx/EI"] * solved.bends + [f"Σ {axial} L/EA"] * pulls
 
     gap = pair("M₀ m₁", "N₀ n₁")
-    if work.free.any():
+    if work.axial.of_free.any():
         gap.append("Σ n₁ ΔL")
-    if work.curvature.any():
+    if work.bending.of_free.any():
         gap.append("∫ m₁ κ dx")
     if len(work.settled):
         gap.append("(− Σ r₁ c)")

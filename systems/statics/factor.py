@@ -139,8 +139,11 @@ def soft_modes(matrix: Matrix, weight: Array, factor: Factor | None = None, most
     return modes
 
 
-def unresisted(structure: Structure, response: Response, matrix: Matrix, modes: Array) -> Array:
-    """Those of some soft modes (N, k) that round-off alone resists: not the bending of what many rods divide."""
+def unresisted(
+    structure: Structure, response: Response, matrix: Matrix, factor: Factor | None = None, most: int = 8
+) -> Array:
+    """Soft modes (N, k) that round-off alone resists: not the bending of what many rods divide."""
+    modes = soft_modes(matrix, structure.weight, factor, most)
     if structure.bending is None:
         return modes
     kept = [float(m @ (matrix @ m)) <= SOFT * structure.effort(m, response) + ROUND_OFF for m in modes.T]
