@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from dataclasses import replace
 from functools import partial
-from pathlib import Path
 
 import numpy as np
 from reportlab.platypus import Flowable
@@ -19,8 +18,7 @@ from pinjoint.components.rod import rigid_joints
 from pinjoint.components.round_numbers import round_down
 from pinjoint.components.tags import DiagramShown
 from pinjoint.components.view import THESIS, Cut, View
-from pinjoint.documents import models
-from pinjoint.force_method import thesis, words
+from pinjoint.force_method import words
 from pinjoint.force_method.copies import base_structure, loaded, still, unloaded
 from pinjoint.force_method.tables import PRODUCTS, Table, Tables
 from pinjoint.force_method.words import EXACT, index
@@ -56,11 +54,6 @@ _TERMS = 6  # of a sum that are written one by one
 _SHOWN = 2  # unknowns of a frame up to which each has a column of superposition
 _BESIDE = 26  # rows of a table that stands beside others
 _APART = ",\u2003"  # between formulas in a line
-
-
-def write_report(solved: Tables, path: str | Path, convention: str) -> None:
-    """Write the report of a solution to a PDF file, as a whole or not at all. Raises OSError."""
-    models.replace(Path(path), report(solved, convention))
 
 
 def report(solved: Tables, convention: str) -> bytes:
@@ -311,14 +304,12 @@ class _Page:
         said = tr("The unknowns close the gaps ({units}):", units=units.all)
         found = [f"X{index(i + 1)} = {words.amount(solution, i)}" for i in range(count)]
         if count == 1:
-            [line] = words.equations(solution, units.all, units.factor)
-            symbols, _, numbers = line.partition(":")
-            equation, _, _ = numbers.rpartition("  (")
+            symbols, numbers = words.equation(solution, 0, units.factor)
             return [
                 heading,
                 self._text(said),
                 self._text(symbols, "equation"),
-                self._text(equation.strip().replace(" = ", "\u00a0=\u00a0"), "equation"),
+                self._text(numbers.replace(" = ", "\u00a0=\u00a0"), "equation"),
                 self._text(found[0], "result"),
             ]
         lines = [matrices([*self._numbers()], self.layout)]
@@ -353,7 +344,7 @@ class _Page:
 
     def of_thesis(self) -> list[Flowable]:
         """The same in the thesis' convention."""
-        lines = thesis.solved_lines(self.solution)
+        lines = words.in_thesis(self.solution)
         heading = self._text(tr("2  Unknowns"), "heading")
         return [together(heading, *(self._text(line, "equation") for line in lines))]
 
@@ -444,22 +435,13 @@ def _counted(solved: Tables) -> str:
 
 def _formulas(solved: Tables, *, pulls: bool) -> Iterator[str]:
     """What the sums are, for every pair of unknowns alike; pulls: there are axial forces."""
-    work, several = solved.solution.work, len(solved.solution.unknowns) > 1
-
-    def pair(bending: str, axial: str) -> list[str]:
-        return [f"∫ {bending} dx/EI"] * solved.bends + [f"Σ {axial} L/EA"] * pulls
-
-    gap = pair("M₀ m₁", "N₀ n₁")
-    if work.axial.of_free.any():
-        gap.append("Σ n₁ ΔL")
-    if work.bending.of_free.any():
-        gap.append("∫ m₁ κ dx")
-    if len(work.settled):
-        gap.append("(− Σ r₁ c)")
-    yield f"δ₁₀ = {' + '.join(gap)}"
-    yield f"δ₁₁ = {' + '.join(pair('m₁²', 'n₁²'))} > 0"
-    if several:
-        yield f"δ₁₂ = δ₂₁ = {' + '.join(pair('m₁ m₂', 'n₁ n₂'))}"
+    work, bends = solved.solution.work, solved.bends
+    more = ["Σ n₁ ΔL"] * bool(work.axial.of_free.any()) + ["∫ m₁ κ dx"] * bool(work.bending.of_free.any())
+    more += ["(− Σ r₁ c)"] * bool(len(work.settled))
+    yield f"δ₁₀ = {words.sums(bends, 'M₀ m₁', 'N₀ n₁', pulls=pulls, more=more)}"
+    yield f"δ₁₁ = {words.sums(bends, 'm₁²', 'n₁²', pulls=pulls)} > 0"
+    if len(solved.solution.unknowns) > 1:
+        yield f"δ₁₂ = δ₂₁ = {words.sums(bends, 'm₁ m₂', 'n₁ n₂', pulls=pulls)}"
 
 
 def _balance(model: Model, state: SetState) -> Iterator[tuple[str, list[float]]]:

@@ -14,6 +14,7 @@ from pinjoint.components.field import CM, ENDS
 from pinjoint.components.language import decimals, joined, tr
 from pinjoint.components.model import Model
 from pinjoint.components.rod import bends, nodes
+from pinjoint.force_method.words import index
 from pinjoint.systems.statics.equations import AXES, Array, Rows, largest
 from pinjoint.systems.statics.force_method import SetState, Solution, Terms, bulge
 from pinjoint.systems.statics.unknowns import Unknown
@@ -23,12 +24,6 @@ _FINER = 5  # significant digits of forces that are added
 PRODUCTS = 4  # unknowns up to which all products of virtual work are listed
 _SHOWN = 3  # unknowns up to which each has a column of superposition
 _ABOVE = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
-_BELOW = str.maketrans("0123456789", "₀₁₂₃₄₅₆₇₈₉")
-
-
-def index(*numbers: int) -> str:
-    """Indices as they stand below: "₁₀"; apart from each other if one has two digits."""
-    return ("" if max(numbers) < 10 else "\u2009").join(str(number).translate(_BELOW) for number in numbers)
 
 
 class Column:
@@ -317,6 +312,16 @@ class Tables:
         """Names of directions of particles, (k, 2)."""
         names = self.model.particles.names
         return [joined([names[row], tr(AXES[axis])], ".") for row, axis in places.tolist()]
+
+    def sets(self) -> Table:
+        """Axial forces of set 1 = set 2 + set 3 for every rod, in the thesis' convention."""
+        solution = self.solution
+        total, real, base = (state.axial_force for state in (solution.superposed, solution.real, solution.base))
+        off = np.where(np.abs(total - real) <= written.ROUNDING * largest(real), 0.0, total - real)
+        titles = (tr("set 1"), tr("= set 2"), tr("+ set 3"))
+        values = (real, base, total - base)
+        columns = [Column(title, "", of, digits=_FINER) for title, of in zip(titles, values, strict=True)]
+        return Table("kN", self.model.rods.names, [*columns, Column(tr("residual"), "", off, digits=1)])
 
     def _superposed(
         self,

@@ -104,7 +104,7 @@ class Structure:
         particles, rods = model.particles, model.rods
         yields = bool(model.settings.plasticity)
         ends = rods.between.astype(np.intp)
-        body = _bodies(particles.count, ends)
+        body = np.unique(lowest_joined(particles.count, ends), return_inverse=True)[1]
         fixed = particles.fixed.copy()
         bending = Bending.of(model, bows=geometry == "exact") if bends(model) else None
         if bending is not None:
@@ -563,10 +563,6 @@ def _held_by_rods(particles: int, ends: Rows, bending: Bending | None) -> Flags:
     if bending is not None:
         held[ends[bending.rigid], 2] = True
     return held
-
-
-def _bodies(particles: int, ends: Rows) -> Rows:
-    return np.unique(lowest_joined(particles, ends), return_inverse=True)[1]
 
 
 def _arbitrary(fixed: Flags, body: Rows) -> Flags:
