@@ -189,7 +189,7 @@ def _rows(found: Mapping[str, Any]) -> Iterator[Row]:
 
 def _lines(tables: Tables, convention: str, found: Mapping[str, Any]) -> Iterator[str]:
     """The solution to read: in the textbook's convention with its tables, in the thesis' with its displacements."""
-    from pinjoint.force_method import words
+    from pinjoint.force_method import index, words
     from pinjoint.force_method.tables import PRODUCTS
 
     solution, units = tables.solution, tables.units
@@ -203,7 +203,7 @@ def _lines(tables: Tables, convention: str, found: Mapping[str, Any]) -> Iterato
         return
     yield ""
     for i, unknown in enumerate(solution.unknowns):
-        yield f"X{words.index(i + 1)}: {words.meaning(unknown)}"
+        yield f"X{index(i + 1)}: {words.meaning(unknown)}"
     every = range(len(solution.unknowns))
     works = [tables.bending(every)] if tables.bends else []
     works.append(tables.virtual_work(every))

@@ -43,7 +43,7 @@ SWING = 3.0  # s in which a mechanism is shown to move there and back
 class Set:
     """One of the three systems: its model, its view and its run in real time.
 
-    live: None of a frame, which stays undeformed, with its forces drawn at once by first-order theory. suited: the scale that
+    live: None of a frame, which stays undeformed, its forces drawn at once by first-order theory. suited: the scale that
     shows its own displacements well.
     """
 

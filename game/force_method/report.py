@@ -18,10 +18,10 @@ from pinjoint.components.rod import rigid_joints
 from pinjoint.components.round_numbers import round_down
 from pinjoint.components.tags import DiagramShown
 from pinjoint.components.view import THESIS, Cut, View
-from pinjoint.force_method import words
+from pinjoint.force_method import index, words
 from pinjoint.force_method.copies import base_structure, loaded, still, unloaded
 from pinjoint.force_method.tables import PRODUCTS, Table, Tables
-from pinjoint.force_method.words import EXACT, index
+from pinjoint.force_method.words import EXACT
 from pinjoint.systems.render.arrows import largest_force
 from pinjoint.systems.render.paper import (
     GUTTER,

@@ -14,7 +14,7 @@ from pinjoint.components.field import CM, ENDS
 from pinjoint.components.language import decimals, joined, tr
 from pinjoint.components.model import Model
 from pinjoint.components.rod import bends, nodes
-from pinjoint.force_method.words import index
+from pinjoint.force_method import index
 from pinjoint.systems.statics.equations import AXES, Array, Rows, largest
 from pinjoint.systems.statics.force_method import SetState, Solution, Terms, bulge
 from pinjoint.systems.statics.unknowns import Unknown

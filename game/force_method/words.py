@@ -10,7 +10,7 @@ from pinjoint.components.bent import AXIAL
 from pinjoint.components.field import CM
 from pinjoint.components.language import listed, marked, plural, tr
 from pinjoint.components.view import BETWEEN
-from pinjoint.force_method import PARTS
+from pinjoint.force_method import PARTS, index
 
 if TYPE_CHECKING:  # they import scipy
     from pinjoint.force_method.guide import Guide
@@ -25,7 +25,6 @@ NAMES = (
     marked("Set 3: the unknown alone"),
 )
 TO_COME = ("", marked("follows in part 3"), marked("follows in part 5"))
-_BELOW = str.maketrans("0123456789", "₀₁₂₃₄₅₆₇₈₉")
 EXACT = 5  # significant digits of gaps and flexibilities, from which unknowns follow to 4
 
 
@@ -145,11 +144,6 @@ def _of_thesis(guide: Guide, solution: Solution) -> tuple[Caption, ...]:
 
     deltas = solution.delta_real, solution.delta_base, solution.delta_unit[:, -1]
     return (third,), *map(each, ("", "₀", "₁"), (delta.tolist() for delta in deltas), ("", "", "/kN"))
-
-
-def index(*numbers: int) -> str:
-    """Indices as they stand below: "₁₀"; apart from each other if one has two digits."""
-    return ("" if max(numbers) < 10 else "\u2009").join(str(number).translate(_BELOW) for number in numbers)
 
 
 def amount(solution: Solution, which: int) -> str:

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from pinjoint.components.diagrams import diagrams
 from pinjoint.components.language import marked
@@ -57,9 +58,9 @@ class StaticState:
     contact_force: Array
 
     @property
-    def columns(self) -> dict[str, Array]:
+    def columns(self) -> dict[str, NDArray[Any]]:
         """What the columns of a model are in this state, by "table.field"."""
-        of_particles = {
+        of_particles: dict[str, NDArray[Any]] = {
             "displacement": self.displacement,
             "velocity": np.zeros_like(self.displacement),
             "reaction": self.reaction,
@@ -67,11 +68,13 @@ class StaticState:
             "angular_velocity": np.zeros_like(self.rotation),
             "reaction_moment": self.reaction_moment,
         }
-        of_rods = {"axial_force": self.axial_force, "length": self.length, "strain": self.strain} | {
-            "plastic_strain": self.plastic_strain,
-            "yielding": self.yielding,
+        of_rods: dict[str, NDArray[Any]] = {
             **self.diagrams,
+            "axial_force": self.axial_force,
+            "length": self.length,
+            "strain": self.strain,
         }
+        of_rods |= {"strain": self.strain, "plastic_strain": self.plastic_strain, "yielding": self.yielding}
         found = {f"particles.{name}": values for name, values in of_particles.items()}
         return found | {f"rods.{name}": values for name, values in of_rods.items()}
 

@@ -236,7 +236,7 @@ def differs(comparison: Comparison) -> bool:
 def compare(model: Model, theory: Theories, simulated: Answer | None) -> Comparison:
     """The three answers side by side; simulated: None if there is no simulation at rest."""
     by_theory = {"linear": theory.linear, "exact": theory.exact}
-    found = {way: state and state.columns for way, state in by_theory.items()}
+    found = {way: None if state is None else state.columns for way, state in by_theory.items()}
     return Comparison(model, {"simulation": simulated, **found})
 
 
