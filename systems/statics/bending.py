@@ -12,8 +12,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
-from pinjoint.components.derived import FULL_TURN
-from pinjoint.components.diagrams import along_and_across
+from pinjoint.components.derived import FULL_TURN, along_and_across
 from pinjoint.components.model import Model
 
 Array = NDArray[np.float64]

@@ -22,7 +22,7 @@ from dataclasses import dataclass, fields, replace
 
 import numpy as np
 
-from pinjoint.components.diagrams import along_and_across
+from pinjoint.components.derived import along_and_across
 from pinjoint.components.language import tr
 from pinjoint.components.model import Model
 from pinjoint.components.numeric_range import incomputable
