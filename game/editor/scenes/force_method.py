@@ -26,7 +26,7 @@ from pinjoint.systems.render.page import page_height
 from pinjoint.systems.render.theme import load_theme
 
 if TYPE_CHECKING:  # it imports scipy
-    from pinjoint.force_method.guide import AnySet, Guide, Mechanism
+    from pinjoint.force_method.guide import Guide, Mechanism, Set
 
 WIDE = 1.1  # width / height from which the sets stand side by side
 MOST_OF_HEIGHT = 0.45  # of the window that the equations and the table take at most; the rest is scrolled
@@ -123,7 +123,7 @@ class ForceMethod(Scene):
         else:
             self._work = _Work(tr("{work} with {count} rods …", work=text, count=context.model.rods.count), do)
 
-    def _moving(self) -> list[AnySet | Mechanism]:
+    def _moving(self) -> list[Set | Mechanism]:
         if self.shown_guide is not None:
             return self.shown_guide.moving
         return [self._mechanism] if self._mechanism is not None else []
@@ -201,7 +201,7 @@ class ForceMethod(Scene):
 
     def _sets(self, context: Context, middle: Viewport, ratio: float) -> list[tuple[Model, View]]:
         captions = words.captions(self.shown_guide) if self.shown_guide else [("",)] * 3
-        there: list[AnySet | Mechanism] = [*self.shown_guide.shown] if self.shown_guide else self._moving()
+        there: list[Set | Mechanism] = [*self.shown_guide.shown] if self.shown_guide else self._moving()
         places = [(index, _third(middle, index)) for index in range(3)]
         if there and not _readable(places[0][1], ratio):
             picks = self.shown_guide is not None and self.shown_guide.part == 2  # from set 1
