@@ -4,15 +4,13 @@ from __future__ import annotations
 
 import logging
 import os
-from collections import Counter
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from contextlib import contextmanager
-from dataclasses import dataclass, field
+from itertools import islice
 from typing import Any
 
 from pinjoint.components.language import ENGLISH, spoken
-from pinjoint.sweeps.batches import Batches
-from pinjoint.sweeps.plan import Outcome, Plan, Record
+from pinjoint.sweeps.plan import Outcome, Plan
 from pinjoint.sweeps.variant_runner import VariantRunner
 from pinjoint.sweeps.variation import INSTALL, SweepError
 from pinjoint.systems.program.parallel import VARIABLE, cores
@@ -22,100 +20,45 @@ TASKS_PER_WORKER = 16  # so that no worker waits long for another's last task
 ANSWER_WITHIN = 10.0  # s
 LARGE = 30_000  # variants × rods from which workers are worth the seconds in which they start
 SAFE_PATH = "PYTHONSAFEPATH"  # of the environment
-LIGHT = 100  # rods up to which a variant takes as long as one of this many
+LIGHT = 40  # rods up to which a variant takes as long as one of this many
 
 
-@dataclass
-class Computed:
-    """Outcomes of some variants. faults: why some of them were not computed together though they should be able to.
+def compute(plan: Plan, numbers: Iterable[int]) -> Iterator[Outcome]:
+    """Compute some variants of a plan, here and one by one, all by one model.
 
-    Such a fault costs time, not results: they are computed one by one. Counted are variants by what went wrong.
+    One that cannot be computed is a record that says why, in English, as files are. Raises SweepError if this process has
+    another version of Pinjoint, or other mods, than the plan is of.
     """
-
-    outcomes: list[Outcome]
-    faults: Mapping[str, int] = field(default_factory=dict)
-
-
-class Worker:
-    """Computes variants of a plan in this process: together where that is possible, else one by one.
-
-    Raises SweepError if this process has another version of Pinjoint, or other mods, than the plan is of.
-    """
-
-    def __init__(self, plan: Plan, threads: int = 1) -> None:
-        plan.software.require()
-        self._plan = plan
-        self._runner: VariantRunner | None = None
-        self._batches: Batches | None = None
-        self._fault = ""  # why nothing is computed together
-        try:
-            self._batches = Batches(VariantRunner(plan), plan, threads)
-        except Exception as error:
-            self._fault = _told(error)
-
-    @property
-    def at_a_time(self) -> int:
-        """Number of variants that are computed together; 1: none."""
-        return self._batches.size if self._batches is not None else 1
-
-    def compute(self, numbers: Sequence[int]) -> Computed:
-        """Compute some variants; one that cannot be computed is a record that says why, in English, as files are."""
+    plan.software.require()
+    runner: VariantRunner | None = None
+    for number in numbers:
         with spoken(ENGLISH):
-            return self._compute(numbers)
-
-    def _compute(self, numbers: Sequence[int]) -> Computed:
-        together: Mapping[int, list[Record]] = {}
-        faults = Counter({self._fault: len(numbers)} if self._fault else {})
-        if len(numbers) > 1:
             try:
-                together = self.together(numbers)
-            except Exception as error:
-                faults[_told(error)] += len(numbers)
-        return Computed([(n, together[n]) if n in together else self._alone(n) for n in numbers], faults)
-
-    def together(self, numbers: Sequence[int]) -> dict[int, list[Record]]:
-        """Records of those variants that can be computed together, by number."""
-        return self._batches.records(numbers) if self._batches is not None else {}
-
-    def _alone(self, number: int) -> Outcome:
-        try:
-            self._runner = self._runner or VariantRunner(self._plan)
-            return number, self._runner.records(number)
-        except Exception as error:  # one bad variant of thousands must not end the others
-            self._runner = None
-            return self._plan.failure(number, str(error) if isinstance(error, ValueError) else _told(error))
-
-
-def _told(error: Exception) -> str:
-    return f"{type(error).__name__}: {error}"
-
-
-def compute(plan: Plan, numbers: Sequence[int]) -> Computed:
-    """Compute some variants of a plan, here and by this thread; see Worker.compute."""
-    return Worker(plan).compute(numbers)
-
-
-def suitable_workers(plan: Plan, variants: int, together: int) -> int:
-    """All cores that this process may use where there is much to do one by one, by a rule; else 1."""
-    if together > 1 or variants * max(len(plan.document.get("rods", ())), LIGHT) < LARGE:
-        return 1
-    return cores()
+                runner = runner or VariantRunner(plan)
+                outcome = number, runner.records(number)
+            except Exception as error:  # one bad variant of thousands must not end the others
+                runner = None
+                told = str(error) if isinstance(error, ValueError) else f"{type(error).__name__}: {error}"
+                outcome = plan.failure(number, told)
+        yield outcome
 
 
 def compute_all(
     plan: Plan, numbers: Sequence[int], workers: int | None, scheduler: str | None
-) -> Iterator[Computed]:
+) -> Iterator[list[Outcome]]:
     """Compute these variants, some at a time, in whatever order they get ready.
 
-    workers: 1 computes in this process; more start that many on this machine; None: as many as suit.
+    workers: 1 computes in this process; more start that many on this machine; None: all cores that this process may use
+    where there is much to do, by a rule, else 1.
     scheduler: the address of that of a running Dask cluster, which computes instead. Raises SweepError.
     """
-    here = Worker(plan, cores())
     if workers is None:
-        workers = suitable_workers(plan, len(numbers), here.at_a_time)
+        much = len(numbers) * max(len(plan.document.get("rods", ())), LIGHT) >= LARGE
+        workers = cores() if much else 1
     if scheduler is None and workers == 1:
-        for task in _tasks(numbers, 1, here.at_a_time):
-            yield here.compute(task)
+        computed = compute(plan, numbers)
+        for task in _tasks(numbers, 1):
+            yield list(islice(computed, len(task)))
         return
     try:
         import distributed
@@ -128,7 +71,7 @@ def compute_all(
     with (
         _local_client(distributed, workers) if scheduler is None else _client_of(distributed, scheduler)
     ) as client:
-        yield from _distributed(distributed, client, plan, numbers, here.at_a_time)
+        yield from _distributed(distributed, client, plan, numbers)
 
 
 @contextmanager
@@ -171,16 +114,14 @@ def _client_of(distributed: Any, scheduler: str) -> Any:
     return client
 
 
-def _distributed(
-    distributed: Any, client: Any, plan: Plan, numbers: Sequence[int], together: int
-) -> Iterator[Computed]:
+def _distributed(distributed: Any, client: Any, plan: Plan, numbers: Sequence[int]) -> Iterator[list[Outcome]]:
     shared = client.submit(_same, plan, pure=False)  # unlike scattered data, survives the death of its workers
 
     def submit(task: Sequence[int]) -> Any:
-        return client.submit(compute, shared, task, pure=False)
+        return client.submit(_computed, shared, task, pure=False)
 
     workers = max(len(client.scheduler_info()["workers"]), 1)
-    tasks = {submit(task): task for task in _tasks(numbers, workers, together)}
+    tasks = {submit(task): task for task in _tasks(numbers, workers)}
     suspects: list[int] = []
     for future in distributed.as_completed(tasks):
         task = tasks.pop(future)
@@ -192,13 +133,13 @@ def _distributed(
     for number in sorted(suspects):  # one at a time, so that only what kills a worker is blamed for it
         found = _result(distributed, submit([number]))
         why = "Every worker that computed this variant ended early; perhaps memory ran out."
-        yield found or Computed([plan.failure(number, why)])
+        yield found or [plan.failure(number, why)]
 
 
-def _result(distributed: Any, future: Any) -> Computed | None:
+def _result(distributed: Any, future: Any) -> list[Outcome] | None:
     """The result of a task; None if its workers died."""
     try:
-        found: Computed = future.result()
+        found: list[Outcome] = future.result()
     except distributed.KilledWorker:
         return None
     except Exception as error:
@@ -215,9 +156,10 @@ def _same(plan: Plan) -> Plan:
     return plan
 
 
-def _tasks(numbers: Sequence[int], workers: int, together: int) -> list[Sequence[int]]:
-    """together: how many variants are best computed at a time."""
+def _computed(plan: Plan, numbers: Sequence[int]) -> list[Outcome]:
+    return list(compute(plan, numbers))
+
+
+def _tasks(numbers: Sequence[int], workers: int) -> list[Sequence[int]]:
     size = min(max(len(numbers) // (workers * TASKS_PER_WORKER), 1), MOST_IN_A_TASK)
-    if together > 1:
-        size = min(max(len(numbers) // workers, 1), together)
     return [numbers[first : first + size] for first in range(0, len(numbers), size)]

@@ -2,14 +2,19 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterator
 from contextlib import contextmanager
+from itertools import islice
+from typing import Any
 
+from pinjoint.commands.reports.results import facts
 from pinjoint.components.language import english
+from pinjoint.components.model import Model
 from pinjoint.components.snapshot import Snapshot
 from pinjoint.documents import models
-from pinjoint.paths import apply_override
+from pinjoint.paths import apply_override, locate, quoted, settable
 from pinjoint.sweeps.plan import Plan, Record
+from pinjoint.sweeps.variation import as_text
 from pinjoint.systems.base import StepSystem
 from pinjoint.systems.catalogue import all_systems
 from pinjoint.systems.run.simulation import Simulation
@@ -26,6 +31,9 @@ class VariantRunner:
     def __init__(self, plan: Plan) -> None:
         self._plan = plan
         self.model = models.parse(plan.document)
+        for override in plan.overrides:
+            apply_override(self.model, override)
+        self._targets = [locate(self.model, varied.path, settable)[0] for varied in plan.variations]
         systems = all_systems()
         self.step_systems = [system for system in systems if isinstance(system, StepSystem)]
         self.simulation = Simulation(self.model, Schedule(systems))
@@ -34,23 +42,20 @@ class VariantRunner:
     def records(self, number: int) -> list[Record]:
         """A record of each state of a variant. Raises the errors of its overrides and of its run."""
         with self.taken_back():
-            self.override(self._plan.overrides_of(number))
-            run = self._plan.analysis.run(self.simulation, self._plan.name)
+            values = iter(self._plan.values(number))
+            for varied, target in zip(self._plan.variations, self._targets, strict=True):
+                given = list(islice(values, len(varied.columns)))
+                with quoted(f"{varied.path}={', '.join(map(as_text, given))}"):
+                    target.give_each(given if len(given) > 1 else given * len(target.handles))
+            run = self._plan.analysis.run(self.simulation, self._plan.name, read=self._measured)
         about = run["status"], english(run["message"])
-        return [
-            (
-                *about,
-                state["time"],
-                state["load_factor"],
-                *(measure.of(state) for measure in self._plan.measures),
-            )
-            for state in run["states"]
-        ]
+        return [(*about, *measured) for measured in run["states"]]
 
-    def override(self, overrides: Iterable[str]) -> None:
-        """Change the model. Raises PathError."""
-        for override in overrides:
-            apply_override(self.model, override)
+    def _measured(self, model: Model, *given: Any) -> Record:
+        """What is kept of a state: time, load factor, measures."""
+        found = facts(model, *given)
+        measures = (measure.of(model, found) for measure in self._plan.measures)
+        return found["time"], found["load_factor"], *measures
 
     @contextmanager
     def taken_back(self) -> Iterator[None]:

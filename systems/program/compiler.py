@@ -157,7 +157,7 @@ class GeneratedModule:
         """The kernels that others wrote among those that it calls: interpreted, they might give other bits."""
         return others_of(self._source_and_kernels[1].values())
 
-    @property
+    @cached_property
     def functions(self) -> dict[str, Kernel]:
         """What Python may call."""
         made = vars(self.module).items()
