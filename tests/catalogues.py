@@ -5,8 +5,6 @@ compiles it. A sentence whose English changed a little keeps its translation, ma
 Mods among the assets have catalogues of their own.
 """
 
-from __future__ import annotations
-
 import argparse
 import ast
 import json

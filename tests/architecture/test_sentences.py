@@ -1,7 +1,5 @@
 """Sentences for people are said in their language: where they are raised, told, shown in panels or in --help."""
 
-from __future__ import annotations
-
 import ast
 import re
 import sys

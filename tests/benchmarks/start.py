@@ -5,8 +5,6 @@ window is one of SDL's dummy driver unless the environment names another: SDL_VI
 ones.
 """
 
-from __future__ import annotations
-
 import json
 import os
 import resource

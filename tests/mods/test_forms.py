@@ -1,7 +1,5 @@
 """Laws of mods: they are compiled before the first step, else interpreted; faults are told alike in both forms."""
 
-from __future__ import annotations
-
 import sys
 from typing import Any
 
