@@ -1,4 +1,7 @@
-"""Execution: the variants of a plan computed in this process, by workers on this machine, or by a Dask cluster."""
+"""Execution: the variants of a plan computed in this process, by workers on this machine, or by a Dask cluster.
+
+A process runs them one by one by one model, which is brought back after each.
+"""
 
 from __future__ import annotations
 
@@ -9,11 +12,18 @@ from contextlib import contextmanager
 from itertools import islice
 from typing import Any
 
-from pinjoint.components.language import ENGLISH, spoken
-from pinjoint.sweeps.plan import Outcome, Plan
-from pinjoint.sweeps.variant_runner import VariantRunner
-from pinjoint.sweeps.variation import INSTALL, SweepError
+from pinjoint.commands.reports.results import State, facts
+from pinjoint.components.language import ENGLISH, english, spoken
+from pinjoint.components.model import Model
+from pinjoint.components.snapshot import Snapshot
+from pinjoint.documents import models
+from pinjoint.paths import apply_override, locate, quoted, settable
+from pinjoint.sweeps.plan import Outcome, Plan, Record
+from pinjoint.sweeps.variation import INSTALL, SweepError, as_text
+from pinjoint.systems.catalogue import all_systems
 from pinjoint.systems.program.parallel import VARIABLE, cores
+from pinjoint.systems.run.simulation import Simulation
+from pinjoint.systems.schedule import Schedule
 
 MOST_IN_A_TASK = 64  # variants; what a kill loses at most of each worker
 TASKS_PER_WORKER = 16  # so that no worker waits long for another's last task
@@ -21,6 +31,56 @@ ANSWER_WITHIN = 10.0  # s
 LARGE = 30_000  # variants × rods from which workers are worth the seconds in which they start
 SAFE_PATH = "PYTHONSAFEPATH"  # of the environment
 LIGHT = 40  # rods up to which a variant takes as long as one of this many
+
+
+class VariantRunner:
+    """Runs variants of a plan by one model: opening one and loading its step program takes longer than most runs.
+
+    A variant is edited and run inside a transaction that is taken back: commands have exact inverses, and
+    all that time changes is in the snapshot, so that the next one begins with the same bits as the first.
+    """
+
+    def __init__(self, plan: Plan) -> None:
+        self._plan = plan
+        self._model = models.parse(plan.document)
+        for override in plan.overrides:
+            apply_override(self._model, override)
+        self._targets = [locate(self._model, varied.path, settable)[0] for varied in plan.variations]
+        self._simulation = Simulation(self._model, Schedule(all_systems()))
+        self._beginning = Snapshot.take(self._model)
+
+    def records(self, number: int) -> list[Record]:
+        """A record of each state of a variant. Raises the errors of its overrides and of its run."""
+        with self._taken_back():
+            values = iter(self._plan.values(number))
+            for varied, target in zip(self._plan.variations, self._targets, strict=True):
+                given = list(islice(values, len(varied.columns)))
+                with quoted(f"{varied.path}={', '.join(map(as_text, given))}"):
+                    target.give_each(given if len(given) > 1 else given * len(target.handles))
+            run = self._plan.analysis.run(self._simulation, self._plan.name, read=self._measured)
+        about = run["status"], english(run["message"])
+        return [(*about, *state.values()) for state in run["states"]]
+
+    def _measured(self, model: Model, *given: Any) -> State:
+        """What is kept of a state."""
+        found = facts(model, *given)
+        measures = {measure.column: measure.of(model, found) for measure in self._plan.measures}
+        return {"time": found["time"], "load_factor": found["load_factor"], **measures}
+
+    @contextmanager
+    def _taken_back(self) -> Iterator[None]:
+        """Changes of the model inside the `with` are taken back at its end."""
+        try:
+            with self._model.transaction("variant"):
+                yield
+                raise _TakenBack
+        except _TakenBack:
+            self._beginning.restore(self._model)
+            self._simulation.forget()
+
+
+class _TakenBack(Exception):
+    pass
 
 
 def compute(plan: Plan, numbers: Iterable[int]) -> Iterator[Outcome]:

@@ -43,7 +43,7 @@ class Measure:
 
     def of(self, model: Model, found: State) -> Any:
         """Its value in the facts of a state of a model."""
-        value = reduce(getitem, self.keys, found)  # type: ignore[arg-type]
+        value: Any = reduce(getitem, self.keys, found)
         if not self.element:
             return value
         row = model.tables[self.keys[0]][self.element].row

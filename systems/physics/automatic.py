@@ -67,7 +67,7 @@ def _stiffness_of_all_modes(model: Model) -> float:
         matrix = _of_frame(model) if bends(model) else _scaled_stiffness(model)
         if not np.isfinite(matrix).all():
             return 0.0
-    eigenvalues = np.linalg.eigvalsh(matrix)
+    eigenvalues = np.asarray(np.linalg.eigvalsh(matrix), dtype=np.float64)
     highest = max(float(eigenvalues[-1]), 0.0)
     if highest == 0.0:
         return 0.0

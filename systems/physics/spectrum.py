@@ -180,6 +180,7 @@ def spectrum(model: Model, axial_force: Array, counts: NDArray[np.bool_] | None 
     along, damping = share * rods.stiffness / rods.rest_length, share * rods.damping
     damped = bool((rods.damping > 0.0).any())
     stiffness: RodOperator
+    dampers: RodOperator | None
     if bends(model):
         ends, of_ends = share[:, None] * rods.end_stiffness, share[:, None] * rods.end_damping
         width, stiffness = 3, FrameOperator(model, along, ends, tension)

@@ -6,10 +6,9 @@ from collections.abc import Callable
 from typing import Any
 
 from pinjoint.commands.reports.report import Analysis
-from pinjoint.sweeps.execution import compute_all
+from pinjoint.sweeps.execution import VariantRunner, compute_all
 from pinjoint.sweeps.plan import Plan, plan_of
 from pinjoint.sweeps.run import sweep
-from pinjoint.sweeps.variant_runner import VariantRunner
 
 ANALYSES = {"settled": Analysis(load_factors=(1.0,)), "run to rest": Analysis()}
 

@@ -16,10 +16,9 @@ from pinjoint.commands.reports.report import Analysis
 from pinjoint.documents import models
 from pinjoint.paths import apply_override
 from pinjoint.sweeps import SweepError, sweep
-from pinjoint.sweeps.execution import compute, compute_all
+from pinjoint.sweeps.execution import VariantRunner, compute, compute_all
 from pinjoint.sweeps.plan import plan_of
 from pinjoint.sweeps.results import Results
-from pinjoint.sweeps.variant_runner import VariantRunner
 from tests.reference.models import square, triangle
 
 MODEL = triangle(damping=100, density=6.15, tensile_strength=215, compressive_strength=215)

@@ -19,7 +19,7 @@ from pinjoint.paths import ENERGIES
 
 State = dict[str, Any]
 Run = Mapping[str, Any]
-Read = Callable[..., Any]  # takes what `state` takes
+Read = Callable[..., State]  # takes what `state` takes
 
 
 def _facts(kind: type[Handle], *names: str) -> tuple[Field[Any], ...]:
@@ -90,10 +90,9 @@ def state(
     """
     made = facts(model, energy, load_factor, residual, columns)
     for group in _KINDS:
-        rows = zip(*(column.tolist() for column in made[group].values()), strict=True)
-        rows = (tuple(None if value != value else value for value in row) for row in rows)
+        keys, rows = made[group], zip(*(column.tolist() for column in made[group].values()), strict=True)
         made[group] = {
-            name: dict(zip(made[group], row, strict=True))
+            name: {key: None if value != value else value for key, value in zip(keys, row, strict=True)}
             for name, row in zip(model.tables[group].names, rows, strict=True)
         }
     return made
