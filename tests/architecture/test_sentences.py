@@ -6,7 +6,7 @@ import sys
 from collections.abc import Iterator
 from pathlib import Path
 
-from tests.catalogues import KEYWORDS, ROOT
+from tests.catalogues import FIELDS, KEYWORDS, ROOT
 
 SOURCES = [path for top in ("components", "systems", "game") for path in sorted((ROOT / top).rglob("*.py"))]
 SAYING = {
@@ -32,7 +32,7 @@ SHOWN = {
     "explanation",
     "note",
 }
-BY_EXTRACTION = {"Field", "state", "derived", "look", "Binding"}  # catalogues hold their titles without a mark
+BY_EXTRACTION = {*FIELDS, "Binding"}  # catalogues hold their titles without a mark
 FOR_PROGRAMMERS = {
     "TypeError",
     "AttributeError",

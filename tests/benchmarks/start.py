@@ -159,7 +159,9 @@ class Watched:
         first = time.perf_counter() - began
         self.frames_until(lambda: False, SETTLED)
         asked = self.app.preparation.elsewhere  # type: ignore[union-attr]
-        compiled = SETTLED + self.frames_until(lambda: asked.has_loaded_all)
+        compiled = SETTLED + self.frames_until(
+            lambda: all(work.module is None or work.module.is_loaded for work in asked.needed)
+        )
         return {
             "first_step_s": first,
             "compiled_s": compiled,

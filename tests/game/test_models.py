@@ -176,9 +176,14 @@ REFUSED_ELEMENTS: dict[str, tuple[str, dict[Any, Any], str, str]] = {
     "ends as text": ("rods", {"name": "r", "between": "AD"}, ".between", "the names of two particles"),
     "three ends": ("rods", {"name": "r", "between": ["A", "B", "D"]}, ".between", "names of two particles"),
     "rows as ends": ("rods", {"name": "r", "between": [0, 3]}, ".between", "the names of two particles"),
-    "same end": ("rods", {"name": "r", "between": ["A", "A"]}, ".between", "both ends are 'A'"),
-    "second rod": ("rods", {"name": "r", "between": ["C", "B"]}, ".between", "$.rods[1] (rod BC) joins these"),
-    "no length": ("rods", rod("A", "O"), "", "distance between its ends is 0 m; give it a 'rest_length'"),
+    "same end": ("rods", {"name": "r", "between": ["A", "A"]}, ".between", "both ends are A; a rod"),
+    "second rod": (
+        "rods",
+        {"name": "r", "between": ["C", "B"]},
+        ".between",
+        "$.rods[1] (rod BC) joins C and B already",
+    ),
+    "no length": ("rods", rod("A", "O"), "", "its ends are at the same place; move one"),
     "far": (
         "particles",
         particle("far", 0, -1.7e308),

@@ -19,8 +19,8 @@ from pinjoint.components.language import spoken
 from pinjoint.components.model import Model
 from pinjoint.documents import models
 from pinjoint.editor.view_model import COMPILING
+from pinjoint.elsewhere import UNITS, Job, described, parts_of, problem_of
 from pinjoint.preparation import Preparation, _job, _jobs_of, is_live
-from pinjoint.prepare import UNITS, Job, described, parts_of, problem_of
 from pinjoint.session import Session
 from pinjoint.systems import cache
 from pinjoint.systems.input import pygame_input
@@ -86,10 +86,8 @@ def compiler(monkeypatch: pytest.MonkeyPatch) -> Compiler:
     monkeypatch.setattr(Choice, "compile", Compile.SOON)
     monkeypatch.setattr(programs, "_modules", {})  # what earlier tests compiled is loaded
     monkeypatch.setattr(programs, "_interpreted", [])
-    for said in ("REFUSED", "TROUBLE"):  # by earlier tests
+    for said in ("SAID", "TROUBLE"):  # by earlier tests
         monkeypatch.setattr(cache, said, [])
-    monkeypatch.setattr(programs, "UNCOMPILED", [])
-    monkeypatch.setattr(preparation, "UNCOMPILED", programs.UNCOMPILED)
     monkeypatch.setattr(pygame_input, "IDLE_PAUSE", 0.0)
     return found
 
@@ -517,7 +515,7 @@ def test_another_process_compiles_what_this_one_loads(
     assert process.returncode == 0
     assert not (tmp_path / "planted").exists()
     made: Any = preparation._module_of(job, simulation)
-    assert list(tmp_path.rglob(f"{made.key}.done"))
+    assert list(tmp_path.rglob(f"{made.key}.types"))
     monkeypatch.chdir(ASSETS)
     done = subprocess.run(
         [sys.executable, "-c", CHECK, json.dumps(document)], check=True, capture_output=True, text=True
@@ -568,7 +566,7 @@ def test_what_was_said_is_not_said_again_in_another_language(app: App, compiler:
     with spoken("pt"):
         frames(app, 5)
     assert app.session.notice == ""
-    assert len(programs.UNCOMPILED) == 1
+    assert len(cache.SAID) == 1
 
 
 def test_where_it_is_not_known_what_was_compiled_it_is_compiled_anew(
@@ -576,31 +574,10 @@ def test_where_it_is_not_known_what_was_compiled_it_is_compiled_anew(
 ) -> None:
     monkeypatch.setattr(cache, "folder", lambda: tmp_path)
     module = GeneratedModule("test", lambda: ("", {}))
-    (tmp_path / f"{module.key}.done").touch()
     cache.write(f"{module.key}.types", b"damaged")
     (tmp_path / f"{module.key}.types").write_bytes(b"cut")
     assert not module.load_kept()
     assert not module.is_compiled()
-
-
-def test_experience_of_compiling_is_of_what_was_compiled_and_of_no_other_process(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    monkeypatch.setattr(cache, "folder", lambda: tmp_path)
-    source = "from pinjoint.systems.kernels import kept\n\n@kept()\ndef half(x):\n    return 0.5 * x\n"
-
-    def call() -> None:
-        time.sleep(0.5)  # as if others took the processor
-        module.form.half(1.0)
-
-    module = GeneratedModule("called", lambda: (source, {}), call)
-    began = time.thread_time()
-    module.load()
-    seconds = float((tmp_path / f"{module.key}.done").read_text().split()[0])
-    assert 0.0 < seconds <= time.thread_time() - began
-    later = GeneratedModule("called later", lambda: (source + "\n", {}))
-    later.load()
-    assert (tmp_path / f"{later.key}.done").read_text() == ""
 
 
 def test_without_numba_all_jobs_have_the_same_problem(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -635,15 +612,15 @@ def test_programs_that_nobody_uses_are_forgotten(tmp_path: Path, monkeypatch: py
     monkeypatch.setattr(cache, "folder", lambda: tmp_path)
     (tmp_path / "__pycache__").mkdir()
     for name, age in (("pinjoint_program_old", 61 * 86400), ("pinjoint_program_new", 0)):
-        for file in (f"{name}.done", f"{name}.advance-1.code", f"__pycache__/{name}.advance-1.nbi"):
+        for file in (f"{name}.types", f"{name}.advance-1.code", f"__pycache__/{name}.advance-1.nbi"):
             (tmp_path / file).touch()
-        for file in (f"{name}.done", f"{name}.advance-1.code-killed.tmp"):
+        for file in (f"{name}.types", f"{name}.advance-1.code-killed.tmp"):
             (tmp_path / file).touch()
             before = (tmp_path / file).stat().st_mtime - age
             os.utime(tmp_path / file, (before, before))
     forget_unused()
     assert {path.name for path in tmp_path.rglob("*.*")} == {
-        "pinjoint_program_new.done",
+        "pinjoint_program_new.types",
         "pinjoint_program_new.advance-1.code",
         "pinjoint_program_new.advance-1.code-killed.tmp",
         "pinjoint_program_new.advance-1.nbi",
@@ -651,7 +628,7 @@ def test_programs_that_nobody_uses_are_forgotten(tmp_path: Path, monkeypatch: py
 
 
 def test_a_cache_that_cannot_be_written_is_said_once(app: App, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(cache, "TROUBLE", ["Compiled programs cannot be kept."])
+    monkeypatch.setattr(cache, "SAID", ["Compiled programs cannot be kept."])
     frames(app, 1)
     assert app.session.notice == "Compiled programs cannot be kept."
     app.session.notice = ""

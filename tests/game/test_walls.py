@@ -225,7 +225,7 @@ def test_files_keep_it_even_without_the_mod() -> None:
             {"walls.Wall": [{"name": "a", "start": [0, 0]}]},
             r"\$.components.walls.Wall\[0\] \(wall a\): its 'end'",
         ),
-        ({"walls.Wall": [{"start": [0, 0], "end": [0, 0]}]}, r"\$.components.walls.Wall: .* same point"),
+        ({"walls.Wall": [{"start": [0, 0], "end": [0, 0]}]}, r"\$.components.walls.Wall\[0\]: .* same point"),
         ({"walls.Wall": [{"start": [0, 0], "end": [1, 0], "size": 1}]}, "there is no key 'size' here"),
         ({"walls.Wall": [{"start": [0, 0], "end": [1, 0], "restitution": 2}]}, "restitution is 2"),
         ({"walls.Wall": {"start": [0, 0]}}, 'must have the form "mod.Kind"'),

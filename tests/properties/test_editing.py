@@ -27,7 +27,7 @@ class Editing(RuleBasedStateMachine):
         self.session = Session.open(model)
         self.session.view.camera.scale = 100.0
         put_states_aside(
-            self.session, beyond=4 * self.session.simulation.checkpoint().state.size
+            self.session, beyond=4 * self.session.simulation.checkpoint().state.nbytes
         )  # most of them
         self.start = contents(self.session.model)
 

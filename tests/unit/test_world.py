@@ -116,13 +116,13 @@ def test_what_there_is_one_of_is_neither_created_nor_deleted() -> None:
             {"fixed": [(False, True)], "velocity": [(1.0, 2.0)]},
             "particle 1: velocity y is 2 m/s, but a support holds it along y; set the velocity to 0 or free the direction.",
         ),
-        (Rod, {"between": [(0, 0)]}, "A rod needs two different particles; both ends are A."),
+        (Rod, {"between": [(0, 0)]}, "rod 1: both ends are A; a rod needs two different particles."),
         (
             Rod,
             {"between": [(1, 0)]},
-            "There is a rod between A and B already; two particles share at most one.",
+            "rod 1: rod AB joins B and A already; two particles share at most one rod.",
         ),
-        (Rod, {"between": [(1, 3), (3, 1)]}, "There is a rod between B and D already"),
+        (Rod, {"between": [(1, 3), (3, 1)]}, "rod 2: rod 1 joins D and B already"),
         (Rod, {"between": [(0, 9)]}, "rod 1: ends is row 9 of the particles, but there are only 4"),
         (Rod, {"between": [(0, -1)]}, "rod 1: ends y is -1; it must be at least 0."),
         (Rod, {"between": [(0, 4)]}, "rod 1: ends is row 4 of the particles"),
@@ -161,8 +161,8 @@ def test_a_creation_refused_leaves_nothing_behind(kind: Any, columns: dict[str, 
     [
         ("rods.AB", "name", "BC", "There is a rod 'BC' already; choose another name."),
         ("rods.AB", "name", "  ", "The name of a rod is empty"),
-        ("rods.AB", "between", (0, 0), "A rod needs two different particles; both ends are A."),
-        ("rods.AB", "between", (2, 1), "There is a rod between B and C already"),
+        ("rods.AB", "between", (0, 0), "rod AB: both ends are A; a rod needs two different particles."),
+        ("rods.AB", "between", (2, 1), "rod AB: rod BC joins C and B already"),
         ("rods.AB", "between", (0, 3), "rod AB: ends is row 3 of the particles, but there are only 3"),
         (
             "rods.AB",
@@ -371,18 +371,18 @@ def test_derived_columns_are_computed_when_read_and_only_after_a_change() -> Non
     assert calls == {}
     for _ in range(3):
         _ = particle.mass, rod.rest_length, world.column("particles.mobility")
-    assert calls == {"derive_lengths": 1, "derive_masses": 1}
+    assert calls == {"lengths": 1, "masses": 1}
     particle.force = (1.0, 0.0)
     _ = particle.mass, rod.rest_length
-    assert calls == {"derive_lengths": 1, "derive_masses": 1}
+    assert calls == {"lengths": 1, "masses": 1}
     _ = particle.constant_force
     rod.density = 3.0
     _ = rod.rest_length, particle.constant_force
-    assert calls == {"derive_lengths": 1, "derive_masses": 2, "derive_constant_force": 2}
+    assert calls == {"lengths": 1, "masses": 2, "constant_forces": 2}
     particle.position = (0.0, 0.5)
-    assert calls["derive_lengths"] == 1
+    assert calls["lengths"] == 1
     _ = particle.constant_force
-    assert calls == {"derive_lengths": 2, "derive_masses": 3, "derive_constant_force": 3}
+    assert calls == {"lengths": 2, "masses": 3, "constant_forces": 3}
 
 
 def test_a_derivation_that_raised_is_tried_again() -> None:

@@ -88,7 +88,7 @@ def test_going_back_stops_where_something_was_edited_and_undo_goes_on(triangle: 
 
 def test_moments_are_thinned_out_within_a_memory_bound(triangle: Session) -> None:
     timeline = Timeline(
-        triangle.simulation, triangle.pull, memory=20 * triangle.simulation.checkpoint().state.size
+        triangle.simulation, triangle.pull, memory=20 * triangle.simulation.checkpoint().state.nbytes
     )
     with timeline.recording():
         triangle.simulation.advance(20_000)
