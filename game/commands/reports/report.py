@@ -59,14 +59,11 @@ class Analysis:
         """
         check_mods()
         with heeding_mods(simulation):
-            return self._found(simulation, name, [] if reported is None else reported)
-
-    def _found(self, simulation: Simulation, name: str, reported: list[State]) -> Run:
-        if self.load_factors is not None:
-            return run_static(simulation, name, self.load_factors)
-        if self.times is not None:
-            return run_at(simulation, name, self.times, reported)
-        return run_until_rest(simulation, name, self.limit)
+            if self.load_factors is not None:
+                return run_static(simulation, name, self.load_factors)
+            if self.times is not None:
+                return run_at(simulation, name, self.times, [] if reported is None else reported)
+            return run_until_rest(simulation, name, self.limit)
 
     def run_in(self, session: Session, name: str) -> Run:
         """The same in a session, which adds remarks of theory on a run through time and its measured error."""
