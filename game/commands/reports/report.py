@@ -16,8 +16,7 @@ from pinjoint.components.model import Model
 from pinjoint.components.rod import bends
 from pinjoint.components.settings import AUTOMATIC
 from pinjoint.documents.open_documents import without_mods
-from pinjoint.mods.heeding import check_mods, heeding_mods
-from pinjoint.mods.mod import ModError
+from pinjoint.mods.mod import ModError, check_mods, heeding_mods
 from pinjoint.paths import ENERGIES
 from pinjoint.session import DEFAULT_LIMIT, Session
 from pinjoint.systems.base import StopReason

@@ -203,7 +203,11 @@ class ForceMethod(Scene):
         captions = words.captions(self.shown_guide) if self.shown_guide else [("",)] * 3
         there: list[Set | Mechanism] = [*self.shown_guide.shown] if self.shown_guide else self._moving()
         places = [(index, _third(middle, index)) for index in range(3)]
-        if there and not _readable(places[0][1], ratio):
+        first = places[0][1]  # where it has no room for a set beside or above others, only one is shown
+        if there and (
+            first.width < LEAST_WIDTH * ratio
+            or first.height < (LEAST_LOW if _is_low(first) else LEAST_HEIGHT) * ratio
+        ):
             picks = self.shown_guide is not None and self.shown_guide.part == 2  # from set 1
             places = [(0 if picks else len(there) - 1, middle)]
         stages = [(one.model, one.view) for one in there]
@@ -296,12 +300,6 @@ def _fit(model: Model, view: View) -> None:
     view.camera.fit(
         np.concatenate([original - reserve, original + reserve]), min(MARGIN, 0.2 * v.height / u), within, u
     )
-
-
-def _readable(place: Viewport, ratio: float) -> bool:
-    """True if a set has enough room beside or above others; else only one set is shown."""
-    height = LEAST_LOW if _is_low(place) else LEAST_HEIGHT
-    return place.width >= LEAST_WIDTH * ratio and place.height >= height * ratio
 
 
 def _is_low(place: Viewport) -> bool:
