@@ -60,14 +60,11 @@ class Analysis:
         """
         check_mods()
         with heeding_mods(simulation):
-            return self._found(simulation, name, [] if reported is None else reported, read)
-
-    def _found(self, simulation: Simulation, name: str, reported: list[State], read: Read) -> Run:
-        if self.load_factors is not None:
-            return run_static(simulation, name, self.load_factors, read)
-        if self.times is not None:
-            return run_at(simulation, name, self.times, reported, read)
-        return run_until_rest(simulation, name, self.limit, read)
+            if self.load_factors is not None:
+                return run_static(simulation, name, self.load_factors, read)
+            if self.times is not None:
+                return run_at(simulation, name, self.times, [] if reported is None else reported, read)
+            return run_until_rest(simulation, name, self.limit, read)
 
     def run_in(self, session: Session, name: str) -> Run:
         """The same in a session, which adds remarks of theory on a run through time and its measured error."""
