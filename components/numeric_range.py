@@ -15,12 +15,12 @@ from pinjoint.components.wording import cut
 UNKNOWN_SHARE = 1e-3  # of a radius: how well places must be known for impacts
 
 _TABLES = ("particles", "rods", "loads", "environment", "settings")
-_FOLLOWING = ("rest_length", "mass")  # derived, from positions that may be too near or too far
-_OF_SECTIONS = "stiffness", "bending_stiffness"  # derived, as E·A and E·I
-_OF_ROTATIONS = "inertia"  # derived, from bending stiffnesses
-# What is checked besides what a person made: state that a person can type, and what follows.
-_MOVING = ("displacement", "velocity", "rotation", "angular_velocity", "plastic_strain")
-_OTHERS = (*_MOVING, *_FOLLOWING, *_OF_SECTIONS, _OF_ROTATIONS)
+# What is checked besides what a person made: state that a person can type; and what follows, from positions that may be
+# too near or too far, as E·A and E·I, and from bending stiffnesses.
+_OTHERS = (
+    *("displacement", "velocity", "rotation", "angular_velocity", "plastic_strain"),
+    *("rest_length", "mass", "stiffness", "bending_stiffness", "inertia"),
+)
 
 
 def incomputable(model: Model, since: int = -1) -> str:
@@ -61,9 +61,9 @@ def _extreme(field: Field[Any], column: Column) -> Column:
     """Which numbers of a column are too large or too small to compute with, in the shape of the column."""
     size = np.abs(column)
     extreme: Column = (size > LARGEST) & np.isfinite(size)
-    if field.above == 0.0 or field.name in _FOLLOWING:
+    if field.above == 0.0:
         extreme |= size < SMALLEST
-    if field.name == _OF_ROTATIONS:
+    if field.name == "inertia":
         extreme |= (size < SMALLEST) & (size > 0.0)  # 0: it does not turn
     return extreme
 

@@ -272,19 +272,6 @@ def test_a_killed_sweep_goes_on_without_repeating(tmp_path: Path, computed: list
     assert output.read_bytes() == whole.read_bytes()
 
 
-def test_another_digit_in_a_journal_is_noticed(tmp_path: Path, computed: list[int]) -> None:
-    """A failing disk may turn one number into another, which would be reported as a result."""
-    output = tmp_path / "results.csv"
-    interrupted(output)
-    journal = tmp_path / "results.csv.journal"
-    lines = journal.read_bytes().split(b"\n")
-    lines[3] = lines[3].replace(b"1", b"2", 1)
-    journal.write_bytes(b"\n".join(lines))
-    computed.clear()
-    sweep(MODEL, [DRAWN], MEASURES, STATIC, samples=20, output=output)
-    assert computed == [2, *range(7, 20)]
-
-
 @pytest.mark.parametrize(
     "damage",
     [
@@ -296,15 +283,17 @@ def test_another_digit_in_a_journal_is_noticed(tmp_path: Path, computed: list[in
         b"[[99, []]]",
         b'{"3": 4}',
         b'[[3, [["equilibrium", 7, 0.0, 1.0, [], "x"]]]]',
+        None,  # a failing disk may turn one number into another, which would be reported as a result
     ],
-    ids=lambda damage: repr(damage[:12]),
+    ids=lambda damage: repr(damage and damage[:12]),
 )
-def test_a_damaged_line_is_computed_anew(tmp_path: Path, computed: list[int], damage: bytes) -> None:
+def test_a_damaged_line_is_computed_anew(tmp_path: Path, computed: list[int], damage: bytes | None) -> None:
     output = tmp_path / "results.csv"
     interrupted(output)
     journal = tmp_path / "results.csv.journal"
     lines = journal.read_bytes().split(b"\n")
-    journal.write_bytes(b"\n".join([*lines[:3], damage, *lines[4:]]))
+    damaged = lines[3].replace(b"1", b"2", 1) if damage is None else damage
+    journal.write_bytes(b"\n".join([*lines[:3], damaged, *lines[4:]]))
     computed.clear()
     sweep(MODEL, [DRAWN], MEASURES, STATIC, samples=20, output=output)
     assert computed == [2, *range(7, 20)]
