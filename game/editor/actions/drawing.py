@@ -174,9 +174,7 @@ action(
 @action("new grid", "g", "add a grid", (PAUSE,))
 def _new_grid(context: Context, pixel: Vector) -> None:
     with context.model.transaction(marked("new grid")):
-        for grid in context.model.grids:
-            if grid.shown:
-                grid.shown = False
+        context.model.assign(list(context.model.grids), "shown", False)
         context.model.create(Grid)
 
 
@@ -187,6 +185,4 @@ def _next_grid(context: Context, pixel: Vector) -> None:
     shown = [index for index, grid in enumerate(grids) if grid.shown]
     following = shown[-1] + 1 if shown else 0
     with context.model.transaction(marked("next grid")):
-        for index, grid in enumerate(grids):
-            if grid.shown != (index == following):
-                grid.shown = index == following
+        context.model.assign(grids, "shown", [index == following for index in range(len(grids))])
