@@ -18,6 +18,7 @@ from pinjoint.components.language import marked
 from pinjoint.components.load import load_breaks, loads_end
 from pinjoint.components.model import Model
 from pinjoint.systems.base import Event, Integrator, StepSystem, StopReason
+from pinjoint.systems.collision.columns import Grid
 from pinjoint.systems.collision.driven.columns import Phase, Real, Whole
 from pinjoint.systems.entries import ACCOUNT, ACCOUNTS, CONTROL, Mark, Measure, Search, Side
 from pinjoint.systems.physics.bending import levers
@@ -140,7 +141,10 @@ class Program:
         return explain(self._writer.kernels, self.integrator, self.model, error, compiled=compiled)
 
     def _of_no_rods(self) -> list[Column]:
-        whole = {"pair_reach": np.array([0.0, math.inf])}  # of no pairs there is no list
+        whole: dict[str, Any] = {
+            "pair_reach": np.array([0.0, math.inf]),
+            "pair_grid": Grid.empty(0, 1),
+        }  # no list
         return [whole.get(name, column[:0]) for name, column in self.columns.items()]
 
     @property
@@ -491,22 +495,13 @@ class Program:
         return np.zeros(0, dtype=np.int64), self._arrays["displacement"], self._arrays["velocity"]
 
     def _catch_up(self) -> None:
-        """Before steps, bring the sides of events and the list of near pairs up to the present state."""
+        """Before steps, bring the sides of events up to the present state, and make room for all near pairs."""
         if self._sides and not self._is_fresh:
             for b, sides in self._sides:
                 sides[:] = self._sides_of(b)
-        if self._near is not None:
-            self._renew(self._near)
-
-    def _renew(self, near: NearPairs) -> None:
-        """Have the list of near pairs made anew in another state, and room for all of them."""
-        if near.outgrown:
-            near.grow()
-            place = self._writer.columns.index("pair_other")
-            self._columns[place] = near.arrays["pair_other"]
+        if self._near is not None and self._near.grow():
+            self._columns[self._writer.columns.index("pair_list")] = self._near.arrays["pair_list"]
             self._bind_arguments()
-        elif not self._is_fresh and near.is_far:
-            near.begin()
 
     @property
     def _is_fresh(self) -> bool:

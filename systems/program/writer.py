@@ -17,6 +17,7 @@ from pinjoint.components.model import Model
 from pinjoint.components.rod import bears_between, bends, is_warm
 from pinjoint.systems import is_ours
 from pinjoint.systems.base import REVIEW_INTERVAL, Event, Integrator, StepSystem
+from pinjoint.systems.collision.kernels.grid import are_listed
 from pinjoint.systems.entries import ACCOUNTS
 from pinjoint.systems.interpreter import plain_function
 from pinjoint.systems.physics.automatic import SMALL
@@ -85,7 +86,6 @@ from pinjoint.systems.program.templates import (
 ROUND_OFF = 2.220446049250313e-16  # of forces, relative to stiffness × displacement
 
 _AT_STRENGTH = 1.0 - 1e-9  # share of its strength from which on a rod is said to yield
-_OF_PAIRS = pairs.list_pairs, pairs.sort_along_x, pairs.sweep, pairs.sort_row
 
 FEW, MANY, VERY_MANY = "few", "many", "very many"  # rods: what is quickest for some is not for others
 BLOCKS_FROM = 20_000  # rods: below, cores wait for each other longer than they help
@@ -190,6 +190,7 @@ class Writer:
         self._add_columns([*self.bound, *self.potentials.values()])
         if self.pairs:
             self.columns = list(dict.fromkeys([*self.columns, "particles_position", *ARRAYS]))
+            self.names["are_listed"] = are_listed
         if self.collides:
             self.columns += PUSHED
 
@@ -248,7 +249,6 @@ class Writer:
             *(self._pasted(part, "inlined") for part in reversed(self.integrator.parts)),
             *map(self._second_part, self._parts_of_both),
             *self._of_steps(),
-            *(pasted(template, "compiled") for template in (_OF_PAIRS if self.pairs else ())),
             pasted(forces.external, "compiled", particle_forces=self._particle_forces()),
             self._measure(),
             self._observe(),

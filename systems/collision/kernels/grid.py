@@ -24,6 +24,7 @@ SAMPLED_DISCS = 128  # discs that decide the size of the cells
 GOLDEN_SECTION = 0.6180339887498949
 KIND = 0x165667B19  # far from 0 in any number of buckets
 BOX_MARGIN = 1e-13  # of a disc's coordinates, added to its box: more than the noise of a gap
+NOWHERE = 1e150  # m; what is farther away is lost
 
 
 @compiled
@@ -52,6 +53,19 @@ def enclose(i, discs, grid, now, end):
     grid.boxes[i, 1] = discs[i, Disc.OY] + low_y - around
     grid.boxes[i, 2] = discs[i, Disc.OX] + high_x + around
     grid.boxes[i, 3] = discs[i, Disc.OY] + high_y + around
+
+
+@compiled
+def set_box(i, x, y, tx, ty, around, away, grid):
+    """Set the box around a straight piece from (x, y), or around a point; that of what is lost is of no use.
+
+    around: how wide it is beyond that (m). away: magnitude of the numbers that make up its place (m).
+    """
+    if not away + around < NOWHERE:
+        x, y, tx, ty, around, away = 0.0, 0.0, 0.0, 0.0, 1.0, 1.0
+    around += BOX_MARGIN * (around + away)
+    grid.boxes[i, 0], grid.boxes[i, 1] = x + min(tx, 0.0) - around, y + min(ty, 0.0) - around
+    grid.boxes[i, 2], grid.boxes[i, 3] = x + max(tx, 0.0) + around, y + max(ty, 0.0) + around
 
 
 @compiled
@@ -281,3 +295,65 @@ def sort(found, count):
             found[k] = found[k - 1]
             k -= 1
         found[k] = value
+
+
+@compiled
+def list_pairs(layers, pairs, grid):
+    """List the pairs of discs i < j whose boxes overlap, in ascending order, at the end of `pairs`; returns how many.
+
+    Also where there is no room for all of them.
+    """
+    count, room = 0, pairs.shape[0]
+    grid.heads[:] = NONE
+    for i in range(
+        grid.boxes.shape[0] - 1, -1, -1
+    ):  # from the last on, so that those entered have higher numbers
+        left, bottom, right, top = grid.boxes[i]
+        near = neighbours(i, left, bottom, right, top, grid, layers, 0)
+        sort(grid.found, near)
+        for k in range(near - 1, -1, -1):
+            count += 1
+            if count <= room:
+                pairs[room - count, 0], pairs[room - count, 1] = i, grid.found[k]
+        enter(i, grid, layers)
+    return count
+
+
+@compiled
+def are_listed(position, displacement, reach, listed, count, pairs, grid):
+    """Renew the list if a particle has travelled too far since it was made; False: all pairs are to be looked at.
+
+    The arrays are those of systems/program/near_pairs.py.
+    """
+    if reach[1] == math.inf:
+        return False
+    travelled = 0.0
+    for i in range(displacement.shape[0]):
+        dx, dy = displacement[i, 0] - listed[i, 0], displacement[i, 1] - listed[i, 1]
+        travelled = max(travelled, dx * dx + dy * dy)
+    room = pairs.shape[0]
+    if count[0] >= 0 and travelled <= reach[0]:
+        return count[0] <= room
+    for i in range(displacement.shape[0]):
+        x, y, away = position[i, 0], position[i, 1], abs(position[i, 0]) + abs(position[i, 1])
+        for d in range(2):
+            listed[i, d] = displacement[i, d]
+            away += abs(displacement[i, d])
+        set_box(i, x + displacement[i, 0], y + displacement[i, 1], 0.0, 0.0, 0.5 * reach[1], away, grid)
+    layers = choose_layers(grid, cell_size(grid), 0)
+    if not has_room(grid, layers):
+        count[0] = room + 1
+        return False
+    found, near = list_pairs(layers, pairs, grid), 0
+    if found > room:
+        count[0] = found
+        return False
+    for k in range(room - 1, room - 1 - found, -1):
+        i, j = pairs[k, 0], pairs[k, 1]
+        dx = (position[j, 0] - position[i, 0]) + (displacement[j, 0] - displacement[i, 0])
+        dy = (position[j, 1] - position[i, 1]) + (displacement[j, 1] - displacement[i, 1])
+        if dx * dx + dy * dy <= reach[1] * reach[1]:
+            near += 1
+            pairs[room - near, 0], pairs[room - near, 1] = i, j
+    count[0] = near
+    return True

@@ -10,15 +10,8 @@ from pinjoint.systems.collision.columns import NONE
 from pinjoint.systems.collision.driven.columns import Need, Order, Phase, Real, Whole
 from pinjoint.systems.collision.driven.kernels.groups import moves
 from pinjoint.systems.collision.kernels import compiled
-from pinjoint.systems.collision.kernels.grid import (
-    BOX_MARGIN,
-    cell_size,
-    choose_layers,
-    enter,
-    has_room,
-    neighbours,
-    sort,
-)
+from pinjoint.systems.collision.kernels.grid import cell_size, choose_layers, has_room, set_box
+from pinjoint.systems.collision.kernels.grid import list_pairs as all_pairs
 from pinjoint.systems.collision.kernels.horizon import is_joined
 from pinjoint.systems.collision.kernels.pairs import gap_of
 from pinjoint.systems.entries import Control
@@ -27,7 +20,6 @@ LISTED_AROUND = 0.5  # of the radius of a particle: the least margin within whic
 FEWEST_STEPS = 512  # for which the list is to last, at the present speed of a particle,
 FARTHEST = 4.0  # where that is no farther than so many of its radii
 WIDER, MOST_WIDENED = 4.0, 4  # times the margin, as long as nothing is within it
-NOWHERE = 1e150  # m; what is farther away is lost
 
 
 @compiled
@@ -91,39 +83,27 @@ def _find(driven, listing, place, wider):
     driven.whole[Whole.LAYERS] = layers
     if not has_room(grid, layers):
         return NONE
-    grid.heads[:] = NONE
-    for i in range(
-        grid.boxes.shape[0] - 1, -1, -1
-    ):  # from the last on, so that those entered have higher numbers
-        if i < place.shape[0]:
-            left, bottom, right, top = grid.boxes[i]
-            near = neighbours(i, left, bottom, right, top, grid, layers, 0)
-            sort(grid.found, near)
-            for k in range(near - 1, -1, -1):
-                j = grid.found[k]
-                if _may_meet(driven, listing, i, j, place, wider):
-                    count += 1
-                    if count <= found.shape[0]:
-                        found[found.shape[0] - count, 0], found[found.shape[0] - count, 1] = i, j
-        enter(i, grid, layers)
+    room, overlapping = found.shape[0], all_pairs(layers, found, grid)
+    if overlapping > room:
+        return overlapping
+    for k in range(room - 1, room - 1 - overlapping, -1):
+        i, j = found[k, 0], found[k, 1]
+        if i < place.shape[0] and _may_meet(driven, listing, i, j, place, wider):
+            count += 1
+            found[room - count, 0], found[room - count, 1] = i, j
     return count
 
 
 @compiled
 def _enclose(driven, listing, i, place, wider):
-    """Set the box around where a particle may move, or around an obstacle; that of what is lost is of no use."""
+    """Set the box around where a particle may move, or around an obstacle."""
     x, y, tx, ty = driven.position[i, 0], driven.position[i, 1], driven.span[i, 0], driven.span[i, 1]
     around, away = driven.radius[i], abs(x) + abs(y) + abs(tx) + abs(ty)
     if i < place.shape[0]:
         around += wider * driven.margin[i]
         away += abs(place[i, 0]) + abs(place[i, 1])
         x, y = x + place[i, 0], y + place[i, 1]
-    if not away + around < NOWHERE:
-        x, y, tx, ty, around, away = 0.0, 0.0, 0.0, 0.0, 1.0, 1.0
-    around += BOX_MARGIN * (around + away)
-    boxes = listing.grid.boxes
-    boxes[i, 0], boxes[i, 1] = x + min(tx, 0.0) - around, y + min(ty, 0.0) - around
-    boxes[i, 2], boxes[i, 3] = x + max(tx, 0.0) + around, y + max(ty, 0.0) + around
+    set_box(i, x, y, tx, ty, around, away, listing.grid)
 
 
 @compiled
