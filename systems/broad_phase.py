@@ -28,6 +28,21 @@ def nearest(line: Floats, span: Floats) -> Floats:
     return found
 
 
+def gaps(
+    place: Floats, radius: Floats, pairs: Rows, obstacles: Obstacles = NO_OBSTACLES
+) -> tuple[Floats, Floats]:
+    """Distances (m) between the rims of pairs, and unit vectors from the first of each to the nearest point of the second.
+
+    place: centres, shape (n, 2), m. radius: shape (n,), m. The numbers of obstacles follow those of the discs.
+    """
+    start = np.concatenate([place, obstacles.start])
+    span = np.concatenate([np.zeros_like(place), obstacles.span])
+    line = nearest(start[pairs[:, 1]] - place[pairs[:, 0]], span[pairs[:, 1]])
+    distance = np.hypot(line[:, 0], line[:, 1])
+    reach = np.concatenate([radius, obstacles.radius])[pairs].sum(axis=1)
+    return distance - reach, line / np.where(distance > 0.0, distance, 1.0)[:, None]
+
+
 def distance_to_segments(points: Floats, start: Floats, end: Floats) -> Floats:
     """How far points are from the segments from `start` to `end`, all (…, 2)."""
     x, y = (start[..., axis] - points[..., axis] for axis in (0, 1))

@@ -5,7 +5,7 @@
 
 from __future__ import annotations
 
-from enum import IntEnum
+from enum import IntEnum, auto
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -30,7 +30,15 @@ SHORTEST_SHARE = 1.0 / 16.0  # shortest step, where discs are fast, as a share o
 TRAVEL = 0.35
 
 
-class Disc(IntEnum):
+class Places(IntEnum):
+    """Places in an array, and codes, numbered from 0 in order."""
+
+    @staticmethod
+    def _generate_next_value_(name: str, start: int, count: int, last_values: list[int]) -> int:
+        return count
+
+
+class Disc(Places):
     """Columns of `discs`: one row per disc, its path since its epoch t₀, the time of its last change.
 
     With s = t − t₀, u(t) = u₀ + v₀ s + a s²/2 is the displacement from the original position o; in a step h of persistent
@@ -39,22 +47,24 @@ class Disc(IntEnum):
     changes come first.
     """
 
-    UX, UY = 0, 1  # displacement at the epoch, m
-    VX, VY = 2, 3  # velocity at the epoch, m/s
-    AX, AY = 4, 5  # acceleration of the path, m/s²
-    EPOCH = 6  # s
-    STEP = 7  # time at which the forces in its persistent contacts are due again, t₀ + h, s; ∞ if they are not
-    NOISE = 8  # round-off in the velocity, from the impact or the contacts that caused it, m/s
-    BX, BY = 9, 10  # how the path bends, m/s³
-    CX, CY = 11, 12  # and how that changes, m/s⁴
-    RADIUS = 13  # m
-    OX, OY = 14, 15  # original position, m; of an obstacle, its first end
-    TX, TY = 16, 17  # vector from the first end of an obstacle to the other, m; 0 for discs
-    CHANGES = 18  # number of changes of the path so far
-    GX, GY = 19, 20  # acceleration without contact forces, m/s²
-    WX, WY = 21, 22  # inverse mass in each direction, 1/kg; 0 where the disc is held
-    BOUNCE = 23  # restitution of impacts with it
-    SHARED = 24  # ends of an obstacle that an earlier obstacle accounts for: SHARED_START + SHARED_END
+    UX, UY = auto(), auto()  # displacement at the epoch, m
+    VX, VY = auto(), auto()  # velocity at the epoch, m/s
+    AX, AY = auto(), auto()  # acceleration of the path, m/s²
+    EPOCH = auto()  # s
+    STEP = (
+        auto()
+    )  # time at which the forces in its persistent contacts are due again, t₀ + h, s; ∞ if they are not
+    NOISE = auto()  # round-off in the velocity, from the impact or the contacts that caused it, m/s
+    BX, BY = auto(), auto()  # how the path bends, m/s³
+    CX, CY = auto(), auto()  # and how that changes, m/s⁴
+    RADIUS = auto()  # m
+    OX, OY = auto(), auto()  # original position, m; of an obstacle, its first end
+    TX, TY = auto(), auto()  # vector from the first end of an obstacle to the other, m; 0 for discs
+    CHANGES = auto()  # number of changes of the path so far
+    GX, GY = auto(), auto()  # acceleration without contact forces, m/s²
+    WX, WY = auto(), auto()  # inverse mass in each direction, 1/kg; 0 where the disc is held
+    BOUNCE = auto()  # restitution of impacts with it
+    SHARED = auto()  # ends of an obstacle that an earlier obstacle accounts for: SHARED_START + SHARED_END
 
 
 FLIGHT = slice(Disc.UX, Disc.CY + 1)
@@ -164,11 +174,11 @@ def partners_of(n: int, joined: Any) -> tuple[Integers, Integers]:
     return np.searchsorted(ends[:, 0], np.arange(n + 1)), np.ascontiguousarray(ends[:, 1])
 
 
-class Entry(IntEnum):
+class Entry(Places):
     """Columns of `Constraints.persistent`."""
 
-    OTHER = 0  # the other disc of the contact
-    NEXT = 1  # the next entry of the same disc, or NONE
+    OTHER = auto()  # the other disc of the contact
+    NEXT = auto()  # the next entry of the same disc, or NONE
 
 
 class Group(NamedTuple):
@@ -180,9 +190,11 @@ class Group(NamedTuple):
     N_cᵀ M⁻¹ N_d is the compliance of the contacts under the members' supports.
     motion: what impulses change, shape (n, 2): velocities, m/s, with impulses in N·s; or accelerations, m/s²,
     with forces in N. initial, start, other: copies of other motion.
-    steps: of a step in persistent contact, shape (len(Stage), n, 2).
+    Of a step in persistent contact, shape (n, 2): before, accelerations in the stage before, m/s²; bend, columns BX and BY
+    of Disc; curve, CX and CY.
     noise: rate below which a contact closes by round-off only, shape (1,).
-    marks: work space, shape (len(Mark), c). matrix: work space, shape (DIRECT + 1, DIRECT).
+    active: the contacts of a projection; state: of each contact in the active-set method; chosen: those whose rates are now
+    brought to 0; shape (c,). matrix: work space, shape (DIRECT + 1, DIRECT).
     """
 
     members: Integers
@@ -194,78 +206,89 @@ class Group(NamedTuple):
     initial: Floats
     start: Floats
     other: Floats
-    steps: Floats
+    before: Floats
+    bend: Floats
+    curve: Floats
     noise: Floats
-    marks: Integers
+    active: Integers
+    state: Integers
+    chosen: Integers
     matrix: Floats
 
     @classmethod
     def empty(cls, n: int, contacts: int) -> Group:
         """An empty group with room for n members and so many contacts."""
+        vectors = "mobility", "motion", "initial", "start", "other", "before", "bend", "curve"
+        arrays: dict[str, Any] = {name: np.zeros((n, 2)) for name in vectors}
+        arrays |= {name: np.zeros(contacts, dtype=np.int64) for name in ("active", "state", "chosen")}
         return cls(
             members=np.zeros(n, dtype=np.int64),
             place=np.full(n, NONE, dtype=np.int64),
             links=np.zeros((contacts, 2), dtype=np.int64),
             contacts=np.zeros((contacts, len(Contact))),
-            mobility=np.zeros((n, 2)),
-            motion=np.zeros((n, 2)),
-            initial=np.zeros((n, 2)),
-            start=np.zeros((n, 2)),
-            other=np.zeros((n, 2)),
-            steps=np.zeros((len(Stage), n, 2)),
             noise=np.zeros(1),
-            marks=np.zeros((len(Mark), contacts), dtype=np.int64),
             matrix=np.zeros((DIRECT + 1, DIRECT)),
+            **arrays,
         )
 
 
-class Contact(IntEnum):
+class Contact(Places):
     """Columns of `Group.contacts`."""
 
-    NX, NY = 0, 1  # unit vector from the first member to the second
-    DISTANCE = 2  # of the centres, m
-    COMPLIANCE = 3  # rate at which a unit impulse in the contact opens it, 1/kg
-    BIAS = 4  # added to the rate at which the contact opens
-    IMPULSE = 5  # of the present projection
-    TOTAL_IMPULSE = 6  # of the whole impact
-    FORCE = 7  # that has kept the discs apart since the group's last change, N; 0: none
-    ROUND = 8  # 1: the normal turns as the discs move around each other; 0: along a flat side it does not
-    PREVIOUS = 9  # impulse before a sweep to and fro
-    DIRECTION = 10  # sum of the changes of the impulse by the sweeps so far
-    SX, SY = 11, 12  # vector from the first member to the nearest point of the second at the start of a step, m
-
-
-class Stage(IntEnum):
-    """Parts of `Group.steps`, of each member."""
-
-    BEFORE = 0  # accelerations in the stage before, m/s²
-    BEND = 1  # columns BX, BY of Disc
-    CURVE = 2  # columns CX, CY of Disc
-
-
-class Mark(IntEnum):
-    """Rows of `Group.marks`."""
-
-    ACTIVE = 0  # the contacts of a projection
-    STATE = 1  # of each contact in the active-set method
-    CHOSEN = 2  # the contacts whose rates are now brought to 0
+    NX, NY = auto(), auto()  # unit vector from the first member to the second
+    DISTANCE = auto()  # of the centres, m
+    COMPLIANCE = auto()  # rate at which a unit impulse in the contact opens it, 1/kg
+    BIAS = auto()  # added to the rate at which the contact opens
+    IMPULSE = auto()  # of the present projection
+    TOTAL_IMPULSE = auto()  # of the whole impact
+    FORCE = auto()  # that has kept the discs apart since the group's last change, N; 0: none
+    ROUND = auto()  # 1: the normal turns as the discs move around each other; 0: along a flat side it does not
+    PREVIOUS = auto()  # impulse before a sweep to and fro
+    DIRECTION = auto()  # sum of the changes of the impulse by the sweeps so far
+    SX, SY = (
+        auto(),
+        auto(),
+    )  # vector from the first member to the nearest point of the second at the start of a step, m
 
 
 class Pile(NamedTuple):
-    """Discs that take steps, the pairs of discs that are near, and the contacts of the present step.
+    """Discs that take steps, the pairs of discs that are near, and the contacts of the present step; see kernels/pile.py.
 
-    See kernels/pile.py. motion: x and y of each disc in turns, shape (len(Motion), 2 n); travel: shape (len(Travel), n).
+    Of each disc in each direction, x and y in turns, shape (2 n,): speed, u = v/√w; root, √w; previous, u before the
+    sweeps; direction, sum of the changes of u by the sweeps so far.
+    Of each disc, shape (n,): shift, the farthest that contacts may shift it in the step, m; fastest, relative speed of a
+    disc that it may meet, m/s; nearness, 1 if it is near another at the end of the step, 2 if another pushed it; pull,
+    acceleration without contacts, m/s²; law, of its contacts in this step, see kernels/pile_energy.py; part, the first of
+    the discs that push one another, with it among them.
+    Of each part, at its first disc, shape (n,): gain, energy that the step supplies, J; energy, by which the round-off of
+    that is measured, J; pushed_out, energy that pushing discs out of one another takes, J; bounced, 1 if a contact in which
+    discs bounce pushes; change, twice the energy of the change of velocities by impulses, J; work, of the impulses beyond
+    what the biases demand, J; share, of the impulses, that is kept.
     pairs: two discs each, ascending, shape (p, 2); near: shape (p, len(PilePair)); forces: in the pairs in the step before,
     N, shape (p,). chosen: the pairs that are contacts; order: the same, in the order in which sweeps go through the
     contacts; shape (p,) both. ends: the two discs of a contact, one disc twice where the other is held, shape (p, 2).
     contacts: shape (p, len(PileContact)). scale: square root of the compliances, 1/√kg, shape (p,). contacts_of, shape
     (2 p,): those of disc i from first[i] to first[i + 1]. queue: contacts still to be relaxed; queued: 1 for these;
-    shape (p,) both. part: the first of the discs that push one another, with it among them, shape (n,); parts: shape
-    (len(Part), n).
+    shape (p,) both.
     """
 
-    motion: Floats
-    travel: Floats
+    speed: Floats
+    root: Floats
+    previous: Floats
+    direction: Floats
+    shift: Floats
+    fastest: Floats
+    nearness: Floats
+    pull: Floats
+    law: Floats
+    part: NDArray[np.int32]
+    gain: Floats
+    energy: Floats
+    pushed_out: Floats
+    bounced: Floats
+    change: Floats
+    work: Floats
+    share: Floats
     pairs: Integers
     near: Floats
     forces: Floats
@@ -278,15 +301,16 @@ class Pile(NamedTuple):
     contacts_of: NDArray[np.int32]
     queue: NDArray[np.int32]
     queued: NDArray[np.int32]
-    part: NDArray[np.int32]
-    parts: Floats
 
     @classmethod
     def empty(cls, n: int, pairs: int) -> Pile:
         """A pile of n discs with room for so many pairs."""
+        of_parts = "gain", "energy", "pushed_out", "bounced", "change", "work", "share"
+        of_discs = "shift", "fastest", "nearness", "pull", "law", *of_parts
         return cls(
-            motion=np.zeros((len(Motion), 2 * n)),
-            travel=np.zeros((len(Travel), n)),
+            **{name: np.zeros(2 * n) for name in ("speed", "root", "previous", "direction")},
+            **{name: np.zeros(n) for name in of_discs},
+            part=np.zeros(n, dtype=np.int32),
             pairs=np.zeros((pairs, 2), dtype=np.int64),
             near=np.zeros((pairs, len(PilePair))),
             forces=np.zeros(pairs),
@@ -299,22 +323,20 @@ class Pile(NamedTuple):
             contacts_of=np.zeros(2 * pairs, dtype=np.int32),
             queue=np.zeros(pairs, dtype=np.int32),
             queued=np.zeros(pairs, dtype=np.int32),
-            part=np.zeros(n, dtype=np.int32),
-            parts=np.zeros((len(Part), n)),
         )
 
 
-class PilePair(IntEnum):
+class PilePair(Places):
     """Columns of `Pile.near`, at the start of a step."""
 
-    NX, NY = 0, 1  # unit vector from the first disc to the nearest point of the second
-    GAP = 2  # m
-    RATE = 3  # at which the gap opens, m/s
-    PULL = 4  # acceleration without contacts at which it opens, m/s²
-    SPEED = 5  # of the second relative to the first, m/s
+    NX, NY = auto(), auto()  # unit vector from the first disc to the nearest point of the second
+    GAP = auto()  # m
+    RATE = auto()  # at which the gap opens, m/s
+    PULL = auto()  # acceleration without contacts at which it opens, m/s²
+    SPEED = auto()  # of the second relative to the first, m/s
 
 
-class PileContact(IntEnum):
+class PileContact(Places):
     """Columns of `Pile.contacts`.
 
     Velocities u = v/√w and impulses are scaled so that a unit impulse opens its own contact at the rate 1:
@@ -322,107 +344,64 @@ class PileContact(IntEnum):
     (AX, AY)·(u of its first disc) + (BX, BY)·(u of its second disc) + BIAS.
     """
 
-    AX, AY = 0, 1
-    BX, BY = 2, 3
-    BIAS = 4
-    IMPULSE = 5
-    PREVIOUS = 6  # impulse before a sweep to and fro
-    DIRECTION = 7  # sum of the changes of the impulse by the sweeps so far
+    AX, AY = auto(), auto()
+    BX, BY = auto(), auto()
+    BIAS = auto()
+    IMPULSE = auto()
+    PREVIOUS = auto()  # impulse before a sweep to and fro
+    DIRECTION = auto()  # sum of the changes of the impulse by the sweeps so far
 
 
-class Motion(IntEnum):
-    """Parts of `Pile.motion`, of each disc in each direction."""
+class Detail(Places):
+    """Columns of `report`: the impacts that nobody has fetched yet, as impacts.py keeps them."""
 
-    SPEED = 0  # u = v/√w
-    ROOT = 1  # √w
-    PREVIOUS = 2  # u before the sweeps
-    DIRECTION = 3  # sum of the changes of u by the sweeps so far
-
-
-class Travel(IntEnum):
-    """Rows of `Pile.travel`, of each disc."""
-
-    SHIFT = 0  # farthest that contacts may shift the disc in the step, m
-    FASTEST = 1  # fastest relative speed of a disc that it may meet, m/s
-    NEAR = 2  # 1: it is near another at the end of the step; 2: another pushed it
-    PULL = 3  # acceleration without contacts, m/s²
+    TIME = auto()  # s
+    FIRST, SECOND = auto(), auto()  # the discs
+    IMPULSE = auto()  # N·s, along the line of centres
+    LOSS = auto()  # energy lost, J
+    X, Y = auto(), auto()  # point of contact, m
 
 
-class Part(IntEnum):
-    """Rows of `Pile.parts`. LAW: of each disc; the others: of a part, in the column of its first disc."""
-
-    LAW = 0  # of the contacts of the disc in this step, see kernels/pile_energy.py
-    GAIN = 1  # energy that the step supplies, J
-    ENERGY = 2  # by which the round-off of GAIN is measured, J
-    PUSHED_OUT = 3  # energy that pushing discs out of one another takes, J
-    BOUNCED = 4  # 1: a contact in which discs bounce pushes
-    CHANGE = 5  # twice the energy of the change of velocities by impulses, J
-    WORK = 6  # of the impulses beyond what the biases demand, J
-    SHARE = 7  # of the impulses, that is kept
-
-
-class Report(NamedTuple):
-    """Impacts that the kernels have reported and nobody has fetched yet.
-
-    pairs: the two discs, shape (capacity, 2). details: shape (capacity, len(Detail)).
-    """
-
-    pairs: Integers
-    details: Floats
-
-    @classmethod
-    def empty(cls, size: int) -> Report:
-        """A report with room for `size` impacts."""
-        return cls(np.zeros((size, 2), dtype=np.int64), np.zeros((size, len(Detail))))
-
-
-class Detail(IntEnum):
-    """Columns of `Report.details`."""
-
-    TIME = 0  # s
-    IMPULSE = 1  # N·s
-    LOSS = 2  # energy lost, J
-    X, Y = 3, 4  # point of contact, m
-
-
-class Number(IntEnum):
+class Number(Places):
     """Entries of `numbers`, float64: the real numbers of a flight."""
 
-    NOW = 0  # everything up to this time has happened, s
-    HORIZON_END = 1  # end of the present horizon, up to which all impacts are known, s
-    HORIZON = 2  # length of a horizon, s
-    CELL = 3  # size of the cells of the grid's finest layer, m
-    CROWDING = 4  # neighbours found per area of boxes, 1/m²
-    RESTITUTION = 5  # the least of all
-    REST_HEIGHT = 6  # of the smaller radius; bounces that would rise less end in contact
-    SMALLEST = 7  # radius of the smallest disc, m
-    STEP_LENGTH = 8  # of the steps of piles, s; ∞ where nothing is pulled
-    STEP_END = 9  # end of the present step, s
-    WORK_SINCE = 10  # time since which Count.WORK is counted, s
-    LOSS = 11  # energy that impacts and piles have taken so far, the present step of a pile in full, J
-    STOP = 12  # at which forces change: a step of a pile ends there, s; ∞ if they do not
-    MOST_LOSS = 13  # the largest LOSS until the present step of a pile, J: what appears later is no loss undone
-    DEEPEST = 14  # overlap in which a step of a pile began so far, in radii of the smaller disc
+    NOW = auto()  # everything up to this time has happened, s
+    HORIZON_END = auto()  # end of the present horizon, up to which all impacts are known, s
+    HORIZON = auto()  # length of a horizon, s
+    CELL = auto()  # size of the cells of the grid's finest layer, m
+    CROWDING = auto()  # neighbours found per area of boxes, 1/m²
+    RESTITUTION = auto()  # the least of all
+    REST_HEIGHT = auto()  # of the smaller radius; bounces that would rise less end in contact
+    SMALLEST = auto()  # radius of the smallest disc, m
+    STEP_LENGTH = auto()  # of the steps of piles, s; ∞ where nothing is pulled
+    STEP_END = auto()  # end of the present step, s
+    WORK_SINCE = auto()  # time since which Count.WORK is counted, s
+    LOSS = auto()  # energy that impacts and piles have taken so far, the present step of a pile in full, J
+    STOP = auto()  # at which forces change: a step of a pile ends there, s; ∞ if they do not
+    MOST_LOSS = (
+        auto()
+    )  # the largest LOSS until the present step of a pile, J: what appears later is no loss undone
+    DEEPEST = auto()  # overlap in which a step of a pile began so far, in radii of the smaller disc
 
 
-class Count(IntEnum):
+class Count(Places):
     """Entries of `counts`, int64: the whole numbers and flags of a flight."""
 
-    QUEUED = 0  # impacts in the queue
-    LAYERS = 1  # of the grid
-    REPORTED = 2  # impacts in the report
-    IMPACTS = 3  # so far, every contact of a joint impact counted
-    EVENTS = 4  # so far: impacts, a joint one counted once, and steps of persistent contact
-    LEVEL = 5  # coarsest level that a disc needed beyond those of the grid
-    RENEW = 6  # 1: a new horizon must be opened before anything else
-    SPARE = 7  # first unused entry of the table of persistent contacts
-    SPARES = 8  # number of unused entries
-    STEPPING = 9  # 1: discs take the steps of a pile
-    CALM = 10  # consecutive steps in which nothing in the pile moved fast
-    WORK = 11  # contacts in the events of late
-    DISCS = 12  # number of discs, without obstacles
-    PATIENCE = 13  # calm steps after which a pile seeks its equilibrium
-    LISTED = 14  # pairs in the list of a pile; NONE: they must be listed anew
+    QUEUED = auto()  # impacts in the queue
+    LAYERS = auto()  # of the grid
+    REPORTED = auto()  # impacts in the report
+    IMPACTS = auto()  # so far, every contact of a joint impact counted
+    EVENTS = auto()  # so far: impacts, a joint one counted once, and steps of persistent contact
+    LEVEL = auto()  # coarsest level that a disc needed beyond those of the grid
+    RENEW = auto()  # 1: a new horizon must be opened before anything else
+    SPARE = auto()  # first unused entry of the table of persistent contacts
+    SPARES = auto()  # number of unused entries
+    STEPPING = auto()  # 1: discs take the steps of a pile
+    CALM = auto()  # consecutive steps in which nothing in the pile moved fast
+    WORK = auto()  # contacts in the events of late
+    DISCS = auto()  # number of discs, without obstacles
+    PATIENCE = auto()  # calm steps after which a pile seeks its equilibrium
+    LISTED = auto()  # pairs in the list of a pile; NONE: they must be listed anew
 
 
 # What a pile goes on from: FreeFlightState.pile, in this order.
@@ -430,14 +409,14 @@ PILE_COUNTS = [Count.STEPPING, Count.CALM, Count.WORK, Count.PATIENCE]
 PILE_NUMBERS = [Number.STEP_END, Number.WORK_SINCE, Number.LOSS, Number.MOST_LOSS, Number.DEEPEST]
 
 
-class Reason(IntEnum):
+class Reason(Places):
     """Why a kernel of the flight returned."""
 
-    DONE = 0  # arrived
-    BUSY = 1  # as many events as were allowed
-    REPORT_FULL = 2  # fetch the reported impacts and go on
-    QUEUE_FULL = 3  # enlarge the queue and go on
-    GRID_FULL = 4  # enlarge the grid and go on
-    GROUP_FULL = 5  # enlarge the room for contacts and persistent contacts and go on
-    SETTLE = 6  # put the calm pile into its equilibrium and go on
-    GO_ON = 7  # go on with what is due now: a horizon, steps of a pile, or events
+    DONE = auto()  # arrived
+    BUSY = auto()  # as many events as were allowed
+    REPORT_FULL = auto()  # fetch the reported impacts and go on
+    QUEUE_FULL = auto()  # enlarge the queue and go on
+    GRID_FULL = auto()  # enlarge the grid and go on
+    GROUP_FULL = auto()  # enlarge the room for contacts and persistent contacts and go on
+    SETTLE = auto()  # put the calm pile into its equilibrium and go on
+    GO_ON = auto()  # go on with what is due now: a horizon, steps of a pile, or events

@@ -12,7 +12,7 @@ from pinjoint.components.language import joined, plural
 from pinjoint.components.model import Model
 from pinjoint.components.obstacles import NO_OBSTACLES, Obstacles, obstacles
 from pinjoint.components.rod import nodes
-from pinjoint.systems.broad_phase import Floats, Rows, near_pairs, nearest
+from pinjoint.systems.broad_phase import Floats, Rows, gaps, near_pairs
 from pinjoint.systems.program.compiler import LONGEST_WORK, GeneratedModule, entries_to
 
 SLACK = 1e-13  # of the reach of two discs: a smaller overlap is round-off
@@ -44,11 +44,8 @@ PARTING = GeneratedModule("parting", _contents, _warm_up)  # of its own: compile
 def overlaps(place: Floats, radius: Floats, others: Obstacles = NO_OBSTACLES) -> Rows:
     """Pairs of discs, and of discs and obstacles, that overlap, shape (k, 2)."""
     pairs = near_pairs(place, radius, others)
-    first, span = np.concatenate([place, others.start]), np.concatenate([np.zeros_like(place), others.span])
-    radius = np.concatenate([radius, others.radius])
-    line = nearest(first[pairs[:, 1]] - place[pairs[:, 0]], span[pairs[:, 1]])
-    reach = radius[pairs].sum(axis=1)
-    overlapping: Rows = pairs[np.hypot(line[:, 0], line[:, 1]) < reach * (1.0 - SLACK)]
+    reach = np.concatenate([radius, others.radius])[pairs].sum(axis=1)
+    overlapping: Rows = pairs[gaps(place, radius, pairs, others)[0] < -SLACK * reach]
     return overlapping
 
 

@@ -12,7 +12,6 @@ from pinjoint.components.language import marked
 from pinjoint.components.model import Model
 from pinjoint.components.obstacles import any_obstacles, obstacles
 from pinjoint.systems.base import Integrator, StepSystem
-from pinjoint.systems.broad_phase import nearest
 
 REST_HEIGHT = 1e-9  # of the smaller radius; bounces that would rise less end in contact
 
@@ -60,26 +59,6 @@ def persistent_contacts(model: Model) -> PersistentContacts | None:
     if type(contacts) is not PersistentContacts or not len(contacts.pairs):  # isinstance of a Mapping is slow
         return None
     return contacts if contacts.pairs.max() < model.particles.count + len(obstacles(model)) else None
-
-
-def normals(model: Model, pairs: NDArray[np.int64]) -> NDArray[np.float64]:
-    """Unit vectors from the first of pairs to the second, which may be obstacles, shape (k, 2)."""
-    place, others = model.particles.position + model.particles.displacement, obstacles(model)
-    start, span = np.concatenate([place, others.start]), np.concatenate([np.zeros_like(place), others.span])
-    line = nearest(start[pairs[:, 1]] - place[pairs[:, 0]], span[pairs[:, 1]])
-    return line / np.hypot(line[:, 0], line[:, 1])[:, None]
-
-
-def support_forces(
-    normal: NDArray[np.float64], pairs: NDArray[np.int64], forces: NDArray[np.float64], count: int
-) -> NDArray[np.float64]:
-    """Force on each of `count` particles (kN), shape (count, 2), by the forces (N) that keep pairs apart."""
-    push = normal * (0.001 * forces)[:, None]
-    total = np.zeros((count, 2))
-    for d in range(2):
-        total[:, d] = np.bincount(pairs[:, 1], push[:, d], count)[:count]  # obstacles come after them
-        total[:, d] -= np.bincount(pairs[:, 0], push[:, d], count)
-    return total
 
 
 class FreeFlight(Integrator):

@@ -9,10 +9,11 @@ import pytest
 from pinjoint import Session
 from pinjoint.components import FieldError, Handle
 from pinjoint.components.camera import Viewport
+from pinjoint.components.obstacles import obstacles
 from pinjoint.components.view import Preview
 from pinjoint.documents import models
 from pinjoint.documents.format import ModelError
-from pinjoint.systems.collision.system import normals
+from pinjoint.systems.broad_phase import gaps
 from pinjoint.systems.render.marks import Strokes
 from pinjoint.systems.render.theme import load_theme
 from pinjoint.systems.render.thumbnails import thumbnail
@@ -196,7 +197,9 @@ def test_a_structure_falls_on_it_and_stays() -> None:
     energy = session.energy
     assert abs(energy.imbalance) < 1e-6 * energy.work
     pairs = np.array([[0, 2], [1, 2]])
-    assert normals(session.model, pairs) == pytest.approx(np.array([[0, -1], [0, -1]]))
+    discs = session.model.particles
+    _, normal = gaps(discs.position + discs.displacement, discs.radius, pairs, obstacles(session.model))
+    assert normal == pytest.approx(np.array([[0, -1], [0, -1]]))
 
 
 def test_particles_that_lie_on_it_are_moved_off() -> None:

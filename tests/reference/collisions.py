@@ -12,6 +12,8 @@ from itertools import combinations, pairwise
 
 import numpy as np
 
+from pinjoint.systems.collision.columns import Detail
+
 Real = np.longdouble
 NEVER = Real(np.inf)
 
@@ -196,3 +198,15 @@ def _pairs(scene: Scene) -> list[tuple[int, int]]:
         for i, j in combinations(range(len(scene.radius)), 2)
         if (movable[i] or movable[j]) and frozenset((i, j)) not in joined
     ]
+
+
+class Impacts:
+    """Impacts that free discs had, a column each: pairs (k, 2), time (s), impulse (N·s), loss (J), point (k, 2) (m)."""
+
+    def __init__(self, rows: np.ndarray) -> None:
+        self.time, self.impulse, self.loss = rows[:, [Detail.TIME, Detail.IMPULSE, Detail.LOSS]].T
+        self.pairs = rows[:, [Detail.FIRST, Detail.SECOND]].astype(np.int64)
+        self.point = rows[:, [Detail.X, Detail.Y]]
+
+    def __len__(self) -> int:
+        return len(self.time)

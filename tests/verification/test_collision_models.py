@@ -13,6 +13,7 @@ from pinjoint.systems.collision.columns import Reason
 from pinjoint.systems.collision.free.discs import EVENTS, HORIZONS, PILES, Discs
 from pinjoint.systems.program.compiler import SMALL
 from tests.reference import closed_forms
+from tests.reference.collisions import Impacts
 from tests.reference.scenes_of_discs import deepest
 
 
@@ -89,7 +90,7 @@ def test_the_gas_presses_on_its_walls() -> None:
     model = models.load("hard_disc_gas")
     discs = discs_of("hard_disc_gas")
     discs.advance(1.0)
-    _, impacts = discs.advance(21.0)
+    impacts = Impacts(discs.advance(21.0)[1])
     on_walls = impacts.pairs[:, 1] >= model.particles.count
     pressure = impacts.impulse[on_walls].sum() / 20 / 12
     radius = model.particles.radius[0]

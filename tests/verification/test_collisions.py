@@ -9,21 +9,22 @@ from hypothesis import strategies as st
 from numba import njit
 
 from pinjoint.systems.collision.columns import Reason
-from pinjoint.systems.collision.free.discs import Discs, ImpactColumns
+from pinjoint.systems.collision.free.discs import Discs
 from pinjoint.systems.collision.kernels.time_of_impact import INFINITY, first_approach
 from tests.reference import closed_forms, collisions
+from tests.reference.collisions import Impacts
 from tests.reference.scenes_of_discs import GRAVITY, Scene, break_shot, gas, line, stacked, with_held
 
 EPSILON = np.finfo(float).eps
 RADIUS = 0.05  # m
 
 
-def fly(scene: Scene, until: float, **rest: object) -> tuple[Discs, ImpactColumns]:
+def fly(scene: Scene, until: float, **rest: object) -> tuple[Discs, Impacts]:
     """Let a scene happen up to a time."""
     discs = Discs(**scene, **rest)
     reason, impacts = discs.advance(until)
     assert reason is Reason.DONE
-    return discs, impacts
+    return discs, Impacts(impacts)
 
 
 def velocities(discs: Discs) -> np.ndarray:
@@ -460,7 +461,8 @@ def test_random_scenes_as_the_reference_has_them(case: tuple[collisions.Scene, f
         acceleration=scene.acceleration,
         restitution=scene.restitution,
     )
-    reason, impacts = discs.advance(duration)
+    reason, rows = discs.advance(duration)
+    impacts = Impacts(rows)
     assert reason is Reason.DONE
     assert impacts.pairs.tolist() == [list(impact.pair) for impact in history]
     displacement, velocity = discs.state_at(duration)

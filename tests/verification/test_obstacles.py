@@ -11,9 +11,10 @@ from numba import njit
 
 from pinjoint.components.obstacles import Obstacles
 from pinjoint.systems.collision.columns import Reason
-from pinjoint.systems.collision.free.discs import Discs, ImpactColumns
+from pinjoint.systems.collision.free.discs import Discs
 from pinjoint.systems.collision.kernels.time_of_impact import INFINITY, first_touch
 from tests.reference import collisions
+from tests.reference.collisions import Impacts
 from tests.reference.scenes_of_discs import GRAVITY
 
 RADIUS = 0.05  # m
@@ -46,7 +47,7 @@ def fly(
     masses: Sequence[float] = (),
     radius: float = RADIUS,
     restitution: float = 1.0,
-) -> tuple[Discs, ImpactColumns]:
+) -> tuple[Discs, Impacts]:
     """Let discs happen up to a time."""
     count = len(position)
     inverse = np.repeat(1 / np.array(masses or [1.0] * count)[:, None], 2, axis=1)
@@ -62,7 +63,7 @@ def fly(
     )
     reason, impacts = discs.advance(until)
     assert reason is Reason.DONE
-    return discs, impacts
+    return discs, Impacts(impacts)
 
 
 def places(discs: Discs, position: Sequence[Point]) -> np.ndarray:
@@ -314,7 +315,7 @@ def test_discs_that_slide_into_a_groove_do_not_sink_in(count: int, seed: int) ->
 
 
 def test_the_restitution_of_a_wall_is_its_own() -> None:
-    """ImpactColumns with it lose by its own number, those of discs with each other by theirs."""
+    """Impacts with it lose by its own number, those of discs with each other by theirs."""
     wall = obstacles(((0.0, -1.0), (0.0, 1.0)), restitution=0.25)
     discs, impacts = fly([(1, 0), (2, 0)], [(-1, 0), (-1, 0)], wall, 1.8, restitution=0.5)
     assert impacts.loss == pytest.approx([0.5 * (1 - 0.25**2), 0.25 * (1 - 0.5**2) * 1.25**2])

@@ -10,6 +10,7 @@ from pinjoint import Session
 from pinjoint.components.obstacles import Obstacles
 from pinjoint.systems.collision.free.discs import Discs
 from tests.reference import persistent_contact
+from tests.reference.collisions import Impacts
 from tests.reference.models import model, particle
 from tests.reference.scenes_of_discs import GRAVITY, Scene, stacked
 
@@ -246,7 +247,7 @@ def test_a_disc_strikes_one_that_slides_at_the_time_at_which_their_paths_meet() 
         [[1.0, 1.0], [2.0, 2.0], [0.0, 0.0]],
     )
     discs = Discs(*scene, acceleration=[DOWN, [0.0, 0.0], DOWN], restitution=1.0)
-    _, impacts = discs.advance(0.5)
+    impacts = Impacts(discs.advance(0.5)[1])
 
     def gap(time: float, state: np.ndarray) -> float:
         x, y = reach * np.sin(state[0]) - 1.3 + speed * time, reach * np.cos(state[0]) - 0.55

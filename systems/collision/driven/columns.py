@@ -3,140 +3,141 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from enum import IntEnum
+from enum import auto
 from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
-from pinjoint.systems.collision.columns import NONE, Floats, Grid, Group, Integers, Report
+from pinjoint.systems.collision.columns import NONE, Detail, Floats, Grid, Group, Integers, Places
 from pinjoint.systems.entries import Account, Control
 
 
-class Order(IntEnum):
+class Order(Places):
     """What a step program is to do next for the particles that meet in its steps."""
 
-    GO_ON = 0  # nothing: only between kernels of collisions
-    LIST = 1  # pairs anew, within Real.SPAN
-    LEAVE = 2  # return to Python; Whole.NEED says why
-    EVALUATE = 3  # the forces of the present state, if they are not known
-    TAKE = 4  # a step: to Real.END, or a whole one where that is infinite
+    GO_ON = auto()  # nothing: only between kernels of collisions
+    LIST = auto()  # pairs anew, within Real.SPAN
+    LEAVE = auto()  # return to Python; Whole.NEED says why
+    EVALUATE = auto()  # the forces of the present state, if they are not known
+    TAKE = auto()  # a step: to Real.END, or a whole one where that is infinite
 
 
-class Phase(IntEnum):
+class Phase(Places):
     """How far the present step is, as kernels of collisions see it."""
 
-    BETWEEN = 0  # no step has begun
-    READY = 1  # the forces at its beginning are known
-    CLEAR = 2  # steps were taken in which nothing can meet
-    TRYING = 3  # contact forces are to be tried
-    TRIED = 4  # it was taken, or foreseen, with them
-    HELD = 5  # contacts are closed at its end: does it hold an impact?
-    CROWD_TRYING = 6  # forces in a crowd are to be tried
-    CROWD_TRIED = 7  # it was taken with them
-    OVER = 8  # it was taken for good, up to an impact if there is one
+    BETWEEN = auto()  # no step has begun
+    READY = auto()  # the forces at its beginning are known
+    CLEAR = auto()  # steps were taken in which nothing can meet
+    TRYING = auto()  # contact forces are to be tried
+    TRIED = auto()  # it was taken, or foreseen, with them
+    HELD = auto()  # contacts are closed at its end: does it hold an impact?
+    CROWD_TRYING = auto()  # forces in a crowd are to be tried
+    CROWD_TRIED = auto()  # it was taken with them
+    OVER = auto()  # it was taken for good, up to an impact if there is one
 
 
-class Goal(IntEnum):
+class Goal(Places):
     """Where the step that is tried is to end."""
 
-    WHOLE = 0  # at its own end, or where it was cut
-    IMPACT = 1  # where the first pair meets
-    PRESSED = 2  # where it was found to begin with an impact of which nothing came
+    WHOLE = auto()  # at its own end, or where it was cut
+    IMPACT = auto()  # where the first pair meets
+    PRESSED = auto()  # where it was found to begin with an impact of which nothing came
 
 
-class Need(IntEnum):
+class Need(Places):
     """Why the program returned to Python."""
 
-    NOTHING = 0  # the steps are done, or a StopReason says why not
-    ROOM = 1  # for pairs, for contacts, or for impacts to report
-    WAKE = 2  # something struck what is asleep
+    NOTHING = auto()  # the steps are done, or a StopReason says why not
+    ROOM = auto()  # for pairs, for contacts, or for impacts to report
+    WAKE = auto()  # something struck what is asleep
 
 
-class Whole(IntEnum):
+class Whole(Places):
     """Entries of `Driven.whole`."""
 
-    ALONE = 0  # 1: take steps as if nothing could collide
-    WANTED = 1  # steps
-    TOTAL = 2  # steps so far, of the run
-    FIRST = 3  # those when the program was entered
-    SINCE = 4  # those at the origin of the steps
-    FRESH = 5  # 1: the forces are those of the present state
-    REASON = 6  # StopReason of the last step
-    NEED = 7
-    PHASE = 8
-    GOAL = 9
-    LANDING = 10  # 1: the step is to end at Real.UNTIL
-    FORESEEN = 11  # 1: the integrator's steps are known ahead
-    KEEP = 12  # 1: keep the state before the step is taken
-    BACK = 13  # 1: put the kept state back
-    KEPT_TOTAL = 14
-    KEPT_SINCE = 15
-    CHOSEN = 16  # persistent contacts in the present step
-    TURN = 17  # tries of the contact forces
-    CUTS = 18  # of the step
-    REGULAR = 19  # 1: the slope of the search is that of both ends of the step
-    TRIES = 20  # of the end of a step that ends at an impact
-    MET = 21  # 1: it ends at an impact
-    CROWD = 22  # 1: the step is one of a crowd
-    CROWDS = 23  # steps of crowds so far
-    MEMBERS = 24  # of the crowd
-    BOUNCY = 25  # 1: some restitution is below 1
-    DAMPED = 26  # 1: dampers or drag calm the motion
-    REPORTED = 27  # impacts
-    STEPS = 28  # to take at once
-    PUSHED = 29  # 1: contact forces acted in the last step
-    EXAMINE = 30  # 1: the next step is one that is looked through, though nothing seems near
-    LOOSE = 31  # 1: contacts need to be closed only so far that impacts in the step are found
-    LISTED = 32  # pairs in the list
-    NEAR = 33  # particles in them
-    FOUND = 34  # pairs when they were listed last; NONE: the grid had no room for LAYERS
-    LAYERS = 35  # of the grid, then
-    LISTS = 36  # so far
-    UNCLOSED = 37  # steps since the run began whose contacts were left as they were, since no forces close them
+    ALONE = auto()  # 1: take steps as if nothing could collide
+    WANTED = auto()  # steps
+    TOTAL = auto()  # steps so far, of the run
+    FIRST = auto()  # those when the program was entered
+    SINCE = auto()  # those at the origin of the steps
+    FRESH = auto()  # 1: the forces are those of the present state
+    REASON = auto()  # StopReason of the last step
+    NEED = auto()
+    PHASE = auto()
+    GOAL = auto()
+    LANDING = auto()  # 1: the step is to end at Real.UNTIL
+    FORESEEN = auto()  # 1: the integrator's steps are known ahead
+    KEEP = auto()  # 1: keep the state before the step is taken
+    BACK = auto()  # 1: put the kept state back
+    KEPT_TOTAL = auto()
+    KEPT_SINCE = auto()
+    CHOSEN = auto()  # persistent contacts in the present step
+    TURN = auto()  # tries of the contact forces
+    CUTS = auto()  # of the step
+    REGULAR = auto()  # 1: the slope of the search is that of both ends of the step
+    TRIES = auto()  # of the end of a step that ends at an impact
+    MET = auto()  # 1: it ends at an impact
+    CROWD = auto()  # 1: the step is one of a crowd
+    CROWDS = auto()  # steps of crowds so far
+    MEMBERS = auto()  # of the crowd
+    BOUNCY = auto()  # 1: some restitution is below 1
+    DAMPED = auto()  # 1: dampers or drag calm the motion
+    REPORTED = auto()  # impacts
+    STEPS = auto()  # to take at once
+    PUSHED = auto()  # 1: contact forces acted in the last step
+    EXAMINE = auto()  # 1: the next step is one that is looked through, though nothing seems near
+    LISTED = auto()  # pairs in the list
+    NEAR = auto()  # particles in them
+    FOUND = auto()  # pairs when they were listed last; NONE: the grid had no room for LAYERS
+    LAYERS = auto()  # of the grid, then
+    LISTS = auto()  # so far
+    UNCLOSED = (
+        auto()
+    )  # steps since the run began whose contacts were left as they were, since no forces close them
 
 
-class Real(IntEnum):
+class Real(Places):
     """Entries of `Driven.real`."""
 
-    UNTIL = 0  # s; no step ends later
-    END = 1  # s; of the step to take; infinite: a whole one
-    ORIGIN = 2  # s; from which steps are counted
-    START = 3  # s; of the present step
-    NOW = 4  # s; its end, as tried or foreseen
-    IMPACT = 5  # s; when a pair is to meet in it
-    LAST = 6  # s; until when it was tried
-    LONGEST = 7  # s; longest next step in persistent contact
-    CUT = 8  # s; length that the step was cut to
-    HELD_LIMIT = 9  # s; longest step while contacts persist
-    PUSH = 10  # share of h² a by which a foreseen step moves a particle
-    BREAK = 11  # s; when loads next change abruptly
-    SPAN = 12  # m; within which pairs must be listed
-    KEPT_ORIGIN = 13
-    CROWD_STEP = 14  # s; longest step of a crowd
-    CROWD_LENGTH = 15  # s; of the next step of a crowd
-    CROWD_TRAVEL = 16  # m; how far particles may go in it
-    CROWD_TOLERANCE = 17  # m; by which pairs may close beyond their room
-    CROWD_LOSS = 18  # J; by the impacts in it
-    STRONGEST = 19  # m/s²; the largest `pull`
-    BY = 20  # s; when the steps that are taken now have to end
-    ROOM = 21  # m; how far particles may move while nothing can meet
-    FASTEST = 22  # m/s; of them, in that time
-    UNCLOSED = 23  # of a radius; how far contacts were left open, or in one another, at most
+    UNTIL = auto()  # s; no step ends later
+    END = auto()  # s; of the step to take; infinite: a whole one
+    ORIGIN = auto()  # s; from which steps are counted
+    START = auto()  # s; of the present step
+    NOW = auto()  # s; its end, as tried or foreseen
+    IMPACT = auto()  # s; when a pair is to meet in it
+    LAST = auto()  # s; until when it was tried
+    LONGEST = auto()  # s; longest next step in persistent contact
+    CUT = auto()  # s; length that the step was cut to
+    HELD_LIMIT = auto()  # s; longest step while contacts persist
+    PUSH = auto()  # share of h² a by which a foreseen step moves a particle
+    BREAK = auto()  # s; when loads next change abruptly
+    SPAN = auto()  # m; within which pairs must be listed
+    KEPT_ORIGIN = auto()
+    CROWD_STEP = auto()  # s; longest step of a crowd
+    CROWD_LENGTH = auto()  # s; of the next step of a crowd
+    CROWD_TRAVEL = auto()  # m; how far particles may go in it
+    CROWD_TOLERANCE = auto()  # m; by which pairs may close beyond their room
+    CROWD_LOSS = auto()  # J; by the impacts in it
+    STRONGEST = auto()  # m/s²; the largest `pull`
+    BY = auto()  # s; when the steps that are taken now have to end
+    ROOM = auto()  # m; how far particles may move while nothing can meet
+    FASTEST = auto()  # m/s; of them, in that time
+    UNCLOSED = auto()  # of a radius; how far contacts were left open, or in one another, at most
 
 
-class Tried(IntEnum):
+class Tried(Places):
     """Rows of `Driven.search`, of each contact."""
 
-    FORCES = 0  # N; tried now
-    LEAST = 1  # m; the gap at the start, if particles are in one another
-    GAP = 2  # m; the gap beyond that at the end
-    ALLOWED = 3  # m; of it
-    OLD_FORCES = 4
-    OLD_GAP = 5
-    FOUND = 6  # N; the next forces
-    SCALE = 7
-    OFFSET = 8
+    FORCES = auto()  # N; tried now
+    LEAST = auto()  # m; the gap at the start, if particles are in one another
+    GAP = auto()  # m; the gap beyond that at the end
+    ALLOWED = auto()  # m; of it
+    OLD_FORCES = auto()
+    OLD_GAP = auto()
+    FOUND = auto()  # N; the next forces
+    SCALE = auto()
+    OFFSET = auto()
 
 
 class Driven(NamedTuple):
@@ -199,7 +200,7 @@ class Driven(NamedTuple):
     block: Integers
     sides: Integers
     group: Group
-    report: Report
+    report: Floats
     touching: Integers
     parent: Integers
     chain: Integers
@@ -239,7 +240,7 @@ class Driven(NamedTuple):
             **of_document,
             **arrays,
             group=Group.empty(max(every, 2 * pairs), pairs),
-            report=Report.empty(4 * pairs + 64),
+            report=np.zeros((4 * pairs + 64, len(Detail))),
         )
 
 

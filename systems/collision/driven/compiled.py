@@ -9,27 +9,19 @@ import numpy as np
 
 from pinjoint.components.field import Column
 from pinjoint.components.model import Model
+from pinjoint.components.obstacles import obstacles
+from pinjoint.systems.broad_phase import gaps
 from pinjoint.systems.collision.columns import Grid, partners_of
 from pinjoint.systems.collision.driven.columns import Driven, Listing
 from pinjoint.systems.collision.driven.kernels.neighbours import list_pairs
 from pinjoint.systems.collision.driven.kernels.steps import collide
-from pinjoint.systems.collision.system import normals, persistent_contacts, support_forces
+from pinjoint.systems.collision.system import persistent_contacts
 from pinjoint.systems.program.compiler import Between, GeneratedModule, entries_to
 
 
 def _contents() -> tuple[str, dict[str, Callable[..., Any]]]:
     """The source, and the kernels by the names that it calls them."""
-    from pinjoint.systems.collision.driven.kernels import joint_impacts
-    from pinjoint.systems.collision.kernels import pairs
-
-    source, kernels = entries_to(
-        {
-            "collide": collide,
-            "list_pairs": list_pairs,
-            "gaps": pairs.measure_gaps,
-            "resolve": joint_impacts.resolve,
-        }
-    )
+    source, kernels = entries_to({"collide": collide, "list_pairs": list_pairs})
     layout = [_layout(arrays) for arrays in idle()]  # what is kept on disk is of no use for another
     return f"{source}# arrays: {layout}\n", kernels
 
@@ -42,11 +34,6 @@ def _layout(arrays: Any) -> Any:
 
 
 DRIVEN = GeneratedModule("driven_collisions", _contents)
-
-
-def kernels() -> Any:
-    """The kernels by name, in the form that they run in now."""
-    return DRIVEN.form
 
 
 def idle() -> tuple[Driven, Listing]:
@@ -64,10 +51,18 @@ def idle() -> tuple[Driven, Listing]:
 
 
 def _support(model: Model) -> Column:
-    contacts, count = persistent_contacts(model), model.particles.count
-    if contacts is None:
-        return np.zeros((count, 2))
-    return support_forces(normals(model, contacts.pairs), contacts.pairs, contacts.forces, count)
+    contacts, particles = persistent_contacts(model), model.particles
+    total = np.zeros((particles.count, 2))
+    if contacts is not None:
+        place, pairs = particles.position + particles.displacement, contacts.pairs
+        _, normal = gaps(place, particles.radius, pairs, obstacles(model))
+        push = normal * (0.001 * contacts.forces)[:, None]
+        for d in range(2):
+            total[:, d] = np.bincount(pairs[:, 1], push[:, d], len(total))[
+                : len(total)
+            ]  # obstacles come after them
+            total[:, d] -= np.bincount(pairs[:, 0], push[:, d], len(total))
+    return total
 
 
 BETWEEN = Between(DRIVEN, (collide, list_pairs), idle, _support)

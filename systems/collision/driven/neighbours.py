@@ -14,7 +14,7 @@ from pinjoint.components.obstacles import obstacles
 from pinjoint.components.rod import nodes
 from pinjoint.systems.collision.columns import NONE, STEP_SHARE, Floats, Grid, Integers, partners_of
 from pinjoint.systems.collision.driven.columns import Driven, Listing, Order, Phase, Real, Whole
-from pinjoint.systems.collision.driven.compiled import kernels
+from pinjoint.systems.collision.driven.compiled import DRIVEN
 from pinjoint.systems.collision.system import persistent_contacts
 from pinjoint.systems.entries import Control
 
@@ -106,7 +106,7 @@ class NeighbourList:
         """List the pairs that can meet before any particle has moved by `span` (m) from where it is."""
         control, state = np.zeros(len(Control)), (self.displacement, self.velocity)
         control[Control.STEP_SIZE], self.driven.real[Real.SPAN] = self.model.clock.step_size, span
-        while kernels().list_pairs(self.driven, self.listing, control, *state) == Order.LEAVE:
+        while DRIVEN.form.list_pairs(self.driven, self.listing, control, *state) == Order.LEAVE:
             self.make_room()
 
     def make_room(self) -> None:
@@ -177,9 +177,3 @@ class NeighbourList:
     def velocity(self) -> Floats:
         """Of the particles, now (m/s)."""
         return self.model.tables["particles"].storage("velocity")
-
-    def gaps(self, pairs: Integers, displacement: Floats) -> tuple[Floats, Floats]:
-        """Distance between the rims of pairs, and unit vectors from the first centres to the second."""
-        gap, normal, driven = np.empty(len(pairs)), np.empty((len(pairs), 2)), self.driven
-        kernels().gaps(pairs, driven.position, displacement, driven.radius, driven.span, gap, normal)
-        return gap, normal

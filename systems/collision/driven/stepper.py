@@ -16,10 +16,8 @@ import numpy as np
 from pinjoint.components.model import Model
 from pinjoint.components.particle import Particle
 from pinjoint.systems.base import StopReason
-from pinjoint.systems.collision.columns import Detail
 from pinjoint.systems.collision.driven.columns import Need, Real, Whole
-from pinjoint.systems.collision.driven.compiled import DRIVEN, idle, kernels
-from pinjoint.systems.collision.driven.kernels.joint_impacts import SEPARATE
+from pinjoint.systems.collision.driven.compiled import DRIVEN, idle
 from pinjoint.systems.collision.driven.neighbours import NeighbourList
 from pinjoint.systems.collision.impacts import Impacts
 from pinjoint.systems.entries import Account, Control
@@ -96,13 +94,11 @@ class DrivenCollisions:
     def _fetch_impacts(self) -> None:
         """Enter the impacts that were reported, and note how contacts closed."""
         driven = self._neighbours.driven
-        whole, report = driven.whole, driven.report
+        whole = driven.whole
         self.unclosed = int(whole[Whole.UNCLOSED]), float(driven.real[Real.UNCLOSED])
         count = int(whole[Whole.REPORTED])
         if count:
-            details = report.details[:count]
-            rest = details[:, [Detail.IMPULSE, Detail.LOSS, Detail.X, Detail.Y]]
-            self._impacts.record(np.column_stack((details[:, Detail.TIME], report.pairs[:count], rest)))
+            self._impacts.record(driven.report[:count])
             clock = self.model.clock
             self.model.writable("clock.collisions")[0] = clock.collisions + count
             whole[Whole.REPORTED] = 0
@@ -115,10 +111,9 @@ def _warm_up() -> None:
     near = NeighbourList(model)
     near.look_up()
     near.list_within(0.0)
-    near.gaps(near.pairs, near.displacement)
-    form = kernels()
-    form.resolve(0, 0, SEPARATE, 0.0, arrays.group)
-    form.collide(arrays, np.zeros(len(Control)), np.zeros(len(Account)), np.zeros((0, 2)), np.zeros((0, 2)))
+    DRIVEN.form.collide(
+        arrays, np.zeros(len(Control)), np.zeros(len(Account)), np.zeros((0, 2)), np.zeros((0, 2))
+    )
 
 
 DRIVEN.warm_up = _warm_up

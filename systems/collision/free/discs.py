@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
 from functools import partial
 from time import perf_counter
 from typing import Any
@@ -35,7 +34,6 @@ from pinjoint.systems.collision.columns import (
     Pile,
     Queue,
     Reason,
-    Report,
 )
 from pinjoint.systems.collision.system import REST_HEIGHT
 from pinjoint.systems.program.compiler import Choice, GeneratedModule, entries_to
@@ -45,24 +43,6 @@ REPORTED_AT_ONCE = 512  # impacts; fetched before more are reported
 PILE_STEP_SHARE = 0.03  # longest step of piles: of the time in which a disc falls through its diameter
 WORK_AT_ONCE = 2**22  # discs × events, after which a kernel returns, so that Python can heed Ctrl+C
 MORE_PATIENCE = 64  # calm steps between two searches for the equilibrium of a pile
-
-
-@dataclass(frozen=True)
-class ImpactColumns:
-    """Impacts in the order in which they happened, a column each.
-
-    pairs: the two discs, shape (k, 2). time: s. impulse: N·s, along the line of centres. loss: energy lost, J.
-    point: where they touched, shape (k, 2), m.
-    """
-
-    pairs: Integers
-    time: Floats
-    impulse: Floats
-    loss: Floats
-    point: Floats
-
-    def __len__(self) -> int:
-        return len(self.time)
 
 
 class Discs:
@@ -125,7 +105,7 @@ class Discs:
         self.grid = Grid.empty(n, 2)
         self.group = Group.empty(n, 4 * n + 64)
         self.pile = Pile.empty(n, len(self.group.links))
-        self.report = Report.empty(max(REPORTED_AT_ONCE, len(self.group.links)))
+        self.report = np.zeros((max(REPORTED_AT_ONCE, len(self.group.links)), len(Detail)))
         self.constraints = Constraints.of(n, joined, 2 * len(self.group.links), self.counts)
 
     def _enter_obstacles(self) -> None:
@@ -146,10 +126,10 @@ class Discs:
 
     # --- time -------------------------------------------------------------------------------------
 
-    def advance(self, until: float, most_events: int = 2**62) -> tuple[Reason, ImpactColumns]:
+    def advance(self, until: float, most_events: int = 2**62) -> tuple[Reason, Floats]:
         """Let everything happen up to a time (s), at most `most_events` events, and not for longer than Choice allows.
 
-        Returns DONE or BUSY, and the impacts.
+        Returns DONE or BUSY, and the impacts in the order in which they happened, with the columns of Detail.
         """
         last = int(self.counts[Count.EVENTS]) + most_events
         taken = [self._take()]
@@ -160,9 +140,7 @@ class Discs:
                 taken.append(self._take())
             late = self.counts[Count.EVENTS] >= last or perf_counter() > Choice.deadline
             if reason is Reason.DONE or (reason is Reason.BUSY and late):
-                pairs, details = (np.concatenate(parts) for parts in zip(*taken, strict=True))
-                time, impulse, loss = details[:, : Detail.X].T
-                return reason, ImpactColumns(pairs, time, impulse, loss, details[:, Detail.X :])
+                return reason, np.concatenate(taken)
             self._make_room(reason)
 
     def _go_on(self, until: float, most_events: int) -> Reason:
@@ -203,7 +181,7 @@ class Discs:
             size = 2 * len(self.group.links)
             self.group, self.pile = Group.empty(n, size), Pile.empty(n, size)
             self.counts[Count.LISTED] = NONE
-            self.report = Report.empty(max(REPORTED_AT_ONCE, size))
+            self.report = np.zeros((max(REPORTED_AT_ONCE, size), len(Detail)))
             self.constraints = self.constraints.enlarged(2 * size, self.counts)
         elif reason is Reason.SETTLE:
             self._settle()
@@ -223,18 +201,19 @@ class Discs:
         if end is None:
             self.counts[Count.PATIENCE] = self.counts[Count.CALM] + MORE_PATIENCE
             return
-        lying, free = self.rows[end.discs], weight[end.discs] > 0.0
+        discs, displacement, pairs, forces = end
+        lying, free = self.rows[discs], weight[discs] > 0.0
         moving = lying[:, Disc.VX : Disc.VX + 2] ** 2 / 2.0
-        fallen = lying[:, Disc.GX : Disc.GX + 2] * end.displacement[end.discs]
+        fallen = lying[:, Disc.GX : Disc.GX + 2] * displacement[discs]
         self.numbers[Number.MOST_LOSS] = max(self.numbers[[Number.MOST_LOSS, Number.LOSS]])
-        self.numbers[Number.LOSS] += ((moving + fallen)[free] / weight[end.discs][free]).sum()
-        self._columns(Disc.UX)[...] += end.displacement
-        self.rows[end.discs, Disc.VX : Disc.AY + 1] = 0.0
+        self.numbers[Number.LOSS] += ((moving + fallen)[free] / weight[discs][free]).sum()
+        self._columns(Disc.UX)[...] += displacement
+        self.rows[discs, Disc.VX : Disc.AY + 1] = 0.0
         self.numbers[Number.STEP_END] = self.now
         self.constraints = self.constraints.cleared(len(self.constraints.persistent), self.counts)
-        both = np.concatenate([end.pairs, end.pairs[:, ::-1]])
+        both = np.concatenate([pairs, pairs[:, ::-1]])
         own = self.rows[both[:, 0], Disc.WX : Disc.WY + 1].any(axis=1)
-        self._enter_persistent(both[own], np.tile(end.forces, 2)[own])
+        self._enter_persistent(both[own], np.tile(forces, 2)[own])
         self.counts[[Count.STEPPING, Count.WORK, Count.RENEW]] = 0, 0, 1
         self.numbers[Number.WORK_SINCE] = self.now
 
@@ -244,11 +223,11 @@ class Discs:
         may: NDArray[np.bool_] = np.isin(pairs @ [n, 1], owners * n + self.constraints.partners, invert=True)
         return may
 
-    def _take(self) -> tuple[Integers, Floats]:
-        """The impacts reported since the last call: pairs, and columns of Detail."""
+    def _take(self) -> Floats:
+        """The impacts reported since the last call."""
         k = int(self.counts[Count.REPORTED])
         self.counts[Count.REPORTED] = 0
-        return self.report.pairs[:k].copy(), self.report.details[:k].copy()
+        return self.report[:k].copy()
 
     # --- the state to resume from -------------------------------------------------------------------
 

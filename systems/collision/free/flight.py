@@ -18,8 +18,8 @@ from pinjoint.components.load import loads_end
 from pinjoint.components.model import Model
 from pinjoint.components.obstacles import obstacles
 from pinjoint.systems.base import REVIEW_INTERVAL, Event, Law, StopReason
-from pinjoint.systems.collision.columns import FLIGHT, PILE_COUNTS, PILE_NUMBERS, Number, Reason
-from pinjoint.systems.collision.free.discs import EVENTS, HORIZONS, Discs, ImpactColumns, state_on
+from pinjoint.systems.collision.columns import FLIGHT, PILE_COUNTS, PILE_NUMBERS, Floats, Number, Reason
+from pinjoint.systems.collision.free.discs import EVENTS, HORIZONS, Discs, state_on
 from pinjoint.systems.collision.impacts import MOST_KEPT, Impacts, TooManyImpacts
 from pinjoint.systems.entries import Measure
 from pinjoint.systems.program.compiler import Choice, GeneratedModule, Unfinished
@@ -96,7 +96,7 @@ class Flight:
     def discs(self) -> Discs:
         """The flying discs, in the present state of the model."""
         if not self._fresh:
-            self._found: deque[ImpactColumns] = deque()  # by a step that is not finished
+            self._found: deque[Floats] = deque()  # by a step that is not finished
             self._happened = 0
             particles, clock = self.model.particles, self.model.clock
             self._flying = Discs(
@@ -218,8 +218,7 @@ class Flight:
             if reason is Reason.BUSY and not self._laws and time.perf_counter() > Choice.deadline:
                 raise Unfinished
         if happened := self._happened:
-            columns = [np.column_stack([f.time, f.pairs, f.impulse, f.loss, f.point]) for f in found]
-            kept = np.concatenate(columns)
+            kept = np.concatenate(found)
             self._impacts.record(kept, happened - len(kept))
             self.model.writable("clock.collisions")[0] = self.model.clock.collisions + happened
         found.clear()

@@ -14,7 +14,6 @@ not drift away (Nocedal, Wright, Numerical Optimization (2006), chapter 19).
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
@@ -22,7 +21,7 @@ from scipy.sparse import csr_matrix, diags
 from scipy.sparse.linalg import splu
 
 from pinjoint.components.obstacles import Obstacles
-from pinjoint.systems.broad_phase import Floats, Rows, near_pairs, nearest
+from pinjoint.systems.broad_phase import Floats, Rows, gaps, near_pairs
 
 AROUND = 0.1  # of its radius around each disc, in which its neighbours are listed, and iterates are sought
 FARTHEST = 0.025  # of its radius: an equilibrium to which a disc would go farther is not near
@@ -37,30 +36,6 @@ EARLY_ITERATIONS = 10  # after which discs move less than LITTLE radii, or no eq
 LITTLE = 1e-2
 MOST_NEWTON_ITERATIONS = 60  # 10 to 30 are usual
 SYMMETRIC = {"SymmetricMode": True}
-
-
-@dataclass(frozen=True)
-class PileEquilibrium:
-    """The equilibrium of a pile.
-
-    discs: the discs that lie in the pile, shape (k,). displacement: of all discs to the equilibrium, shape (n, 2), m.
-    pairs: that push each other, shape (c, 2). forces: between them, shape (c,), N.
-    """
-
-    discs: Rows
-    displacement: Floats
-    pairs: Rows
-    forces: Floats
-
-
-@dataclass
-class _Gaps:
-    """Pairs that may touch: iterates of their gaps (slack, m) and forces (N), and the scale of their product (J)."""
-
-    pairs: Rows
-    slack: Floats
-    force: Floats
-    scale: Floats
 
 
 class EquilibriumSearch:
@@ -104,36 +79,39 @@ class EquilibriumSearch:
         self._size = np.append(radius, everywhere)
         inertia = (self._weight[:count] / (FREE_STRIDE * radius))[:, None]
         self._inertia = np.broadcast_to(inertia, place.shape)[self._free]
-        self._gaps = self._listed(pushing, forces)
+        self._list(pushing, forces)
 
-    def solve(self) -> PileEquilibrium | None:
-        """The equilibrium, if it is near and no disc in it rests on a flying one; else None."""
+    def solve(self) -> tuple[Rows, Floats, Rows, Floats] | None:
+        """The equilibrium, if it is near and no disc in it rests on a flying one; else None.
+
+        The discs that lie in the pile, shape (k,); displacements of all discs to the equilibrium, shape (n, 2), m; the
+        pairs that push each other, shape (c, 2); and the forces between them, shape (c,), N.
+        """
         if len(self._force) == 0 or not self._iterate():
             return None
-        pairs, slack, force = self._gaps.pairs, self._gaps.slack, self._gaps.force
+        pairs, slack, force = self._pairs, self._slack, self._forces
         weight, size = self._weight[pairs].min(axis=1), self._size[pairs].min(axis=1)
         pushing = force / weight > slack / size
         if self._flies[pairs[pushing]].any():
             return None
-        displacement = self._place - self._start
-        return PileEquilibrium(np.flatnonzero(self._moves), displacement, pairs[pushing], force[pushing])
+        return np.flatnonzero(self._moves), self._place - self._start, pairs[pushing], force[pushing]
 
     def _iterate(self) -> bool:
         """Iterate by Newton's method; True if it converges to an equilibrium near by."""
-        barrier, gaps = FIRST_BARRIER, self._gaps
+        barrier = FIRST_BARRIER
         for turn in range(MOST_NEWTON_ITERATIONS):
             try:
                 motion, opening, change, left = self._newton(barrier)
             except RuntimeError:  # singular
                 return False
-            forward, stronger = _share(gaps.slack, opening), _share(gaps.force, change)
+            forward, stronger = _share(self._slack, opening), _share(self._forces, change)
             self._place = self._place + forward * motion
             astray = turn >= EARLY_ITERATIONS and self._farthest(motion) > LITTLE
             if astray or not self._farthest(self._place - self._start) <= AROUND:
                 return False
-            gaps.slack += forward * opening
-            gaps.force += stronger * change
-            present = float((gaps.force * gaps.slack / gaps.scale).mean())
+            self._slack += forward * opening
+            self._forces += stronger * change
+            present = float((self._forces * self._slack / self._scale).mean())
             if self._farthest(motion) <= STILL and left <= BALANCED and present <= CLOSED:
                 return self._farthest(self._place - self._start) <= FARTHEST
             barrier = max((QUICK if min(forward, stronger) > LONG_STEP else SLOW) * present, 0.1 * CLOSED)
@@ -143,8 +121,11 @@ class EquilibriumSearch:
         """The longest of displacements, in radii of its disc."""
         return float((np.abs(motion).max(axis=1) / self._radius).max())
 
-    def _listed(self, pushing: Rows, forces: Floats) -> _Gaps:
-        """The pairs that are near, with the forces of the pushing ones, and gaps such that λ s = μ where gaps are small."""
+    def _list(self, pushing: Rows, forces: Floats) -> None:
+        """List the pairs that may touch, and iterates of their gaps (slack, m) and forces (N), and the scale of λ s (J).
+
+        Forces of pairs that push are known; λ s = μ where gaps are small.
+        """
         near = near_pairs(self._place, (1.0 + AROUND) * self._radius, self._obstacles)
         pairs = near[self._moves[near].any(axis=1) & self._may_collide(near)]
         size = self._size[pairs].min(axis=1)
@@ -153,34 +134,24 @@ class EquilibriumSearch:
         _, here, there = np.intersect1d(pairs @ [count, 1], pushing @ [count, 1], return_indices=True)
         known[here] = forces[there]
         force = np.maximum(known, np.sqrt(FIRST_BARRIER) * scale / size)
-        gap, _ = self._gap(pairs)
+        gap, _ = gaps(self._place, self._radius, pairs, self._obstacles)
         slack = np.maximum(gap, FIRST_BARRIER * scale / force)
-        return _Gaps(pairs, slack, np.where(known > 0.0, force, FIRST_BARRIER * scale / slack), scale)
-
-    def _gap(self, pairs: Rows) -> tuple[Floats, Floats]:
-        """Gaps, and unit vectors from the first of each pair to the nearest point of the second."""
-        others = self._obstacles
-        place = np.concatenate([self._place, others.start])
-        span = np.concatenate([np.zeros_like(self._place), others.span])
-        radius = np.append(self._radius, others.radius)
-        line = nearest(place[pairs[:, 1]] - place[pairs[:, 0]], span[pairs[:, 1]])
-        distance = np.hypot(line[:, 0], line[:, 1])
-        return distance - radius[pairs].sum(axis=1), line / distance[:, None]
+        self._pairs, self._slack, self._scale = pairs, slack, scale
+        self._forces = np.where(known > 0.0, force, FIRST_BARRIER * scale / slack)
 
     def _newton(self, barrier: float) -> tuple[Floats, Floats, Floats, float]:
         """Newton's step: of places, gaps and forces; and the residual force before it, as a share of the largest weight."""
-        gaps = self._gaps
-        gap, normal = self._gap(gaps.pairs)
-        slack, force = gaps.slack, gaps.force
+        gap, normal = gaps(self._place, self._radius, self._pairs, self._obstacles)
+        slack, force = self._slack, self._forces
         np.maximum(slack, gap, out=slack)
-        opens = self._derivative(gaps.pairs, normal)
+        opens = self._derivative(self._pairs, normal)
         pushes = opens.T.tocsr()
         unbalanced = self._force + pushes @ force
         stiffness = force / slack
         matrix = (pushes @ diags(stiffness) @ opens + diags(self._inertia)).tocsc()
         factors = splu(matrix, permc_spec="MMD_AT_PLUS_A", diag_pivot_thresh=0.0, options=SYMMETRIC)
         missing = gap - slack
-        wanted = barrier * gaps.scale / slack
+        wanted = barrier * self._scale / slack
         moved = factors.solve(self._force + pushes @ (wanted - stiffness * missing))
         opening = opens @ moved + missing
         motion = np.zeros_like(self._place)

@@ -18,7 +18,6 @@ from pinjoint.systems.collision.columns import (
     Entry,
     Number,
     Reason,
-    Stage,
 )
 from pinjoint.systems.collision.kernels import compiled
 from pinjoint.systems.collision.kernels.grid import neighbours, place_box, sort
@@ -91,7 +90,7 @@ def _next_event(discs, grid, constraints, queue, group, report, numbers, counts)
             return reason
     count, touching = _gather(i, j, discs, grid, constraints, group, numbers, counts)
     full = touching > group.links.shape[0] or 2 * touching > counts[Count.SPARES]
-    if full or counts[Count.REPORTED] + touching > report.pairs.shape[0]:
+    if full or counts[Count.REPORTED] + touching > report.shape[0]:
         _dismiss(count, group)
         return Reason.GROUP_FULL if full else Reason.REPORT_FULL
     if crowded(touching, numbers, counts):
@@ -335,8 +334,8 @@ def _redirect(count, struck, duration, discs, group, numbers):
         for d in range(2):
             discs[i, Disc.BX + d], discs[i, Disc.CX + d] = 0.0, 0.0
             if discs[i, Disc.STEP] < INFINITY:
-                discs[i, Disc.BX + d] = group.steps[Stage.BEND, m, d]
-                discs[i, Disc.CX + d] = group.steps[Stage.CURVE, m, d]
+                discs[i, Disc.BX + d] = group.bend[m, d]
+                discs[i, Disc.CX + d] = group.curve[m, d]
         discs[i, Disc.VX], discs[i, Disc.VY], discs[i, Disc.AX], discs[i, Disc.AY] = vx, vy, ax, ay
         discs[i, Disc.EPOCH] = now
         discs[i, Disc.CHANGES] += 1.0

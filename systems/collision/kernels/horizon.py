@@ -52,22 +52,11 @@ def is_joined(i, j, constraints):
 
 
 @compiled
-def next_impact(i, j, discs, constraints, end):
+def impact_on(path, i, j, start, discs, constraints, end):
     """Time at which two discs next touch while they approach, up to `end`; INFINITY if they do not.
 
-    For i = j: when the forces in the disc's persistent contacts are due again.
+    path: relative motion of i and j, i < j, at `start`, when both are on their paths.
     """
-    if i == j:
-        return discs[i, Disc.STEP]
-    if i > j:
-        i, j = j, i
-    start = max(discs[i, Disc.EPOCH], discs[j, Disc.EPOCH])
-    return impact_on(relative_motion(discs, i, j, start), i, j, start, discs, constraints, end)
-
-
-@compiled
-def impact_on(path, i, j, start, discs, constraints, end):
-    """As next_impact, given the relative motion of i and j, i < j, at `start`, when both are on their paths."""
     straight = is_straight(j, discs)
     reach = discs[i, Disc.RADIUS] + discs[j, Disc.RADIUS]
     if not straight and pass_by(path, reach):
@@ -105,11 +94,16 @@ def _on_bent_paths(time, i, j, start, reach, discs):
 
 @compiled
 def schedule_impact(i, j, discs, constraints, queue, numbers, counts):
-    """Compute the next impact of two discs and queue it if it is within the horizon. False if the queue is full."""
-    time = next_impact(i, j, discs, constraints, numbers[Number.HORIZON_END])
-    if time > numbers[Number.HORIZON_END]:
-        return True
-    return queue_impact(time, min(i, j), max(i, j), discs, queue, counts)
+    """Compute the next impact of two discs and queue it if it is within the horizon. False if the queue is full.
+
+    For i = j: when the forces in the disc's persistent contacts are due again.
+    """
+    i, j, end = min(i, j), max(i, j), numbers[Number.HORIZON_END]
+    time = discs[i, Disc.STEP]
+    if i != j:
+        start = max(discs[i, Disc.EPOCH], discs[j, Disc.EPOCH])
+        time = impact_on(relative_motion(discs, i, j, start), i, j, start, discs, constraints, end)
+    return time > end or queue_impact(time, i, j, discs, queue, counts)
 
 
 @compiled

@@ -7,7 +7,7 @@ Restitution e blends this with the plastic answer, the projection onto all conta
 v = e v_elastic + (1 − e) v_plastic. For a single contact it is Newton's law.
 """
 
-from pinjoint.systems.collision.columns import Contact, Mark
+from pinjoint.systems.collision.columns import Contact
 from pinjoint.systems.collision.kernels import compiled
 from pinjoint.systems.collision.kernels.projection import (
     MOST_SWEEPS,
@@ -72,7 +72,7 @@ def _reflect(members, count, group):
             contacts[c, Contact.IMPULSE] = 0.0
             speed = opening_rate(c, motion, group)
             if speed < -group.noise[0] and contacts[c, Contact.COMPLIANCE] > 0.0:
-                group.marks[Mark.ACTIVE, approaching] = c
+                group.active[approaching] = c
                 approaching += 1
         if approaching == 0:
             return
@@ -81,7 +81,7 @@ def _reflect(members, count, group):
             for d in range(2):
                 motion[m, d] += motion[m, d] - start[m, d]
         for k in range(approaching):
-            c = group.marks[Mark.ACTIVE, k]
+            c = group.active[k]
             contacts[c, Contact.TOTAL_IMPULSE] += 2.0 * contacts[c, Contact.IMPULSE]
     _make_plastic(members, count, group)
     for c in range(count):
@@ -104,12 +104,12 @@ def _is_jammed(members, count, group):
     for c in range(count):
         if group.contacts[c, Contact.TOTAL_IMPULSE] > 0.0:
             group.contacts[c, Contact.BIAS], group.contacts[c, Contact.IMPULSE] = -speed, 0.0
-            group.marks[Mark.ACTIVE, active] = c
+            group.active[active] = c
             active += 1
     project(members, active, 0.0, MOST_SWEEPS, group)
     jammed = False
     for k in range(active):
-        c = group.marks[Mark.ACTIVE, k]
+        c = group.active[k]
         jammed = jammed or opening_rate(c, group.motion, group) < -0.5 * speed
         group.contacts[c, Contact.BIAS] = 0.0
     copy_motion(group.other, group.motion, members)
@@ -123,7 +123,7 @@ def _make_plastic(members, count, group):
     for c in range(count):
         group.contacts[c, Contact.IMPULSE] = 0.0
         if group.contacts[c, Contact.COMPLIANCE] > 0.0:
-            group.marks[Mark.ACTIVE, active] = c
+            group.active[active] = c
             active += 1
     project(members, active, 0.0, MOST_SWEEPS, group)
 

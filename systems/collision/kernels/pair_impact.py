@@ -36,7 +36,7 @@ def strike(i, j, discs, grid, constraints, queue, report, numbers, counts):
         return Reason.GO_ON
     if constraints.first_persistent[i] != NONE or constraints.first_persistent[j] != NONE:
         return Reason.GO_ON
-    if counts[Count.REPORTED] == report.pairs.shape[0]:
+    if counts[Count.REPORTED] == report.shape[0]:
         return Reason.REPORT_FULL
     now = numbers[Number.NOW]
     nx, ny, before, impulse, slow = _newton(i, j, discs, numbers)

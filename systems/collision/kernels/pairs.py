@@ -23,11 +23,3 @@ def gap_of(i, j, position, displacement, radius, span):
     distance = math.hypot(dx, dy)
     unit = distance if distance > 0.0 else 1.0
     return distance - (radius[i] + radius[j]), dx / unit, dy / unit
-
-
-@compiled
-def measure_gaps(pairs, position, displacement, radius, span, gap, normal):
-    """Fill in gap and normal of every pair."""
-    for k in range(pairs.shape[0]):
-        i, j = pairs[k, 0], pairs[k, 1]
-        gap[k], normal[k, 0], normal[k, 1] = gap_of(i, j, position, displacement, radius, span)

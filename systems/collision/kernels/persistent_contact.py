@@ -10,7 +10,7 @@ between, paths are polynomials of the fourth degree through both ends: parabolas
 
 import math
 
-from pinjoint.systems.collision.columns import NONE, Contact, Count, Disc, Entry, Mark, Number, Stage
+from pinjoint.systems.collision.columns import NONE, Contact, Count, Disc, Entry, Number
 from pinjoint.systems.collision.kernels import compiled
 from pinjoint.systems.collision.kernels.projection import (
     MOST_SWEEPS,
@@ -100,7 +100,7 @@ def hold_together(count, touching, discs, group, numbers):
                 if discs[i, Disc.STEP] < INFINITY:
                     lasted = numbers[Number.NOW] - discs[i, Disc.EPOCH]
             _pull_together(c, 0.5 * lasted * group.contacts[c, Contact.FORCE], group)
-            group.marks[Mark.ACTIVE, active] = c
+            group.active[active] = c
             active += 1
     if active > 0:
         begin(count, group)
@@ -150,7 +150,7 @@ def _push_now(count, touching, discs, group, numbers):
     begin(count, group)
     project(count, closed, 0.0, MOST_SWEEPS, group)
     for k in range(closed):
-        c = group.marks[Mark.ACTIVE, k]
+        c = group.active[k]
         group.contacts[c, Contact.FORCE] = group.contacts[c, Contact.IMPULSE]
     return closed
 
@@ -184,7 +184,7 @@ def _list_closed(touching, discs, group, numbers):
             turning = contacts[c, Contact.ROUND] * (x * x + y * y)
             contacts[c, Contact.BIAS] = turning / contacts[c, Contact.DISTANCE]
             contacts[c, Contact.IMPULSE] = contacts[c, Contact.FORCE]
-            group.marks[Mark.ACTIVE, closed] = c
+            group.active[closed] = c
             closed += 1
     return closed
 
@@ -197,7 +197,7 @@ def _stop_where_still(count, closed, discs, group):
         i = group.members[m]
         pull = max(pull, abs(discs[i, Disc.GX]) + abs(discs[i, Disc.GY]))
     for k in range(closed):
-        c = group.marks[Mark.ACTIVE, k]
+        c = group.active[k]
         if group.contacts[c, Contact.IMPULSE] > 0.0:
             for p in range(2):
                 m = group.links[c, p]
@@ -205,7 +205,7 @@ def _stop_where_still(count, closed, discs, group):
                 if _size(group.motion, m) > STILL * pull or _size(group.other, m) > speed:
                     return False
     for k in range(closed):
-        c = group.marks[Mark.ACTIVE, k]
+        c = group.active[k]
         if group.contacts[c, Contact.IMPULSE] > 0.0:
             for p in range(2):
                 m = group.links[c, p]
@@ -228,7 +228,7 @@ def _duration(closed, discs, group, numbers):
     """
     duration = INFINITY
     for k in range(closed):
-        c = group.marks[Mark.ACTIVE, k]
+        c = group.active[k]
         if group.contacts[c, Contact.IMPULSE] > 0.0:
             distance = group.contacts[c, Contact.DISTANCE]
             speed = math.hypot(*_relative(c, group.other, group))
@@ -278,7 +278,7 @@ def _turn(c, h, share, group):
     """
     contact = group.contacts[c]
     vx, vy = _relative(c, group.other, group)
-    ax, ay = _relative(c, group.steps[Stage.BEFORE], group)
+    ax, ay = _relative(c, group.before, group)
     x, y = contact[Contact.SX] + h * vx + share * ax, contact[Contact.SY] + h * vy + share * ay
     if contact[Contact.ROUND] == 0.0:
         contact[Contact.DISTANCE] = contact[Contact.NX] * x + contact[Contact.NY] * y
@@ -305,11 +305,11 @@ def _take_step(h, count, closed, discs, group, numbers):
 
     Returns False if h is too long: a contact that pushes lets go, or one that does not push closes.
     """
-    first, bends, curves = group.initial, group.steps[Stage.BEND], group.steps[Stage.CURVE]
+    first, bends, curves = group.initial, group.bend, group.curve
     copy_motion(group.motion, first, count)
     for m in range(count):
         for d in range(2):
-            group.steps[Stage.BEFORE, m, d], bends[m, d], curves[m, d] = 0.0, 0.0, 0.0
+            group.before[m, d], bends[m, d], curves[m, d] = 0.0, 0.0, 0.0
     fits = True
     for stage in range(1, 4):
         ahead, weight = (h, 1.0) if stage == 3 else (0.5 * h, 2.0)
@@ -331,7 +331,7 @@ def _accelerate(ahead, h, count, closed, discs, group):
     """
     contacts = group.contacts
     for k in range(closed):
-        c = group.marks[Mark.ACTIVE, k]
+        c = group.active[k]
         _turn(c, ahead, 0.5 * ahead * h, group)
         x, y = _relative(c, group.other, group)
         ax, ay = _relative(c, group.motion, group)
@@ -339,12 +339,12 @@ def _accelerate(ahead, h, count, closed, discs, group):
         contacts[c, Contact.BIAS] = contacts[c, Contact.ROUND] * (x * x + y * y) / contacts[c, Contact.DISTANCE]
         if contacts[c, Contact.FORCE] == 0.0:
             contacts[c, Contact.BIAS] += 2.0 * max(_gap(c, discs, group), 0.0) / (ahead * ahead)
-    copy_motion(group.motion, group.steps[Stage.BEFORE], count)
+    copy_motion(group.motion, group.before, count)
     _pull(count, discs, group)
     project(count, closed, 0.0, MOST_SWEEPS, group)
     holds = True
     for k in range(closed):
-        c = group.marks[Mark.ACTIVE, k]
+        c = group.active[k]
         if contacts[c, Contact.FORCE] > 0.0 and contacts[c, Contact.IMPULSE] == 0.0:
             holds = holds and opening_rate(c, group.motion, group) <= 4.0 * group.noise[0]
     return holds
@@ -356,15 +356,15 @@ def _end_step(h, count, closed, discs, group, numbers):
 
     Returns False if a contact that did not push has closed.
     """
-    contacts, first, path = group.contacts, group.initial, group.steps[Stage.BEFORE]
-    bends, curves = group.steps[Stage.BEND], group.steps[Stage.CURVE]
+    contacts, first, path = group.contacts, group.initial, group.before
+    bends, curves = group.bend, group.curve
     apart = True
     for m in range(count):
         for d in range(2):
             path[m, d] = first[m, d] + bends[m, d] / 3.0
             group.motion[m, d] = 0.0
     for k in range(closed):
-        c = group.marks[Mark.ACTIVE, k]
+        c = group.active[k]
         _turn(c, h, 0.5 * h * h, group)
         i, j = group.members[group.links[c, 0]], group.members[group.links[c, 1]]
         contacts[c, Contact.BIAS] = _gap(c, discs, group)
@@ -381,7 +381,7 @@ def _end_step(h, count, closed, discs, group, numbers):
             group.motion[m, d] = group.other[m, d] + h * first[m, d] + h * curves[m, d] / 6.0
     copy_motion(group.motion, first, count)
     for k in range(closed):
-        c = group.marks[Mark.ACTIVE, k]
+        c = group.active[k]
         contacts[c, Contact.BIAS], contacts[c, Contact.IMPULSE] = 0.0, 0.0
         _pull_together(c, 0.5 * h * contacts[c, Contact.FORCE], group)
     set_noise(count, group)

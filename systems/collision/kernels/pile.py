@@ -15,12 +15,10 @@ from pinjoint.systems.collision.columns import (
     Count,
     Detail,
     Disc,
-    Motion,
     Number,
     PileContact,
     PilePair,
     Reason,
-    Travel,
 )
 from pinjoint.systems.collision.kernels import compiled
 from pinjoint.systems.collision.kernels.pile_energy import supplies_energy
@@ -97,8 +95,8 @@ def step(discs, grid, constraints, pile, report, numbers, counts):
     _begin_paths(discs, pile, numbers)
     if counts[Count.CALM] >= counts[Count.PATIENCE]:
         enter_pushing_pairs(discs, constraints, pile, counts)
-        if _pushes(discs, constraints):
-            return Reason.SETTLE
+        if counts[Count.SPARES] < constraints.forces.shape[0]:
+            return Reason.SETTLE  # without a contact that pushes the pile has dissolved
         end_steps(numbers, counts)
         return Reason.DONE
     h = numbers[Number.STEP_LENGTH]
@@ -119,7 +117,7 @@ def step(discs, grid, constraints, pile, report, numbers, counts):
         if reason != Reason.DONE:
             return reason
         active = choose_contacts(h, pile, counts)
-        if counts[Count.REPORTED] + active > report.pairs.shape[0]:
+        if counts[Count.REPORTED] + active > report.shape[0]:
             return Reason.REPORT_FULL
         start_without_contacts(h, discs, pile)
         make_contacts(active, h, discs, pile, numbers)
@@ -146,15 +144,6 @@ def step(discs, grid, constraints, pile, report, numbers, counts):
 
 
 @compiled
-def _pushes(discs, constraints):
-    """True if a contact pushes; without any, the pile has dissolved."""
-    i = 0
-    while i < discs.shape[0] and constraints.first_persistent[i] == NONE:
-        i += 1
-    return i < discs.shape[0]
-
-
-@compiled
 def _begin_paths(discs, pile, numbers):
     """Begin new paths of all discs now."""
     for i in range(discs.shape[0]):
@@ -164,8 +153,8 @@ def _begin_paths(discs, pile, numbers):
         discs[i, Disc.AX], discs[i, Disc.AY] = discs[i, Disc.GX], discs[i, Disc.GY]
         discs[i, Disc.EPOCH], discs[i, Disc.STEP] = numbers[Number.NOW], INFINITY
         discs[i, Disc.CHANGES] += 1.0
-        pile.motion[Motion.ROOT, 2 * i] = math.sqrt(discs[i, Disc.WX])
-        pile.motion[Motion.ROOT, 2 * i + 1] = math.sqrt(discs[i, Disc.WY])
+        pile.root[2 * i] = math.sqrt(discs[i, Disc.WX])
+        pile.root[2 * i + 1] = math.sqrt(discs[i, Disc.WY])
 
 
 @compiled
@@ -199,10 +188,9 @@ def _report_impacts(active, h, discs, pile, report, numbers, counts):
 def enter_impact(i, j, time, impulse, loss, place, report, counts):
     """Report an impact of two discs at a time (s) and place (m)."""
     k = counts[Count.REPORTED]
-    report.pairs[k, 0], report.pairs[k, 1] = min(i, j), max(i, j)
-    report.details[k, Detail.TIME], report.details[k, Detail.IMPULSE] = time, impulse
-    report.details[k, Detail.LOSS] = loss
-    report.details[k, Detail.X], report.details[k, Detail.Y] = place
+    report[k, Detail.TIME], report[k, Detail.FIRST], report[k, Detail.SECOND] = time, min(i, j), max(i, j)
+    report[k, Detail.IMPULSE], report[k, Detail.LOSS] = impulse, loss
+    report[k, Detail.X], report[k, Detail.Y] = place
     counts[Count.REPORTED] += 1
     counts[Count.IMPACTS] += 1
 
@@ -229,14 +217,14 @@ def _mark_near(active, h, discs, pile):
         nx, ny, gap = pair[PilePair.NX], pair[PilePair.NY], pair[PilePair.GAP]
         (ivx, ivy), (jvx, jvy) = velocity_after(i, pile), velocity_after(j, pile)
         vx, vy = jvx - ivx, jvy - ivy
-        bend = 2.0 * h * h * (pile.travel[Travel.PULL, i] + pile.travel[Travel.PULL, j])
+        bend = 2.0 * h * h * (pile.pull[i] + pile.pull[j])
         near = 0.0
         if pile.contacts[c, PileContact.IMPULSE] > 0.0:
             near = 2.0
         elif gap + h * (nx * vx + ny * vy) <= max(NEARBY * smaller_radius(i, j, discs), bend):
             near = 1.0
-        pile.travel[Travel.NEAR, i] = max(pile.travel[Travel.NEAR, i], near)
-        pile.travel[Travel.NEAR, j] = max(pile.travel[Travel.NEAR, j], near)
+        pile.nearness[i] = max(pile.nearness[i], near)
+        pile.nearness[j] = max(pile.nearness[j], near)
 
 
 @compiled
@@ -248,8 +236,8 @@ def _start_paths(h, discs, pile, numbers):
     calm = True
     for i in range(discs.shape[0]):
         vx, vy = velocity_after(i, pile)
-        pull = pile.travel[Travel.PULL, i]
-        if pile.travel[Travel.NEAR, i] > 0.0:
+        pull = pile.pull[i]
+        if pile.nearness[i] > 0.0:
             for d in range(2):
                 if discs[i, Disc.WX + d] > 0.0:
                     before, after = discs[i, Disc.VX + d], vx if d == 0 else vy
@@ -258,6 +246,6 @@ def _start_paths(h, discs, pile, numbers):
             discs[i, Disc.VX], discs[i, Disc.VY] = vx, vy
             discs[i, Disc.AX], discs[i, Disc.AY] = 0.0, 0.0
             slow = max(CALM_SPEEDS * h * pull, CALM_TRAVEL * numbers[Number.SMALLEST] / h)
-            calm = calm and (pile.travel[Travel.NEAR, i] < 2.0 or vx * vx + vy * vy <= slow * slow)
+            calm = calm and (pile.nearness[i] < 2.0 or vx * vx + vy * vy <= slow * slow)
         discs[i, Disc.NOISE] = SPEED_NOISE * (abs(vx) + abs(vy) + 2.0 * h * pull)
     return calm

@@ -9,7 +9,7 @@ reduced to, leaves it as gain only what undoes overlaps, which gave as much when
 never gain more than the run has lost so far, but for what lifts everything by a thousandth of a radius.
 """
 
-from pinjoint.systems.collision.columns import Disc, Motion, Number, Part, PileContact, PilePair
+from pinjoint.systems.collision.columns import Disc, Number, PileContact, PilePair
 from pinjoint.systems.collision.kernels import compiled
 from pinjoint.systems.collision.kernels.pile_solver import KEPT, PLASTIC, opening, without_contacts
 
@@ -27,14 +27,14 @@ def supplies_energy(active, h, discs, pile, numbers):
     _measure_contacts(active, h, pile)
     spare = numbers[Number.LOSS] + _lifting(LIFT * numbers[Number.SMALLEST], discs)
     for i in range(discs.shape[0]):
-        spare -= max(pile.parts[Part.GAIN, i], 0.0)
+        spare -= max(pile.gain[i], 0.0)
     anew, reduced = False, False
     for i in range(discs.shape[0]):
-        law = _law_of_gain(pile.part[i], spare, pile.parts)
-        if law > pile.parts[Part.LAW, i]:
-            pile.parts[Part.LAW, i] = law
+        law = _law_of_gain(pile.part[i], spare, pile)
+        if law > pile.law[i]:
+            pile.law[i] = law
             anew = True
-        reduced |= pile.parts[Part.SHARE, pile.part[i]] < 1.0
+        reduced |= pile.share[pile.part[i]] < 1.0
     if reduced and not anew:
         _reduce(active, h, discs, pile)
     return anew
@@ -65,10 +65,10 @@ def _first(i, part):
 @compiled
 def _measure_discs(h, discs, pile):
     """Sum up the energy of the parts, what they gain, and how far the impulses change their motion."""
-    parts, speed, root = pile.parts, pile.motion[Motion.SPEED], pile.motion[Motion.ROOT]
-    for quantity in range(Part.GAIN, parts.shape[0]):
-        for i in range(discs.shape[0]):
-            parts[quantity, i] = 0.0
+    speed, root = pile.speed, pile.root
+    for i in range(discs.shape[0]):
+        pile.gain[i] = pile.energy[i] = pile.change[i] = 0.0
+        pile.pushed_out[i] = pile.bounced[i] = pile.work[i] = 0.0
     for i in range(discs.shape[0]):
         p = pile.part[i]
         for d in range(2):
@@ -76,9 +76,9 @@ def _measure_discs(h, discs, pile):
             if w > 0.0:
                 before, after, pull = discs[i, Disc.VX + d] / w, speed[2 * i + d], discs[i, Disc.GX + d] / w
                 change = after - before - h * pull
-                parts[Part.GAIN, p] += 0.5 * (after - before) * (after + before) - h * pull * after
-                parts[Part.ENERGY, p] += 0.5 * (before * before + after * after) + abs(h * pull * after)
-                parts[Part.CHANGE, p] += change * change
+                pile.gain[p] += 0.5 * (after - before) * (after + before) - h * pull * after
+                pile.energy[p] += 0.5 * (before * before + after * after) + abs(h * pull * after)
+                pile.change[p] += change * change
 
 
 @compiled
@@ -95,46 +95,45 @@ def _lifting(height, discs):
 @compiled
 def _measure_contacts(active, h, pile):
     """Sum up what pushing discs out of one another takes, and the work of impulses beyond what the biases demand."""
-    parts = pile.parts
     for c in range(active):
         impulse = pile.contacts[c, PileContact.IMPULSE]
         if impulse > 0.0:
             p, bias = pile.part[pile.ends[c, 0]], pile.contacts[c, PileContact.BIAS]
             if bias < 0.0:
                 if SAME * bias * pile.scale[c] * h < min(pile.near[pile.order[c], PilePair.GAP], 0.0):
-                    parts[Part.BOUNCED, p] = 1.0
+                    pile.bounced[p] = 1.0
                 else:
                     before = pile.forces[pile.order[c]] * h * pile.scale[c]
-                    parts[Part.PUSHED_OUT, p] -= min(impulse, before) * bias
-            parts[Part.WORK, p] += impulse * opening(c, pile)
+                    pile.pushed_out[p] -= min(impulse, before) * bias
+            pile.work[p] += impulse * opening(c, pile)
 
 
 @compiled
-def _law_of_gain(p, spare, parts):
+def _law_of_gain(p, spare, pile):
     """The law that the discs of a part must obey from now on; sets the share of the impulses that they may keep.
 
     spare: energy lost so far that the parts do not demand back.
     """
-    gain = parts[Part.GAIN, p]
-    parts[Part.SHARE, p] = 1.0
-    if gain <= ROUND_OFF * parts[Part.ENERGY, p]:
+    gain = pile.gain[p]
+    pile.share[p] = 1.0
+    if gain <= ROUND_OFF * pile.energy[p]:
         return 0.0
-    if parts[Part.BOUNCED, p] == 0.0 and parts[Part.WORK, p] > 0.0:
-        parts[Part.SHARE, p] = max(1.0 - parts[Part.WORK, p] / parts[Part.CHANGE, p], 0.0)
+    if pile.bounced[p] == 0.0 and pile.work[p] > 0.0:
+        pile.share[p] = max(1.0 - pile.work[p] / pile.change[p], 0.0)
     if spare < 0.0:
         return KEPT
-    if parts[Part.BOUNCED, p] > 0.0:
-        return PLASTIC if gain > parts[Part.PUSHED_OUT, p] else 0.0
-    return PLASTIC if parts[Part.SHARE, p] < MISLED else 0.0
+    if pile.bounced[p] > 0.0:
+        return PLASTIC if gain > pile.pushed_out[p] else 0.0
+    return PLASTIC if pile.share[p] < MISLED else 0.0
 
 
 @compiled
 def _reduce(active, h, discs, pile):
     """Keep a share of the impulses of each part."""
     for c in range(active):
-        pile.contacts[c, PileContact.IMPULSE] *= pile.parts[Part.SHARE, pile.part[pile.ends[c, 0]]]
+        pile.contacts[c, PileContact.IMPULSE] *= pile.share[pile.part[pile.ends[c, 0]]]
     for i in range(discs.shape[0]):
         for d in range(2):
             free = without_contacts(i, d, h, discs, pile)
-            change = pile.motion[Motion.SPEED, 2 * i + d] - free
-            pile.motion[Motion.SPEED, 2 * i + d] = free + pile.parts[Part.SHARE, pile.part[i]] * change
+            change = pile.speed[2 * i + d] - free
+            pile.speed[2 * i + d] = free + pile.share[pile.part[i]] * change

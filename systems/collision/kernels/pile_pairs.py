@@ -13,19 +13,16 @@ from pinjoint.systems.collision.columns import (
     SHORTEST_SHARE,
     Count,
     Disc,
-    Entry,
-    Motion,
     Number,
-    Part,
     PilePair,
     Reason,
-    Travel,
 )
 from pinjoint.systems.collision.kernels import compiled
 from pinjoint.systems.collision.kernels.grid import enclose, enter, has_room, neighbours, sort
 from pinjoint.systems.collision.kernels.horizon import is_joined, set_layers
 from pinjoint.systems.collision.kernels.persistent_contact import (
     enter_persistent,
+    find_persistent,
     forget_persistent,
     is_held,
 )
@@ -40,8 +37,7 @@ STEPS_AHEAD, ROOM_AHEAD = 4.0, 0.5  # steps, and radii, that discs may travel un
 @compiled
 def velocity_after(i, pile):
     """Velocity of a disc in the step, from its scaled velocity."""
-    speed, root = pile.motion[Motion.SPEED], pile.motion[Motion.ROOT]
-    return speed[2 * i] * root[2 * i], speed[2 * i + 1] * root[2 * i + 1]
+    return pile.speed[2 * i] * pile.root[2 * i], pile.speed[2 * i + 1] * pile.root[2 * i + 1]
 
 
 @compiled
@@ -49,9 +45,9 @@ def allow_shifts(h, discs, pile):
     """Set the farthest shift of discs in a step by what bears their weight."""
     for i in range(discs.shape[0]):
         pull = math.sqrt(discs[i, Disc.GX] ** 2 + discs[i, Disc.GY] ** 2)
-        pile.travel[Travel.PULL, i] = pull
-        pile.travel[Travel.SHIFT, i] = 2.0 * h * h * pull
-        pile.travel[Travel.FASTEST, i] = pile.parts[Part.LAW, i] = 0.0
+        pile.pull[i] = pull
+        pile.shift[i] = 2.0 * h * h * pull
+        pile.fastest[i] = pile.law[i] = 0.0
 
 
 @compiled
@@ -59,9 +55,9 @@ def allow_more_shift(h, fastest, discs, pile):
     """Set the farthest shift of discs that near discs may strike, directly or through others."""
     for i in range(discs.shape[0]):
         if not is_held(i, discs):
-            speed, pull = pile.travel[Travel.FASTEST, i], pile.travel[Travel.PULL, i]
+            speed, pull = pile.fastest[i], pile.pull[i]
             through = PASSED_ON * min(h * fastest, discs[i, Disc.RADIUS])
-            pile.travel[Travel.SHIFT, i] = h * (speed + 2.0 * h * pull) + through
+            pile.shift[i] = h * (speed + 2.0 * h * pull) + through
 
 
 @compiled
@@ -72,8 +68,8 @@ def stays_within_reach(h, discs, pile):
         vx, vy = velocity_after(i, pile)
         vx, vy = vx - discs[i, Disc.VX] - h * discs[i, Disc.GX], vy - discs[i, Disc.VY] - h * discs[i, Disc.GY]
         shift = h * h * (vx * vx + vy * vy)
-        if shift > pile.travel[Travel.SHIFT, i] ** 2:
-            pile.travel[Travel.SHIFT, i] = 2.0 * math.sqrt(shift)
+        if shift > pile.shift[i] ** 2:
+            pile.shift[i] = 2.0 * math.sqrt(shift)
             within = False
     return within
 
@@ -101,7 +97,7 @@ def _list_pairs(h, discs, grid, constraints, pile, numbers, counts):
     counts[Count.LISTED] = NONE
     for i in range(discs.shape[0]):
         enclose(i, discs, grid, numbers[Number.NOW], numbers[Number.NOW] + STEPS_AHEAD * h)
-        room = 2.0 * pile.travel[Travel.SHIFT, i] + ROOM_AHEAD * discs[i, Disc.RADIUS]
+        room = 2.0 * pile.shift[i] + ROOM_AHEAD * discs[i, Disc.RADIUS]
         grid.boxes[i, 0] -= room
         grid.boxes[i, 1] -= room
         grid.boxes[i, 2] += room
@@ -121,25 +117,15 @@ def _list_pairs(h, discs, grid, constraints, pile, numbers, counts):
             if (is_held(i, discs) and is_held(j, discs)) or is_joined(i, j, constraints):
                 continue
             if pairs < pile.forces.shape[0]:
+                entry = find_persistent(j, i, constraints)
                 pile.pairs[pairs, 0], pile.pairs[pairs, 1] = j, i
-                pile.forces[pairs] = _pushing_force(j, i, discs, constraints)
+                pile.forces[pairs] = 0.0 if entry == NONE else constraints.forces[entry]
             pairs += 1
         enter(i, grid, layers)
     if pairs > pile.forces.shape[0] or 2 * pairs > counts[Count.SPARES]:
         return Reason.GROUP_FULL
     counts[Count.LISTED] = pairs
     return Reason.DONE
-
-
-@compiled
-def _pushing_force(i, j, discs, constraints):
-    """Force in the persistent contact of two discs, entered for each of them that is not held; 0 if they have none."""
-    if is_held(i, discs):
-        i, j = j, i
-    entry = constraints.first_persistent[i]
-    while entry != NONE and constraints.persistent[entry, Entry.OTHER] != j:
-        entry = constraints.persistent[entry, Entry.NEXT]
-    return 0.0 if entry == NONE else constraints.forces[entry]
 
 
 @compiled
@@ -152,7 +138,7 @@ def _are_listed(h, discs, grid, pile, counts):
             x, y = discs[i, Disc.OX] + discs[i, Disc.UX], discs[i, Disc.OY] + discs[i, Disc.UY]
             dx = h * (discs[i, Disc.VX] + h * discs[i, Disc.GX])
             dy = h * (discs[i, Disc.VY] + h * discs[i, Disc.GY])
-            around = discs[i, Disc.RADIUS] + pile.travel[Travel.SHIFT, i]
+            around = discs[i, Disc.RADIUS] + pile.shift[i]
             inside = (grid.boxes[i, 0] <= x + min(dx, 0.0) - around) & (
                 x + max(dx, 0.0) + around <= grid.boxes[i, 2]
             )
@@ -208,7 +194,7 @@ def _may_meet(k, h, pile):
     """
     pair = pile.near[k]
     gap = pair[PilePair.GAP] + h * (pair[PilePair.RATE] + h * pair[PilePair.PULL])
-    return gap <= pile.travel[Travel.SHIFT, pile.pairs[k, 0]] + pile.travel[Travel.SHIFT, pile.pairs[k, 1]]
+    return gap <= pile.shift[pile.pairs[k, 0]] + pile.shift[pile.pairs[k, 1]]
 
 
 @compiled
@@ -226,8 +212,8 @@ def choose_length(discs, pile, numbers, counts):
             fastest = max(fastest, speed)
             if speed * h > travel:
                 h = travel / speed
-            pile.travel[Travel.FASTEST, i] = max(pile.travel[Travel.FASTEST, i], speed)
-            pile.travel[Travel.FASTEST, j] = max(pile.travel[Travel.FASTEST, j], speed)
+            pile.fastest[i] = max(pile.fastest[i], speed)
+            pile.fastest[j] = max(pile.fastest[j], speed)
     return max(h, SHORTEST_SHARE * longest), fastest
 
 

@@ -6,7 +6,7 @@ The step is that of Moreau and Jean (Jean, Comput. Methods Appl. Mech. Eng. 177,
 
 import math
 
-from pinjoint.systems.collision.columns import Disc, Motion, Number, Part, PileContact, PilePair, Travel
+from pinjoint.systems.collision.columns import Disc, Number, PileContact, PilePair
 from pinjoint.systems.collision.kernels import compiled
 from pinjoint.systems.collision.kernels.persistent_contact import is_held
 from pinjoint.systems.collision.kernels.time_of_impact import rest_speed
@@ -16,7 +16,7 @@ FEW = 0.02  # of the contacts left to correct, at which sweeps end
 MOST_REST = 10  # times that each contact is then looked at, on average
 MOST_RELAXED = 40000  # contacts up to which the sweeps over few are more
 ALL_AGAIN = 8  # turns, after which sweeps go over idle contacts too
-PLASTIC, KEPT = 1.0, 2.0  # Part.LAW: the disc does not bounce; nor is it pushed out of others
+PLASTIC, KEPT = 1.0, 2.0  # Pile.law: the disc does not bounce; nor is it pushed out of others
 SIDE_BY_SIDE = 4  # contacts next to each other in the order of sweeps are far apart: computed at once
 
 
@@ -25,15 +25,15 @@ def start_without_contacts(h, discs, pile):
     """Set the velocities at the end of the step without contacts."""
     for i in range(discs.shape[0]):
         for d in range(2):
-            pile.motion[Motion.SPEED, 2 * i + d] = without_contacts(i, d, h, discs, pile)
-            pile.motion[Motion.DIRECTION, 2 * i + d] = 0.0
-        pile.travel[Travel.NEAR, i] = 0.0
+            pile.speed[2 * i + d] = without_contacts(i, d, h, discs, pile)
+            pile.direction[2 * i + d] = 0.0
+        pile.nearness[i] = 0.0
 
 
 @compiled
 def without_contacts(i, d, h, discs, pile):
     """u of a disc at the end of the step, without contacts; 0 where it is held."""
-    root = pile.motion[Motion.ROOT, 2 * i + d]
+    root = pile.root[2 * i + d]
     return (discs[i, Disc.VX + d] + h * discs[i, Disc.GX + d]) / root if root > 0.0 else 0.0
 
 
@@ -51,15 +51,15 @@ def make_contacts(active, h, discs, pile, numbers):
 
 @compiled
 def _make_contact(c, k, h, discs, pile, numbers):
-    contacts, motion = pile.contacts, pile.motion
+    contacts = pile.contacts
     i, j = pile.pairs[k, 0], pile.pairs[k, 1]
     pair = pile.near[k]
     nx, ny, gap, speed = pair[PilePair.NX], pair[PilePair.NY], pair[PilePair.GAP], pair[PilePair.RATE]
     pile.order[c] = k
-    contacts[c, PileContact.AX] = -nx * motion[Motion.ROOT, 2 * i]
-    contacts[c, PileContact.AY] = -ny * motion[Motion.ROOT, 2 * i + 1]
-    contacts[c, PileContact.BX] = nx * motion[Motion.ROOT, 2 * j]
-    contacts[c, PileContact.BY] = ny * motion[Motion.ROOT, 2 * j + 1]
+    contacts[c, PileContact.AX] = -nx * pile.root[2 * i]
+    contacts[c, PileContact.AY] = -ny * pile.root[2 * i + 1]
+    contacts[c, PileContact.BX] = nx * pile.root[2 * j]
+    contacts[c, PileContact.BY] = ny * pile.root[2 * j + 1]
     opening = 0.0
     for d in range(4):
         opening += contacts[c, PileContact.AX + d] ** 2
@@ -73,7 +73,7 @@ def _make_contact(c, k, h, discs, pile, numbers):
     if opening == 0.0:
         return
     pulled, bias = speed + h * pair[PilePair.PULL], gap / h
-    law = max(pile.parts[Part.LAW, i], pile.parts[Part.LAW, j])
+    law = max(pile.law[i], pile.law[j])
     if law == 0.0 and pulled + bias < 0.0 and bounces(speed, i, j, h, discs, pile, numbers):
         bias = min(bias, discs[j, Disc.BOUNCE] * speed)
     elif law == KEPT:
@@ -84,8 +84,8 @@ def _make_contact(c, k, h, discs, pile, numbers):
     first = pile.forces[k] * h * root if law == 0.0 else 0.0
     contacts[c, PileContact.IMPULSE] = contacts[c, PileContact.PREVIOUS] = first
     for d in range(2):
-        motion[Motion.SPEED, 2 * i + d] += contacts[c, PileContact.AX + d] * contacts[c, PileContact.IMPULSE]
-        motion[Motion.SPEED, 2 * j + d] += contacts[c, PileContact.BX + d] * contacts[c, PileContact.IMPULSE]
+        pile.speed[2 * i + d] += contacts[c, PileContact.AX + d] * contacts[c, PileContact.IMPULSE]
+        pile.speed[2 * j + d] += contacts[c, PileContact.BX + d] * contacts[c, PileContact.IMPULSE]
     if is_held(j, discs):  # the part of the disc that moves comes second, see _relax
         for d in range(2):
             contacts[c, PileContact.BX + d], contacts[c, PileContact.AX + d] = (
@@ -97,7 +97,7 @@ def _make_contact(c, k, h, discs, pile, numbers):
 @compiled
 def bounces(speed, i, j, h, discs, pile, numbers):
     """True if discs bounce: `speed` (of separation, m/s) exceeds what free fall gives in two steps, in approach."""
-    slow = 2.0 * h * max(pile.travel[Travel.PULL, i], pile.travel[Travel.PULL, j])
+    slow = 2.0 * h * max(pile.pull[i], pile.pull[j])
     return speed < -slow and speed < -rest_speed(i, j, discs, numbers[Number.REST_HEIGHT], numbers[Number.NOW])
 
 
@@ -213,8 +213,7 @@ def _list_contacts(active, pile):
 @compiled
 def _accelerate(share, keep, pile):
     """Move the velocities by a share of the direction of the sweeps so far; `keep` adds the last sweep to it."""
-    motion = pile.motion
-    speed, previous, direction = motion[Motion.SPEED], motion[Motion.PREVIOUS], motion[Motion.DIRECTION]
+    speed, previous, direction = pile.speed, pile.previous, pile.direction
     for k in range(speed.shape[0]):
         more = share * direction[k]
         swept = more + speed[k] - previous[k]
@@ -237,7 +236,7 @@ def _relax_forward(c, share, keep, pile):
 @compiled
 def opening(c, pile):
     """Rate at which a contact opens, in the scale of its impulse."""
-    contacts, speed, ends = pile.contacts, pile.motion[Motion.SPEED], pile.ends
+    contacts, speed, ends = pile.contacts, pile.speed, pile.ends
     a, b = ends[c, 0], ends[c, 1]
     first = contacts[c, PileContact.AX] * speed[2 * a] + contacts[c, PileContact.AY] * speed[2 * a + 1]
     second = contacts[c, PileContact.BX] * speed[2 * b] + contacts[c, PileContact.BY] * speed[2 * b + 1]
@@ -250,7 +249,7 @@ def _relax(c, before, pile):
 
     Where one disc is held, both ends are the other: what the second writes then counts.
     """
-    contacts, speed = pile.contacts, pile.motion[Motion.SPEED]
+    contacts, speed = pile.contacts, pile.speed
     a, b = 2 * pile.ends[c, 0], 2 * pile.ends[c, 1]
     ax, ay = contacts[c, PileContact.AX], contacts[c, PileContact.AY]
     bx, by = contacts[c, PileContact.BX], contacts[c, PileContact.BY]

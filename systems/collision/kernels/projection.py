@@ -7,11 +7,12 @@ solution of many.
 
 import math
 
-from pinjoint.systems.collision.columns import DIRECT, EPSILON, SPEED_NOISE, Contact, Mark
+from pinjoint.systems.collision.columns import DIRECT, EPSILON, SPEED_NOISE, Contact
 from pinjoint.systems.collision.kernels import compiled
 
 IDLE, FITTED, DEPENDENT = 0, 1, 2
 MOST_SWEEPS = 20000  # over the contacts of a large group; more: nearer to round-off, slower
+MOST_CROWD_SWEEPS = 200  # over the contacts of a crowd; its next step continues from the impulses reached
 
 
 @compiled
@@ -82,7 +83,7 @@ def set_noise(members, group):
 
 @compiled
 def project(members, active, tolerance, most, group):
-    """Project the motion for the first `active` contacts of marks[ACTIVE]; impulses in column IMPULSE.
+    """Project the motion for the first so many contacts of group.active; impulses in column IMPULSE.
 
     tolerance: rate at which a contact of a large group may still close. most: sweeps over its contacts. Large groups
     start from the impulses that IMPULSE holds, small ones from none.
@@ -90,16 +91,58 @@ def project(members, active, tolerance, most, group):
     copy_motion(group.motion, group.start, members)
     if active <= DIRECT:
         for k in range(active):
-            c = group.marks[Mark.ACTIVE, k]
+            c = group.active[k]
             group.contacts[c, Contact.IMPULSE] = 0.0
-            group.marks[Mark.STATE, c] = IDLE
+            group.state[c] = IDLE
         _solve_by_active_set(members, active, group)
         tolerance = 0.0
     else:
         for k in range(active):
-            c = group.marks[Mark.ACTIVE, k]
+            c = group.active[k]
             push_apart(c, group.contacts[c, Contact.IMPULSE], group)
     sweep(active, most, tolerance, group)
+
+
+@compiled
+def separate_motion(members, count, tolerance, group):
+    """Change the motion of a group as little as possible so that no contact closes faster than its bias.
+
+    Links, normals, biases and first impulses are set; column IMPULSE then holds the impulses. Where sweeps are too few
+    to find them, all are reduced so that they do no work in sum.
+    """
+    active = 0
+    for c in range(count):
+        opening = compliance(c, c, group)
+        group.contacts[c, Contact.COMPLIANCE] = opening
+        if opening > 0.0:
+            group.active[active] = c
+            active += 1
+    begin(members, group)
+    project(members, active, tolerance, MOST_CROWD_SWEEPS, group)
+    _limit_work(members, active, group)
+
+
+@compiled
+def _limit_work(members, active, group):
+    """Reduce all impulses p by one factor so that p · (N m + b) ≤ 0 for the motion m after them."""
+    before, after = 0.0, 0.0
+    for k in range(active):
+        c = group.active[k]
+        if group.contacts[c, Contact.IMPULSE] < 0.0:  # the last acceleration of the sweeps went too far
+            push_apart(c, -group.contacts[c, Contact.IMPULSE], group)
+            group.contacts[c, Contact.IMPULSE] = 0.0
+    for k in range(active):
+        c = group.active[k]
+        before += group.contacts[c, Contact.IMPULSE] * opening_rate(c, group.initial, group)
+        after += group.contacts[c, Contact.IMPULSE] * opening_rate(c, group.motion, group)
+    if after <= 0.0:
+        return
+    share = -before / (after - before) if before < 0.0 else 0.0
+    for k in range(active):
+        group.contacts[group.active[k], Contact.IMPULSE] *= share
+    for m in range(members):
+        for d in range(2):
+            group.motion[m, d] = group.initial[m, d] + share * (group.motion[m, d] - group.initial[m, d])
 
 
 @compiled
@@ -110,12 +153,12 @@ def _solve_by_active_set(members, active, group):
         worst = _worst(active, group)
         if worst < 0:
             return
-        group.marks[Mark.CHOSEN, fitted] = worst
-        group.marks[Mark.STATE, worst] = FITTED
+        group.chosen[fitted] = worst
+        group.state[worst] = FITTED
         fitted = _fit(fitted + 1, group)
         copy_motion(group.start, group.motion, members)
         for r in range(fitted):
-            c = group.marks[Mark.CHOSEN, r]
+            c = group.chosen[r]
             push_apart(c, group.contacts[c, Contact.IMPULSE], group)
 
 
@@ -124,8 +167,8 @@ def _worst(active, group):
     """The idle contact that closes fastest, or −1."""
     worst, fastest = -1, 0.0
     for k in range(active):
-        c = group.marks[Mark.ACTIVE, k]
-        if group.marks[Mark.STATE, c] == IDLE:
+        c = group.active[k]
+        if group.state[c] == IDLE:
             rate = opening_rate(c, group.motion, group)
             if rate < fastest and rate < -group.noise[0]:
                 worst, fastest = c, rate
@@ -135,29 +178,29 @@ def _worst(active, group):
 @compiled
 def _fit(fitted, group):
     """Impulses that stop the chosen contacts, without those that would have to pull; returns how many are left."""
-    contacts, marks, values = group.contacts, group.marks, group.matrix[DIRECT]
+    contacts, values = group.contacts, group.matrix[DIRECT]
     while fitted > 0:
         if not _solve(fitted, group):
             fitted -= 1  # the newest depends on the others, which stop it already
-            c = marks[Mark.CHOSEN, fitted]
+            c = group.chosen[fitted]
             contacts[c, Contact.IMPULSE] = 0.0
-            marks[Mark.STATE, c] = DEPENDENT
+            group.state[c] = DEPENDENT
             continue
         share = 1.0
         for r in range(fitted):
             if values[r] <= 0.0:
-                present = contacts[marks[Mark.CHOSEN, r], Contact.IMPULSE]
+                present = contacts[group.chosen[r], Contact.IMPULSE]
                 share = min(share, present / (present - values[r]))
         kept = 0
         for r in range(fitted):
-            c = marks[Mark.CHOSEN, r]
+            c = group.chosen[r]
             present = contacts[c, Contact.IMPULSE]
             if values[r] <= 0.0 and present <= share * (present - values[r]):
                 contacts[c, Contact.IMPULSE] = 0.0
-                marks[Mark.STATE, c] = IDLE
+                group.state[c] = IDLE
             else:
                 contacts[c, Contact.IMPULSE] = present + share * (values[r] - present)
-                marks[Mark.CHOSEN, kept] = c
+                group.chosen[kept] = c
                 kept += 1
         if kept == fitted:
             return fitted
@@ -173,10 +216,10 @@ def _solve(count, group):
     """
     matrix, values = group.matrix, group.matrix[DIRECT]
     for r in range(count):
-        row = group.marks[Mark.CHOSEN, r]
+        row = group.chosen[r]
         values[r] = -opening_rate(row, group.start, group)
         for c in range(r + 1):
-            value = compliance(row, group.marks[Mark.CHOSEN, c], group)
+            value = compliance(row, group.chosen[c], group)
             for k in range(c):
                 value -= matrix[r, k] * matrix[c, k]
             if c < r:
@@ -205,7 +248,7 @@ def sweep(active, most, tolerance, group):
     contacts, size = group.contacts, 0.0
     for turn in range(most):
         for k in range(active):
-            c = group.marks[Mark.ACTIVE, k]
+            c = group.active[k]
             contacts[c, Contact.PREVIOUS] = contacts[c, Contact.IMPULSE]
         settled = _relax_all(active, 1, tolerance, group)
         if settled:
@@ -213,13 +256,13 @@ def sweep(active, most, tolerance, group):
         _relax_all(active, -1, tolerance, group)
         previous, size = size, 0.0
         for k in range(active):
-            c = group.marks[Mark.ACTIVE, k]
+            c = group.active[k]
             change = contacts[c, Contact.IMPULSE] - contacts[c, Contact.PREVIOUS]
             size += change * change * contacts[c, Contact.COMPLIANCE]
         share = size / previous if size <= previous and previous > 0.0 else 0.0
         keep = 1.0 if turn == 0 or share > 0.0 else 0.0
         for k in range(active):
-            c = group.marks[Mark.ACTIVE, k]
+            c = group.active[k]
             more = share * contacts[c, Contact.DIRECTION] if turn > 0 else 0.0
             swept = more + contacts[c, Contact.IMPULSE] - contacts[c, Contact.PREVIOUS]
             contacts[c, Contact.DIRECTION] = keep * swept
@@ -233,7 +276,7 @@ def _relax_all(active, way, tolerance, group):
     """Change the impulse of every contact, one by one, so that it neither closes nor pulls; True if none had to."""
     contacts, settled = group.contacts, True
     for k in range(active):
-        c = group.marks[Mark.ACTIVE, k if way > 0 else active - 1 - k]
+        c = group.active[k if way > 0 else active - 1 - k]
         rate = opening_rate(c, group.motion, group)
         impulse = max(contacts[c, Contact.IMPULSE] - rate / contacts[c, Contact.COMPLIANCE], 0.0)
         change = impulse - contacts[c, Contact.IMPULSE]

@@ -12,7 +12,7 @@ from pinjoint.commands.command_line import main
 from pinjoint.documents.models import document
 from pinjoint.systems.collision.driven.neighbours import NeighbourList
 from pinjoint.systems.edit.pull import hand_on
-from tests.systems.collision.test_driven_collisions import box, energy_of_discs
+from tests.systems.collision.test_driven_collisions import box, energy_of_discs, gaps_of
 
 GRAVITY = {"acceleration": [0.0, -9.81]}
 
@@ -241,7 +241,7 @@ def sinking(session: Session) -> float:
     near = NeighbourList(session.model)
     near.look_up()
     near.list_within(0.0)
-    gap, _ = near.gaps(near.pairs, near.displacement)
+    gap, _ = gaps_of(near, near.pairs)
     return float((-gap / near.driven.size[near.pairs].min(axis=1)).max(initial=0.0))
 
 

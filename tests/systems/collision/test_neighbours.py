@@ -13,7 +13,7 @@ from pinjoint.systems.program.compiler import Compile
 from tests.benchmarks.models import lattice
 from tests.reference.forms import programs
 from tests.reference.models import model, particle, rod
-from tests.systems.collision.test_driven_collisions import truss
+from tests.systems.collision.test_driven_collisions import gaps_of, truss
 
 
 def listed(session: Session) -> int:
@@ -97,7 +97,7 @@ def slowly(near: NeighbourList, span: float) -> list[list[int]]:
     """The pairs to list: by a look at all of them."""
     n, others = near.count, len(near.obstacles)
     every = np.array([(i, j) for i in range(n) for j in range(i + 1, n + others)], dtype=np.int64)
-    gap, _ = near.gaps(every, near.displacement)
+    gap, _ = gaps_of(near, every)
     radius, speed = near.driven.radius[:n], np.hypot(*near.velocity.T)
     step = near.model.clock.step_size
     margin = np.maximum(np.maximum(0.5 * radius, np.minimum(512 * step * speed, 4.0 * radius)), 2.0 * span)

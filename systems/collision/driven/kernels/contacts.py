@@ -26,7 +26,6 @@ from pinjoint.systems.entries import Account, Control
 
 CLOSED_GAP = 1e-13  # of the smaller radius: contacts with a smaller gap are closed
 LOOSELY_CLOSED_GAP = 1e-11  # instead, after STRICT_TRIES: gaps in a row between walls hardly follow forces
-LOOSE_GAP = 1e-7  # of the smaller radius: enough to tell whether the step holds an impact
 COMPLIANCE_GAP = (
     2e-11  # of how far forces move particles: a gap that small is closed; see FIRM in complementarity.py
 )
@@ -57,7 +56,11 @@ def choose_contacts(driven, place):
             continue
         first, u = number, t
         while u != NONE:
-            _choose(driven, number, driven.touching[u], place)
+            k = driven.touching[u]
+            i, j = driven.pairs[k, 0], driven.pairs[k, 1]
+            gap, nx, ny = gap_of(i, j, driven.position, place, driven.radius, driven.span)
+            driven.chosen[number], driven.search[Tried.LEAST, number] = k, min(gap, 0.0)
+            driven.start[number, 0], driven.start[number, 1] = nx, ny
             number += 1
             u = driven.chain[u]
         for c in range(first, number):
@@ -68,19 +71,10 @@ def choose_contacts(driven, place):
 
 
 @compiled
-def _choose(driven, c, k, place):
-    i, j = driven.pairs[k, 0], driven.pairs[k, 1]
-    gap, nx, ny = gap_of(i, j, driven.position, place, driven.radius, driven.span)
-    driven.chosen[c] = k
-    driven.search[Tried.LEAST, c] = min(gap, 0.0)
-    driven.start[c, 0], driven.start[c, 1] = nx, ny
-
-
-@compiled
 def begin_search(driven):
     """Begin to look for the forces of a step with those of the step before."""
     whole, number = driven.whole, driven.whole[Whole.CHOSEN]
-    whole[Whole.TURN], whole[Whole.REGULAR], whole[Whole.LOOSE] = 0, 1, whole[Whole.FORESEEN] == 0
+    whole[Whole.TURN], whole[Whole.REGULAR] = 0, 1
     for c in range(number):
         driven.search[Tried.FORCES, c] = driven.forces[driven.chosen[c]]
         for d in range(driven.block[0, c], driven.block[1, c]):
@@ -98,7 +92,7 @@ def resume_search(driven, end):
     if not whole[Whole.REGULAR] or real[Real.NOW] == real[Real.START]:
         begin_search(driven)
         return
-    whole[Whole.TURN], whole[Whole.LOOSE] = 0, whole[Whole.FORESEEN] == 0
+    whole[Whole.TURN] = 0
     share = ((end - real[Real.START]) / (real[Real.NOW] - real[Real.START])) ** 2
     for c in range(whole[Whole.CHOSEN]):
         for d in range(driven.block[0, c], driven.block[1, c]):
@@ -217,12 +211,9 @@ def _drop_forces(driven):
 
 @compiled
 def _measure(driven, after):
-    """Measure the gaps at the end of a step; True if all contacts are closed that push, and none overlaps.
-
-    As long as Whole.LOOSE is set, closed within LOOSE_GAP will do; it is cleared where they are closed for good.
-    """
+    """Measure the gaps at the end of a step; True if all contacts are closed that push, and none overlaps."""
     whole, search = driven.whole, driven.search
-    number, all_closed, nearly = whole[Whole.CHOSEN], True, whole[Whole.LOOSE] == 1
+    number, all_closed = whole[Whole.CHOSEN], True
     closed = CLOSED_GAP if whole[Whole.TURN] < STRICT_TRIES else LOOSELY_CLOSED_GAP
     for c in range(number):
         k = driven.chosen[c]
@@ -237,10 +228,7 @@ def _measure(driven, after):
         search[Tried.GAP, c], search[Tried.ALLOWED, c] = gap, allowed
         wrong = abs(gap) if search[Tried.FORCES, c] > 0.0 else -gap
         all_closed = all_closed and wrong <= allowed
-        nearly = nearly and wrong <= LOOSE_GAP * min(driven.size[i], driven.size[j])
-    if all_closed:
-        whole[Whole.LOOSE] = 0
-    return all_closed or nearly
+    return all_closed
 
 
 @compiled
@@ -345,8 +333,16 @@ def keep_contacts(driven, h, control, account, place, speed):
 
 @compiled
 def enter_work(driven, work, control, account):
-    """Enter what contact forces did in a step (J), also where the step was checked, which found it missing."""
-    account[Account.WORK] += work
+    """Enter what contact forces did in a step (J), also where the step was checked, which found it missing.
+
+    They can only take energy; what their errors give is nobody's, and stays in the imbalance. Of steps that are foreseen
+    it is of either sign: what the energy that the integrator conserves knows of them.
+    """
+    if driven.whole[Whole.FORESEEN]:
+        account[Account.WORK] += work
+    else:
+        work = min(work, 0.0)
+        account[Account.DISSIPATED_IMPACT] -= work
     before, found = (
         driven.kept[control.shape[0] + Account.LARGEST_IMBALANCE],
         account[Account.LARGEST_IMBALANCE],

@@ -18,11 +18,10 @@ from pinjoint.systems.collision.driven.kernels.contacts import (
     raise_scale,
 )
 from pinjoint.systems.collision.driven.kernels.impacts import report_impact
-from pinjoint.systems.collision.driven.kernels.joint_impacts import separate_motion
 from pinjoint.systems.collision.driven.kernels.paths import opening, take_back
 from pinjoint.systems.collision.kernels import compiled
 from pinjoint.systems.collision.kernels.pairs import gap_of
-from pinjoint.systems.collision.kernels.projection import push_apart
+from pinjoint.systems.collision.kernels.projection import push_apart, separate_motion
 from pinjoint.systems.entries import Account, Control
 
 CROWD_CONTACTS = 24  # persistent contacts and impacts in the next step, from which on particles are a crowd

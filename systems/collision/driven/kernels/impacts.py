@@ -6,10 +6,11 @@ from pinjoint.systems.collision.columns import NONE, Contact, Detail
 from pinjoint.systems.collision.driven.columns import Need, Real, Whole
 from pinjoint.systems.collision.driven.kernels.contacts import SETTLING_CONTACTS, SETTLING_HEIGHT
 from pinjoint.systems.collision.driven.kernels.groups import chain_groups, end_groups, root_of
-from pinjoint.systems.collision.driven.kernels.joint_impacts import resolve
 from pinjoint.systems.collision.driven.kernels.paths import TOUCHING_GAP, is_left_alone, opening, touching_gap
 from pinjoint.systems.collision.kernels import compiled
+from pinjoint.systems.collision.kernels.impact import respond
 from pinjoint.systems.collision.kernels.pairs import gap_of
+from pinjoint.systems.collision.kernels.projection import compliance
 from pinjoint.systems.collision.system import REST_HEIGHT
 from pinjoint.systems.entries import Account, Control
 
@@ -103,6 +104,8 @@ def _resolve_group(driven, first, control, account, place, speed):
             members, group.links[contacts, e] = _member(driven, driven.pairs[k, e], members, speed)
         group.contacts[contacts, Contact.NX] = driven.normal[k, 0]
         group.contacts[contacts, Contact.NY] = driven.normal[k, 1]
+        group.contacts[contacts, Contact.BIAS] = 0.0
+        group.contacts[contacts, Contact.COMPLIANCE] = compliance(contacts, contacts, group)
         approaches = approaches or driven.rate[k] < 0.0
         if driven.rate[k] < -driven.slow[k]:
             any_fast = True
@@ -111,7 +114,7 @@ def _resolve_group(driven, first, control, account, place, speed):
         t = driven.chain[t]
     if not approaches:
         return
-    resolve(members, contacts, restitution if any_fast else 0.0, 0.0, group)
+    respond(members, contacts, restitution if any_fast else 0.0, group)
     for m in range(members):
         if group.members[m] < n:
             for d in range(2):
@@ -126,8 +129,12 @@ def _resolve_group(driven, first, control, account, place, speed):
         c += 1
         t = driven.chain[t]
     account[Account.DISSIPATED_IMPACT] += loss
-    if any_fast and total > 0.0:
-        _report(driven, first, loss, total, control, place)
+    c, t = 0, first
+    while any_fast and t != NONE:  # each has a share of the energy lost by its impulse
+        impulse, k = group.contacts[c, Contact.TOTAL_IMPULSE], driven.touching[t]
+        if impulse > 0.0:
+            report_impact(driven, k, control[Control.TIME], impulse, loss * impulse / total, place)
+        c, t = c + 1, driven.chain[t]
 
 
 @compiled
@@ -145,27 +152,14 @@ def _member(driven, i, members, speed):
 
 
 @compiled
-def _report(driven, first, loss, total, control, place):
-    """Report the impacts of a group, each with a share of the energy lost by its impulse."""
-    c, t = 0, first
-    while t != NONE:
-        impulse, k = driven.group.contacts[c, Contact.TOTAL_IMPULSE], driven.touching[t]
-        c += 1
-        t = driven.chain[t]
-        if impulse <= 0.0:
-            continue
-        report_impact(driven, k, control[Control.TIME], impulse, loss * impulse / total, place)
-
-
-@compiled
 def report_impact(driven, k, time, impulse, loss, place):
     """Report the impact of a pair at a time (s) and these displacements, with its impulse (N·s) and energy lost (J)."""
-    details, row = driven.report.details, driven.whole[Whole.REPORTED]
-    i = driven.pairs[k, 0]
-    driven.report.pairs[row, 0], driven.report.pairs[row, 1] = i, driven.pairs[k, 1]
-    details[row, Detail.TIME], details[row, Detail.IMPULSE], details[row, Detail.LOSS] = time, impulse, loss
-    details[row, Detail.X] = driven.position[i, 0] + place[i, 0] + driven.normal[k, 0] * driven.radius[i]
-    details[row, Detail.Y] = driven.position[i, 1] + place[i, 1] + driven.normal[k, 1] * driven.radius[i]
+    report, row = driven.report, driven.whole[Whole.REPORTED]
+    i, j = driven.pairs[k, 0], driven.pairs[k, 1]
+    report[row, Detail.TIME], report[row, Detail.FIRST], report[row, Detail.SECOND] = time, i, j
+    report[row, Detail.IMPULSE], report[row, Detail.LOSS] = impulse, loss
+    report[row, Detail.X] = driven.position[i, 0] + place[i, 0] + driven.normal[k, 0] * driven.radius[i]
+    report[row, Detail.Y] = driven.position[i, 1] + place[i, 1] + driven.normal[k, 1] * driven.radius[i]
     driven.whole[Whole.REPORTED] += 1
 
 

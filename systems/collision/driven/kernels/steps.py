@@ -199,10 +199,7 @@ def _retry(driven, control, account, place, speed, end):
 
 @compiled
 def _accept(driven):
-    """The step is as it is to be: close its contacts for good, and take it, if it was only foreseen."""
-    if driven.whole[Whole.LOOSE]:
-        driven.whole[Whole.LOOSE] = 0
-        return _go_on(driven, Phase.TRIED)
+    """The step is as it is to be: take it, if it was only foreseen."""
     driven.whole[Whole.PHASE] = Phase.OVER
     return Order.TAKE if driven.whole[Whole.FORESEEN] else Order.GO_ON
 
@@ -296,7 +293,7 @@ def _close(driven, control, account, place, speed):
 @compiled
 def _has_room(driven):
     """True if there is room to report an impact of every pair."""
-    return driven.whole[Whole.REPORTED] + driven.whole[Whole.LISTED] <= driven.report.pairs.shape[0]
+    return driven.whole[Whole.REPORTED] + driven.whole[Whole.LISTED] <= driven.report.shape[0]
 
 
 @compiled
