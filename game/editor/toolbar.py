@@ -32,7 +32,7 @@ def toolbar_of(context: Context) -> Toolbar:
     groups = (
         tuple(filter(None, (tool(context, name) for name in group))) for group in actions_of_toolbar(context)
     )
-    return Toolbar(tuple(group for group in groups if group), tool(context, "more tools"))
+    return Toolbar(tuple(group for group in groups if group))
 
 
 def actions_of_toolbar(context: Context) -> list[list[str]]:

@@ -75,27 +75,21 @@ def circle(radius: float) -> Points:
     return radius * np.stack([np.cos(angle), np.sin(angle)], axis=1)
 
 
-def arcs(centres: Points, radius: float, middle: Points, reach: float) -> tuple[Points, NDArray[np.bool_]]:
-    """The parts of large circles about centres (n, 2) that come near a point, as lines, shape (k, corners, 2).
-    And which circles do, (n,).
+def arc(centre: Points, radius: float, middle: Points, reach: float) -> Points:
+    """The part of a large circle that is within `reach` of the point `middle`, both (2,), as a line (k, 2); else (0, 2).
 
-    All that is within `reach` of the point `middle` (2,) belongs to them. They are built from there, so that no digits
-    cancel however large the circles are.
+    It is built from that point, so that no digits cancel however large the circle is.
     """
-    away = middle - centres
-    distance = np.hypot(*away.T)
-    passing = np.abs(distance - radius) <= reach
-    away, distance = away[passing], distance[passing]
-    out = away / np.where(distance > 0.0, distance, 1.0)[:, None]
-    out[distance == 0.0] = (1.0, 0.0)
+    away = middle - centre
+    distance = float(np.hypot(*away))
+    if abs(distance - radius) > reach:
+        return np.empty((0, 2))
+    out = away / distance if distance > 0.0 else np.array([1.0, 0.0])
     half = math.pi if 2.0 * reach >= radius else 1.1 * math.asin(2.0 * reach / radius)
-    corners = max(12, math.ceil(half / math.pi * 16.0 * math.sqrt(radius)))
-    angle = np.linspace(-half, half, corners)[:, None]
+    angle = np.linspace(-half, half, max(12, math.ceil(half / math.pi * 16.0 * math.sqrt(radius))))[:, None]
     along, down = radius * np.sin(angle), 2.0 * radius * np.sin(0.5 * angle) ** 2
-    nearest = middle - out * (distance - radius)[:, None]
-    side = np.stack([-out[:, 1], out[:, 0]], axis=1)
-    found: Points = nearest[:, None] + side[:, None] * along - out[:, None] * down
-    return found, passing
+    found: Points = middle - (distance - radius + down) * out + along * [-out[1], out[0]]
+    return found
 
 
 def _bar(left: float, top: float, right: float, bottom: float) -> Points:

@@ -36,11 +36,11 @@ def _put_strip(paper: Paper, toolbar: Toolbar, view: View, theme: Theme) -> None
     """The bar with a hairline at its right edge, and its buttons, the last group at the bottom."""
     s, thin = view.strip, max(round(paper.unit), 1)
     paper.marks += [boxes(theme.panel, s.box), boxes(theme.line, (s.right - thin, s.top, thin, s.height))]
-    columns, groups, high = toolbar.shown(view.camera.viewport, paper.unit)
+    columns, high = toolbar.columns(view.camera.viewport, paper.unit)
     parts: list[Part] = []
-    for number, group in enumerate(groups):
+    for number, group in enumerate(toolbar.groups):
         if number:
-            parts.append(Gap(high=GAP, grow=float(number == len(groups) - 1)))
+            parts.append(Gap(high=GAP, grow=float(number == len(toolbar.groups) - 1)))
         parts += [
             Row([_button(tool, theme) for tool in row], high=high) for row in in_rows(list(group), columns)
         ]

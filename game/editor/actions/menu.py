@@ -7,7 +7,6 @@ from operator import attrgetter
 
 from pinjoint.components.field import Vector
 from pinjoint.components.language import marked, tr
-from pinjoint.components.menu import Menu
 from pinjoint.components.particle import Particle
 from pinjoint.components.rod import Rod
 from pinjoint.editor.actions.editing import all_of
@@ -20,7 +19,7 @@ from pinjoint.systems.edit.placing import snapped
 from pinjoint.systems.edit.rods import share_at
 from pinjoint.systems.edit.supports import SUPPORTS, Held, held, support
 from pinjoint.systems.edit.weight import weigh_along
-from pinjoint.systems.input.actions import ACTIONS, IN_PICTURES, MENU, PAUSE, Perform, actions_of
+from pinjoint.systems.input.actions import ACTIONS, MENU, PAUSE, Perform, actions_of
 from pinjoint.systems.render.menu import entry_beside, pointed_at
 from pinjoint.systems.render.theme import load_theme
 
@@ -61,14 +60,6 @@ def _choose_nothing(context: Context, pixel: Vector) -> None:
 @action("close menu", "escape", "close the menu", in_menu=False)
 def _close_menu(context: Context, pixel: Vector) -> None:
     context.view.menu = None
-
-
-@action("more tools", "", "show more tools", IN_PICTURES)
-def _more_tools(context: Context, pixel: Vector) -> None:
-    """The tools for which the toolbar has no room."""
-    view = context.view
-    groups = view.toolbar.folded(view.camera.viewport, view.pixel_ratio)
-    context.view.menu = Menu("", groups, pixel, pointed=pixel) if groups else None
 
 
 @offer("environment", "", "open the properties of the environment")
