@@ -49,8 +49,7 @@ class PygameRender(System):
     def process(self, frame: Any) -> None:
         """Draw every stage of the scene, unless the picture would be the same as the last."""
         stages = frame.session.stages
-        looks = tuple(view.looks for _, view in stages)
-        shown = (id(self.surface), language(), looks, _revisions(stages))
+        shown = id(self.surface), _looks(stages)
         self.drawn = shown != self.shown or (self._sketch and self._canvas.draws_all)
         if self.drawn:
             self.shown = None  # until all of it is drawn
@@ -60,7 +59,7 @@ class PygameRender(System):
             for picture in compose_all(stages, theme, lambda *stage: self._placed[_looked_at(*stage)]):
                 self._canvas.draw(self.surface, picture)
                 self._sketch |= self._canvas.sketch
-            self.shown = (id(self.surface), language(), looks, _revisions(stages))
+            self.shown = id(self.surface), _looks(stages)  # drawing may compute forces
 
 
 def draw_unseen(frame: Any, size: tuple[int, int]) -> None:
@@ -75,8 +74,14 @@ def _unseen() -> PygameRender:
 
 def _looked_at(shown: Model | Form | Toolbar, view: View) -> str:
     """The model and the view of a stage: while they are the same, labels keep their places."""
-    return f"{'' if isinstance(shown, Toolbar) else shown.context} {view.camera}"
+    return f"{shown.context if isinstance(shown, Model) else ''} {view.camera}"
 
 
-def _revisions(stages: Sequence[tuple[Model | Form | Toolbar, View]]) -> tuple[tuple[str, int], ...]:
-    return tuple((shown.context, shown.revision) for shown, _ in stages if not isinstance(shown, Toolbar))
+def _looks(stages: Sequence[tuple[Model | Form | Toolbar, View]]) -> tuple[object, ...]:
+    """All that the pictures of some stages follow from."""
+    shown = (
+        s.looks if isinstance(s, Form) else (s.context, s.revision)
+        for s, _ in stages
+        if not isinstance(s, Toolbar)
+    )
+    return language(), tuple(view.looks for _, view in stages), tuple(shown)

@@ -28,7 +28,7 @@ class Save(FileScene):
 
     def choose(self, context: Context, tile: Tile) -> None:
         """Take the name of a tile, to use it again or change it a little."""
-        self.form.choose(None)
+        self.form.chosen = None
         typing.select(self.form, self.box)
         typing.put(self.form, self.box, tile.file)
         self.changed(context)

@@ -26,7 +26,7 @@ def test_the_whole_explanation_of_every_tile_is_shown(window: Window) -> None:
         told = [tile for tile in scene.form.tiles if tile.explanation]
         assert max(len(tile.explanation) for tile in told) > 400
         for tile in told:
-            scene.form.choose(tile)
+            scene.form.chosen = tile
             [picture] = composed(session)
             said = " ".join(mark.text for mark in picture.marks if isinstance(mark, Text))
             assert " ".join(tile.explanation.split()) in said
@@ -40,7 +40,7 @@ def test_rows_of_a_section_are_about_equally_long(window: Window) -> None:
         session = STATES["welcome"](window)
         scene = session.scenes.active
         assert isinstance(scene, Load)
-        scene.form.delete([tile for tile in scene.form.tiles if tile.rest])  # nothing is folded
+        scene.form.tiles = [tile for tile in scene.form.tiles if not tile.rest]  # nothing is folded
         layout = scene.layout(session)
         pills = [row for row in layout.rows if all(isinstance(item, Tile) and item.symbol for item in row)]
         assert sum(map(len, pills)) >= 5
