@@ -26,7 +26,6 @@ from pinjoint.systems.render.typography import WEIGHTS, capital_height
 _FINE = 8  # symbols and corners are drawn this much larger, then reduced
 _PHASES = 4  # positions of a symbol within a pixel, each way
 _MOST_CACHED = 4000  # rendered texts, symbols and panels
-_SKETCHED = 1_500  # elements of a kind
 _LONGEST = 4000  # characters that are drawn of a text: more than any window is wide
 _MANY = 300  # bars, discs; and 50 pixels of strokes for each: from there on the compiled kernels pay
 
@@ -34,14 +33,12 @@ _MANY = 300  # bars, discs; and 50 pixels of strokes for each: from there on the
 class Canvas:
     """Draws pictures; keeps the texts, symbols and panels it has rendered.
 
-    raster: returns the compiled drawing of large pictures, or None while it is being compiled; until then a
-        sketch with some of the elements is drawn. Without it, or where nothing is compiled, all elements are drawn
-        slowly.
+    raster: returns the compiled drawing of large pictures, or None while it is being compiled; until then, and where
+        nothing is compiled, they take some ten times as long.
     """
 
-    def __init__(self, raster: Callable[[], Raster | None] | None = None) -> None:
-        self.sketch = False  # the last picture is a sketch
-        self._raster = raster if Choice.compile is not Compile.NEVER else None
+    def __init__(self, raster: Callable[[], Raster | None] = lambda: None) -> None:
+        self._raster = raster if Choice.compile is not Compile.NEVER else lambda: None
         if not pygame.font.get_init():
             pygame.font.init()
         self._cache: dict[Any, Any] = {}
@@ -56,7 +53,6 @@ class Canvas:
         v = picture.viewport
         before = surface.get_clip()
         surface.set_clip(pygame.Rect(*v.box).clip(before))
-        self.sketch = False
         if picture.background is not None:
             surface.fill(picture.background)
         for mark in picture.marks:
@@ -88,38 +84,21 @@ class Canvas:
             found = self._cache[key] = self._former.pop(key, None) or make()
         return found
 
-    @property
-    def draws_all(self) -> bool:
-        """False while large pictures can only be sketched."""
-        return self._raster is None or self._large() is not None
-
-    def _large(self) -> Raster | None:
-        return self._raster() if self._raster is not None else None
-
-    def _some(self, count: int) -> slice:
-        """All of `count` elements, or the sample that a sketch shows."""
-        if self._raster is None or count <= _MANY:
-            return slice(None)
-        self.sketch = True
-        return slice(None, None, count // _SKETCHED + 1)
-
     # --- lines and areas -----------------------------------------------------------------------------
 
     def _strokes(self, surface: pygame.Surface, mark: Strokes) -> None:
         many = len(mark.start) > _MANY
         many = many or stroke_pixels_estimate(mark.start, mark.end, mark.width) > 50 * _MANY
-        if many and (raster := self._large()):
+        if many and (raster := self._raster()):
             raster.strokes(_pixels(surface), _clip(surface), mark, _pixel(surface, mark.colour))
         else:
-            some = self._some(len(mark.start))
-            x, y, amount = stroke_coverage(mark.start[some], mark.end[some], mark.width)
-            _blend(surface, x, y, amount, mark.colour)
+            _blend(surface, *stroke_coverage(mark.start, mark.end, mark.width), mark.colour)
 
     def _bars(self, surface: pygame.Surface, mark: Bars) -> None:
-        if len(mark.start) > _MANY and (raster := self._large()):
+        if len(mark.start) > _MANY and (raster := self._raster()):
             raster.bars(_pixels(surface), _clip(surface), mark, _pixel(surface, mark.colour))
         else:
-            _fill(surface, mark.corners[self._some(len(mark.start))], mark.colour)
+            _fill(surface, mark.corners, mark.colour)
 
     def _panel(self, surface: pygame.Surface, mark: Panel) -> None:
         left, top = round(mark.left), round(mark.top)
@@ -142,14 +121,13 @@ class Canvas:
         surface.fblits(pairs)
 
     def _discs(self, surface: pygame.Surface, mark: Discs) -> None:
-        if len(mark.at) > _MANY and (raster := self._large()):
+        if len(mark.at) > _MANY and (raster := self._raster()):
             colours = _pixel(surface, mark.ink), _pixel(surface, mark.hollow)
             raster.discs(_pixels(surface), _clip(surface), mark, *colours)
         else:
-            some = self._some(len(mark.at))
-            fine = np.round(4.0 * mark.radius[some])
+            fine = np.round(4.0 * mark.radius)
             for quarters in np.unique(fine).tolist():
-                size, at = quarters / 4.0, mark.at[some][fine == quarters]
+                size, at = quarters / 4.0, mark.at[fine == quarters]
                 symbol, unit = ("ring", mark.rim / RIM) if mark.rim else ("disc", 1.0)
                 self._stamps(surface, Stamps(symbol, at, size, unit, mark.ink, mark.hollow))
 

@@ -33,13 +33,12 @@ class PygameRender(System):
     reads = ("document", "state", "view")
     writes = ("surface",)
 
-    def __init__(self, surface: pygame.Surface, raster: Callable[[], Raster | None] | None = None) -> None:
+    def __init__(self, surface: pygame.Surface, raster: Callable[[], Raster | None] = lambda: None) -> None:
         self.surface = surface
         self.drawn = False
         self._canvas = Canvas(raster)
         self.shown: Any = None
         self._placed: dict[str, Placed] = {}
-        self._sketch = False  # the last picture was a sketch, before the drawing of large ones was compiled
 
     def draw_on(self, surface: pygame.Surface, frame: Any) -> None:
         """Draw on another surface, on which nothing is yet."""
@@ -50,15 +49,13 @@ class PygameRender(System):
         """Draw every stage of the scene, unless the picture would be the same as the last."""
         stages = frame.session.stages
         shown = id(self.surface), _looks(stages)
-        self.drawn = shown != self.shown or (self._sketch and self._canvas.draws_all)
+        self.drawn = shown != self.shown
         if self.drawn:
             self.shown = None  # until all of it is drawn
             theme = load_theme(frame.session.view.theme)
-            self._sketch = False
             self._placed = {_looked_at(*stage): self._placed.get(_looked_at(*stage), {}) for stage in stages}
             for picture in compose_all(stages, theme, lambda *stage: self._placed[_looked_at(*stage)]):
                 self._canvas.draw(self.surface, picture)
-                self._sketch |= self._canvas.sketch
             self.shown = id(self.surface), _looks(stages)  # drawing may compute forces
 
 
