@@ -19,7 +19,7 @@ from pinjoint.systems.render.occupancy import STRONG
 from pinjoint.systems.render.sheet import Rows, Sheet
 from pinjoint.systems.render.structure import HALO_OPACITY
 from pinjoint.systems.render.theme import Colour, faded
-from pinjoint.systems.render.values import BACKING, beside
+from pinjoint.systems.render.values import BACKING, beside, half_sizes
 
 WIDTH = 4.0  # points, of the line that is drawn
 
@@ -92,7 +92,7 @@ def _thick(start: Points, end: Points, width: float, colour: Colour, rows: Rows)
 def name_wall(sheet: Sheet, row: int, start: NDArray[np.float64], end: NDArray[np.float64]) -> None:
     """Place the name of a wall beside its middle, where there is room."""
     size, name = sheet.font(12.0), sheet.model.tables["walls"].names[row]
-    places = beside(sheet, name, start, end, (0.5, 0.3, 0.7), WIDTH)
+    places = beside(half_sizes(sheet, [name])[0], start, end, WIDTH * sheet.unit, (0.5, 0.3, 0.7))
     backing = faded(sheet.theme.background, BACKING)
     label = Label(name, places, size, sheet.theme.text, 1e11, "semibold", backing, of=("walls", row))
     sheet.labels.append(label)
