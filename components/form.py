@@ -64,6 +64,12 @@ class Box:
         return tr("{quantity} {part}", quantity=tr(quantity), part=tr(part[0]))
 
     @property
+    def vector(self) -> str:
+        """The vector that it is a part of, whose boxes share a row, such as "particles.force", or ""."""
+        vector = self.target.rpartition(".")[0]
+        return vector if "." in vector else ""
+
+    @property
     def said_text(self) -> str:
         """What it contains in the present language: one of its words, or a number with the decimal sign of that."""
         if self.text in self.words:

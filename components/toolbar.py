@@ -1,10 +1,11 @@
-"""Toolbar: buttons at the left edge of the window, and in how many columns they have room there."""
+"""Toolbar: buttons at the left edge of the window, and in how many columns they have room there; and menus of the same."""
 
 from __future__ import annotations
 
 from dataclasses import dataclass
 
 from pinjoint.components.camera import Viewport
+from pinjoint.components.field import Vector
 
 BUTTON = 30.0, 26.0  # points, width and height
 LEAST_HEIGHT = 23.5  # points of a button in a low window, before another column begins
@@ -49,3 +50,23 @@ class Toolbar:
             if window.width >= LEAST_WIDTH * unit and rows * LEAST_HEIGHT <= room:
                 return columns, min(BUTTON[1], room / rows)
         return 0, 0.0
+
+
+@dataclass(frozen=True)
+class Menu:
+    """Entries in groups under a title, opened at a pixel, where they act.
+
+    chosen: the number of the entry that keys have come to; -1: none yet. pointed: where the pointer was then; once it
+    is elsewhere, the entry under it counts.
+    """
+
+    title: str
+    groups: tuple[tuple[Tool, ...], ...]
+    at: Vector
+    chosen: int = -1
+    pointed: Vector | None = None
+
+    @property
+    def entries(self) -> tuple[Tool, ...]:
+        """The entries of all groups, from the top."""
+        return tuple(tool for group in self.groups for tool in group)

@@ -71,7 +71,6 @@ from pinjoint.systems.physics.integrators import (
     runge_kutta_constants,
 )
 from pinjoint.systems.physics.tableaus import Tableau
-from pinjoint.systems.render.icons import Part
 from pinjoint.systems.render.marks import (
     Bars,
     Discs,
@@ -86,6 +85,7 @@ from pinjoint.systems.render.marks import (
     boxes,
 )
 from pinjoint.systems.render.sheet import Sheet
+from pinjoint.systems.render.symbols import Part
 from pinjoint.systems.render.theme import Colour, Theme, faded
 
 __all__ = [

@@ -6,9 +6,9 @@ from collections.abc import Sequence
 
 from pinjoint.components.field import Vector
 from pinjoint.components.language import begun, marked, tr
-from pinjoint.components.menu import Menu
 from pinjoint.components.particle import Particle
 from pinjoint.components.rod import Rod, rigid_joints
+from pinjoint.components.toolbar import Menu
 from pinjoint.editor.context import Context
 from pinjoint.editor.toolbar import actions_of_toolbar, of_mods, tool
 from pinjoint.systems.edit.dividing import DIVISIONS

@@ -97,7 +97,9 @@ def subjects(model: Model, selected: Sequence[Handle]) -> list[Subject]:
         found = [_subject(model, heading(model, []), [model.environment])]
         found += [_subject(model, model.describe(grid), [grid]) for grid in model.grids if grid.shown]
     found += [part for subject in found for part in _parts(model, subject)]
-    found += [_subject(model, model.describe(load), [load]) for load in _loads_on(model, selected)]
+    if len(selected) == 1 and isinstance(selected[0], Particle):
+        loads = [load for load in model.loads if load.on == selected[0].row]
+        found += [_subject(model, model.describe(load), [load]) for load in loads]
     for section, kind, of_rods in ((tr("All particles"), Particle, False), (tr("All rods"), Rod, True)):
         if not selected or kind in kinds:
             fields = model.tables[Settings.table].fields_in(*SAVED)
@@ -127,12 +129,6 @@ def _turn(model: Model, subject: Subject) -> bool:
     particles = model.particles
     given = particles.fixed_rotation | (particles.moment != 0.0) | ~np.isnan(particles.prescribed_inertia)
     return kind is Particle and bool((rigid_joints(model) | given)[rows].any())
-
-
-def _loads_on(model: Model, selected: Sequence[Handle]) -> list[Load]:
-    if len(selected) != 1 or not isinstance(selected[0], Particle):
-        return []
-    return [load for load in model.loads if load.on == selected[0].row]
 
 
 def _subject(model: Model, section: str, elements: Sequence[Handle]) -> Subject:

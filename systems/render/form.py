@@ -177,7 +177,8 @@ class _Writer:
 
     def _footer(self, hint: str, hovered: object) -> Column:
         """The explanation of what is pointed at, chosen or selected, and the next possible steps."""
-        texts = [tr(item.explanation) for item in (*self.form.tiles, *self.form.boxes)]
+        items: list[Tile | Box] = [*self.form.tiles, *self.form.boxes]
+        texts = [tr(item.explanation) for item in items]
         needed = (
             Text(text, _TOLD, self.theme.text, lines=ALL, apart=_APART).height(self.u, self.width)
             for text in texts
@@ -302,17 +303,11 @@ def _box_lines(form: Form, width: float, u: float) -> Iterator[_Line]:
     for section, those in groupby(form.boxes, lambda box: box.section):
         own = section == form.heading
         title = PROPERTIES if own and len(form.readings) else "" if own else section
-        for (vector, short), some in groupby(those, lambda box: (_partner(box), is_short(box, half, u))):
+        for (vector, short), some in groupby(those, lambda box: (box.vector, is_short(box, half, u))):
             columns = 2 if short and half >= (_NARROWEST if vector else _NARROW) * u else 1
             for row in in_rows(list(some), columns):
                 yield _Line(title, row, columns)
                 title = ""
-
-
-def _partner(box: Box) -> str:
-    """The key that boxes of one row share: the vector that they belong to, or that they are single."""
-    table, name, *axis = box.target.split(".")
-    return f"{table}.{name}" if axis else ""
 
 
 def _tile_lines(form: Form, width: float) -> Iterator[_Line]:

@@ -13,7 +13,6 @@ from pinjoint.components.language import listed, tr
 from pinjoint.components.mistake import WrongValue
 from pinjoint.components.wording import printable
 from pinjoint.systems.render.clip import bounds, clip_segments
-from pinjoint.systems.render.icons import icons
 from pinjoint.systems.render.marks import (
     Bars,
     Discs,
@@ -28,7 +27,15 @@ from pinjoint.systems.render.marks import (
     Text,
     owners,
 )
-from pinjoint.systems.render.symbols import LARGEST_STAMP, SUPPORT_DEPTH, SYMBOLS, arc, circle, turned_parts
+from pinjoint.systems.render.symbols import (
+    LARGEST_STAMP,
+    SUPPORT_DEPTH,
+    SYMBOLS,
+    arc,
+    circle,
+    icons,
+    turned_parts,
+)
 from pinjoint.systems.render.theme import Colour
 from pinjoint.systems.render.typography import WEIGHTS
 

@@ -43,7 +43,8 @@ def draw_free_bodies(sheet: Sheet) -> None:
         return
     if not long.all():
         sheet.notes.append(tr("zoom in to see short rods as free bodies, too"))
-    largest = _largest(sheet, force)
+    acting = sheet.model.particles.applied_force, sheet.model.particles.reaction, force
+    largest = max(SMALLEST, *(float(np.abs(values).max(initial=0.0)) for values in acting))
     _draw_rods(sheet, known, long, largest)
     inertia = np.hypot(*known.left_over.T) > _SMALLEST_SHARE * largest
     inertia |= np.abs(known.left_over_moment) > _SMALLEST_SHARE * np.abs(known.on_ends[..., 2]).max(initial=0.0)
@@ -51,12 +52,6 @@ def draw_free_bodies(sheet: Sheet) -> None:
         others = [f for f in on_joint(sheet.model, row, known) if f.kind != "rod"]
         others = [f for f in others if f.kind != "inertia" or inertia[row]]
         _draw_others(sheet, row, others, largest)
-
-
-def _largest(sheet: Sheet, force: NDArray[np.float64]) -> float:
-    particles = sheet.model.particles
-    acting = [particles.applied_force, particles.reaction, force]
-    return max(SMALLEST, *(float(np.abs(values).max(initial=0.0)) for values in acting))
 
 
 def _draw_rods(sheet: Sheet, known: Apart, long: NDArray[np.bool_], largest: float) -> None:

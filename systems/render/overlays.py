@@ -39,7 +39,7 @@ def draw_overlays(sheet: Sheet) -> tuple[list[Mark], tuple[float, float]]:
     v, u = sheet.viewport, sheet.unit
     text, heading = _heading(sheet.view.heading, sheet.theme), Paper(u)
     room = v.width - 2 * EDGE * u
-    right, top = v.left, v.top
+    right, top = float(v.left), float(v.top)
     if sheet.view.heading:
         lines = text.height(u, room)
         heading.put(text, Rectangle(v.left + EDGE * u, v.top + 9.0 * u, room, lines))

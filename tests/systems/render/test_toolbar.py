@@ -13,9 +13,9 @@ from pinjoint.components.toolbar import Tool
 from pinjoint.components.view import Hit, drawn_positions
 from pinjoint.editor.toolbar import TOOLBAR, of_mods
 from pinjoint.systems.input.actions import ACTIONS
-from pinjoint.systems.render.icons import icon, icons
 from pinjoint.systems.render.marks import Panel, Stamps, Text
 from pinjoint.systems.render.picture import compose, compose_all
+from pinjoint.systems.render.symbols import icon, icons
 from pinjoint.systems.render.theme import load_theme
 from pinjoint.systems.render.typography import capital_height
 from tests.reference.boxes import overlap, text_box
