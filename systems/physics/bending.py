@@ -5,8 +5,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from pinjoint.components.derived import chord_rotation
-from pinjoint.components.diagrams import rigid_slopes
+from pinjoint.components.derived import chord_rotation, rigid_slopes
 from pinjoint.components.model import Model
 from pinjoint.components.rod import bends
 
