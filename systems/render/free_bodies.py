@@ -20,13 +20,17 @@ from pinjoint.systems.render.members import draw_arcs, gaps, write_moment
 from pinjoint.systems.render.occupancy import STRONG
 from pinjoint.systems.render.sheet import Sheet
 from pinjoint.systems.render.theme import Colour
-from pinjoint.systems.render.values import BY_ARROW, SMALLEST, beside, by_arrows, half_sizes, off, write
+from pinjoint.systems.render.values import SMALLEST, beside, by_arrows, half_sizes, off, write
 
 MOST = 150  # rods that are taken apart: of more, arrows would hide one another
 SHORTEST = 74.0  # points: shorter rods stay whole, since there is no room for arrows
 _CLEAR = math.cos(math.radians(24.0))  # of the angle between an arrow and the rods that leaves both readable
 _ASIDE = 10.0  # points by which an arrow stands beside a rod where all is taken
-_PIECES, _ARC = 16, 9.0  # of a bent rod; points, radius of the arrow of a moment at its end
+_PIECES, _ARC, _APART = (
+    16,
+    9.0,
+    4.0,
+)  # of a bent rod; points: radius of the arrow of a moment at its end, to a value
 _SMALLEST_SHARE = 1e-3  # of the largest force: a smaller one of inertia is told, not drawn
 
 
@@ -150,7 +154,7 @@ def _draw_bending(
                 rod_ends[side][index],
             )
             ways = np.array([[0.0, -1.0], [0.0, 1.0], across[index], -across[index]])
-            places = off(at, ways, (_ARC + BY_ARROW) * u, half_sizes(sheet, [text]))
+            places = off(at, ways, (_ARC + _APART) * u, half_sizes(sheet, [text]))
             first, last = at + _ARC * u * ways[:2]
             key_of_value = "rods.bending_moment", 2 * row + side
             _write(sheet, text, places, colour, key_of_value, ("rods", row), (first, last))
@@ -213,7 +217,7 @@ def _write(
     places: or what finds them from half the size of the value, the line and the gap.
     """
     if callable(places):
-        places = places(half_sizes(sheet, [text])[0], *own, BY_ARROW * sheet.unit)
+        places = places(half_sizes(sheet, [text])[0], *own, _APART * sheet.unit)
     at = places[sheet.sees(places)]
     others = sheet.rods != (of[1] if of[0] == "rods" else -1)
     away = distance_to_segments(at[:, None], sheet.start[others], sheet.end[others]).min(axis=1, initial=np.inf)
