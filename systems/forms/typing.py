@@ -41,7 +41,7 @@ def restore(form: Form) -> str:
     if box is None:
         return ""
     typed = box.text
-    _set(form, box, box.held, len(box.held))
+    put(form, box, box.held)
     select(form, None)
     if typed in ("", box.held):
         return ""
@@ -87,7 +87,7 @@ def write(form: Form, text: str) -> str:
     for character in text:
         entered = _entered(box, character)
         if entered is not None and len(entered[0]) <= MOST_CHARACTERS:
-            _set(form, box, *entered)
+            put(form, box, *entered)
         elif not character.isspace():
             refused += character
     if not refused or box.accepts != NUMBER:
@@ -110,11 +110,11 @@ def erase(form: Form, *, after: bool = False) -> None:
         return
     text, caret = box.text, box.caret
     if box.marked or text in box.words:
-        _set(form, box, "", 0)
+        put(form, box, "", 0)
     elif after:
-        _set(form, box, text[:caret] + text[caret + 1 :], caret)
+        put(form, box, text[:caret] + text[caret + 1 :], caret)
     elif caret:
-        _set(form, box, text[: caret - 1] + text[caret:], caret - 1)
+        put(form, box, text[: caret - 1] + text[caret:], caret - 1)
 
 
 def place_caret(form: Form, caret: int) -> None:
@@ -147,18 +147,14 @@ def turn_word(form: Form, box: Box, by: int = 1) -> None:
     words = box.words
     at = words.index(box.text) if box.text in words else -1 if by > 0 else 0
     word = words[(at + by) % len(words)]
-    _set(form, box, word, len(word))
+    put(form, box, word)
     box.marked = True
 
 
-def put(form: Form, box: Box, text: str) -> None:
-    """Replace all text of a box."""
-    _set(form, box, text, len(text))
-
-
-def _set(form: Form, box: Box, text: str, caret: int) -> None:
+def put(form: Form, box: Box, text: str, caret: int | None = None) -> None:
+    """Replace all text of a box; caret: behind how many characters it stands, if not at the end."""
     box.text = text
-    box.caret = caret
+    box.caret = len(text) if caret is None else caret
     box.marked = False
     box.problem = form.check(box)
 

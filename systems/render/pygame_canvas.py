@@ -229,15 +229,12 @@ def _rounded(size: tuple[int, int], mark: Panel) -> pygame.Surface:
     least = 2 * math.ceil(mark.radius) + 5  # the column and row in the middle are part of no corner
     small = _small_rounded((min(size[0], least), min(size[1], least)), mark)
     whole = pygame.Surface(size, pygame.SRCALPHA)
-    columns, rows = (_stretched(length, min(length, least)) for length in size)
+    columns, rows = (  # of the small one, the middle ones repeated
+        np.maximum(np.minimum(np.arange(n), short // 2), np.arange(n) - (n - short))
+        for n, short in zip(size, small.get_size(), strict=True)
+    )
     _pixels(whole)[:, : size[0]] = _pixels(small)[rows][:, columns]
     return whole
-
-
-def _stretched(length: int, short: int) -> NDArray[np.intp]:
-    """For each of `length` places its place in `short`, the middle one repeated."""
-    place = np.arange(length)
-    return np.maximum(np.minimum(place, short // 2), place - (length - short))
 
 
 def _small_rounded(size: tuple[int, int], mark: Panel) -> pygame.Surface:

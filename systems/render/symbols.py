@@ -33,21 +33,18 @@ _GROUND = 13.0  # points, half the length of the ground under it
 _SQUARE = 9.5  # points, half the side of a square around a joint that cannot turn
 
 
-def symbol_parts(symbol: str, size: float, unit: float) -> Parts:
-    """The polygons of a symbol in pixels, for a size in pixels and pixels per point.
+def turned_parts(stamp: Stamps) -> Parts:
+    """The polygons of a stamp about its place in pixels, by its quarter turns clockwise.
 
     The size of an icon is how many pixels the unit of its square takes.
     """
-    if symbol in SYMBOLS:
-        return SYMBOLS[symbol](size, unit)
-    return [("ink", polygon * size) for polygon in _icon(symbol)]
-
-
-def turned_parts(stamp: Stamps) -> Parts:
-    """The polygons of a stamp about its place, by its quarter turns clockwise."""
     across, down = ((1, 0), (0, 1), (-1, 0), (0, -1))[stamp.turns % 4]
     turn = np.array([[across, down], [-down, across]], dtype=np.float64)
-    return [(role, corners @ turn) for role, corners in symbol_parts(stamp.symbol, stamp.size, stamp.unit)]
+    if stamp.symbol in SYMBOLS:
+        parts = SYMBOLS[stamp.symbol](stamp.size, stamp.unit)
+    else:
+        parts = [("ink", polygon * stamp.size) for polygon in _icon(stamp.symbol)]
+    return [(role, corners @ turn) for role, corners in parts]
 
 
 def check_icon(parts: Sequence[Part]) -> None:
