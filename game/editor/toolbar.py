@@ -7,10 +7,9 @@ from collections.abc import Iterable, Sequence
 from pinjoint.components.extensions import EXTENSIONS
 from pinjoint.components.field import Vector
 from pinjoint.components.language import begun, marked, tr
-from pinjoint.components.menu import Menu
 from pinjoint.components.particle import Particle
 from pinjoint.components.rod import Rod, rigid_joints
-from pinjoint.components.toolbar import Tool, Toolbar
+from pinjoint.components.toolbar import Menu, Tool, Toolbar
 from pinjoint.editor.context import Context
 from pinjoint.editor.gestures.drawing import tool_in_hand
 from pinjoint.systems.edit.dividing import DIVISIONS
