@@ -192,12 +192,6 @@ def add_slider(context: Context, elements: Sequence[Handle], field: str, axis: s
     return slider
 
 
-def add_slider_for(context: Context, box: Box) -> Slider:
-    """Put a slider for the number in a box of properties on the canvas. Raises Refusal."""
-    _, field, axis = f"{box.target}.".split(".")[:3]
-    return add_slider(context, box.elements, field, axis)
-
-
 def _around(model: Model, field: Field[Any], value: float, aims: tuple[Aim, ...]) -> Slider:
     """A slider with a range that suits a Field with that value."""
     if field.name in ("position", "displacement") and not incomputable(model):

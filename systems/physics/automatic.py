@@ -29,11 +29,9 @@ def choose(model: Model) -> str:
     """
     if model.rods.count > AFFORDABLE or model.settings.time_step is not None:
         return "velocity_verlet"
-    if incomputable(model):  # no run can begin, but undo and properties ask as well
-        return suited_to(0.0)
     if model.rods.count > SMALL:
-        return suited_to(_stiffness(model))
-    return suited_to(float(stiffnesses(model, np.array([model.environment.drag]))[0]))
+        return suited_to(0.0 if incomputable(model) else _stiffness(model))
+    return suited_to(_stiffness_of_all_modes(model))
 
 
 def suited_to(stiffness: float) -> str:
@@ -42,12 +40,12 @@ def suited_to(stiffness: float) -> str:
 
 
 def _stiffness(model: Model) -> float:
-    """As `stiffnesses`, of a model that is too large for all its modes; by the one that the loads excite."""
+    """As _stiffness_of_all_modes, of a model that is too large for all its modes; by the one that the loads excite."""
     rods, particles = model.rods, model.particles
     if not free_coordinates(model).any():
         return 0.0
-    fastest = math.sqrt(_operator(model).gershgorin()[0])
-    fastest = max(fastest, _damping_operator(model).gershgorin()[0] + model.environment.drag)
+    fastest = math.sqrt(_operator(model).gershgorin())
+    fastest = max(fastest, _damping_operator(model).gershgorin() + model.environment.drag)
     mode = loaded_mode(model)
     if mode is None:  # a mechanism
         pull = float(np.hypot(*(particles.constant_force * particles.mobility).T).max())
@@ -61,23 +59,20 @@ def _stiffness(model: Model) -> float:
     return float(fastest * max(times))
 
 
-def stiffnesses(model: Model, drag: Array) -> Array:
-    """Slowest time scale × fastest rate of each of the equal disjoint blocks that a model consists of.
-
-    In the original geometry; 0 if nothing is stiff. The blocks are constrained alike. drag: the environment's
-    (1/s), one for each block.
-    """
-    rods, blocks = model.rods, len(drag)
-    if rods.count == 0 or not free_coordinates(model).any():
-        return np.zeros(blocks)
-    matrices = _of_frame(model) if bends(model) else _scaled_stiffness(model, blocks)
-    eigenvalues = np.asarray(np.linalg.eigvalsh(matrices), dtype=np.float64)
-    highest = np.maximum(eigenvalues[:, -1], 0.0)
-    dampers = _damping_operator(model).gershgorin(blocks) + drag
-    fastest = np.maximum(np.sqrt(highest), dampers)
-    with np.errstate(divide="ignore", invalid="ignore"):
-        found: Array = np.where(highest > 0.0, fastest * _slowest(model, eigenvalues, drag), 0.0)
-    return found
+def _stiffness_of_all_modes(model: Model) -> float:
+    """Slowest time scale × fastest rate, in the original geometry; 0 if nothing is stiff."""
+    if model.rods.count == 0 or not free_coordinates(model).any():
+        return 0.0
+    with np.errstate(all="ignore"):  # of such numbers no run can begin, but undo and properties ask as well
+        matrix = _of_frame(model) if bends(model) else _scaled_stiffness(model)
+        if not np.isfinite(matrix).all():
+            return 0.0
+    eigenvalues = np.asarray(np.linalg.eigvalsh(matrix), dtype=np.float64)
+    highest = max(float(eigenvalues[-1]), 0.0)
+    if highest == 0.0:
+        return 0.0
+    fastest = max(math.sqrt(highest), _damping_operator(model).gershgorin() + model.environment.drag)
+    return fastest * _slowest(model, eigenvalues)
 
 
 def _operator(model: Model) -> RodOperator:
@@ -97,46 +92,40 @@ def _damping_operator(model: Model) -> RodOperator:
 
 
 def _of_frame(model: Model) -> Array:
-    """_scaled_stiffness of a model that bends, which is one block; rotations count by their inertias."""
+    """_scaled_stiffness of a model that bends, rotations count by their inertias."""
     entries, rows, columns, stiffness, _ = deformations(model)
     free = free_coordinates(model)
     mobility = np.column_stack([model.particles.mobility, model.particles.turning])
     scaled = np.zeros((len(stiffness), free.size))
     scaled[rows, columns] = entries
     scaled = (scaled * np.sqrt(mobility).ravel())[:, free.ravel()]
-    matrices: Array = (scaled.T @ (scaled * stiffness[:, None]))[None]
-    return matrices
+    matrix: Array = scaled.T @ (scaled * stiffness[:, None])
+    return matrix
 
 
-def _slowest(model: Model, eigenvalues: Array, drag: Array) -> Array:
+def _slowest(model: Model, eigenvalues: Array) -> float:
     """The slowest of the periods and creep times of modes, swinging of mechanisms, and the loading (s)."""
-    rods, blocks = model.rods, len(drag)
-    has_own = eigenvalues > _RIGID * eigenvalues[:, -1:]
-    lowest = np.where(has_own, eigenvalues, math.inf).min(axis=1)
-    pull = np.hypot(*(model.particles.constant_force * model.particles.mobility).T).reshape(blocks, -1)
-    swinging = pull.max(axis=1) / rods.rest_length.reshape(blocks, -1).max(axis=1)
-    lowest = np.where(has_own.all(axis=1) | (swinging == 0.0), lowest, np.minimum(lowest, swinging))
-    creep = (rods.damping * rods.rest_length / rods.stiffness).reshape(blocks, -1).max(axis=1)
+    rods, drag = model.rods, model.environment.drag
+    own = eigenvalues[eigenvalues > _RIGID * eigenvalues[-1]]
+    pull = float(np.hypot(*(model.particles.constant_force * model.particles.mobility).T).max())
+    swinging = pull / float(rods.rest_length.max())
+    lowest = float(own.min())
+    if len(own) < len(eigenvalues) and swinging > 0.0:
+        lowest = min(lowest, swinging)
+    creep = float((rods.damping * rods.rest_length / rods.stiffness).max())
     end = loads_end(model)
-    times = [2.0 * math.pi / np.sqrt(lowest), creep, drag / lowest]
-    slowest: Array = np.maximum.reduce([*times, np.full(blocks, end if end < math.inf else 0.0)])
-    return slowest
+    return max(2.0 * math.pi / math.sqrt(lowest), creep, drag / lowest, end if end < math.inf else 0.0)
 
 
-def _scaled_stiffness(model: Model, blocks: int) -> Array:
-    """M^-½ K M^-½ of the free directions of each block in the original geometry (1/s²)."""
+def _scaled_stiffness(model: Model) -> Array:
+    """M^-½ K M^-½ of the free directions in the original geometry (1/s²)."""
     particles, rods = model.particles, model.rods
-    of_block, in_block = particles.count // blocks, rods.count // blocks
-    ends = rods.between.astype(np.intp) % of_block
-    length = np.where(rods.original_length > 0.0, rods.original_length, 1.0)
-    axis = rods.difference / length[:, None]
-    rows = np.arange(rods.count)
-    compatibility = np.zeros((rods.count, of_block, 2))
+    axis = rods.difference / np.where(rods.original_length > 0.0, rods.original_length, 1.0)[:, None]
+    rows, ends = np.arange(rods.count), rods.between.astype(np.intp)
+    compatibility = np.zeros((rods.count, particles.count, 2))
     compatibility[rows, ends[:, 1]] = axis
     compatibility[rows, ends[:, 0]] = -axis
-    root = np.sqrt(particles.mobility).reshape(blocks, 1, 2 * of_block)
-    scaled = compatibility.reshape(blocks, in_block, -1) * root
-    scaled = np.ascontiguousarray(scaled[:, :, particles.mobility[:of_block].ravel() > 0.0])
-    stiffness = (rods.stiffness / rods.rest_length).reshape(blocks, in_block, 1)
-    matrices: Array = scaled.transpose(0, 2, 1) @ (scaled * stiffness)
-    return matrices
+    mobility = particles.mobility.ravel()
+    scaled = (compatibility.reshape(rods.count, -1) * np.sqrt(mobility))[:, mobility > 0.0]
+    matrix: Array = scaled.T @ (scaled * (rods.stiffness / rods.rest_length)[:, None])
+    return matrix

@@ -57,14 +57,13 @@ class RodOperator:
             product[:, d] -= np.bincount(self._first, force, self.rows)
         return self._root * product
 
-    def gershgorin(self, blocks: int = 1) -> Array:
-        """Upper bounds of the largest eigenvalues of so many equal blocks of rows: largest absolute row sums."""
+    def gershgorin(self) -> float:
+        """An upper bound of the largest eigenvalue: the largest absolute row sum."""
         stiffness = np.maximum(self._along, self._across if self._across is not None else 0.0)
         worst = self._root.max(axis=1)
         reach = stiffness * (worst[self._first] + worst[self._second])
         sums = np.bincount(self._first, reach, self.rows) + np.bincount(self._second, reach, self.rows)
-        bounds: Array = (worst * sums).reshape(blocks, -1).max(axis=1, initial=0.0)
-        return bounds
+        return float((worst * sums).max(initial=0.0))
 
 
 class FrameOperator(RodOperator):
@@ -117,8 +116,8 @@ class FrameOperator(RodOperator):
         product[:, 2] *= self._spin
         return product
 
-    def gershgorin(self, blocks: int = 1) -> Array:
-        """Upper bounds of the largest eigenvalues of so many equal blocks of rows: largest sums of norms."""
+    def gershgorin(self) -> float:
+        """An upper bound of the largest eigenvalue: the largest sum of norms in a row."""
         worst, first, second = self._root.max(axis=1), self._first, self._second
         reach = worst[first] + worst[second]
         lean = reach * self._inverse
@@ -132,101 +131,64 @@ class FrameOperator(RodOperator):
         force += self._across * reach if self._across is not None else 0.0
         shifts = np.bincount(first, force, self.rows) + np.bincount(second, force, self.rows)
         turns = np.bincount(first, of_start, self.rows) + np.bincount(second, of_end, self.rows)
-        sums = np.maximum(worst * shifts, self._spin * turns)
-        bounds: Array = sums.reshape(blocks, -1).max(axis=1, initial=0.0)
-        return bounds
+        return float(np.maximum(worst * shifts, self._spin * turns).max(initial=0.0))
 
 
-def largest_eigenvalues(operator: Callable[[Array], Array], rows: int, bounds: Array, width: int = 2) -> Array:
-    """Upper bounds of the largest eigenvalues of equal blocks of a symmetric operator by Lanczos' method.
+def largest_eigenvalue(operator: Callable[[Array], Array], rows: int, bound: float, width: int = 2) -> float:
+    """An upper bound of the largest eigenvalue of a symmetric operator by Lanczos' method: Ritz value plus residual.
 
-    rows: of each block. width: entries of a row. bounds: what no result exceeds, one for each block. The result is the Ritz
-    value plus its residual. The start vector is fixed, sums are in a fixed order, so that the result (and with it
-    the step size) is the same on every run, and for a block alone. Its entries, k²φ mod 1, differ differently
+    width: entries of a row. bound: what the result does not exceed. The start vector is fixed, sums are in a fixed order, so
+    that the result (and with it the step size) is the same on every run. Its entries, k²φ mod 1, differ differently
     from row to row: it must not be blind to a direction, as kφ is to that of (1, −1).
     """
-    blocks = len(bounds)
-    start = np.modf(np.arange(1, width * rows + 1) ** 2 * 0.6180339887498949)[0] - 0.5
-    vector = np.tile(start / math.sqrt(float((start * start).sum())), (blocks, 1))
-    basis: list[Array] = []
-    diagonal: list[Array] = []
-    off_diagonal: list[Array] = []
-    sizes = np.zeros(blocks, dtype=np.int64)
-    running = np.ones(blocks, dtype=bool)
-    for _ in range(min(LANCZOS_STEPS, width * rows)):
-        basis.append(vector)
-        product = operator(vector.reshape(-1, width)).reshape(blocks, -1)
-        diagonal.append((product * vector).sum(axis=1))
-        for known in basis * 2:  # once leaves some of them where little else is left; twice is enough
-            product -= (product * known).sum(axis=1)[:, None] * known
-        norm = np.sqrt((product * product).sum(axis=1))
-        off_diagonal.append(norm)
-        sizes += running
-        running &= norm > 1e-13 * bounds
-        if not running.any():
+    if width * rows <= LANCZOS_STEPS:  # the method would go all the way
+        matrix = [operator(unit.reshape(-1, width)).ravel() for unit in np.eye(width * rows)]
+        return min(max(float(np.linalg.eigvalsh(matrix)[-1]), 0.0), bound)
+    vector = np.modf(np.arange(1, width * rows + 1) ** 2 * 0.6180339887498949)[0] - 0.5
+    vector /= math.sqrt(float((vector * vector).sum()))
+    most = min(LANCZOS_STEPS, width * rows)
+    basis = np.empty((most, width * rows))
+    diagonal: list[float] = []
+    off_diagonal: list[float] = []
+    for size in range(1, most + 1):
+        basis[size - 1] = vector
+        product = operator(vector.reshape(-1, width)).ravel()
+        diagonal.append(float((product * vector).sum()))
+        for _ in range(2):  # once leaves some of them where little else is left; twice is enough
+            known = np.einsum("kn,n->k", basis[:size], product)
+            product -= np.einsum("kn,k->n", basis[:size], known)
+        off_diagonal.append(math.sqrt(float((product * product).sum())))
+        if off_diagonal[-1] <= 1e-13 * bound:
             break
-        vector = product / np.where(running, norm, math.inf)[:, None]
-    found = np.empty(blocks)
-    for size in np.unique(sizes).tolist():
-        at = sizes == size
-        found[at] = _ritz_bounds(np.array(diagonal[:size])[:, at].T, np.array(off_diagonal[:size])[:, at].T)
-    return np.minimum(found, bounds)
+        vector = product / off_diagonal[-1]
+    beside = off_diagonal[:-1]
+    values, vectors = np.linalg.eigh(np.diag(diagonal) + np.diag(beside, -1))  # it reads the lower half
+    return min(float(values[-1] + abs(off_diagonal[-1] * vectors[-1, -1])), bound)
 
 
-def _ritz_bounds(diagonal: Array, off_diagonal: Array) -> Array:
-    """Largest Ritz values plus their residuals of tridiagonal matrices, given by rows."""
-    size = diagonal.shape[1]
-    tridiagonal = np.zeros((len(diagonal), size, size))
-    here = np.arange(size)
-    tridiagonal[:, here, here] = diagonal
-    tridiagonal[:, here[1:], here[:-1]] = tridiagonal[:, here[:-1], here[1:]] = off_diagonal[:, :-1]
-    values, vectors = np.linalg.eigh(tridiagonal)
-    bounds: Array = values[:, -1] + np.abs(off_diagonal[:, -1] * vectors[:, -1, -1])
-    return bounds
-
-
-def spectrum(model: Model, axial_force: Array, rods: NDArray[np.bool_] | None = None) -> Spectrum:
+def spectrum(model: Model, axial_force: Array, counts: NDArray[np.bool_] | None = None) -> Spectrum:
     """The highest frequency in the present state under these axial forces (kN, shape (rods,)).
 
-    rods: which of them count; none given: all.
+    counts: which rods do; None: all.
     """
-    frequency, decay = spectra(model, axial_force, np.array([model.environment.drag]), rods)
-    return Spectrum(float(frequency[0]), float(decay[0]))
-
-
-def spectra(
-    model: Model, axial_force: Array, drag: Array, counts: NDArray[np.bool_] | None = None
-) -> tuple[Array, Array]:
-    """Frequency and decay, as in Spectrum, of each of the equal disjoint blocks that a model consists of.
-
-    drag: the environment's (1/s), one for each block. counts: which rods do; None: all.
-    """
-    rods, blocks = model.rods, len(drag)
-    decay = 0.5 * drag
-    particles = model.particles
+    rods, particles = model.rods, model.particles
+    decay = 0.5 * model.environment.drag
     if rods.count == 0 or not ((particles.mobility > 0.0).any() or particles.turning.any()):
-        return np.zeros(blocks), decay
+        return Spectrum(0.0, decay)
     share = np.ones(rods.count) if counts is None else counts.astype(np.float64)
+    tension = share * np.maximum(axial_force, 0.0)
+    along, damping = share * rods.stiffness / rods.rest_length, share * rods.damping
+    damped = bool((rods.damping > 0.0).any())
+    stiffness: RodOperator
+    dampers: RodOperator | None
     if bends(model):
-        return _of_frames(model, share, np.maximum(axial_force, 0.0), decay)
-    across = share * np.maximum(axial_force, 0.0) / rods.rest_length
-    stiffness = RodOperator(model, share * rods.stiffness / rods.rest_length, across)
-    rows = stiffness.rows // blocks
-    frequency = np.sqrt(largest_eigenvalues(stiffness, rows, stiffness.gershgorin(blocks)))
-    if (rods.damping > 0.0).any():
-        dampers = RodOperator(model, share * rods.damping)
-        decay = decay + 0.5 * largest_eigenvalues(dampers, rows, dampers.gershgorin(blocks))
-    return frequency, decay
-
-
-def _of_frames(model: Model, share: Array, tension: Array, decay: Array) -> tuple[Array, Array]:
-    """Frequency and decay of each block of a model that bends. share: of each rod, 1 or 0."""
-    rods, blocks = model.rods, len(decay)
-    rows = model.particles.count // blocks
-    ends = share[:, None] * rods.end_stiffness
-    stiffness = FrameOperator(model, share * rods.stiffness / rods.rest_length, ends, share * tension)
-    frequency = np.sqrt(largest_eigenvalues(stiffness, rows, stiffness.gershgorin(blocks), 3))
-    if (rods.damping > 0.0).any() or rods.end_damping.any():
-        dampers = FrameOperator(model, share * rods.damping, share[:, None] * rods.end_damping)
-        decay = decay + 0.5 * largest_eigenvalues(dampers, rows, dampers.gershgorin(blocks), 3)
-    return frequency, decay
+        ends, of_ends = share[:, None] * rods.end_stiffness, share[:, None] * rods.end_damping
+        width, stiffness = 3, FrameOperator(model, along, ends, tension)
+        dampers = FrameOperator(model, damping, of_ends) if damped or of_ends.any() else None
+    else:
+        width, stiffness = 2, RodOperator(model, along, tension / rods.rest_length)
+        dampers = RodOperator(model, damping) if damped else None
+    if dampers is not None:
+        decay += 0.5 * largest_eigenvalue(dampers, dampers.rows, dampers.gershgorin(), width)
+    highest = largest_eigenvalue(stiffness, stiffness.rows, stiffness.gershgorin(), width)
+    return Spectrum(math.sqrt(highest), decay)
