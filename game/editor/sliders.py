@@ -8,7 +8,6 @@ from dataclasses import replace
 from typing import Any
 
 from pinjoint.components.field import Field
-from pinjoint.components.form import Box
 from pinjoint.components.handle import Handle
 from pinjoint.components.language import begun, decimals, joined, marked, tr
 from pinjoint.components.load import Load, factor_at
