@@ -161,12 +161,9 @@ class Batch:
         self, variants: Rows, steps: Any, until: float = math.inf, landing: float = math.inf
     ) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
         """Let variants take up to so many steps, all or each, as Program.advance does."""
-        time, size, total = (self.clock(name).copy() for name in ("time", "step_size", "steps"))
+        time, total = (self.clock(name).copy() for name in ("time", "steps"))
         first = total - self.clock("origin_steps")
         wanted = np.full(self.model.variants, steps, dtype=np.int64)
-        if until < math.inf and not self.integrator.controlled:  # of the others, steps may have no size
-            left = np.clip((until - time[variants]) / size[variants] * (1.0 + 1e-12), 0.0, 2.0**62)
-            wanted[variants] = np.minimum(left.astype(np.int64), wanted[variants])
         account, control = self._clocks(ACCOUNT), self._clocks(CONTROL)
         limit = self.clock("step_limit")
         taken, reason = self._call(
@@ -187,17 +184,12 @@ class Batch:
             account=account,
         )
         moved = np.zeros(self.model.variants, dtype=bool)
-        if self.integrator.controlled:
-            moved[variants] = control[variants, 0] > time[variants]
-            landed = moved & (control[:, 0] == landing)
-            self._put_clocks(CONTROL, control, np.flatnonzero(moved))
-            anew = np.flatnonzero(landed | (moved & self._controls_error))
-            self.clock("origin")[anew] = control[anew, 0]
-            self.clock("origin_steps")[anew] = (total + taken)[anew]
-        else:
-            moved[variants] = taken[variants] > 0
-            reached = self.clock("origin") + (first + taken) * size
-            self.clock("time")[moved] = reached[moved]
+        moved[variants] = control[variants, 0] > time[variants]
+        landed = moved & (control[:, 0] == landing)
+        self._put_clocks(CONTROL, control, np.flatnonzero(moved))
+        anew = np.flatnonzero(landed | (moved & self._controls_error))
+        self.clock("origin")[anew] = control[anew, 0]
+        self.clock("origin_steps")[anew] = (total + taken)[anew]
         self._put_clocks(ACCOUNT, account, np.flatnonzero(moved))
         self.clock("steps")[moved] = (total + taken)[moved]
         return taken, reason
@@ -253,20 +245,11 @@ class Batch:
     def land(self, target: float) -> None:
         """Take the last, short step to a time (s)."""
         variants = np.flatnonzero((self.clock("time") < target) & ~self.alone)
-        if not len(variants):
-            return
-        if self.integrator.controlled:
-            while len(variants):
-                _, reason = self._advance(variants, REVIEW_INTERVAL, target, target)
-                failed = np.isin(reason[variants], ENDING)
-                self.alone[variants[failed]] = True
-                variants = variants[(self.clock("time")[variants] < target) & ~failed]
-            return
-        sizes = self.clock("step_size").copy()
-        self._begin_steps(variants, target - self.clock("time"))
-        self._advance(variants, 1)
-        self.clock("time")[variants] = target
-        self._begin_steps(variants, sizes)
+        while len(variants):
+            _, reason = self._advance(variants, REVIEW_INTERVAL, target, target)
+            failed = np.isin(reason[variants], ENDING)
+            self.alone[variants[failed]] = True
+            variants = variants[(self.clock("time")[variants] < target) & ~failed]
 
     # --- reading -------------------------------------------------------------------------------------
 

@@ -10,9 +10,9 @@ from pinjoint.systems.base import Integrator, StepSystem
 from pinjoint.systems.entries import Mark
 from pinjoint.systems.program.binding import Bound, StepRole, bind
 from pinjoint.systems.program.loops import RodLoop
-from pinjoint.systems.program.names import NO_POWER, POWER_RETURNED, TRIAL_STATE
+from pinjoint.systems.program.names import NO_POWER, NOW, POWER_RETURNED, TRIAL_STATE
 from pinjoint.systems.program.pasting import fragment, pasted
-from pinjoint.systems.program.templates import driven, events, forces, implicit, rods
+from pinjoint.systems.program.templates import events, forces, implicit, rods, runge_kutta
 from pinjoint.systems.program.writer import Writer, sides_of
 
 _AHEAD = 1e-3  # of a step, over which the slope of a margin is taken
@@ -42,8 +42,7 @@ class ControlledWriter(Writer):
 
     @property
     def scratch(self) -> tuple[str, ...]:
-        blocks = ("work", "turns") if self.bends else ("work",)
-        return ("search", *blocks, "rod_work", "marks", "power", "gained", "stage_power")
+        return ("search", "work", "rod_work", "marks", "power", "gained", "stage_power")
 
     def _values(self) -> dict[str, Any]:
         located = bool(self.branches or self.events)
@@ -56,16 +55,19 @@ class ControlledWriter(Writer):
         parts += self._happened()
         return [*parts, self._tangent()] if self.integrator.rod_rows else parts
 
-    @property
-    def _limits(self) -> tuple[str, ...]:
-        return ("tolerance", "limit")
-
-    def _driven_steps(self) -> dict[str, Sequence[str]]:
+    def _steps(self) -> dict[str, list[str]]:
         return {
-            "evaluate": fragment(driven.evaluate_controlled, **self.second_block),
-            "take": fragment(driven.take_controlled),
-            "pushed": fragment(driven.pushed, **self.second_block),
+            "evaluate": self._evaluated(),
+            "begin": ["search[Search.LIMIT] = limit"],
+            "step": fragment(runge_kutta.step),
+            **{name: [] for name in ("finish", "look_ahead", "settle")},
         }
+
+    def _pushed(self) -> list[str]:
+        return ["accelerate(force, resisting, work[0], particles_mobility)"]
+
+    def _evaluated(self) -> list[str]:
+        return [f"{self._evaluation.replace('time, dt', NOW)}", *self._pushed()]
 
     @property
     def _evaluation(self) -> str:
@@ -77,7 +79,7 @@ class ControlledWriter(Writer):
         return pasted(forces.remember, "compiled", history=self._with_losses(self.commits, loop))
 
     def _commit(self) -> str:
-        return pasted(forces.commit, "entered", history="remember(time, dt, *placed, account, *columns)")
+        return pasted(forces.commit, "entered", history="remember(time, dt, displacement, account, *columns)")
 
     def _evaluate(self) -> str:
         lines = [
@@ -149,8 +151,10 @@ class ControlledWriter(Writer):
             bending=self._tangent_of_ends() if self.bends else [],
         )
         loop = RodLoop(self.shift | self.drift, [*self.geometry(), *tangent])
-        inserts: dict[str, str | list[str]] = {"particles": particles, "rods": loop.one_by_one()}
-        return pasted(implicit.tangent, "compiled", "", **(inserts | self.second_block))
+        return pasted(implicit.tangent, "compiled", particles=particles, rods=loop.one_by_one(), mass=self.mass)
+
+    def _of_bending(self) -> dict[str, list[str]]:
+        return {name: fragment(getattr(implicit, name)) if self.bends else [] for name in ("bend", "stiffen")}
 
     def _tangent_of_ends(self) -> list[str]:
         return fragment(

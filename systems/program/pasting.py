@@ -16,13 +16,7 @@ _LINE = re.compile(r"( *)insert\((\w+)\)")
 _EXPRESSION = re.compile(r"insert\((\w+)\)")
 _ON_LINES = re.compile(r"\(\n((?:[^()]|\([^()]*\))*\*columns),?\s*\)")
 _WIDTH = 112
-_GROUPS = "|".join(
-    (
-        *("state", "forces", "scratch", "bounds", "limits", "kept", "observed"),
-        *("placed", "moving", "pulled", "resisted", "acting", "tried", "accelerating", "correcting", "sizing"),
-        *("strung", "diagonals", "inverses", "mobilities", "residuals", "vectors"),
-    )
-)
+_GROUPS = "state|forces|scratch|bounds|kept|observed"
 
 
 @cache
@@ -63,54 +57,6 @@ def pasted(function: Callable[..., Any], decorator: str, name: str = "", **inser
 def fragment(function: Callable[..., Any], **inserts: str | Sequence[str]) -> list[str]:
     """The lines of a template without its head and its docstring."""
     return _filled(_statements_of(function), inserts)
-
-
-def projected(lines: Sequence[str], names: Mapping[str, str]) -> list[str]:
-    """What lines do with both components of vectors, done with the only one of others. names: how these are called."""
-    body = _Projection(names).of(ast.parse("\n".join(lines)).body)
-    return "\n".join(map(ast.unparse, body)).splitlines()
-
-
-class _Projection(ast.NodeTransformer):
-    """Leaves out what has to do with second components, [i, 1], and renames arrays."""
-
-    def __init__(self, names: Mapping[str, str]) -> None:
-        self._names = names
-        self._gone: set[str] = set()  # variables of second components
-
-    def of(self, statements: Iterable[ast.stmt]) -> list[ast.stmt]:
-        """The statements that are left."""
-        kept = (self._kept(statement) for statement in statements)
-        return [statement for statement in kept if statement is not None]
-
-    def _kept(self, statement: ast.stmt) -> ast.stmt | None:
-        if isinstance(statement, ast.For | ast.If | ast.FunctionDef):
-            statement.body = self.of(statement.body)
-            if not statement.body:
-                return None
-        elif any(self._is_second(node) for node in ast.walk(statement)):
-            if isinstance(statement, ast.Assign | ast.AugAssign):
-                targets = statement.targets if isinstance(statement, ast.Assign) else [statement.target]
-                self._gone |= {target.id for target in targets if isinstance(target, ast.Name)}
-            return None
-        visited: ast.stmt = self.visit(statement)
-        return visited
-
-    def _is_second(self, node: ast.AST) -> bool:
-        if isinstance(node, ast.Subscript) and isinstance(node.slice, ast.Tuple):
-            last = node.slice.elts[-1]
-            return isinstance(last, ast.Constant) and last.value == 1
-        return isinstance(node, ast.Name) and node.id in self._gone
-
-    def visit_Name(self, node: ast.Name) -> ast.AST:
-        """Rename an array."""
-        return ast.Name(self._names.get(node.id, node.id), node.ctx)
-
-    def visit_Call(self, node: ast.Call) -> ast.AST:
-        """A loop over two components is one over a single one."""
-        if ast.unparse(node) == "range(2)":
-            return ast.parse("range(1)", mode="eval").body
-        return self.generic_visit(node)
 
 
 def _filled(lines: Iterable[str], inserts: Inserts) -> list[str]:

@@ -7,8 +7,6 @@ on the plan: which kernels are called for each particle and rod, with which colu
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Mapping, Sequence
-from functools import cached_property
-from textwrap import dedent
 from typing import Any
 
 import numpy as np
@@ -37,20 +35,13 @@ from pinjoint.systems.program.binding import (
 from pinjoint.systems.program.loops import RodLoop
 from pinjoint.systems.program.names import (
     ALWAYS,
-    BENT_STATE,
-    BOTH_BLOCKS,
     DRIFT,
     DRIVEN_ENTRIES,
     ENTRIES,
     EVERY,
-    FIRST_BLOCK,
     IN_BLOCK,
     KEPT,
-    LARGEST,
-    LEAST,
-    LEAST_TURN,
     NO_POWER,
-    NORMS,
     NOW,
     OBSERVED,
     OF_BENDING,
@@ -59,18 +50,14 @@ from pinjoint.systems.program.names import (
     PREDICTED,
     PUSHED,
     RESISTED,
-    SECOND_BLOCK,
-    SECOND_PARTS,
     SHIFT,
     SPUN,
     STATE,
     TRIAL_STATE,
     TURNED,
-    TURNED_STATE,
-    TURNING_OBSERVED,
 )
 from pinjoint.systems.program.near_pairs import ARRAYS
-from pinjoint.systems.program.pasting import expanded, fragment, indented, pasted, projected, source_of
+from pinjoint.systems.program.pasting import expanded, fragment, indented, pasted, source_of
 from pinjoint.systems.program.templates import (
     driven,
     events,
@@ -79,7 +66,7 @@ from pinjoint.systems.program.templates import (
     observing,
     pairs,
     rods,
-    turning,
+    steps,
 )
 
 ROUND_OFF = 2.220446049250313e-16  # of forces, relative to stiffness × displacement
@@ -152,6 +139,7 @@ class Writer:
         self.integrator = integrator
         traits = traits_of(model)
         self.warm, self.bends, self.loaded = (trait in traits for trait in TRAITS)
+        self.coordinates = 3 if self.bends else 2
         self.shift = SHIFT | TURNED if self.bends else SHIFT
         self.drift = DRIFT | SPUN if self.bends else DRIFT
         self.collides = any(system.impulsive for system in systems)
@@ -202,10 +190,9 @@ class Writer:
         names = dict.fromkeys(self.columns)
         for b in bound:
             if b.role is StepRole.LOAD:
-                parts = ("on", "force", "values", "first", *(["moment"] if self.bends else []))
-                names.update(dict.fromkeys(f"{b.prefix}_{part}" for part in parts))
+                names.update(dict.fromkeys(f"{b.prefix}_{part}" for part in ("on", "force", "values", "first")))
             else:
-                known = PROVIDED | {p for p, name in TRIAL.items() if self.bends or name not in TURNING}
+                known = PROVIDED | {*TRIAL, *(TURNING if self.bends else ())}
                 taken = (p for p in b.parameters if p not in known)
                 names.update(dict.fromkeys(b.stored(p) if p in b.arrays else p for p in taken))
             if b.role is StepRole.EVENT:
@@ -218,10 +205,9 @@ class Writer:
         """How a kernel's parameter is written inside the loop over its rows, or over pairs of particles i and j."""
         if parameter in PROVIDED:
             return OF_PAIR.get(parameter, parameter)
+        if parameter in TURNING and self.bends:
+            return f"{TURNING[parameter]}[{index}, 2] * per_arm[0]"
         name, single = TRIAL.get(parameter, parameter), False
-        if name in TURNING and self.bends:
-            return f"{name}[{index}, 0]"
-        name = parameter if name in TURNING else name
         if parameter in b.arrays:
             name, shape = b.stored(parameter), b.arrays[parameter].shape[1:]
         else:
@@ -243,10 +229,9 @@ class Writer:
         parts = [
             self._head(),
             *([self._drive()] if self.collides else []),
-            self._pasted(f"{self.integrator.entry}=advance", "compiled" if self.collides else "entered"),
-            self._integrate(),
+            pasted(steps.advance, "compiled" if self.collides else "entered", "", **self._steps()),
+            *(pasted(part, "inlined") for part in (steps.aim, steps.is_check_due)),
             *(self._pasted(part, "inlined") for part in reversed(self.integrator.parts)),
-            *map(self._second_part, self._parts_of_both),
             *self._of_steps(),
             *(pasted(template, "compiled") for template in (_OF_PAIRS if self.pairs else ())),
             pasted(forces.external, "compiled", particle_forces=self._particle_forces()),
@@ -258,39 +243,22 @@ class Writer:
         return expanded("\n\n\n".join(part.rstrip() for part in parts), self.groups)
 
     @property
-    def _parts_of_both(self) -> list[str]:
-        """Parts of the integrator that are written for both blocks of coordinates, if there are two."""
-        return [part for part in self.integrator.parts if self.bends and part.partition(":")[2] in SECOND_PARTS]
-
-    @property
     def groups(self) -> dict[str, Sequence[str]]:
         """The arguments that stand for one word in templates."""
         return {
-            "state": self.state,
-            "forces": self.state[4 if self.bends else 2 :],
-            **self.blocks,
+            "state": STATE,
+            "forces": STATE[2:],
             "scratch": self.scratch,
             "bounds": ("breaks", "until", "landing"),
-            "limits": self._limits,
             "kept": (*KEPT, *(f"kept_{name}" for name in self.kept)),
-            "observed": (*OBSERVED, *(TURNING_OBSERVED if self.bends else ())),
+            "observed": (*OBSERVED, *(["rods_end_moment"] if self.bends else [])),
             "columns": self.columns,
         }
 
     @property
-    def state(self) -> tuple[str, ...]:
-        """The arrays of a state and its forces."""
-        return BENT_STATE if self.bends else STATE
-
-    @property
-    def blocks(self) -> Mapping[str, tuple[str, ...]]:
-        """Groups of arguments of one block of coordinates, or of both."""
-        return BOTH_BLOCKS if self.bends else FIRST_BLOCK
-
-    @property
     def scratch(self) -> tuple[str, ...]:
         """Arrays that steps write to and nobody reads afterwards."""
-        return (*self.blocks["foreseen"], "power", "gained")
+        return ("predicted", "power", "gained")
 
     @property
     def written(self) -> list[str]:
@@ -299,13 +267,8 @@ class Writer:
 
     @property
     def kept(self) -> list[str]:
-        """What steps change by row besides the state: columns that commits write, and the sides of events."""
-        return [*self.written, *map(sides_of, self.events), *(TURNED_STATE if self.bends else ())]
-
-    @property
-    def _limits(self) -> tuple[str, ...]:
-        """What `drive` takes that bounds its steps."""
-        return ()
+        """What steps change by row: columns that commits write, the sides of events, and the state where it turns."""
+        return [*self.written, *map(sides_of, self.events), *(STATE[:2] if self.bends else ())]
 
     def _drive(self) -> str:
         """The function by which steps are entered where particles may meet."""
@@ -315,29 +278,28 @@ class Writer:
             "",
             keep=self._copies(driven.keep, "kept_{0}", "{0}"),
             put_back=self._copies(driven.put_back, "{0}", "kept_{0}"),
-            **self._driven_steps(),
+            evaluate=self._evaluated(),
+            take=fragment(driven.take),
+            pushed=self._pushed(),
         )
 
     def _copies(self, template: Callable[[], None], to: str, of: str) -> list[str]:
-        loops = [
-            fragment(
-                driven.copy_turned if name in TURNED_STATE else driven.copy,
-                to=to.format(name),
-                of=of.format(name),
-            )
-            for name in self.kept
-        ]
-        return fragment(template, others=[line for loop in loops for line in loop])
+        lines = []
+        for name in self.kept:
+            row = "r, 2" if name in STATE else "r"
+            lines.append(f"for r in range({name}.shape[0]):")
+            lines.append(f"    {to.format(name)}[{row}] = {of.format(name)}[{row}]")
+        return fragment(template, others=lines)
 
-    def _driven_steps(self) -> dict[str, Sequence[str]]:
-        """How `drive` evaluates forces, takes steps, and what follows from other contact forces."""
-        resist = [f"resist({RESISTED}, power, *columns)"] if self.powers else []
-        resist = [line.replace("time, dt", NOW) for line in resist]
-        return {
-            "evaluate": fragment(driven.evaluate_fixed, resist=resist),
-            "take": fragment(driven.take_fixed),
-            "pushed": [],
-        }
+    def _pushed(self) -> list[str]:
+        """What follows from other contact forces."""
+        return []
+
+    def _evaluated(self) -> list[str]:
+        """The forces of the present state."""
+        calls = [f"forces({TRIAL_STATE}, *columns)"]
+        calls += [f"resist({RESISTED}, power, *columns)"] if self.powers else []
+        return [call.replace("time, dt", NOW) for call in calls]
 
     def _pushes(self) -> list[str]:
         """The lines by which contact forces are added to all others."""
@@ -350,15 +312,17 @@ class Writer:
     def _values(self) -> dict[str, Any]:
         """The constants of the module."""
         return {
+            "D": self.coordinates,
             "RATES": self.rates,
             "POWERS": self.powers,
             "LOADS": bool(self.of[StepRole.LOAD]),
             "STOPS": bool(self.events),
+            "EVENTS": False,
+            "SLACK": 1e-12,  # share of the time to go by which the end of a fixed step may be late
             "SHADOW": float(self.integrator.guard),
             "CHECK_INTERVAL": self.integrator.check_interval,
             "REVIEW_INTERVAL": REVIEW_INTERVAL,
             **self.integrator.constants,
-            **({"LEAST_TURN": LEAST_TURN} if self.bends else {}),
         }
 
     @property
@@ -370,24 +334,20 @@ class Writer:
     def _pasted(self, where: str, decorator: str) -> str:
         """A template of the integrator, "module:function" or with "=new name"."""
         where, _, name = where.partition("=")
-        return pasted(find(where, self.integrator), decorator, name, **self.second_block)
+        return pasted(find(where, self.integrator), decorator, name, mass=self.mass, **self._of_bending())
 
-    @cached_property
-    def second_block(self) -> dict[str, str | list[str]]:
-        """What templates insert where rotations are treated beside displacements; nothing without bending."""
-        names = [name for name in vars(turning) if name.endswith("_turns")]
-        lines = {name: fragment(getattr(turning, name)) if self.bends else [] for name in names}
-        return {**lines, **NORMS}
+    def _of_bending(self) -> dict[str, list[str]]:
+        """What the parts of the integrator do with rods that bend."""
+        return {}
 
-    def _second_part(self, where: str) -> str:
-        """A function that treats coordinates one by one, for those of the second block."""
-        function = find(where, self.integrator)
-        text = pasted(function, "inlined", f"{function.__name__}_of_turns", **(self.second_block | LEAST))
-        head, body = text.split(":\n", 1)
-        lines = projected(dedent(body).splitlines(), {})
-        for first, second in LARGEST.items():
-            lines = [line.replace(first, second) for line in lines]
-        return "\n".join([f"{head}:", *indented(lines)])
+    @property
+    def mass(self) -> str:
+        """The inertia of a particle `i` along its coordinate `d`."""
+        return "particles_masses[i, d]" if self.bends else "particles_mass[i]"
+
+    def _each_coordinate(self, line: str) -> list[str]:
+        """A line for every coordinate {0} of a particle."""
+        return [line.format(d) for d in range(self.coordinates)]
 
     def _of_steps(self) -> list[str]:
         """Functions that the integrator's templates call."""
@@ -408,8 +368,7 @@ class Writer:
 
     def _particle_forces(self, powers: bool = False, span: str = EVERY) -> list[str]:
         """Forces on the particles from outside, and of the laws that resist their motion."""
-        body = ["force[i, 0] = particles_constant_force[i, 0]", "force[i, 1] = particles_constant_force[i, 1]"]
-        body += ["moment[i, 0] = particles_constant_moment[i]"] if self.bends else []
+        body = self._each_coordinate("force[i, {0}] = particles_constant_force[i, {0}]")
         for b in self.of[StepRole.PARTICLE_FORCE]:
             body += [f"fx, fy = {self._apply(b, 'i')}", "force[i, 0] += fx", "force[i, 1] += fy"]
             body += [_particle_power(b)] if powers else []
@@ -417,9 +376,7 @@ class Writer:
         lines = [f"for i in range({span}):", *indented(body)]
         for b in self.of[StepRole.LOAD]:
             push = [
-                f"force[i, 0] += factor * {b.prefix}_force[k, 0]",
-                f"force[i, 1] += factor * {b.prefix}_force[k, 1]",
-                *([f"moment[i, 0] += factor * {b.prefix}_moment[k]"] if self.bends else []),
+                *self._each_coordinate(f"force[i, {{0}}] += factor * {b.prefix}_force[k, {{0}}]"),
                 *([f"power_work += {self._load_power(b)}"] if powers else []),
             ]
             lines += self._each_load(b, *push, within="" if span == EVERY else f"block_{b.prefix}")
@@ -444,9 +401,8 @@ class Writer:
 
     def _load_power(self, b: Bound) -> str:
         """What a load does per second at its factor."""
-        force = f"{b.prefix}_force[k, 0] * velocity[i, 0] + {b.prefix}_force[k, 1] * velocity[i, 1]"
-        turned = f" + {b.prefix}_moment[k] * angular_velocity[i, 0]" if self.bends else ""
-        return f"factor * ({force}{turned})"
+        parts = self._each_coordinate(f"{b.prefix}_force[k, {{0}}] * velocity[i, {{0}}]")
+        return f"factor * ({' + '.join(parts)})"
 
     @staticmethod
     def _each_load(b: Bound, *lines: str, within: str = "") -> list[str]:
@@ -462,14 +418,13 @@ class Writer:
     def _particle_resistance(self, powers: bool = False) -> list[str]:
         if not self.rates:
             return []
-        body = ["resisting[i, 0] = 0.0", "resisting[i, 1] = 0.0"]
+        body = self._each_coordinate("resisting[i, {0}] = 0.0")
         for b in self.of[StepRole.RESISTANCE]:
             body += [f"fx, fy = {self._apply(b, 'i')}", "resisting[i, 0] += fx", "resisting[i, 1] += fy"]
             body += [_particle_power(b)] if powers else []
-        body += ["twisting[i, 0] = 0.0"] if self.bends else []
         for b in self.of[StepRole.TURNING]:
-            body += [f"turned = {self._apply(b, 'i')}", "twisting[i, 0] += turned"]
-            gain = f"power_{b.account} {_sign(b, '+', '-')}= turned * angular_velocity[i, 0]"
+            body += [f"turned = {self._apply(b, 'i')} * per_arm[0]", "resisting[i, 2] += turned"]
+            gain = f"power_{b.account} {_sign(b, '+', '-')}= turned * velocity[i, 2]"
             body += [gain] if powers else []
         return body
 
@@ -554,7 +509,7 @@ class Writer:
         if self.bends:
             couple = " + couple" if self.loaded else ""
             compute += [*self.end_moments(), *_across_axis("pull", f"moment_start + moment_end{couple}")]
-            made, scatter = [*made, "moment_start", "moment_end"], [*scatter, *_turn("moment", "moment")]
+            made, scatter = [*made, "moment_start", "moment_end"], [*scatter, *_turn("force", "moment")]
         pull = RodLoop(
             self.shift,
             [*self.geometry(), *compute],
@@ -605,7 +560,7 @@ class Writer:
         if self.bends:
             compute += self.end_laws(self.of[StepRole.RATE_OF_ENDS], "twist", powers)
             compute += _across_axis("drag", "twist_start + twist_end")
-            made, scatter = [*made, "twist_start", "twist_end"], [*scatter, *_turn("twisting", "twist")]
+            made, scatter = [*made, "twist_start", "twist_end"], [*scatter, *_turn("resisting", "twist")]
             if powers:
                 compute += self.end_laws(self.working_ends, "worked", powers) if self.working_ends else []
                 for b in (*self.working_ends, *self.of[StepRole.RATE_OF_ENDS]):
@@ -640,38 +595,43 @@ class Writer:
 
     # --- steps ------------------------------------------------------------------------------------
 
-    def _integrate(self) -> str:
-        """The integrator's own function, or steps as it says that they begin and end for each particle.
+    def _steps(self) -> dict[str, list[str]]:
+        """What the loop over steps does with this integrator."""
+        force = "unpushed" if self.collides else "force"
+        return {
+            "evaluate": self._evaluated(),
+            "begin": ["inside = False", *self._begin()],
+            "step": fragment(
+                fixed_steps.step,
+                complete=self._complete("not whole"),
+                displacement=self._move(),
+                work=fragment(fixed_steps.work) if self.of[StepRole.LOAD] else [],
+                velocity=self._accelerate(),
+            ),
+            "finish": self._complete(""),
+            "look_ahead": fragment(fixed_steps.look_ahead),
+            "settle": fragment(fixed_steps.settle, force=force),
+        }
 
-        Inlined where it is called, once, the columns stay in registers.
-        """
-        if self.integrator.kernel:
-            return self._pasted(f"{self.integrator.kernel}=integrate", "inlined")
-        return pasted(
-            fixed_steps.integrate,
-            "inlined",
-            displacement=self._move(),
-            work=fragment(fixed_steps.work) if self.of[StepRole.LOAD] else [],
-            velocity=self._complete(),
-            rest=self._finish(),
-        )
+    def _begin(self) -> list[str]:
+        """The lines before the first step."""
+        return []
 
     def _move(self) -> list[str]:
-        """To the next displacement; its forces."""
+        """The lines that lead to the next displacement, and give its forces."""
         return [*self._particles(self.integrator.begins), f"accept({PREDICTED}, account, *columns)"]
 
-    def _complete(self) -> list[str]:
-        """To the next velocity; what resists it."""
+    def _accelerate(self) -> list[str]:
+        """The lines that lead to the next velocity, and give what resists it."""
         return [*self._particles(self.integrator.ends), *self._gains("resist", RESISTED)]
 
-    def _finish(self) -> list[str]:
-        """The lines after the last of many steps."""
+    def _complete(self, condition: str) -> list[str]:
+        """The lines that complete a step which waits for the next one, under a condition."""
         return []
 
     def _particles(self, where: str, span: str = EVERY) -> list[str]:
         """A loop in which the integrator moves every particle."""
         lines = fragment(find(where, self.integrator), total_force=fragment(fixed_steps.total_force))
-        lines = lines + projected(lines, SECOND_BLOCK) if self.bends else lines
         return [f"for i in range({span}):", *indented(lines)] if lines else []
 
     def _gains(self, resist: str, given: str) -> list[str]:
@@ -722,12 +682,26 @@ class Writer:
         return pasted(
             observing.measure,
             "compiled",
-            turning=fragment(turning.turning) if self.bends else [],
-            turned=fragment(turning.turned, round_off=str(ROUND_OFF)) if self.bends else [],
+            "",
+            mass=self.mass,
             rods=RodLoop(self.shift, stored).one_by_one(),
             pairs=self._each_pair((b, self._pair_energy(b)) for b in self.pairs),
-            round_off=str(ROUND_OFF),
+            **self._scales(),
         )
+
+    def _scales(self) -> dict[str, str | list[str]]:
+        """What a moment counts as a force by, and the round-off of what acts in rods."""
+        pull, load = "abs(force[i, d])", "abs(particles_constant_force[i, d])"
+        round_off = f"{ROUND_OFF} * stiffest * moved"
+        if not self.bends:
+            return {"unbalanced": pull, "load": load, "turning": [], "rolled": [], "round_off": round_off}
+        return {
+            "unbalanced": f"{pull} * lever[i, d]",
+            "load": f"{load} * lever[i, d]",
+            "turning": ["rolled = 0.0", "firmest = 0.0"],
+            "rolled": ["rolled = max(rolled, abs(displacement[i, 2] * per_arm[0]))"],
+            "round_off": f"{round_off} + {ROUND_OFF} * firmest * rolled",
+        }
 
     def _pair_resistance(self, b: Bound) -> list[str]:
         """Lines that give the power of a law, and the force if it resists motion."""
@@ -768,7 +742,6 @@ class Writer:
             evaluation=self._evaluation,
             rods=loop.one_by_one(),
             pushed=pushed,
-            clamps=fragment(turning.clamps) if self.bends else [],
         )
 
     def _commit(self) -> str:
@@ -778,7 +751,7 @@ class Writer:
 def read_sources(integrators: Iterable[Integrator]) -> None:
     """Find the sources of integrators ahead of need; those of one take some frames."""
     for one in integrators:
-        for part in (one.kernel, one.begins, one.ends, one.entry, *one.parts):
+        for part in (one.begins, one.ends, *one.parts):
             if isinstance(part, str) and part:
                 source_of(find(part.partition("=")[0], one))
 
@@ -818,7 +791,7 @@ def _across_axis(name: str, moments: str) -> list[str]:
 
 def _turn(target: str, name: str) -> list[str]:
     """Moments on the ends of a rod act on its particles the other way."""
-    return [f"{target}[a, 0] -= {name}_start", f"{target}[b, 0] -= {name}_end"]
+    return [f"{target}[a, 2] -= {name}_start * per_arm[0]", f"{target}[b, 2] -= {name}_end * per_arm[0]"]
 
 
 def _scatter(target: str, name: str) -> list[str]:

@@ -86,17 +86,17 @@ def rate_of_axis():
 
 def tangent_of_ends():
     """How moments and axial force follow slopes and elongation; `drawn`: the axial laws' stiffness × by_x."""
-    tangents[2, r] = drawn * rest * bow_start
-    tangents[3, r] = drawn * rest * bow_end
+    rod_work[2, r] = drawn * rest * bow_start
+    rod_work[3, r] = drawn * rest * bow_end
     thrust = by_x * axial_force * rest
     bowed = drawn * rest * rest
-    tangents[4, r] = thrust * rods_bowing[r, 0] + bowed * bow_start * bow_start
-    tangents[5, r] = thrust * rods_bowing[r, 1] + bowed * bow_start * bow_end
-    tangents[6, r] = thrust * rods_bowing[r, 2] + bowed * bow_end * bow_end
+    rod_work[4, r] = thrust * rods_bowing[r, 0] + bowed * bow_start * bow_start
+    rod_work[5, r] = thrust * rods_bowing[r, 1] + bowed * bow_start * bow_end
+    rod_work[6, r] = thrust * rods_bowing[r, 2] + bowed * bow_end * bow_end
     insert(by_slopes)
     insert(by_rates)
     insert(moments)
-    tangents[7, r] = by_x * (moment_start + moment_end) * inverse * inverse
+    rod_work[7, r] = by_x * (moment_start + moment_end) * inverse * inverse
     direction[r, 2] = inverse
 
 
@@ -111,8 +111,8 @@ def tangent_by():
     slope_start = present - small
     insert(laws)
     slope_start = present
-    tangents[4, r] += scaled * (above_start - summed_start)
-    tangents[5, r] += 0.5 * scaled * (above_end - summed_end)
+    rod_work[4, r] += scaled * (above_start - summed_start)
+    rod_work[5, r] += 0.5 * scaled * (above_end - summed_end)
     present = slope_end
     slope_end = present + small
     insert(laws)
@@ -120,8 +120,8 @@ def tangent_by():
     slope_end = present - small
     insert(laws)
     slope_end = present
-    tangents[5, r] += 0.5 * scaled * (above_start - summed_start)
-    tangents[6, r] += scaled * (above_end - summed_end)
+    rod_work[5, r] += 0.5 * scaled * (above_start - summed_start)
+    rod_work[6, r] += scaled * (above_end - summed_end)
 
 
 def end_moments():
