@@ -67,6 +67,7 @@ class StopReason(IntEnum):
     DIVERGED = 3  # energy came from nowhere, or a number is not finite
     UNRESOLVED = 4  # no step, however small, has a finite result
     EVENT = 5  # the quantity of an Event changed sign
+    FAILED = 6  # a kernel raised an error
 
 
 class Mod(Protocol):

@@ -9,10 +9,9 @@ import numpy as np
 from pinjoint.components.load import loads_end
 from pinjoint.components.model import Model
 from pinjoint.components.numeric_range import incomputable
-from pinjoint.components.rod import bends
 from pinjoint.systems.physics.bending import deformations, free_coordinates
 from pinjoint.systems.physics.pace import loaded_mode
-from pinjoint.systems.physics.spectrum import Array, FrameOperator, RodOperator
+from pinjoint.systems.physics.spectrum import Array, coarse_rates
 
 SMALL = 200  # rods up to which the modes of a model are found in no time, and steps cost next to nothing
 AFFORDABLE = 5000  # rods up to which error control keeps up with a person's eye
@@ -46,8 +45,8 @@ def _stiffness(model: Model) -> float:
     rods, particles = model.rods, model.particles
     if not free_coordinates(model).any():
         return 0.0
-    fastest = math.sqrt(_operator(model).gershgorin()[0])
-    fastest = max(fastest, _damping_operator(model).gershgorin()[0] + model.environment.drag)
+    squared, damped = coarse_rates(model)
+    fastest = max(math.sqrt(squared[0]), damped[0] + model.environment.drag)
     mode = loaded_mode(model)
     if mode is None:  # a mechanism
         pull = float(np.hypot(*(particles.constant_force * particles.mobility).T).max())
@@ -70,42 +69,12 @@ def stiffnesses(model: Model, drag: Array) -> Array:
     rods, blocks = model.rods, len(drag)
     if rods.count == 0 or not free_coordinates(model).any():
         return np.zeros(blocks)
-    matrices = _of_frame(model) if bends(model) else _scaled_stiffness(model, blocks)
-    eigenvalues = np.asarray(np.linalg.eigvalsh(matrices), dtype=np.float64)
+    eigenvalues = np.asarray(np.linalg.eigvalsh(_scaled_stiffness(model, blocks)), dtype=np.float64)
     highest = np.maximum(eigenvalues[:, -1], 0.0)
-    dampers = _damping_operator(model).gershgorin(blocks) + drag
-    fastest = np.maximum(np.sqrt(highest), dampers)
+    fastest = np.maximum(np.sqrt(highest), coarse_rates(model, blocks)[1] + drag)
     with np.errstate(divide="ignore", invalid="ignore"):
         found: Array = np.where(highest > 0.0, fastest * _slowest(model, eigenvalues, drag), 0.0)
     return found
-
-
-def _operator(model: Model) -> RodOperator:
-    """The operator of the stiffness of rods without forces."""
-    rods = model.rods
-    along = rods.stiffness / rods.rest_length
-    return FrameOperator(model, along, rods.end_stiffness) if bends(model) else RodOperator(model, along)
-
-
-def _damping_operator(model: Model) -> RodOperator:
-    rods = model.rods
-    return (
-        FrameOperator(model, rods.damping, rods.end_damping)
-        if bends(model)
-        else RodOperator(model, rods.damping)
-    )
-
-
-def _of_frame(model: Model) -> Array:
-    """_scaled_stiffness of a model that bends, which is one block; rotations count by their inertias."""
-    entries, rows, columns, stiffness, _ = deformations(model)
-    free = free_coordinates(model)
-    mobility = np.column_stack([model.particles.mobility, model.particles.turning])
-    scaled = np.zeros((len(stiffness), free.size))
-    scaled[rows, columns] = entries
-    scaled = (scaled * np.sqrt(mobility).ravel())[:, free.ravel()]
-    matrices: Array = (scaled.T @ (scaled * stiffness[:, None]))[None]
-    return matrices
 
 
 def _slowest(model: Model, eigenvalues: Array, drag: Array) -> Array:
@@ -124,19 +93,17 @@ def _slowest(model: Model, eigenvalues: Array, drag: Array) -> Array:
 
 
 def _scaled_stiffness(model: Model, blocks: int) -> Array:
-    """M^-½ K M^-½ of the free directions of each block in the original geometry (1/s²)."""
-    particles, rods = model.particles, model.rods
-    of_block, in_block = particles.count // blocks, rods.count // blocks
-    ends = rods.between.astype(np.intp) % of_block
-    length = np.where(rods.original_length > 0.0, rods.original_length, 1.0)
-    axis = rods.difference / length[:, None]
-    rows = np.arange(rods.count)
-    compatibility = np.zeros((rods.count, of_block, 2))
-    compatibility[rows, ends[:, 1]] = axis
-    compatibility[rows, ends[:, 0]] = -axis
-    root = np.sqrt(particles.mobility).reshape(blocks, 1, 2 * of_block)
-    scaled = compatibility.reshape(blocks, in_block, -1) * root
-    scaled = np.ascontiguousarray(scaled[:, :, particles.mobility[:of_block].ravel() > 0.0])
-    stiffness = (rods.stiffness / rods.rest_length).reshape(blocks, in_block, 1)
+    """M^-½ K M^-½ of the free coordinates of each block in the original geometry (1/s²)."""
+    entries, rows, columns, stiffness, _ = deformations(model)
+    free, of_block = free_coordinates(model), model.rods.count // blocks
+    width, kinds = free.size // blocks, len(stiffness) // model.rods.count
+    mobility = np.column_stack([model.particles.mobility, model.particles.turning])[:, : free.shape[1]]
+    kind, rod = np.divmod(rows, model.rods.count)
+    block, row = np.divmod(rod, of_block)
+    scaled = np.zeros((blocks, kinds * of_block, width))
+    scaled[block, kind * of_block + row, columns % width] = entries
+    scaled *= np.sqrt(mobility).reshape(blocks, 1, width)
+    scaled = np.ascontiguousarray(scaled[:, :, free.ravel()[:width]])
+    stiffness = stiffness.reshape(kinds, blocks, of_block).swapaxes(0, 1).reshape(blocks, -1, 1)
     matrices: Array = scaled.transpose(0, 2, 1) @ (scaled * stiffness)
     return matrices

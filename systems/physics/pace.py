@@ -63,26 +63,11 @@ def loaded_mode(model: Model) -> tuple[float, float] | None:
     displacement = _static_displacement(model, _exciting_forces(model))
     if displacement is None:
         return None
-    if bends(model):
-        return _mode_of_frame(model, displacement)
-    rods = model.rods
-    ends, axis = _ends_and_axes(model)
-    elongation = ((displacement[ends[:, 1]] - displacement[ends[:, 0]]) * axis).sum(axis=1)
-    inertia = float((model.particles.mass[:, None] * displacement**2).sum()) / 1000.0
-    if inertia == 0.0:
-        return None
-    frequency = math.sqrt(float((rods.stiffness / rods.rest_length * elongation**2).sum()) / inertia)
-    damping = float((rods.damping * elongation**2).sum()) / inertia + model.environment.drag
-    return (frequency, damping) if frequency > 0.0 else None
-
-
-def _mode_of_frame(model: Model, displacement: Array) -> tuple[float, float] | None:
-    """loaded_mode of a model that bends. displacement: with rotations, (n, 3)."""
     entries, rows, columns, stiffness, damping = deformations(model)
     moved = np.bincount(rows, entries * displacement.ravel()[columns], len(stiffness))
     particles = model.particles
-    inertia = float((particles.mass[:, None] * displacement[:, :2] ** 2).sum())
-    inertia = (inertia + float((particles.inertia * displacement[:, 2] ** 2).sum())) / 1000.0
+    masses = np.column_stack([particles.mass, particles.mass, particles.inertia])[:, : displacement.shape[1]]
+    inertia = float((masses * displacement**2).sum()) / 1000.0
     if inertia == 0.0:
         return None
     frequency = math.sqrt(float((stiffness * moved**2).sum()) / inertia)

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
@@ -29,18 +28,21 @@ class Spectrum:
 class RodOperator:
     """Products of M^-½ K M^-½ (or C for K) with vectors of shape (n, 2), K = Σ B_rᵀ k_r B_r over the rods.
 
-    along: stiffness along each rod's present axis; across: stiffness across it (N/L of rods in tension).
+    along: stiffness along each rod's present axis. tension: its axial force (kN) where it is in tension, which makes it
+    stiff across the axis, by N/L. width: entries of a row.
     """
 
-    def __init__(self, model: Model, along: Array, across: Array | None = None) -> None:
+    width = 2
+
+    def __init__(self, model: Model, along: Array, tension: Array | None = None) -> None:
         particles, rods = model.particles, model.rods
         ends = rods.between.astype(np.intp)
         self._first, self._second = np.ascontiguousarray(ends[:, 0]), np.ascontiguousarray(ends[:, 1])
         present = rods.difference + (particles.displacement[self._second] - particles.displacement[self._first])
         length = np.hypot(present[:, 0], present[:, 1])
         self._axis = present / np.where(length > 0.0, length, 1.0)[:, None]
-        self._along, self._across = along, across
-        self._excess = along if across is None else along - across  # (k a aᵀ + t (1 − a aᵀ)) v
+        self._along, self._across = along, None if tension is None else tension / rods.rest_length
+        self._excess = along if self._across is None else along - self._across  # (k a aᵀ + t (1 − a aᵀ)) v
         self._root = np.sqrt(particles.mobility)
         self.rows = particles.count
 
@@ -71,18 +73,19 @@ class FrameOperator(RodOperator):
     """The same with the rotations of models that bend: vectors of shape (n, 3), the third entry for the rotation.
 
     The stiffness of a rod's axis follows the bow of its ends (their slopes to the chord): it acts along
-    n·Δu + L₀ (Bφ)·φ, φ being the change of slopes. ends: stiffness of slopes (ss, se, ee); with axial forces (kN) of rods
-    in tension also N L₀ B. bows: whether `along` follows the bow, which dampers do not.
+    n·Δu + L₀ (Bφ)·φ, φ being the change of slopes; that of dampers, which know no tension, does not. ends: stiffness of
+    slopes (ss, se, ee); with tension also N L₀ B.
     """
+
+    width = 3
 
     def __init__(self, model: Model, along: Array, ends: Array, tension: Array | None = None) -> None:
         rods, particles = model.rods, model.particles
-        bows = tension is not None
-        super().__init__(model, along, tension / rods.rest_length if tension is not None else None)
+        super().__init__(model, along, tension)
         length = np.hypot(*(rods.difference + self._change(particles.displacement)).T)
         self._inverse = 1.0 / np.where(length > 0.0, length, 1.0)
         rest, bowing = rods.rest_length, rods.bowing
-        bent = slopes(model) if bows else np.zeros((rods.count, 2))
+        bent = slopes(model) if tension is not None else np.zeros((rods.count, 2))
         bow = np.stack([(bowing[:, :2] * bent).sum(axis=1), (bowing[:, 1:] * bent).sum(axis=1)], axis=1)
         self._bow = rest[:, None] * bow
         thrust = tension * rest if tension is not None else np.zeros(rods.count)
@@ -137,15 +140,43 @@ class FrameOperator(RodOperator):
         return bounds
 
 
-def largest_eigenvalues(operator: Callable[[Array], Array], rows: int, bounds: Array, width: int = 2) -> Array:
-    """Upper bounds of the largest eigenvalues of equal blocks of a symmetric operator by Lanczos' method.
+def _stiffness(model: Model, share: Array, tension: Array | None = None) -> RodOperator:
+    """The operator of the stiffness of rods. share: of each rod, 1 or 0. tension: their axial forces, 0 where they push."""
+    rods = model.rods
+    along = share * rods.stiffness / rods.rest_length
+    if bends(model):
+        return FrameOperator(model, along, share[:, None] * rods.end_stiffness, tension)
+    return RodOperator(model, along, tension)
 
-    rows: of each block. width: entries of a row. bounds: what no result exceeds, one for each block. The result is the Ritz
-    value plus its residual. The start vector is fixed, sums are in a fixed order, so that the result (and with it
-    the step size) is the same on every run, and for a block alone. Its entries, k²φ mod 1, differ differently
-    from row to row: it must not be blind to a direction, as kφ is to that of (1, −1).
+
+def _damping(model: Model, share: Array) -> RodOperator:
+    """The operator of the dampers of rods."""
+    rods = model.rods
+    along = share * rods.damping
+    return (
+        FrameOperator(model, along, share[:, None] * rods.end_damping)
+        if bends(model)
+        else RodOperator(model, along)
+    )
+
+
+def coarse_rates(model: Model, blocks: int = 1) -> tuple[Array, Array]:
+    """Bounds of the largest eigenvalues ω² (1/s²) of the stiffness, without axial forces, and 2ζω (1/s) of the dampers.
+
+    Of each of so many equal disjoint blocks; those of `spectra` are closer, and take longer.
     """
-    blocks = len(bounds)
+    all_of_them = np.ones(model.rods.count)
+    return _stiffness(model, all_of_them).gershgorin(blocks), _damping(model, all_of_them).gershgorin(blocks)
+
+
+def _largest_eigenvalues(operator: RodOperator, blocks: int) -> Array:
+    """Upper bounds of the largest eigenvalues of so many equal blocks of a symmetric operator by Lanczos' method.
+
+    The result is the Ritz value plus its residual. The start vector is fixed, sums are in a fixed order, so that the
+    result (and with it the step size) is the same on every run, and for a block alone. Its entries, k²φ mod 1, differ
+    differently from row to row: it must not be blind to a direction, as kφ is to that of (1, −1).
+    """
+    bounds, width, rows = operator.gershgorin(blocks), operator.width, operator.rows // blocks
     start = np.modf(np.arange(1, width * rows + 1) ** 2 * 0.6180339887498949)[0] - 0.5
     vector = np.tile(start / math.sqrt(float((start * start).sum())), (blocks, 1))
     basis: list[Array] = []
@@ -207,26 +238,8 @@ def spectra(
     if rods.count == 0 or not ((particles.mobility > 0.0).any() or particles.turning.any()):
         return np.zeros(blocks), decay
     share = np.ones(rods.count) if counts is None else counts.astype(np.float64)
-    if bends(model):
-        return _of_frames(model, share, np.maximum(axial_force, 0.0), decay)
-    across = share * np.maximum(axial_force, 0.0) / rods.rest_length
-    stiffness = RodOperator(model, share * rods.stiffness / rods.rest_length, across)
-    rows = stiffness.rows // blocks
-    frequency = np.sqrt(largest_eigenvalues(stiffness, rows, stiffness.gershgorin(blocks)))
-    if (rods.damping > 0.0).any():
-        dampers = RodOperator(model, share * rods.damping)
-        decay = decay + 0.5 * largest_eigenvalues(dampers, rows, dampers.gershgorin(blocks))
-    return frequency, decay
-
-
-def _of_frames(model: Model, share: Array, tension: Array, decay: Array) -> tuple[Array, Array]:
-    """Frequency and decay of each block of a model that bends. share: of each rod, 1 or 0."""
-    rods, blocks = model.rods, len(decay)
-    rows = model.particles.count // blocks
-    ends = share[:, None] * rods.end_stiffness
-    stiffness = FrameOperator(model, share * rods.stiffness / rods.rest_length, ends, share * tension)
-    frequency = np.sqrt(largest_eigenvalues(stiffness, rows, stiffness.gershgorin(blocks), 3))
-    if (rods.damping > 0.0).any() or rods.end_damping.any():
-        dampers = FrameOperator(model, share * rods.damping, share[:, None] * rods.end_damping)
-        decay = decay + 0.5 * largest_eigenvalues(dampers, rows, dampers.gershgorin(blocks), 3)
+    stiffness = _stiffness(model, share, share * np.maximum(axial_force, 0.0))
+    frequency = np.sqrt(_largest_eigenvalues(stiffness, blocks))
+    if (rods.damping > 0.0).any() or (bends(model) and rods.end_damping.any()):
+        decay = decay + 0.5 * _largest_eigenvalues(_damping(model, share), blocks)
     return frequency, decay

@@ -437,12 +437,10 @@ class Program:
             return self._failed(error)
 
     def _failed(self, error: Exception) -> tuple[int, StopReason]:
-        """End a step in which a kernel raised an error as one that led nowhere, so that its mod is looked for."""
+        """End a step in which a kernel raised an error, for which its mod is looked for."""
         self.failure = self.failure or self._explained(error)
-        self._arrays["displacement"][...] = math.nan
         self._mark_changes()
-        self._store()
-        return 0, StopReason.DIVERGED
+        return 0, StopReason.FAILED
 
     def _advance(self, steps: int, until: float, landing: float) -> tuple[int, StopReason]:
         if self.module.is_loaded:

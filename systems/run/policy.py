@@ -20,7 +20,8 @@ from pinjoint.systems.entries import SMALLEST_ENERGY, Measure
 from pinjoint.systems.physics.automatic import SMALL
 
 GOING_ON = (StopReason.DONE, StopReason.REVIEW)  # stop reasons after which a run simply goes on
-ENDING = (StopReason.EVENT, StopReason.DIVERGED, StopReason.UNRESOLVED)  # reasons that end a step early
+FAILURES = (StopReason.DIVERGED, StopReason.UNRESOLVED, StopReason.FAILED)
+ENDING = (StopReason.EVENT, *FAILURES)  # reasons that end a step early
 
 SAFETY = 0.9  # share of the stable step that the automatic step takes in large models
 ACCURATE = 0.1  # share in small ones, whose steps cost next to nothing; error ∝ its square

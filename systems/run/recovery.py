@@ -14,6 +14,7 @@ from pinjoint.components.snapshot import Snapshot
 from pinjoint.systems.base import REVIEW_INTERVAL, StopReason
 from pinjoint.systems.program.faults import blame_mod
 from pinjoint.systems.program.program import MOTION, TURNING, Program
+from pinjoint.systems.run.policy import FAILURES
 from pinjoint.systems.run.programs import Programs
 from pinjoint.systems.run.sleep import Sleep
 from pinjoint.systems.run.step_size import StepSize
@@ -47,15 +48,16 @@ class Recovery:
         before, self.safe, self._halvings = self.safe, state, 0
         return before is None or not all(same(before.columns[name], state.columns[name]) for name in MOVING)
 
-    def without_mod(self, *, unresolved: bool) -> bool:
+    def without_mod(self, reason: StopReason) -> bool:
         """Switch off the mod without which the steps lead on, and return to the good state; False if there is none.
 
-        A mod is to blame for no more than numbers that are not finite, and for steps that lead to none (unresolved): the
-        steps are tried again without one mod after the other. Whoever interrupts that finds the good state, too.
+        A mod is to blame for errors, for numbers that are not finite, and for steps that lead to none, but for no other
+        ones that diverged: the steps are tried again without one mod after the other. Whoever interrupts that finds the
+        good state, too.
         """
         assert self.safe is not None
         program, present = self._programs.compiled, Snapshot.take(self._model)
-        if not (unresolved or not _is_finite(program) or program.failure):
+        if reason is StopReason.DIVERGED and _is_finite(program):
             return False
         steps = self._model.clock.steps - int(self.safe.columns["clock.steps"][0]) + 1
         found = program.failure is not None and blame_mod(program.failure)
@@ -76,7 +78,7 @@ class Recovery:
             return True
         self._step_size.begin(self._step_size.first())
         _, reason = program.advance(steps)
-        return reason not in (StopReason.DIVERGED, StopReason.UNRESOLVED) and _is_finite(program)
+        return reason not in FAILURES and _is_finite(program)
 
     def with_shorter_steps(self) -> bool:
         """Return to the good state and halve an automatic step, which proved too long as the geometry changed.

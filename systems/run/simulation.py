@@ -30,6 +30,7 @@ from pinjoint.systems.program.program import OBSERVED
 from pinjoint.systems.run.checkpoint import Checkpoint
 from pinjoint.systems.run.energy import Account, Energy
 from pinjoint.systems.run.policy import (
+    FAILURES,
     at_rest_since,
     begin_steps,
     contact_warning,
@@ -362,7 +363,7 @@ class Simulation:
     def _heed_and_announce(self, reason: StopReason) -> None:
         """React to the reason, and to events unless the state in which they happened was given up."""
         self._heed(reason)
-        if reason not in (StopReason.DIVERGED, StopReason.UNRESOLVED):
+        if reason not in FAILURES:
             self._announce_events()
         self._arm()
 
@@ -398,8 +399,8 @@ class Simulation:
 
     def _recover(self, reason: StopReason) -> None:
         """Return to the last good state and go on without a mod or with shorter steps, or give up."""
-        unresolved = reason is StopReason.UNRESOLVED
-        if self._recovery.without_mod(unresolved=unresolved):
+        unresolved = reason is not StopReason.DIVERGED
+        if self._recovery.without_mod(reason):
             self.before_change()  # what is lost with the mod counts as an edit
         elif unresolved or not self._recovery.with_shorter_steps():
             self.reason, self.message = (
