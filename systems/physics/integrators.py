@@ -16,7 +16,6 @@ _RUNGE_KUTTA = "pinjoint.systems.program.templates.runge_kutta"
 _IMPLICIT = "pinjoint.systems.program.templates.implicit"
 _FIXED_STEPS = "pinjoint.systems.program.templates.fixed_steps"
 
-_PLAIN = (f"{_FIXED_STEPS}:push",)
 _SEARCHED = ("extrapolate", "accelerate", "error_of", "combine", "begin_search", "narrow", "follow")
 _CONTROLLED = tuple(f"{_RUNGE_KUTTA}:{part}" for part in _SEARCHED)
 _SOLVED = ("relax", "precondition", "multiply", "correct", "size_of", "implicit_stages=stages")
@@ -30,7 +29,6 @@ class VelocityVerlet(Integrator):
     """
 
     name = "physics.velocity_verlet"
-    parts = _PLAIN
     begins = f"{_FIXED_STEPS}:verlet_begins"
     ends = f"{_FIXED_STEPS}:verlet_ends"
     order: ClassVar[int] = 2
@@ -64,7 +62,6 @@ class ThesisTaylor(Integrator):
     """
 
     name = "physics.taylor2"
-    parts = _PLAIN
     push = 0.5
     begins = f"{_FIXED_STEPS}:taylor2_begins"
     ends = f"{_FIXED_STEPS}:taylor2_ends"

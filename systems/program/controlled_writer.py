@@ -11,7 +11,6 @@ from pinjoint.systems.entries import Mark
 from pinjoint.systems.program.binding import Bound, StepRole, bind
 from pinjoint.systems.program.loops import RodLoop
 from pinjoint.systems.program.names import NO_POWER, NOW, POWER_RETURNED, TRIAL_STATE
-from pinjoint.systems.program.pasting import fragment, pasted
 from pinjoint.systems.program.templates import events, forces, implicit, rods, runge_kutta
 from pinjoint.systems.program.writer import Writer, sides_of
 
@@ -59,8 +58,8 @@ class ControlledWriter(Writer):
         return {
             "evaluate": self._evaluated(),
             "begin": ["search[Search.LIMIT] = limit"],
-            "step": fragment(runge_kutta.step),
-            **{name: [] for name in ("finish", "look_ahead", "settle")},
+            "step": self.lines(runge_kutta.step),
+            "finish": [],
         }
 
     def _pushed(self) -> list[str]:
@@ -76,10 +75,12 @@ class ControlledWriter(Writer):
     def _remember(self) -> str:
         compute, lost = self._histories(self.commits)
         loop = RodLoop(self.shift, [*self.geometry(), *compute], scatter=[*lost.values()]).one_by_one()
-        return pasted(forces.remember, "compiled", history=self._with_losses(self.commits, loop))
+        return self.function(forces.remember, "compiled", history=self._with_losses(self.commits, loop))
 
     def _commit(self) -> str:
-        return pasted(forces.commit, "entered", history="remember(time, dt, displacement, account, *columns)")
+        return self.function(
+            forces.commit, "entered", history="remember(time, dt, displacement, account, *columns)"
+        )
 
     def _evaluate(self) -> str:
         lines = [
@@ -89,7 +90,7 @@ class ControlledWriter(Writer):
             *POWER_RETURNED,
             *self._pushes(),
         ]
-        return pasted(forces.evaluate, "compiled", trial_forces=lines)
+        return self.function(forces.evaluate, "compiled", trial_forces=lines)
 
     # --- events -----------------------------------------------------------------------------------
 
@@ -107,17 +108,15 @@ class ControlledWriter(Writer):
             side = f"-1.0 if {sides_of(b)}[r] == Side.NEGATIVE else 1.0"
             slope = self._slope(of_row, f"branch * {quantity}", self._needed_force(b))
             lines[b.each] += self._look(template, place, side, slope)
-        return pasted(function, "compiled", **self._each_row(lines))
+        return self.function(function, "compiled", **self._each_row(lines))
 
-    @staticmethod
-    def _look(template: Callable[[], None], place: int, branch: str, slope: list[str]) -> list[str]:
+    def _look(self, template: Callable[[], None], place: int, branch: str, slope: list[str]) -> list[str]:
         law = str(len(Mark) * place)
-        return fragment(template, law=law, branch=branch, steady=str(_STEADY), margin_and_slope=slope)
+        return self.lines(template, law=law, branch=branch, steady=str(_STEADY), margin_and_slope=slope)
 
-    @staticmethod
-    def _slope(template: Callable[[], None], margin: str, axial_force: list[str]) -> list[str]:
+    def _slope(self, template: Callable[[], None], margin: str, axial_force: list[str]) -> list[str]:
         """Lines that give a margin and its rate. axial_force: lines by which it follows from the elongation."""
-        return fragment(template, margin=margin, axial_force=axial_force, ahead=str(_AHEAD))
+        return self.lines(template, margin=margin, axial_force=axial_force, ahead=str(_AHEAD))
 
     def _turned(self, place: int) -> str:
         margin = f"marks[r, {len(Mark) * (len(self.branches) + place)} + Mark.MARGIN]"
@@ -129,35 +128,30 @@ class ControlledWriter(Writer):
         particles = [
             line
             for b in self.of[StepRole.RESISTANCE]
-            for line in fragment(implicit.particle_tangent, force=self._apply(b, "i"))
+            for line in self.lines(implicit.particle_tangent, force=self._apply(b, "i"))
         ]
         particles += [
             line
             for b in self.of[StepRole.TURNING]
-            for line in fragment(implicit.turning_tangent, moment=self._apply(b, "i"))
+            for line in self.lines(implicit.turning_tangent, moment=self._apply(b, "i"))
         ]
         damping_force = [
             "damping_force = 0.0",
             *(f"damping_force += {self._apply(b, 'r')}" for b in self.of[StepRole.RATE]),
         ]
-        tangent = fragment(
+        tangent = self.lines(
             implicit.rod_tangent,
+            DAMPED=bool(self.of[StepRole.RATE]),
             rate=self.rate(),
             axial_force=self._axial_force(),
-            drawn=["drawn = stiffness"] if self.bends else [],
-            dampers=fragment(implicit.damper_tangent, damping_force=damping_force)
-            if self.of[StepRole.RATE]
-            else [],
-            bending=self._tangent_of_ends() if self.bends else [],
+            damping_force=damping_force,
+            bending=self._tangent_of_ends(),
         )
         loop = RodLoop(self.shift | self.drift, [*self.geometry(), *tangent])
-        return pasted(implicit.tangent, "compiled", particles=particles, rods=loop.one_by_one(), mass=self.mass)
-
-    def _of_bending(self) -> dict[str, list[str]]:
-        return {name: fragment(getattr(implicit, name)) if self.bends else [] for name in ("bend", "stiffen")}
+        return self.function(implicit.tangent, "compiled", particles=particles, rods=loop.one_by_one())
 
     def _tangent_of_ends(self) -> list[str]:
-        return fragment(
+        return self.lines(
             rods.tangent_of_ends,
             by_slopes=self._tangent_by(self.of[StepRole.ENDS], "slope", "by_x"),
             by_rates=self._tangent_by(self.of[StepRole.RATE_OF_ENDS], "rate", "by_v"),
@@ -167,6 +161,6 @@ class ControlledWriter(Writer):
     def _tangent_by(self, laws: Sequence[Bound], kind: str, share: str) -> list[str]:
         """Lines that add how the moments of these laws follow the slopes, or their rates."""
         lines: list[str] = []
-        for line in fragment(rods.tangent_by, share=share, laws="laws") if laws else []:
+        for line in self.lines(rods.tangent_by, share=share, laws="laws") if laws else []:
             lines += self.end_laws(laws, "summed") if line == "laws" else [line.replace("slope", kind)]
         return lines

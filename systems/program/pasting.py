@@ -10,8 +10,10 @@ from collections.abc import Callable, Iterable, Mapping, Sequence
 from functools import cache
 from typing import Any
 
-Inserts = Mapping[str, str | Sequence[str]]  # what stands for insert(…): an expression, or lines
+# What stands for insert(…): an expression, or lines; or whether the lines below `if NAME:` are there, without it.
+Insert = str | Sequence[str] | bool
 
+_CHOICE = re.compile(r"( *)if (\w+):")
 _LINE = re.compile(r"( *)insert\((\w+)\)")
 _EXPRESSION = re.compile(r"insert\((\w+)\)")
 _ON_LINES = re.compile(r"\(\n((?:[^()]|\([^()]*\))*\*columns),?\s*\)")
@@ -46,20 +48,48 @@ def _statements_of(function: Callable[..., Any]) -> Sequence[str]:
     return textwrap.dedent("\n".join(source.splitlines()[statements[0].lineno - 1 :])).splitlines()
 
 
-def pasted(function: Callable[..., Any], decorator: str, name: str = "", **inserts: str | Sequence[str]) -> str:
+def pasted(function: Callable[..., Any], decorator: str, name: str = "", **inserts: Insert) -> str:
     """A template with a decorator, under its own or another name."""
     head, body = _head_and_body_of(function)
     if name:
         head = head.replace(f"def {function.__name__}(", f"def {name}(", 1)
-    return "\n".join([f"@{decorator}", f"{head}:", *_filled(body, inserts)])
+    return "\n".join([f"@{decorator}", f"{head}:", *_filled(_chosen(body, inserts), inserts)])
 
 
-def fragment(function: Callable[..., Any], **inserts: str | Sequence[str]) -> list[str]:
+def fragment(function: Callable[..., Any], **inserts: Insert) -> list[str]:
     """The lines of a template without its head and its docstring."""
-    return _filled(_statements_of(function), inserts)
+    return _filled(_chosen(_statements_of(function), inserts), inserts)
 
 
-def _filled(lines: Iterable[str], inserts: Inserts) -> list[str]:
+def _chosen(lines: Sequence[str], inserts: Mapping[str, Insert]) -> list[str]:
+    """The lines with those of every choice that is known, in place of `if NAME:` and `else:`."""
+    kept: list[str] = []
+    at = 0
+    while at < len(lines):
+        choice = _CHOICE.fullmatch(lines[at])
+        made = inserts.get(choice[2]) if choice else None
+        at += 1
+        if choice is None or not isinstance(made, bool):
+            kept.append(lines[at - 1])
+            continue
+        for wanted in (made, not made):
+            block, at = _block(lines, at, choice[1])
+            kept += _chosen(block, inserts) if wanted else []
+            if lines[at : at + 1] != [f"{choice[1]}else:"]:
+                break
+            at += 1
+    return kept
+
+
+def _block(lines: Sequence[str], at: int, before: str) -> tuple[list[str], int]:
+    """The lines from one on that are indented deeper than `before`, a level less deep, and the place after them."""
+    first = at
+    while at < len(lines) and lines[at].startswith(f"{before} "):
+        at += 1
+    return [line[4:] for line in lines[first:at]], at
+
+
+def _filled(lines: Iterable[str], inserts: Mapping[str, Insert]) -> list[str]:
     filled: list[str] = []
     for line in lines:
         if "insert(" not in line:

@@ -6,7 +6,9 @@ on the plan: which kernels are called for each particle and rod, with which colu
 
 from __future__ import annotations
 
+import sys
 from collections.abc import Callable, Iterable, Mapping, Sequence
+from functools import cached_property
 from typing import Any
 
 import numpy as np
@@ -57,7 +59,7 @@ from pinjoint.systems.program.names import (
     TURNED,
 )
 from pinjoint.systems.program.near_pairs import ARRAYS
-from pinjoint.systems.program.pasting import expanded, fragment, indented, pasted, source_of
+from pinjoint.systems.program.pasting import Insert, expanded, fragment, indented, pasted, source_of
 from pinjoint.systems.program.templates import (
     driven,
     events,
@@ -68,8 +70,6 @@ from pinjoint.systems.program.templates import (
     rods,
     steps,
 )
-
-ROUND_OFF = 2.220446049250313e-16  # of forces, relative to stiffness × displacement
 
 _AT_STRENGTH = 1.0 - 1e-9  # share of its strength from which on a rod is said to yield
 _OF_PAIRS = pairs.list_pairs, pairs.sort_along_x, pairs.sweep, pairs.sort_row
@@ -140,9 +140,9 @@ class Writer:
         traits = traits_of(model)
         self.warm, self.bends, self.loaded = (trait in traits for trait in TRAITS)
         self.coordinates = 3 if self.bends else 2
+        self.collides = any(system.impulsive for system in systems)
         self.shift = SHIFT | TURNED if self.bends else SHIFT
         self.drift = DRIFT | SPUN if self.bends else DRIFT
-        self.collides = any(system.impulsive for system in systems)
         bound = (bind(system, model) for system in systems if system.kernel)
         self.bound = [b for b in bound if self.bends or b.each not in ("ends", "rotations")]
         check_names(self.bound)
@@ -199,6 +199,30 @@ class Writer:
                 names[sides_of(b)] = None
         self.columns = list(names)
 
+    # --- templates --------------------------------------------------------------------------------
+
+    @cached_property
+    def _inserts(self) -> dict[str, Insert]:
+        """What is known in every template: which lines it keeps, and what stands for some words."""
+        return {
+            "ALIKE": not self.integrator.controlled,
+            "BENDS": self.bends,
+            "FORESEES": bool(self.of[StepRole.LOAD]) and not self.integrator.controlled,
+            "LOADED": self.loaded,
+            "LOADS": bool(self.of[StepRole.LOAD]),
+            "MEETS": self.collides,
+            "WARM": self.warm,
+            "mass": "particles_masses[i, d]" if self.bends else "particles_mass[i]",
+        }
+
+    def function(self, template: Callable[..., Any], decorator: str, name: str = "", **inserts: Insert) -> str:
+        """A template as a function of the program, under its own or another name."""
+        return pasted(template, decorator, name, **(self._inserts | inserts))
+
+    def lines(self, template: Callable[..., Any], **inserts: Insert) -> list[str]:
+        """The lines of a template."""
+        return fragment(template, **(self._inserts | inserts))
+
     # --- expressions ------------------------------------------------------------------------------
 
     def _argument(self, b: Bound, parameter: str, index: str) -> str:
@@ -229,12 +253,18 @@ class Writer:
         parts = [
             self._head(),
             *([self._drive()] if self.collides else []),
-            pasted(steps.advance, "compiled" if self.collides else "entered", "", **self._steps()),
-            *(pasted(part, "inlined") for part in (steps.aim, steps.is_check_due)),
+            self.function(
+                steps.advance,
+                "compiled" if self.collides else "entered",
+                "",
+                force="unpushed" if self.collides else "force",
+                **self._steps(),
+            ),
+            *(self.function(part, "inlined") for part in (steps.aim, steps.is_check_due)),
             *(self._pasted(part, "inlined") for part in reversed(self.integrator.parts)),
             *self._of_steps(),
-            *(pasted(template, "compiled") for template in (_OF_PAIRS if self.pairs else ())),
-            pasted(forces.external, "compiled", particle_forces=self._particle_forces()),
+            *(self.function(template, "compiled") for template in (_OF_PAIRS if self.pairs else ())),
+            self.function(forces.external, "compiled", particle_forces=self._particle_forces()),
             self._measure(),
             self._observe(),
             *([self._commit()] if self.commits else []),
@@ -272,14 +302,14 @@ class Writer:
 
     def _drive(self) -> str:
         """The function by which steps are entered where particles may meet."""
-        return pasted(
+        return self.function(
             driven.drive,
             "entered",
             "",
             keep=self._copies(driven.keep, "kept_{0}", "{0}"),
             put_back=self._copies(driven.put_back, "{0}", "kept_{0}"),
             evaluate=self._evaluated(),
-            take=fragment(driven.take),
+            take=self.lines(driven.take),
             pushed=self._pushed(),
         )
 
@@ -289,7 +319,7 @@ class Writer:
             row = "r, 2" if name in STATE else "r"
             lines.append(f"for r in range({name}.shape[0]):")
             lines.append(f"    {to.format(name)}[{row}] = {of.format(name)}[{row}]")
-        return fragment(template, others=lines)
+        return self.lines(template, others=lines)
 
     def _pushed(self) -> list[str]:
         """What follows from other contact forces."""
@@ -303,7 +333,7 @@ class Writer:
 
     def _pushes(self) -> list[str]:
         """The lines by which contact forces are added to all others."""
-        return fragment(driven.push) if self.collides else []
+        return self.lines(driven.push) if self.collides else []
 
     def _head(self) -> str:
         kernels = "\n".join(f"    {name} = {_origin(function)}" for name, function in self.names.items())
@@ -318,6 +348,7 @@ class Writer:
             "LOADS": bool(self.of[StepRole.LOAD]),
             "STOPS": bool(self.events),
             "EVENTS": False,
+            "EPSILON": sys.float_info.epsilon,  # round-off of forces, relative to stiffness × displacement
             "SLACK": 1e-12,  # share of the time to go by which the end of a fixed step may be late
             "SHADOW": float(self.integrator.guard),
             "CHECK_INTERVAL": self.integrator.check_interval,
@@ -334,16 +365,7 @@ class Writer:
     def _pasted(self, where: str, decorator: str) -> str:
         """A template of the integrator, "module:function" or with "=new name"."""
         where, _, name = where.partition("=")
-        return pasted(find(where, self.integrator), decorator, name, mass=self.mass, **self._of_bending())
-
-    def _of_bending(self) -> dict[str, list[str]]:
-        """What the parts of the integrator do with rods that bend."""
-        return {}
-
-    @property
-    def mass(self) -> str:
-        """The inertia of a particle `i` along its coordinate `d`."""
-        return "particles_masses[i, d]" if self.bends else "particles_mass[i]"
+        return self.function(find(where, self.integrator), decorator, name)
 
     def _each_coordinate(self, line: str) -> list[str]:
         """A line for every coordinate {0} of a particle."""
@@ -360,7 +382,7 @@ class Writer:
             self._forces("accept", self.commits),
             self._forces("forces", []),
             self._resist(),
-            pasted(forces.load_power, "compiled", loads=loads),
+            self.function(forces.load_power, "compiled", loads=loads),
             *self._happened(),
         ]
 
@@ -387,7 +409,7 @@ class Writer:
         laws: list[str] = []
         for b, own in lines:
             laws += [f"if squared < pair_reach[{2 + self.pairs.index(b)}]:", *indented(own)] if own else []
-        return fragment(pairs.each_pair, laws=laws) if laws else []
+        return self.lines(pairs.each_pair, laws=laws) if laws else []
 
     def _pair_forces(self, b: Bound, powers: bool) -> list[str]:
         """Lines that add the force of a law to those on both particles."""
@@ -448,17 +470,11 @@ class Writer:
 
     def geometry(self) -> list[str]:
         """Lines that give elongation, length and direction of a rod, and the slopes of its ends."""
-        misfit = "rods_misfit[r]" if self.warm else "(original - rods_rest_length[r])"
-        lines = fragment(rods.geometry, misfit=misfit)
-        return lines + fragment(rods.bent) if self.bends else lines
+        return self.lines(rods.geometry)
 
     def rate(self, *, of_axis: bool = False) -> list[str]:
         """Lines that give how fast a rod grows longer, and how fast its slopes grow; of_axis: also of the bowed axis."""
-        lines = fragment(rods.rate)
-        if self.bends:
-            lines += fragment(rods.slope_rates)
-            lines += fragment(rods.rate_of_axis) if of_axis else []
-        return lines
+        return self.lines(rods.rate, OF_AXIS=of_axis)
 
     def end_laws(self, laws: Sequence[Bound], made: str, powers: bool = False) -> list[str]:
         """Lines that sum up the moments that laws give the ends of a rod; powers: and what each does per second."""
@@ -471,8 +487,7 @@ class Writer:
 
     def end_moments(self) -> list[str]:
         """Lines that give the moments on the ends of a rod, dampers apart, once its axial force is known."""
-        load = [*fragment(rods.between), *fragment(rods.of_load)] if self.loaded else []
-        return fragment(rods.end_moments, law=self.end_laws(self.of[StepRole.ENDS], "moment"), load=load)
+        return self.lines(rods.end_moments, law=self.end_laws(self.of[StepRole.ENDS], "moment"))
 
     def _axial_force(self, *, without: Sequence[Bound] = ()) -> list[str]:
         lines = ["axial_force = 0.0"]
@@ -491,7 +506,7 @@ class Writer:
 
     def _forces(self, name: str, commits: Sequence[Bound]) -> str:
         lines = self._with_losses(commits, self._rod_loop(self._rod_forces(commits)))
-        return pasted(getattr(forces, name), "compiled", rod_forces=[*lines, *self._pushes()])
+        return self.function(getattr(forces, name), "compiled", rod_forces=[*lines, *self._pushes()])
 
     @staticmethod
     def _with_losses(commits: Sequence[Bound], loop: Sequence[str]) -> list[str]:
@@ -569,7 +584,7 @@ class Writer:
         return RodLoop(self.drift, compute, [*made, *gains], [*gains.values(), *scatter])
 
     def _resist(self) -> str:
-        return pasted(forces.resist, "compiled", resistance=[*self._resistance(), *POWER_RETURNED])
+        return self.function(forces.resist, "compiled", resistance=[*self._resistance(), *POWER_RETURNED])
 
     def _resistance(self, span: str = EVERY) -> list[str]:
         body = [*NO_POWER]
@@ -597,20 +612,16 @@ class Writer:
 
     def _steps(self) -> dict[str, list[str]]:
         """What the loop over steps does with this integrator."""
-        force = "unpushed" if self.collides else "force"
         return {
             "evaluate": self._evaluated(),
             "begin": ["inside = False", *self._begin()],
-            "step": fragment(
+            "step": self.lines(
                 fixed_steps.step,
                 complete=self._complete("not whole"),
                 displacement=self._move(),
-                work=fragment(fixed_steps.work) if self.of[StepRole.LOAD] else [],
                 velocity=self._accelerate(),
             ),
             "finish": self._complete(""),
-            "look_ahead": fragment(fixed_steps.look_ahead),
-            "settle": fragment(fixed_steps.settle, force=force),
         }
 
     def _begin(self) -> list[str]:
@@ -631,14 +642,14 @@ class Writer:
 
     def _particles(self, where: str, span: str = EVERY) -> list[str]:
         """A loop in which the integrator moves every particle."""
-        lines = fragment(find(where, self.integrator), total_force=fragment(fixed_steps.total_force))
+        lines = self.lines(find(where, self.integrator), total_force=self.lines(fixed_steps.total_force))
         return [f"for i in range({span}):", *indented(lines)] if lines else []
 
     def _gains(self, resist: str, given: str) -> list[str]:
         """The lines by which each account gains in the step that ends here."""
         if not self.powers:
             return []
-        powers = fragment(fixed_steps.powers, accounts=str(len(ACCOUNTS)))
+        powers = self.lines(fixed_steps.powers, accounts=str(len(ACCOUNTS)))
         return [f"{resist}({given}, gained, *columns)", *powers]
 
     # --- events -----------------------------------------------------------------------------------
@@ -649,11 +660,11 @@ class Writer:
         for place, b in enumerate(self.events):
             lines[b.each] += [
                 *self._needed_force(b),
-                *fragment(
+                *self.lines(
                     events.turn, sides=sides_of(b), quantity=self._apply(b, "r"), turned=self._turned(place)
                 ),
             ]
-        return [pasted(events.happened, "compiled", **self._each_row(lines))] if self.events else []
+        return [self.function(events.happened, "compiled", **self._each_row(lines))] if self.events else []
 
     def _turned(self, place: int) -> str:
         """The condition that the quantity of an event, `gap` on the side that it was on, changed sign in the step."""
@@ -673,35 +684,16 @@ class Writer:
     # --- reading ----------------------------------------------------------------------------------
 
     def _measure(self) -> str:
-        stored = [*self.geometry(), *self._axial_force(without=self.working), *fragment(rods.stored)]
-        if self.bends:
-            stored += [*self.end_moments(), *fragment(rods.stored_by_ends)]
-            kept = [self.potentials[b.system.name] for b in self.ends if b.system.name in self.potentials]
-            stored += [f"elastic += 2.0 * {self._apply(b, 'r')}" for b in kept]
-            stored += ["potential += transverse * area"] if self.loaded else []
-        return pasted(
+        kept = [self.potentials[b.system.name] for b in self.ends if b.system.name in self.potentials]
+        energies = [f"elastic += 2.0 * {self._apply(b, 'r')}" for b in kept]
+        stored = self.lines(rods.stored, moments=self.end_moments(), energies=energies)
+        compute = [*self.geometry(), *self._axial_force(without=self.working), *stored]
+        return self.function(
             observing.measure,
             "compiled",
-            "",
-            mass=self.mass,
-            rods=RodLoop(self.shift, stored).one_by_one(),
+            rods=RodLoop(self.shift, compute).one_by_one(),
             pairs=self._each_pair((b, self._pair_energy(b)) for b in self.pairs),
-            **self._scales(),
         )
-
-    def _scales(self) -> dict[str, str | list[str]]:
-        """What a moment counts as a force by, and the round-off of what acts in rods."""
-        pull, load = "abs(force[i, d])", "abs(particles_constant_force[i, d])"
-        round_off = f"{ROUND_OFF} * stiffest * moved"
-        if not self.bends:
-            return {"unbalanced": pull, "load": load, "turning": [], "rolled": [], "round_off": round_off}
-        return {
-            "unbalanced": f"{pull} * lever[i, d]",
-            "load": f"{load} * lever[i, d]",
-            "turning": ["rolled = 0.0", "firmest = 0.0"],
-            "rolled": ["rolled = max(rolled, abs(displacement[i, 2] * per_arm[0]))"],
-            "round_off": f"{round_off} + {ROUND_OFF} * firmest * rolled",
-        }
 
     def _pair_resistance(self, b: Bound) -> list[str]:
         """Lines that give the power of a law, and the force if it resists motion."""
@@ -732,20 +724,17 @@ class Writer:
         return f"forces({TRIAL_STATE}, *columns)"
 
     def _observe(self) -> str:
-        observed = fragment(rods.observed, at_strength=str(_AT_STRENGTH))
-        observed += [*self.end_moments(), *fragment(rods.observed_ends)] if self.bends else []
+        observed = self.lines(rods.observed, at_strength=str(_AT_STRENGTH), moments=self.end_moments())
         loop = RodLoop(self.shift, [*self.geometry(), *self._axial_force(), *observed])
-        pushed = fragment(observing.pushed) if self.collides else []
-        return pasted(
+        return self.function(
             observing.observe,
             "entered",
             evaluation=self._evaluation,
             rods=loop.one_by_one(),
-            pushed=pushed,
         )
 
     def _commit(self) -> str:
-        return pasted(forces.commit, "entered", history=f"accept({TRIAL_STATE}, account, *columns)")
+        return self.function(forces.commit, "entered", history=f"accept({TRIAL_STATE}, account, *columns)")
 
 
 def read_sources(integrators: Iterable[Integrator]) -> None:

@@ -12,6 +12,9 @@ program. It runs only there.
     *kept       what driven.py puts back
     *observed   rods_axial_force, rods_length, rods_strain, yielding; fixed, tension, compression, yields
     insert(x)   the lines, or the expression, that the writer made for `x`
+    if BENDS:   lines that a program has only where members bend; so with LOADED (a distributed force acts on some), WARM
+                (rods may have another rest length than the original one), MEETS (particles may meet), ALIKE (all steps
+                are of one length), LOADS (some load varies), FORESEES (both), and what the writer says of one template
 
 In the head of a function, where Python allows one star only, the same words stand without it. Arrays are handed over
 one by one because a tuple of them costs twice as much a step in small models, and takes several times as long to
@@ -30,7 +33,7 @@ D is 2, or 3 in models that bend. The third coordinate is a rotation θ as a way
 angle again, and a moment into the force that belongs to it; its mass is J/ℓ². ℓ is a power of two, about the longest rod
 (`arm_of` in systems/physics/bending.py), so that these products change no bits.
 
-Constants of every program: D; RATES (something depends on velocity), POWERS (some account gains by the step), LOADS
+Constants of every program: D; EPSILON; RATES (something depends on velocity), POWERS (some account gains by the step), LOADS
 (some load varies), STOPS (there are Events, at which runs stop), SHADOW (see judge() in systems/physics/kernels.py),
 CHECK_INTERVAL and REVIEW_INTERVAL (steps); of one that controls its steps also EVENTS (there are Events, or some law of
 rods has branches), COMMITS (something has a history) and those of its integrator.

@@ -69,7 +69,7 @@ def step():
     """A whole step, or the part of one that something ends or interrupts.
 
     An energy that steps conserve belongs to their length: that of a shorter one is compared by itself, and of what comes
-    after it anew.
+    after it anew. The work of varying loads is their mean force times the displacement.
     """
     whole = end == goal and not inside
     insert(complete)
@@ -81,25 +81,14 @@ def step():
         measure(displacement, velocity, force, resisting, measures, *columns)
         account[Account.GUARD_ENERGY] = conserved(measures, account, dt, SHADOW)
     insert(displacement)
-    insert(work)
+    if LOADS:
+        before = load_power(began, velocity, *columns)
+        after = load_power(time, velocity, *columns)
+        account[Account.WORK] += 500.0 * dt * (before + after)
     insert(velocity)
     inside = time != goal and not cut
     counted = age + 1 if whole or cut else CHECK_INTERVAL
     compared = dt if cut else size
-
-
-def settle():
-    """After a step that was cut: the conserved energy of whole ones, to which forces of contacts do not belong."""
-    if cut:
-        measure(displacement, velocity, insert(force), resisting, measures, *columns)
-        account[Account.GUARD_ENERGY] = conserved(measures, account, size, SHADOW)
-
-
-def work():
-    """The work of varying loads in a step: their mean force times the displacement."""
-    before = load_power(began, velocity, *columns)
-    after = load_power(time, velocity, *columns)
-    account[Account.WORK] += 500.0 * dt * (before + after)
 
 
 def powers():
@@ -107,18 +96,3 @@ def powers():
     for k in range(insert(accounts)):
         account[k] += 500.0 * dt * (power[k] + gained[k])
         power[k] = gained[k]
-
-
-def push(dt, velocity, force, resisting, predicted, particles_mobility):
-    """predicted ← the velocities to which the present forces lead in a step."""
-    for i in range(velocity.shape[0]):
-        for d in range(D):
-            total = force[i, d] + resisting[i, d] if RATES else force[i, d]
-            predicted[i, d] = velocity[i, d] + dt * total * particles_mobility[i, d]
-
-
-def look_ahead():
-    """What loads do per second at the velocities to which the present forces lead (W), in a step."""
-    if LOADS:
-        push(compared, velocity, force, resisting, predicted, particles_mobility)
-        ahead = 1000.0 * compared * abs(load_power(time, predicted, *columns))

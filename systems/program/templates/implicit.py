@@ -124,7 +124,7 @@ def turning_tangent():
 
 
 def rod_tangent():
-    """Of the laws of rod `r`, dampers apart."""
+    """Of the laws of rod `r`, dampers included."""
     direction[r, 0] = nx
     direction[r, 1] = ny
     insert(rate)
@@ -140,25 +140,23 @@ def rod_tangent():
     stiffness = by_x * (more - axial_force) / (2.0 * small)
     elongation = here
     axial_force = total
-    insert(drawn)
-    insert(dampers)
+    if BENDS:
+        drawn = stiffness
+    if DAMPED:
+        insert(damping_force)
+        total += damping_force
+        present = rate
+        small = small / by_v
+        rate = present + small
+        insert(damping_force)
+        more = damping_force
+        rate = present - small
+        insert(damping_force)
+        stiffness += by_v * (more - damping_force) / (2.0 * small)
     rod_work[0, r] = stiffness
     rod_work[1, r] = by_x * total * inverse
-    insert(bending)
-
-
-def damper_tangent():
-    """Of the dampers of rod `r`."""
-    insert(damping_force)
-    total += damping_force
-    present = rate
-    small = small / by_v
-    rate = present + small
-    insert(damping_force)
-    more = damping_force
-    rate = present - small
-    insert(damping_force)
-    stiffness += by_v * (more - damping_force) / (2.0 * small)
+    if BENDS:
+        insert(bending)
 
 
 def correct(time, dt, by_x, by_v, trial, speed, forces, acceleration, correction, work, rod_work, *columns):
@@ -210,7 +208,7 @@ def correct(time, dt, by_x, by_v, trial, speed, forces, acceleration, correction
 
 
 def multiply(vector, product, direction, rod_work, diagonal, beside, *columns):
-    """product ← (M + γh C + (γh)² K) vector; constrained directions are left out."""
+    """product ← (M + γh C + (γh)² K) vector; constrained directions are left out. Shear turns with the chord of a rod."""
     for i in range(vector.shape[0]):
         product[i, 0] = diagonal[i, 0] * vector[i, 0] + beside[i, 0] * vector[i, 1]
         product[i, 1] = diagonal[i, 1] * vector[i, 1] + beside[i, 0] * vector[i, 0]
@@ -227,7 +225,21 @@ def multiply(vector, product, direction, rod_work, diagonal, beside, *columns):
         pull = (along - across) * (nx * sx + ny * sy)
         px = pull * nx + across * sx
         py = pull * ny + across * sy
-        insert(bend)
+        if BENDS:
+            inverse = direction[r, 2]
+            stretched = nx * sx + ny * sy
+            aside = nx * sy - ny * sx
+            leaning = aside * inverse
+            slope_a = vector[a, 2] * per_arm[0] - leaning
+            slope_b = vector[b, 2] * per_arm[0] - leaning
+            turned_a = rod_work[2, r] * stretched + rod_work[4, r] * slope_a + rod_work[5, r] * slope_b
+            turned_b = rod_work[3, r] * stretched + rod_work[5, r] * slope_a + rod_work[6, r] * slope_b
+            pulled = rod_work[2, r] * slope_a + rod_work[3, r] * slope_b + rod_work[7, r] * aside
+            pushed = rod_work[7, r] * stretched - (turned_a + turned_b) * inverse
+            px += pulled * nx - pushed * ny
+            py += pulled * ny + pushed * nx
+            product[a, 2] += turned_a * per_arm[0]
+            product[b, 2] += turned_b * per_arm[0]
         product[a, 0] -= px
         product[a, 1] -= py
         product[b, 0] += px
@@ -249,7 +261,13 @@ def precondition(direction, rod_work, diagonal, beside, straight, skew, *columns
         ny = direction[r, 1]
         sideways = max(rod_work[1, r], 0.0)
         stiffer = max(rod_work[0, r], 0.0) - sideways
-        insert(stiffen)
+        if BENDS:
+            inverse = direction[r, 2]
+            leaning = (rod_work[4, r] + 2.0 * rod_work[5, r] + rod_work[6, r]) * inverse * inverse
+            sideways += max(leaning, 0.0)
+            stiffer -= max(leaning, 0.0)
+            straight[rods_between[r, 0], 2] += max(rod_work[4, r], 0.0) * per_arm[0] * per_arm[0]
+            straight[rods_between[r, 1], 2] += max(rod_work[6, r], 0.0) * per_arm[0] * per_arm[0]
         for end in range(2):
             i = rods_between[r, end]
             straight[i, 0] += stiffer * nx * nx + sideways
@@ -282,31 +300,3 @@ def relax(residual, solved, straight, skew):
             own += solved[i, d] * residual[i, d]
         size += own
     return size
-
-
-def bend():
-    """Of a rod that bends; its shear turns with its chord."""
-    inverse = direction[r, 2]
-    stretched = nx * sx + ny * sy
-    aside = nx * sy - ny * sx
-    leaning = aside * inverse
-    slope_a = vector[a, 2] * per_arm[0] - leaning
-    slope_b = vector[b, 2] * per_arm[0] - leaning
-    turned_a = rod_work[2, r] * stretched + rod_work[4, r] * slope_a + rod_work[5, r] * slope_b
-    turned_b = rod_work[3, r] * stretched + rod_work[5, r] * slope_a + rod_work[6, r] * slope_b
-    pulled = rod_work[2, r] * slope_a + rod_work[3, r] * slope_b + rod_work[7, r] * aside
-    pushed = rod_work[7, r] * stretched - (turned_a + turned_b) * inverse
-    px += pulled * nx - pushed * ny
-    py += pulled * ny + pushed * nx
-    product[a, 2] += turned_a * per_arm[0]
-    product[b, 2] += turned_b * per_arm[0]
-
-
-def stiffen():
-    """What bending adds to the blocks of the particles at the ends of a rod."""
-    inverse = direction[r, 2]
-    leaning = (rod_work[4, r] + 2.0 * rod_work[5, r] + rod_work[6, r]) * inverse * inverse
-    sideways += max(leaning, 0.0)
-    stiffer -= max(leaning, 0.0)
-    straight[rods_between[r, 0], 2] += max(rod_work[4, r], 0.0) * per_arm[0] * per_arm[0]
-    straight[rods_between[r, 1], 2] += max(rod_work[6, r], 0.0) * per_arm[0] * per_arm[0]

@@ -1,6 +1,6 @@
 """Reading a state: its energies, residual and scales, and the derived columns."""
 
-# ruff: noqa: F821, F841
+# ruff: noqa: F821
 # mypy: ignore-errors
 
 
@@ -13,25 +13,35 @@ def measure(displacement, velocity, force, resisting, measures, *columns):
     residual = 0.0
     largest = 0.0
     moved = 0.0
-    insert(turning)
+    if BENDS:
+        rolled = 0.0
+        firmest = 0.0
     for i in range(displacement.shape[0]):
         for d in range(D):
             kinetic += insert(mass) * velocity[i, d] * velocity[i, d]
             potential += particles_constant_force[i, d] * displacement[i, d]
             total = force[i, d] + resisting[i, d] if RATES else force[i, d]
             power_norm += total * particles_mobility[i, d] * total
+            pull = abs(force[i, d])
+            load = abs(particles_constant_force[i, d])
+            if BENDS:
+                pull *= lever[i, d]
+                load *= lever[i, d]
             if particles_mobility[i, d] > 0.0:
                 power += total * velocity[i, d]
-                residual = max(residual, insert(unbalanced))
-            largest = max(largest, insert(load))
+                residual = max(residual, pull)
+            largest = max(largest, load)
         for d in range(2):
             moved = max(moved, abs(displacement[i, d]))
-        insert(rolled)
+        if BENDS:
+            rolled = max(rolled, abs(displacement[i, 2] * per_arm[0]))
     elastic = 0.0
     stiffest = 0.0
     insert(rods)
     insert(pairs)
-    round_off = insert(round_off)
+    round_off = EPSILON * stiffest * moved
+    if BENDS:
+        round_off += EPSILON * firmest * rolled
     measures[Measure.KINETIC] = measures[Measure.ASLEEP_KINETIC] + 0.5 * kinetic
     measures[Measure.POWER_NORM] = measures[Measure.ASLEEP_POWER_NORM] + 1000.0 * power_norm
     measures[Measure.ELASTIC] = measures[Measure.ASLEEP_ELASTIC] + 500.0 * elastic
@@ -45,21 +55,17 @@ def measure(displacement, velocity, force, resisting, measures, *columns):
 def observe(time, dt, displacement, velocity, applied, reaction, forces, power, measures, observed, *columns):
     """The derived columns of rods and particles, and the measures, of a state.
 
-    applied: what acts on each particle from outside (kN); reaction: of its support. yielding: which rods yield.
-    tension, compression: the rods' strengths (kN). yields: whether the model has plasticity.
+    applied: what acts on each particle from outside, contact forces included (kN); reaction: of its support. yielding: which
+    rods yield. tension, compression: their strengths (kN). yields: whether the model has plasticity.
     """
     external(time, dt, displacement, velocity, applied, resisting, *columns)
-    insert(pushed)
+    if MEETS:
+        for i in range(displacement.shape[0]):
+            for d in range(2):
+                applied[i, d] += support[i, d]
     insert(evaluation)
     measure(displacement, velocity, force, resisting, measures, *columns)
     for i in range(displacement.shape[0]):
         for d in range(D):
             reaction[i, d] = 0.0 - (force[i, d] + resisting[i, d]) if fixed[i, d] else 0.0
     insert(rods)
-
-
-def pushed():
-    """Contact forces act from outside."""
-    for i in range(displacement.shape[0]):
-        for d in range(2):
-            applied[i, d] += support[i, d]

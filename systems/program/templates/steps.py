@@ -3,7 +3,7 @@
 The integrator says how one step is taken: a fragment `step`, in fixed_steps.py or runge_kutta.py.
 """
 
-# ruff: noqa: F821
+# ruff: noqa: F821, SIM102
 # mypy: ignore-errors
 
 
@@ -47,7 +47,9 @@ def advance(
     end in pieces; none of them is taken where that end is after `until`, by more than rounding.
 
     States are checked after 1, 2, 4, … steps, because a step that is much too long makes garbage at once, and whenever the
-    total is a multiple of CHECK_INTERVAL: at counts that do not depend on how the steps are divided into calls.
+    total is a multiple of CHECK_INTERVAL: at counts that do not depend on how the steps are divided into calls. Where they
+    are all alike, what loads will supply (ahead, J) follows from the velocities to which the present forces lead; after one
+    that was cut, the conserved energy is that of whole ones again, to which forces of contacts do not belong.
     """
     if not fresh:
         insert(evaluate)
@@ -82,11 +84,19 @@ def advance(
             if is_check_due(now, counted):
                 insert(finish)
                 measure(displacement, velocity, force, resisting, measures, *columns)
-                insert(look_ahead)
+                if FORESEES:
+                    for i in range(displacement.shape[0]):
+                        for d in range(D):
+                            total = force[i, d] + resisting[i, d] if RATES else force[i, d]
+                            predicted[i, d] = velocity[i, d] + compared * total * particles_mobility[i, d]
+                    ahead = 1000.0 * compared * abs(load_power(time, predicted, *columns))
                 reason = judge(measures, account, compared, SHADOW, ahead, time >= loads_end)
                 if reason != StopReason.DONE:
                     return taken, reason.value
-            insert(settle)
+            if ALIKE:
+                if cut:
+                    measure(displacement, velocity, insert(force), resisting, measures, *columns)
+                    account[Account.GUARD_ENERGY] = conserved(measures, account, size, SHADOW)
             if now % REVIEW_INTERVAL == 0:
                 insert(finish)
                 return taken, StopReason.REVIEW.value
