@@ -10,9 +10,8 @@ from collections.abc import Iterable, Sequence
 from pinjoint.systems.entries import ACCOUNTS
 from pinjoint.systems.program.binding import Bound, StepRole
 from pinjoint.systems.program.loops import RodLoop
-from pinjoint.systems.program.names import PREDICTED, RESISTED, TRIAL_STATE
 from pinjoint.systems.program.pasting import indented
-from pinjoint.systems.program.writer import Writer, accounts_of
+from pinjoint.systems.program.writer import PREDICTED, RESISTED, TRIAL_STATE, Writer, accounts_of
 
 _RODS = "block_rods[block], block_rods[block + 1]"
 _PARTICLES = "first, last"

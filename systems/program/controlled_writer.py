@@ -10,9 +10,8 @@ from pinjoint.systems.base import Integrator, StepSystem
 from pinjoint.systems.entries import Mark
 from pinjoint.systems.program.binding import Bound, StepRole, bind
 from pinjoint.systems.program.loops import RodLoop
-from pinjoint.systems.program.names import NO_POWER, NOW, POWER_RETURNED, TRIAL_STATE
 from pinjoint.systems.program.templates import events, forces, implicit, rods, runge_kutta
-from pinjoint.systems.program.writer import Writer, sides_of
+from pinjoint.systems.program.writer import NO_POWER, NOW, POWER_RETURNED, TRIAL_STATE, Writer, sides_of
 
 _AHEAD = 1e-3  # of a step, over which the slope of a margin is taken
 _STEADY = 1e-8  # a margin that changes less in a step is not watched

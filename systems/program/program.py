@@ -29,9 +29,8 @@ from pinjoint.systems.program.block_writer import BlockWriter
 from pinjoint.systems.program.compiler import GeneratedModule, generated
 from pinjoint.systems.program.controlled_writer import ControlledWriter
 from pinjoint.systems.program.faults import check_plain_forms, explain
-from pinjoint.systems.program.names import PUSHED, STATE
 from pinjoint.systems.program.near_pairs import NearPairs
-from pinjoint.systems.program.writer import VERY_MANY, Writer, sides_of
+from pinjoint.systems.program.writer import PUSHED, STATE, VERY_MANY, Writer, sides_of
 
 _ORIGIN = ("origin", "step_limit")
 _COUNTS = ("steps", "origin_steps")
@@ -381,15 +380,9 @@ class Program:
         if self.between is None:
             self._arguments = (*self._after("loads_end", "advance"), *self._columns)
             return
-        kept = {
-            "force": self._arrays["force"],
-            "resisting": self._arrays["force"],
-            "power": self._arrays["power"],
-        }
         known = self._arrays | self.columns
-        kept |= {name: known[name] for name in self._writer.kept}
-        copies: dict[str, Any] = {f"kept_{name}": np.zeros_like(array) for name, array in kept.items()}
-        copies |= {f"own_{name}": np.zeros_like(kept["force"]) for name in ("acceleration", "support")}
+        copies: dict[str, Any] = {f"kept_{name}": np.zeros_like(known[name]) for name in self._writer.kept}
+        copies |= {f"own_{name}": np.zeros_like(known["force"]) for name in ("acceleration", "support")}
         copies["every"] = np.arange(self._rows("particles"))
         self._arguments = (*self._after("loads_end", "drive", **copies), *self._columns)
 
@@ -429,15 +422,13 @@ class Program:
         """
         try:
             return self._advance(steps, until, landing)
-        except ProgramError:
-            raise
         except Exception as error:
-            if all(b.is_ours for b in self._writer.kernels):
-                raise
             return self._failed(error)
 
     def _failed(self, error: Exception) -> tuple[int, StopReason]:
-        """End a step in which a kernel raised an error, for which its mod is looked for."""
+        """Note that a kernel of others raised an error, for which its mod is looked for; all other errors go on."""
+        if isinstance(error, ProgramError) or all(b.is_ours for b in self._writer.kernels):
+            raise error
         self.failure = self.failure or self._explained(error)
         self._mark_changes()
         return 0, StopReason.FAILED
@@ -503,11 +494,7 @@ class Program:
         driven.real[Real.PUSH] = self.integrator.push if self.integrator.mod is None else 0.0
         try:
             taken, reason = self._enter(arrays, wanted, alone=False)
-        except ProgramError:
-            raise
         except Exception as error:
-            if all(b.is_ours for b in self._writer.kernels):
-                raise
             taken, reason = self._failed(error)
         if not self.module.is_loaded:
             self.module.did(taken)
@@ -600,12 +587,8 @@ class Program:
         """Bring the derived columns of rods and particles, and the measures, up to date, unless a kernel fails."""
         try:
             self._observe()
-        except ProgramError:
-            raise
         except Exception as error:  # the next step fails, too, and then the mod that did it is looked for
-            if all(b.is_ours for b in self._writer.kernels):
-                raise
-            self.failure = self._explained(error)
+            self._failed(error)
 
     def _observe(self) -> None:
         if self.between is not None and not self._is_fresh:  # the state was put back, or changed

@@ -13,8 +13,8 @@ from pinjoint.components.model import Model
 from pinjoint.systems.base import Integrator, StepSystem
 from pinjoint.systems.program.binding import bind, read_only
 from pinjoint.systems.program.blocks import Layout, Numbers
-from pinjoint.systems.program.names import PUSHED
 from pinjoint.systems.program.program import OBSERVED, Program
+from pinjoint.systems.program.writer import PUSHED
 
 
 class ReorderedProgram(Program):

@@ -16,8 +16,9 @@ import numpy as np
 from pinjoint.components.model import Model
 from pinjoint.components.rod import bears_between, bends, is_warm
 from pinjoint.systems import is_ours
-from pinjoint.systems.base import REVIEW_INTERVAL, Event, Integrator, StepSystem
-from pinjoint.systems.entries import ACCOUNTS
+from pinjoint.systems.base import REVIEW_INTERVAL, Event, Integrator, StepSystem, StopReason
+from pinjoint.systems.collision.driven.columns import Order, Real, Whole
+from pinjoint.systems.entries import ACCOUNTS, Account, Control, Mark, Measure, Search, Side
 from pinjoint.systems.interpreter import plain_function
 from pinjoint.systems.physics.automatic import SMALL
 from pinjoint.systems.physics.kernels import conserved, judge
@@ -35,29 +36,6 @@ from pinjoint.systems.program.binding import (
     written_row,
 )
 from pinjoint.systems.program.loops import RodLoop
-from pinjoint.systems.program.names import (
-    ALWAYS,
-    DRIFT,
-    DRIVEN_ENTRIES,
-    ENTRIES,
-    EVERY,
-    IN_BLOCK,
-    KEPT,
-    NO_POWER,
-    NOW,
-    OBSERVED,
-    OF_BENDING,
-    OF_PAIR,
-    POWER_RETURNED,
-    PREDICTED,
-    PUSHED,
-    RESISTED,
-    SHIFT,
-    SPUN,
-    STATE,
-    TRIAL_STATE,
-    TURNED,
-)
 from pinjoint.systems.program.near_pairs import ARRAYS
 from pinjoint.systems.program.pasting import Insert, expanded, fragment, indented, pasted, source_of
 from pinjoint.systems.program.templates import (
@@ -70,6 +48,51 @@ from pinjoint.systems.program.templates import (
     rods,
     steps,
 )
+
+# --- what programs call things ---------------------------------------------------------------------
+
+ALWAYS = (  # columns of every program
+    "particles_mobility",
+    "particles_mass",
+    "particles_constant_force",
+    "rods_between",
+    "rods_difference",
+    "rods_original_length",
+    "rods_rest_length",
+    "rods_stiffness",
+)
+OBSERVED = (
+    *("rods_axial_force", "rods_length", "rods_strain", "yielding"),  # written
+    *("fixed", "tension", "compression", "yields"),  # read
+)
+OF_BENDING = (  # columns of models that bend
+    *("particles_masses", "per_arm", "lever"),
+    *("rods_turning_shares", "rods_bowing", "rods_end_stiffness"),
+)
+PUSHED = ("support", "unpushed")  # arrays of programs whose particles may meet
+STATE = ("displacement", "velocity", "force", "resisting", "direction")
+EVERY = "displacement.shape[0]"  # particles
+
+# What functions take before the columns.
+TRIAL_STATE = "time, dt, *state"
+PREDICTED = "time, dt, displacement, predicted, *forces"
+RESISTED = "time, dt, displacement, velocity, resisting, direction"
+NOW = "control[Control.TIME], control[Control.STEP_SIZE]"
+
+SHIFT = {f"s{d}": f"displacement[b, {i}] - displacement[a, {i}]" for i, d in enumerate("xy")}
+TURNED = {f"turn_{end}": f"displacement[{end}, 2] * per_arm[0]" for end in "ab"}
+SPUN = {f"spin_{end}": f"velocity[{end}, 2] * per_arm[0]" for end in "ab"}
+DRIFT = {f"drift_{d}": f"velocity[b, {i}] - velocity[a, {i}]" for i, d in enumerate("xy")}
+
+OF_PAIR = {  # what kernels of pairs are provided with
+    "apart": "(x, y)",
+    "drift": "(velocity[j, 0] - velocity[i, 0], velocity[j, 1] - velocity[i, 1])",
+}
+
+NO_POWER = tuple(f"power_{name} = 0.0" for name in ACCOUNTS)
+POWER_RETURNED = tuple(f"power[Account.{name.upper()}] = power_{name}" for name in ACCOUNTS)
+
+# -------------------------------------------------------------------------------------------------
 
 _AT_STRENGTH = 1.0 - 1e-9  # share of its strength from which on a rod is said to yield
 _OF_PAIRS = pairs.list_pairs, pairs.sort_along_x, pairs.sweep, pairs.sort_row
@@ -152,7 +175,8 @@ class Writer:
         self.branching = [b.system for b in self.bound if getattr(b.system, "margin", "")]
         self.names: dict[str, Callable[..., Any]] = {b.call: b.function for b in self.bound}
         self.names |= {"conserved": conserved, "judge": judge}
-        kinds = (*ENTRIES, *(DRIVEN_ENTRIES if self.collides else ()))
+        kinds = [Account, Control, Mark, Measure, Search, Side, StopReason]
+        kinds += [Order, Real, Whole] if self.collides else []
         self.names |= {kind.__name__: kind for kind in kinds}
         self.pairs = [*self.of[StepRole.PAIR_FORCE], *self.of[StepRole.PAIR_RESISTANCE]]
         self.ends = [*self.of[StepRole.ENDS], *self.of[StepRole.RATE_OF_ENDS]]
@@ -280,7 +304,7 @@ class Writer:
             "forces": STATE[2:],
             "scratch": self.scratch,
             "bounds": ("breaks", "until", "landing"),
-            "kept": (*KEPT, *(f"kept_{name}" for name in self.kept)),
+            "kept": (*(f"kept_{name}" for name in self.kept), "own_acceleration", "own_support", "every"),
             "observed": (*OBSERVED, *(["rods_end_moment"] if self.bends else [])),
             "columns": self.columns,
         }
@@ -297,8 +321,9 @@ class Writer:
 
     @property
     def kept(self) -> list[str]:
-        """What steps change by row: columns that commits write, the sides of events, and the state where it turns."""
-        return [*self.written, *map(sides_of, self.events), *(STATE[:2] if self.bends else ())]
+        """What steps change besides the state of the particles, the clock and the account, and the state where it turns."""
+        changed = "unpushed", "resisting", "power", *self.written, *map(sides_of, self.events)
+        return [*changed, *(STATE[:2] if self.bends else ())]
 
     def _drive(self) -> str:
         """The function by which steps are entered where particles may meet."""
@@ -306,20 +331,22 @@ class Writer:
             driven.drive,
             "entered",
             "",
-            keep=self._copies(driven.keep, "kept_{0}", "{0}"),
-            put_back=self._copies(driven.put_back, "{0}", "kept_{0}"),
+            keep=self._copies("kept_{0}", "{0}"),
+            put_back=self._copies("{0}", "kept_{0}"),
             evaluate=self._evaluated(),
             take=self.lines(driven.take),
             pushed=self._pushed(),
         )
 
-    def _copies(self, template: Callable[[], None], to: str, of: str) -> list[str]:
+    def _copies(self, to: str, of: str) -> list[str]:
+        """Lines that keep what steps change, or put it back."""
         lines = []
         for name in self.kept:
-            row = "r, 2" if name in STATE else "r"
-            lines.append(f"for r in range({name}.shape[0]):")
-            lines.append(f"    {to.format(name)}[{row}] = {of.format(name)}[{row}]")
-        return self.lines(template, others=lines)
+            whole = [f"r, {d}" for d in range(self.coordinates)]
+            places = whole if name in ("unpushed", "resisting") else whole[2:] if name in STATE else ["r"]
+            copies = (f"    {to.format(name)}[{place}] = {of.format(name)}[{place}]" for place in places)
+            lines += [f"for r in range({name}.shape[0]):", *copies]
+        return lines
 
     def _pushed(self) -> list[str]:
         """What follows from other contact forces."""
@@ -429,7 +456,7 @@ class Writer:
     @staticmethod
     def _each_load(b: Bound, *lines: str, within: str = "") -> list[str]:
         """Lines for every load `k` on a particle `i`, in a block of them or in all."""
-        acting = IN_BLOCK.format(within) if within else f"{b.prefix}_on.shape[0]"
+        acting = f"{within}[block], {within}[block + 1]" if within else f"{b.prefix}_on.shape[0]"
         return [
             f"for k in range({acting}):",
             f"    i = {b.prefix}_on[k]",

@@ -109,28 +109,6 @@ def drive(
         order = collide(driven, control, account, place, speed)
 
 
-def keep():
-    """Keep what a step changes besides the state of the particles, the clock and the account."""
-    for i in range(force.shape[0]):
-        for d in range(D):
-            kept_force[i, d] = unpushed[i, d]
-            kept_resisting[i, d] = resisting[i, d]
-    for k in range(power.shape[0]):
-        kept_power[k] = power[k]
-    insert(others)
-
-
-def put_back():
-    """Put back what was kept."""
-    for i in range(force.shape[0]):
-        for d in range(D):
-            unpushed[i, d] = kept_force[i, d]
-            resisting[i, d] = kept_resisting[i, d]
-    for k in range(power.shape[0]):
-        power[k] = kept_power[k]
-    insert(others)
-
-
 def take():
     """Take whole steps, or one to Real.END: in parts, where the error asks for that, and counted once all the same.
 
