@@ -12,8 +12,8 @@ For scripts and mods:
 (2, 2)
 """
 
+from pinjoint.components.additions import Component
 from pinjoint.components.commands import Assign, Command, Create, Custom, Delete, Group
-from pinjoint.components.component import Component
 from pinjoint.components.environment import Environment
 from pinjoint.components.field import CM, Field, FieldError, Role, Vector
 from pinjoint.components.grid import Grid

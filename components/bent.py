@@ -11,8 +11,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from pinjoint.components.derived import chord_rotation
-from pinjoint.components.diagrams import all_slopes, cubic, moments_along, rigid_slopes
+from pinjoint.components.derived import all_slopes, chord_rotation, cubic, moments_along, rigid_slopes
 from pinjoint.components.model import Model
 from pinjoint.components.settings import DIAGRAMS
 

@@ -6,9 +6,9 @@ from collections.abc import Mapping
 from typing import Any
 
 from pinjoint.components.collision_state import CollisionState, check_collision_state
-from pinjoint.components.departure import Departure, check_departure
 from pinjoint.components.field import Field, FieldError, state
 from pinjoint.components.handle import Handle
+from pinjoint.components.snapshot import Snapshot, check_departure
 
 
 def check_events(value: Any, where: str) -> Mapping[str, tuple[str, ...]]:
@@ -86,7 +86,7 @@ class Clock(Handle):
         doc="Paths of free particles, or persistent contacts of driven ones, so that the run goes on bit for bit.",
         checker=check_collision_state,
     )
-    departure: Field[Departure | None] = state(
+    departure: Field[Snapshot | None] = state(
         dtype=object,
         nullable=True,
         doc="All state after the last whole step, where the present moment lies within the next; edits end it.",

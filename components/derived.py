@@ -1,21 +1,43 @@
-"""Derived columns: masses, lengths, limits and constant forces."""
+"""Derived columns: masses, lengths, limits, constant forces; and forces and bending moments along rods, by statics."""
 
 from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike
 
-from pinjoint.components.diagrams import NAMES, diagrams
 from pinjoint.components.field import Column
 from pinjoint.components.load import CONSTANT
 from pinjoint.components.particle import DEFAULT_MASS
 from pinjoint.components.rod import DEFAULT_STIFFNESS
+from pinjoint.components.table import Table
 from pinjoint.components.world import Derivation, World
 
 FULL_TURN = 2.0 * np.pi  # rad
+DIAGRAM_COLUMNS = ("end_axial_force", "shear", "bending_moment", "end_rotation", "largest_moment")
 
 
-def derive_lengths(world: World) -> None:
+def derives(table: str, targets: str, sources: str) -> Callable[[Callable[[World], None]], Derivation]:
+    """A decorator of what computes columns of a table from others, which may be named without the table."""
+
+    def full(names: str) -> tuple[str, ...]:
+        return tuple(name if "." in name else f"{table}.{name}" for name in names.split())
+
+    return lambda compute: Derivation(full(targets), full(sources), compute)
+
+
+def _or_automatic(prescribed: Column, automatic: ArrayLike) -> Column:
+    return np.where(np.isnan(prescribed), automatic, prescribed)
+
+
+@derives(
+    "rods",
+    "difference original_length rest_length misfit",
+    "between prescribed_rest_length temperature_change thermal_expansion particles.position",
+)
+def lengths(world: World) -> None:
     """Original difference and length of every rod, its rest length, and its misfit at its temperature."""
     rods = world.tables["rods"]
     position = world.tables["particles"].position
@@ -24,14 +46,18 @@ def derive_lengths(world: World) -> None:
     difference[...] = position[ends[:, 1]] - position[ends[:, 0]]
     original = world.writable("rods.original_length")
     original[...] = np.hypot(difference[:, 0], difference[:, 1])
-    prescribed = rods.prescribed_rest_length
     rest = world.writable("rods.rest_length")
-    rest[...] = np.where(np.isnan(prescribed), original, prescribed)
+    rest[...] = _or_automatic(rods.prescribed_rest_length, original)
     thermal_strain = rods.thermal_expansion * rods.temperature_change
     world.writable("rods.misfit")[...] = original - rest * (1.0 + thermal_strain)
 
 
-def derive_stiffness(world: World) -> None:
+@derives(
+    "rods",
+    "stiffness bending_stiffness",
+    "prescribed_stiffness prescribed_bending_stiffness youngs_modulus area second_moment",
+)
+def stiffnesses(world: World) -> None:
     """EA and EI of every rod: prescribed, else E·A and E·I, else those of a bar of which nothing is known."""
     rods = world.tables["rods"]
     for name, of_section, unknown in (
@@ -40,27 +66,31 @@ def derive_stiffness(world: World) -> None:
     ):
         with np.errstate(over="ignore", under="ignore"):  # too large numbers are reported before a run
             known = rods.youngs_modulus * of_section
-        prescribed = rods.column(f"prescribed_{name}")
-        automatic = np.where(np.isnan(known), unknown, known)
-        world.writable(f"rods.{name}")[...] = np.where(np.isnan(prescribed), automatic, prescribed)
+        automatic = _or_automatic(known, unknown)
+        world.writable(f"rods.{name}")[...] = _or_automatic(rods.column(f"prescribed_{name}"), automatic)
 
 
-def derive_masses(world: World) -> None:
+@derives("particles", "mass mobility", "prescribed_mass fixed rods.between rods.density rods.rest_length")
+def masses(world: World) -> None:
     """Lumped masses (half of each attached rod's density × rest length) and mobilities."""
     particles, rods = world.tables["particles"], world.tables["rods"]
     with np.errstate(over="ignore"):  # too large numbers are reported before a run
         half = 0.5 * rods.density * rods.rest_length
     lumped = np.bincount(rods.between.ravel(), np.repeat(half, 2), particles.count)
     lumped[lumped == 0.0] = DEFAULT_MASS
-    prescribed = particles.prescribed_mass
     mass = world.writable("particles.mass")
-    mass[...] = np.where(np.isnan(prescribed), lumped, prescribed)
+    mass[...] = _or_automatic(particles.prescribed_mass, lumped)
     with np.errstate(over="ignore", divide="ignore"):  # too small numbers are, too
         mobility = np.where(particles.fixed, 0.0, 1000.0 / mass[:, None])
     world.writable("particles.mobility")[...] = mobility
 
 
-def derive_bending(world: World) -> None:
+@derives(
+    "rods",
+    "end_stiffness end_damping initial_slopes load_shares bowing turning_shares",
+    "bending_stiffness stiffness rest_length hinged damping bending_damping thermal_expansion temperature_gradient",
+)
+def bending(world: World) -> None:
     """What the ends of each rod feel, by its hinges: coefficients of slopes, all zero where nothing bends.
 
     A hinge is condensed: its end has no moment, and the shape of the rod is that without axial force.
@@ -83,9 +113,7 @@ def derive_bending(world: World) -> None:
     per_slope = by_ends(4.0, 2.0, 4.0, 3.0)
     with np.errstate(over="ignore", invalid="ignore"):  # too large numbers are reported before a run
         world.writable("rods.end_stiffness")[...] = (stiffness / length)[:, None] * per_slope
-        prescribed = rods.bending_damping
-        like_axis = rods.damping * stiffness / rods.stiffness
-        damping = np.where(np.isnan(prescribed), like_axis, prescribed)
+        damping = _or_automatic(rods.bending_damping, rods.damping * stiffness / rods.stiffness)
         world.writable("rods.end_damping")[...] = damping[:, None] * per_slope
         half = -0.5 * rods.thermal_expansion * rods.temperature_gradient * length
         world.writable("rods.initial_slopes")[...] = half[:, None] * rigid * [-1.0, 1.0] + 0.0
@@ -96,7 +124,13 @@ def derive_bending(world: World) -> None:
     world.writable("rods.turning_shares")[...] = by_ends(0.5, 0.0, 0.5, 1.0)[:, ::2]
 
 
-def derive_inertia(world: World) -> None:
+@derives(
+    "particles",
+    "inertia turning",
+    "prescribed_inertia fixed_rotation mass rods.between rods.density rods.rest_length rods.bending_stiffness"
+    " rods.stiffness rods.turning_shares",
+)
+def inertias(world: World) -> None:
     """Rotational inertias, and how rotations follow moments; of particles with rigid rod ends alone.
 
     ρL₀ min(1.5 EI/EA, L₀²/24) of each rigid end, so that where λ = EA L₀²/EI > 48 bending needs no smaller steps than the
@@ -112,26 +146,65 @@ def derive_inertia(world: World) -> None:
         mass = np.where(mass > 0.0, mass, (2.0 * particles.mass / count)[ends])
         own = np.bincount(ends, np.where(rigid, mass * np.repeat(radius, 2), 0.0), particles.count)
         turns = np.bincount(ends, rigid, particles.count) > 0
-        prescribed = particles.prescribed_inertia
         inertia = world.writable("particles.inertia")
-        inertia[...] = np.where(turns, np.where(np.isnan(prescribed), own, prescribed), 0.0)
+        inertia[...] = np.where(turns, _or_automatic(particles.prescribed_inertia, own), 0.0)
         free = turns & ~particles.fixed_rotation
         world.writable("particles.turning")[...] = np.where(free, 1000.0 / inertia, 0.0)
 
 
-def derive_diagrams(world: World) -> None:
-    """Axial force, shear and bending moment at both ends of every rod, and the rotations of these, in the present state.
+@derives("rods", "tension_limit compression_limit", "tensile_strength compressive_strength tension_only")
+def limits(world: World) -> None:
+    """Strengths with "unlimited" (None or 0) as infinity; a cable goes slack before any compression."""
+    for direction, name in (("tension", "tensile"), ("compression", "compressive")):
+        values = world.tables["rods"].column(f"{name}_strength")
+        unlimited = np.isnan(values) | (values == 0.0)
+        world.writable(f"rods.{direction}_limit")[...] = np.where(unlimited, np.inf, values)
+    world.writable("rods.compression_limit")[world.tables["rods"].tension_only] = np.inf
 
-    By statics, with the distributed force per original length. A hinged end turns as far as its moment is zero.
-    """
-    particles, rods = world.tables["particles"], world.tables["rods"]
-    first, second = rods.between.astype(np.intp).T
-    present = rods.difference + particles.displacement[second] - particles.displacement[first]
-    length = np.hypot(present[:, 0], present[:, 1])
-    axis = present / np.where(length > 0.0, length, 1.0)[:, None]
-    rotation, forces = particles.rotation[rods.between], (rods.axial_force, rods.end_moment)
-    for name, values in diagrams(rods, axis, length, chord_rotation(world), rotation, forces).items():
-        world.writable(f"rods.{name}")[...] = values
+
+@derives(
+    "particles",
+    "constant_force",
+    "force acceleration mass environment.force environment.acceleration"
+    " rods.distributed_force rods.between rods.rest_length loads.on loads.force loads.history",
+)
+def constant_forces(world: World) -> None:
+    """Own force, environment's force, mass × accelerations (kN), constant loads, and distributed forces."""
+    particles, loads, rods = world.tables["particles"], world.tables["loads"], world.tables["rods"]
+    environment = world.tables["environment"]
+    constant = _constant_rows(loads)
+    with np.errstate(over="ignore", invalid="ignore"):  # too large numbers are reported before a run
+        acceleration = particles.acceleration + environment.acceleration
+        force = particles.force + environment.force + particles.mass[:, None] * acceleration / 1000.0
+        np.add.at(force, loads.on[constant], loads.force[constant])
+        if rods.distributed_force.any():
+            half = 0.5 * rods.distributed_force * rods.rest_length[:, None]
+            np.add.at(force, rods.between.ravel(), np.repeat(half, 2, axis=0))
+    world.writable("particles.constant_force")[...] = force
+
+
+@derives("particles", "constant_moment", "moment loads.on loads.moment loads.history")
+def constant_moments(world: World) -> None:
+    """Own moment and that of constant loads (kN·m)."""
+    loads = world.tables["loads"]
+    constant, moment = _constant_rows(loads), world.writable("particles.constant_moment")
+    moment[...] = world.tables["particles"].moment
+    np.add.at(moment, loads.on[constant], loads.moment[constant])
+
+
+def _constant_rows(loads: Table[Any]) -> list[int]:
+    return [row for row, history in enumerate(loads.history) if history["kind"] == CONSTANT["kind"]]
+
+
+@derives("settings", "displacement_scale", "prescribed_displacement_scale automatic_displacement_scale")
+def displacement_scale(world: World) -> None:
+    """How much larger displacements are drawn."""
+    settings = world.tables["settings"]
+    scale = _or_automatic(settings.prescribed_displacement_scale, settings.automatic_displacement_scale)
+    world.writable("settings.displacement_scale")[...] = scale
+
+
+# --- diagrams along rods -------------------------------------------------------------------------
 
 
 def chord_rotation(world: World) -> Column:
@@ -152,147 +225,127 @@ def with_full_turns(chord: Column, turning_shares: Column, rotation: Column) -> 
     return turned
 
 
-def derive_limits(world: World) -> None:
-    """Strengths with "unlimited" (None or 0) as infinity; a cable goes slack before any compression."""
-    for direction, name in (("tension", "tensile"), ("compression", "compressive")):
-        values = world.tables["rods"].column(f"{name}_strength")
-        unlimited = np.isnan(values) | (values == 0.0)
-        world.writable(f"rods.{direction}_limit")[...] = np.where(unlimited, np.inf, values)
-    world.writable("rods.compression_limit")[world.tables["rods"].tension_only] = np.inf
+@derives(
+    "rods",
+    " ".join(DIAGRAM_COLUMNS),
+    "particles.displacement particles.rotation between difference rest_length axial_force end_moment"
+    " distributed_force turning_shares load_shares bending_stiffness thermal_expansion temperature_gradient",
+)
+def present_diagrams(world: World) -> None:
+    """Axial force, shear and bending moment at both ends of every rod, and the rotations of these, in the present state.
+
+    By statics, with the distributed force per original length. A hinged end turns as far as its moment is zero.
+    """
+    particles, rods = world.tables["particles"], world.tables["rods"]
+    first, second = rods.between.astype(np.intp).T
+    present = rods.difference + particles.displacement[second] - particles.displacement[first]
+    length = np.hypot(present[:, 0], present[:, 1])
+    axis = present / np.where(length > 0.0, length, 1.0)[:, None]
+    rotation, forces = particles.rotation[rods.between], (rods.axial_force, rods.end_moment)
+    for name, values in diagrams(rods, axis, length, chord_rotation(world), rotation, forces).items():
+        world.writable(f"rods.{name}")[...] = values
 
 
-def derive_constant_force(world: World) -> None:
-    """Own force, environment's force, mass × accelerations (kN), constant loads, and distributed forces."""
-    particles, loads, rods = world.tables["particles"], world.tables["loads"], world.tables["rods"]
-    environment = world.tables["environment"]
-    constant = [row for row, history in enumerate(loads.history) if history["kind"] == CONSTANT["kind"]]
-    with np.errstate(over="ignore", invalid="ignore"):  # too large numbers are reported before a run
-        acceleration = particles.acceleration + environment.acceleration
-        force = particles.force + environment.force + particles.mass[:, None] * acceleration / 1000.0
-        np.add.at(force, loads.on[constant], loads.force[constant])
-        if rods.distributed_force.any():
-            half = 0.5 * rods.distributed_force * rods.rest_length[:, None]
-            np.add.at(force, rods.between.ravel(), np.repeat(half, 2, axis=0))
-    world.writable("particles.constant_force")[...] = force
+def diagrams(
+    rods: Table[Any],
+    axis: Column,
+    length: Column,
+    chord: Column,
+    rotation: Column,
+    forces: tuple[Column, Column],
+    *,
+    share: float = 1.0,
+    first_order: bool = False,
+) -> Mapping[str, Column]:
+    """The columns DIAGRAM_COLUMNS of all rods, (rods, 2), with so much of their distributed forces.
+
+    axis, length, chord: directions (rods, 2), lengths (m) and rotations (rad) of the chords; rotation: of the particles at
+    both ends, (rods, 2). forces: axial (rods,), and moments on both ends, counter-clockwise (rods, 2).
+    first_order: axes count as straight where forces act on them.
+    """
+    axial_force, moment = forces
+    rest, bent = rods.rest_length, 0.0 if first_order else 1.0
+    left = np.stack([-axis[:, 1], axis[:, 0]], axis=1)
+    force = share * rods.distributed_force
+    transverse, tangential = (force * left).sum(axis=1), (force * axis).sum(axis=1)
+    slopes = rigid_slopes(rods, rotation, chord)
+    couple = -bent * tangential * (rods.load_shares * slopes).sum(axis=1)
+    with np.errstate(divide="ignore", invalid="ignore"):
+        shear = np.where(length > 0.0, (moment.sum(axis=1) + couple) / length, 0.0)
+    ahead = np.array([-0.5, 0.5])
+    slopes = all_slopes(rods, slopes, transverse)
+    bending_moment = moment * [-1.0, 1.0]
+    return {
+        "end_axial_force": axial_force[:, None] - ahead * (tangential * rest)[:, None],
+        "shear": shear[:, None] + ahead * (transverse * rest)[:, None],
+        "bending_moment": bending_moment,
+        "end_rotation": chord[:, None] + slopes,
+        "largest_moment": _largest_moment(
+            bending_moment, slopes, bent * axial_force * length, transverse * rest * length, length
+        ),
+    }
 
 
-def derive_constant_moment(world: World) -> None:
-    """Own moment and that of constant loads (kN·m)."""
-    particles, loads = world.tables["particles"], world.tables["loads"]
-    constant = [row for row, history in enumerate(loads.history) if history["kind"] == CONSTANT["kind"]]
-    moment = world.writable("particles.constant_moment")
-    moment[...] = particles.moment
-    np.add.at(moment, loads.on[constant], loads.moment[constant])
+def rigid_slopes(rods: Table[Any], rotation: Column, chord: Column) -> Column:
+    """Slopes to the chords of those ends that are joined rigidly, 0 at others; likewise of rates; (rods, 2).
+
+    rotation: of the particles at both ends, (rods, 2). chord: (rods,).
+    """
+    return np.where(rods.turning_shares > 0.0, rotation - chord[:, None], 0.0)
 
 
-def derive_displacement_scale(world: World) -> None:
-    """How much larger displacements are drawn."""
-    settings = world.tables["settings"]
-    prescribed, automatic = settings.prescribed_displacement_scale, settings.automatic_displacement_scale
-    scale = np.where(np.isnan(prescribed), automatic, prescribed)
-    world.writable("settings.displacement_scale")[...] = scale
+def all_slopes(rods: Table[Any], slopes: Column, transverse: Column) -> Column:
+    """Slopes of both ends of every rod, those at hinges by M = 0 of its cubic and a transverse force (kN/m)."""
+    length, stiffness = rods.rest_length, rods.bending_stiffness
+    rigid, bent = rods.turning_shares > 0.0, stiffness > 0.0
+    by_force = np.divide(transverse * length**3, 48.0 * stiffness, out=np.zeros(len(length)), where=bent)
+    warped = np.where(bent, 0.5 * rods.thermal_expansion * rods.temperature_gradient * length, 0.0)
+    signs = np.array([1.0, -1.0])
+    free = signs * warped[:, None]
+    loaded = signs * by_force[:, None]
+    beyond = (slopes - free)[:, ::-1]  # of the other end
+    hinged = free + np.where(rigid[:, ::-1], loaded - 0.5 * beyond, 2.0 * loaded)
+    return np.where(rigid, slopes, hinged)
+
+
+def cubic(start: Column, end: Column) -> Column:
+    """The deflection φ_s ξ (1 − ξ)² − φ_e ξ² (1 − ξ) between ends with these slopes, lowest coefficient first, (rods, 4)."""
+    return np.stack([np.zeros(len(start)), start, -(2.0 * start + end), start + end], axis=1)
+
+
+def moments_along(ends: Column, load: Column, by_thrust: Column) -> Column:
+    """M(ξ) = M_s (1 − ξ) + M_e ξ − ½ q L₀ L ξ (1 − ξ) + N v(ξ) of rods, lowest coefficient first, (rods, 4).
+
+    ends: M_s and M_e, (rods, 2). load: q L₀ L, (rods,). by_thrust: N v, (rods, 4).
+    """
+    start, end = ends.T
+    straight = np.stack([start, end - start - 0.5 * load, 0.5 * load, np.zeros(len(start))], axis=1)
+    return straight + by_thrust
+
+
+def _largest_moment(ends: Column, slopes: Column, thrust: Column, load: Column, length: Column) -> Column:
+    """The bending moment of largest size, and its distance from the start (m), of every rod; thrust: N L; load: q L₀ L."""
+    with np.errstate(divide="ignore", invalid="ignore", over="ignore"):
+        start, linear, square, cube = moments_along(ends, load, thrust[:, None] * cubic(*slopes.T)).T
+        root = np.sqrt(np.maximum(square**2 - 3.0 * cube * linear, 0.0))
+        both = -(square + np.copysign(root, square))
+        found = np.stack([np.zeros_like(start), np.ones_like(start), both / (3.0 * cube), linear / both])
+    found = np.where((found > 0.0) & (found <= 1.0), found, 0.0)
+    values = start + found * (linear + found * (square + found * cube))
+    values[1] = ends[:, 1]
+    chosen, rows = np.abs(values).argmax(axis=0), np.arange(len(start))
+    return np.stack([values[chosen, rows], found[chosen, rows] * length], axis=1)
 
 
 DERIVATIONS = (
-    Derivation(
-        ("settings.displacement_scale",),
-        ("settings.prescribed_displacement_scale", "settings.automatic_displacement_scale"),
-        derive_displacement_scale,
-    ),
-    Derivation(
-        ("rods.difference", "rods.original_length", "rods.rest_length", "rods.misfit"),
-        (
-            "rods.between",
-            "rods.prescribed_rest_length",
-            "rods.temperature_change",
-            "rods.thermal_expansion",
-            "particles.position",
-        ),
-        derive_lengths,
-    ),
-    Derivation(
-        ("rods.stiffness", "rods.bending_stiffness"),
-        (
-            *("rods.prescribed_stiffness", "rods.prescribed_bending_stiffness"),
-            *("rods.youngs_modulus", "rods.area", "rods.second_moment"),
-        ),
-        derive_stiffness,
-    ),
-    Derivation(
-        ("particles.mass", "particles.mobility"),
-        ("particles.prescribed_mass", "particles.fixed", "rods.between", "rods.density", "rods.rest_length"),
-        derive_masses,
-    ),
-    Derivation(
-        ("rods.tension_limit", "rods.compression_limit"),
-        ("rods.tensile_strength", "rods.compressive_strength", "rods.tension_only"),
-        derive_limits,
-    ),
-    Derivation(
-        (
-            *("rods.end_stiffness", "rods.end_damping", "rods.initial_slopes", "rods.load_shares"),
-            *("rods.bowing", "rods.turning_shares"),
-        ),
-        (
-            *("rods.bending_stiffness", "rods.stiffness", "rods.rest_length", "rods.hinged"),
-            *("rods.damping", "rods.bending_damping", "rods.thermal_expansion", "rods.temperature_gradient"),
-        ),
-        derive_bending,
-    ),
-    Derivation(
-        ("particles.inertia", "particles.turning"),
-        (
-            *("particles.prescribed_inertia", "particles.fixed_rotation", "particles.mass", "rods.between"),
-            *(
-                "rods.density",
-                "rods.rest_length",
-                "rods.bending_stiffness",
-                "rods.stiffness",
-                "rods.turning_shares",
-            ),
-        ),
-        derive_inertia,
-    ),
-    Derivation(
-        tuple(f"rods.{name}" for name in NAMES),
-        (
-            *(
-                "particles.displacement",
-                "particles.rotation",
-                "rods.between",
-                "rods.difference",
-                "rods.rest_length",
-            ),
-            *("rods.axial_force", "rods.end_moment", "rods.distributed_force", "rods.turning_shares"),
-            *(
-                "rods.load_shares",
-                "rods.bending_stiffness",
-                "rods.thermal_expansion",
-                "rods.temperature_gradient",
-            ),
-        ),
-        derive_diagrams,
-    ),
-    Derivation(
-        ("particles.constant_moment",),
-        ("particles.moment", "loads.on", "loads.moment", "loads.history"),
-        derive_constant_moment,
-    ),
-    Derivation(
-        ("particles.constant_force",),
-        (
-            "particles.force",
-            "rods.distributed_force",
-            "rods.between",
-            "rods.rest_length",
-            "particles.acceleration",
-            "particles.mass",
-            "environment.force",
-            "environment.acceleration",
-            "loads.on",
-            "loads.force",
-            "loads.history",
-        ),
-        derive_constant_force,
-    ),
+    displacement_scale,
+    lengths,
+    stiffnesses,
+    masses,
+    limits,
+    bending,
+    inertias,
+    present_diagrams,
+    constant_moments,
+    constant_forces,
 )

@@ -7,7 +7,7 @@ from collections.abc import Callable, Collection, Mapping, Set
 from dataclasses import KW_ONLY, dataclass, field
 from enum import Enum
 from functools import partial
-from typing import Any, Generic, Protocol, TypeVar, overload
+from typing import Any, Generic, TypeVar, overload
 
 import numpy as np
 from numpy.typing import NDArray
@@ -25,21 +25,15 @@ CM = ("cm", LENGTHS["cm"])  # as all lengths are shown on screen, displacements 
 LARGEST, SMALLEST = 1e30, 1e-30  # sizes of numbers to compute with, in inside units; SMALLEST of those above 0
 _FEW = 8  # rows up to which checking values one by one is faster than as an array
 _LARGEST_REFERENCE = 2**32 - 1
-# By a Field's dtype: the numpy type of its column, and its default.
-_STORAGE: dict[Any, tuple[Any, Any]] = {
-    float: (np.float64, 0.0),
-    bool: (np.bool_, False),
-    int: (np.int64, 0),
-    str: (object, ""),
-    object: (object, None),
-    "reference": (np.uint32, 0),
-}
-# What numbers and flags given for a whole column may be: numpy's kinds, or the types in a list.
-_PLAIN: dict[Any, tuple[str, set[type]]] = {
-    float: ("fiu", {float, int, np.float64, np.int64}),
-    int: ("i", {int, np.int64}),
-    bool: ("b", {bool, np.bool_}),
-    "reference": ("iu", {int, np.int64, np.uint32}),
+# By a Field's dtype: the numpy type of its column, its default; and what numbers and flags given for a whole column may
+# be: numpy's kinds, or the types in a list.
+_STORAGE: dict[Any, tuple[Any, Any, str, set[type]]] = {
+    float: (np.float64, 0.0, "fiu", {float, int, np.float64, np.int64}),
+    bool: (np.bool_, False, "b", {bool, np.bool_}),
+    int: (np.int64, 0, "i", {int, np.int64}),
+    str: (object, "", "", set()),
+    object: (object, None, "", set()),
+    "reference": (np.uint32, 0, "iu", {int, np.int64, np.uint32}),
 }
 
 
@@ -62,20 +56,6 @@ class FieldError(Mistake, ValueError):
     """A value that a Field cannot take; the message names the element, the value and the remedy."""
 
 
-class Values(Protocol):
-    """A world, as Fields know it: it reads and writes one value of one element."""
-
-    def read(self, handle: Any, field: Field[Any]) -> Any: ...
-    def write(self, handle: Any, field: Field[Any], value: Any) -> None: ...
-
-
-class Element(Protocol):
-    """A handle, as Fields know it: an element of a world."""
-
-    @property
-    def world(self) -> Values: ...
-
-
 @dataclass(eq=False, repr=False)
 class Field(Generic[T]):
     """One column of a table, and the attribute of a handle that reads and writes one row of it.
@@ -87,13 +67,13 @@ class Field(Generic[T]):
     title: what a person calls it; by default its name with spaces.
     dtype: float, bool, int, str, "reference" (row of another table, stored as uint32) or object.
     shape: () or (2,); wider where it is computed. axes: what its parts are called.
-    default: what an element has that is given none; left out, 0, False, "" or None, as suits the dtype.
+    default: what an element has that is given none; left out, None if that is allowed, else 0, False or "".
     minimum, maximum: inclusive limits; `above`: exclusive lower limit. Numbers that a person makes have limits
         anyway, so that all can be computed with: LARGEST, and SMALLEST where they are above 0.
     nullable: None is allowed and stored as NaN; `absent` is what a person calls it.
     references: the table that a reference points into.
-    overrides: the derived Field of the same handle that this one replaces when it is not None.
-    overridden_by: on a derived Field, the one that assigning to it sets instead.
+    overrides: the derived Field of the same handle that this one replaces when it is not None, and whose name people and
+        files know; assigning to that one, which knows it as overridden_by, sets this one instead.
     choices: the values that a text may take (None: any); a register may grow later.
     key: the name in model files, by default the attribute's.
     component: the mod's component that it is part of, such as "wind.Sail"; "": of Pinjoint's own.
@@ -118,11 +98,11 @@ class Field(Generic[T]):
     absent: str = marked("automatic")
     references: str | None = None
     overrides: str | None = None
-    overridden_by: str | None = None
     choices: Collection[str] | None = None
     key: str = ""
     checker: Callable[[Any, str], Any] | None = None
     name: str = field(default="", init=False)
+    overridden_by: str | None = field(default=None, init=False)
     component: str = field(default="", init=False)
 
     def __post_init__(self) -> None:
@@ -138,9 +118,9 @@ class Field(Generic[T]):
         if not self.shown[1]:
             self.shown = self.unit, 1.0
         self.derived = self.role is Role.DERIVED  # asked so often that comparing roles would be felt
-        storage, default = _STORAGE[self.dtype]
+        storage, default, self._kinds, self._types = _STORAGE[self.dtype]
         if self.default is ...:
-            self.default = default
+            self.default = None if self.nullable else default
         self.storage: np.dtype[Any] = np.dtype(storage)
         self._has_objects = self.storage.hasobject
         self.plain = not (self.shape or self.nullable or self._has_objects)
@@ -153,21 +133,24 @@ class Field(Generic[T]):
             self.minimum = SMALLEST if self.above == 0.0 else -LARGEST if self.above is None else None
 
     def __set_name__(self, owner: type, name: str) -> None:
+        known = self.overrides or name
         self.name = name
-        self.key = self.key or name
-        self.title = self.title or name.replace("_", " ")
+        self.key = self.key or known
+        self.title = self.title or known.replace("_", " ")
+        if self.overrides is not None:
+            vars(owner)[self.overrides].overridden_by = name
 
     @overload
     def __get__(self, handle: None, owner: type) -> Field[T]: ...
     @overload
-    def __get__(self, handle: Element, owner: type) -> T: ...
-    def __get__(self, handle: Element | None, owner: type) -> Field[T] | T:
+    def __get__(self, handle: object, owner: type) -> T: ...
+    def __get__(self, handle: Any, owner: type) -> Field[T] | T:
         if handle is None:
             return self
         value: T = handle.world.read(handle, self)
         return value
 
-    def __set__(self, handle: Element, value: T | None) -> None:
+    def __set__(self, handle: Any, value: T | None) -> None:
         handle.world.write(handle, self, value)
 
     # --- storage ---------------------------------------------------------------------------------
@@ -349,15 +332,14 @@ class Field(Generic[T]):
 
     def _plain(self, values: Any) -> Column | None:
         """`values` as an array, if they are of the right type already; NaN is None."""
-        if self.dtype not in _PLAIN or self.checker is not None:
+        if not self._types or self.checker is not None:
             return None
-        kinds, types = _PLAIN[self.dtype]
         if isinstance(values, np.ndarray):
-            return values if values.dtype.kind in kinds else None
+            return values if values.dtype.kind in self._kinds else None
         try:
             objects = np.array(values, dtype=object)
             given = objects.ravel().tolist()
-            if not set(map(type, given)) <= (types | {type(None)} if self.nullable else types):
+            if not set(map(type, given)) <= self._types | ({type(None)} if self.nullable else set()):
                 return None
             plain = objects.astype(np.int64 if self.dtype == "reference" else self.storage)
         except (ValueError, OverflowError):  # lists of unequal lengths; numbers out of range
@@ -380,10 +362,13 @@ class Field(Generic[T]):
 
 ENDS = (marked("start"), marked("end"))  # of rods: the parts of what each end has of its own
 
-# Fields that say how a model is drawn, that time makes, and that are computed from others.
+# Fields that say how a model is drawn, that time makes, and that are computed from others; of them, of the ends of rods;
+# and numbers above 0 that need not be given.
 look = partial(Field, role=Role.LOOK)
 state = partial(Field, role=Role.STATE)
 derived = partial(Field, role=Role.DERIVED)
+by_end = partial(derived, shape=(2,), axes=ENDS)
+if_known = partial(Field, nullable=True, above=0.0)
 
 
 def same(first: Column, second: Column) -> bool:

@@ -13,8 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pinjoint.components.bent import distributed_shares, is_frame
-from pinjoint.components.derived import chord_rotation
-from pinjoint.components.diagrams import rigid_slopes
+from pinjoint.components.derived import chord_rotation, rigid_slopes
 from pinjoint.components.language import tr
 from pinjoint.components.load import factor_at
 from pinjoint.components.model import Model

@@ -17,6 +17,7 @@ from collections.abc import Callable, Iterable, Iterator, Sequence
 from contextlib import contextmanager
 from pathlib import Path
 from string import Formatter
+from types import SimpleNamespace
 from typing import Any
 
 from pinjoint.components.extensions import EXTENSIONS
@@ -29,39 +30,36 @@ _COMMA = ("pt",)  # languages that write 0,5
 
 
 class Said(str):
-    """A sentence in the language whose code it holds, and the same in English, which scripts compare.
+    """A sentence in the present language, which can be said anew in another one.
 
-    made: what says it again: a function, its arguments, and the values that are filled in; None if nothing does.
+    code: of that language. made: what says it again: a function, its arguments, and the values that are filled in.
     """
 
-    __slots__ = ("code", "english", "made")
+    __slots__ = ("code", "made")
     code: str
-    english: str
-    made: tuple[Callable[..., str], tuple[Any, ...], dict[str, Any]] | None
+    made: tuple[Callable[..., str], tuple[Any, ...], dict[str, Any]]
+
+    def __new__(cls, shown: str, say: Callable[..., str], /, *parts: Any, **values: Any) -> Said:
+        said = super().__new__(cls, shown)
+        said.code, said.made = _SPOKEN.code, (say, parts, values)
+        return said
 
     def __str__(self) -> str:
-        """The sentence itself: errors and text streams pass it on with its English."""
+        """The sentence itself: errors and text streams pass it on with what says it again."""
         return self
 
     def __reduce__(self) -> tuple[Any, ...]:
-        """Copies, also those of other processes, are not said anew: the values may be of a model."""
-        return in_both, (str.__str__(self), self.english)
+        """Copies, also those of other processes, are only said again in English: the values may be of a model."""
+        return Said, (str.__str__(self), marked, english(self))
 
 
-class _Spoken:
-    """The present language, and its catalogue."""
-
-    def __init__(self) -> None:
-        self.code = ENGLISH
-        self.catalogue = gettext.NullTranslations()
-
-
-_SPOKEN = _Spoken()
+_SPOKEN = SimpleNamespace(code=ENGLISH, catalogue=gettext.NullTranslations())  # the present language
 
 
 def language() -> str:
     """The code of the present language: "en"."""
-    return _SPOKEN.code
+    code: str = _SPOKEN.code
+    return code
 
 
 def speak(code: str) -> None:
@@ -124,26 +122,28 @@ def tr(message: str, /, **values: Any) -> str:
     if not message or isinstance(message, Said):  # of "" catalogues hold their own heading
         anew: str = _anew(message)
         return anew
-    return _filled(message, _SPOKEN.catalogue.gettext(message), values, (tr, (message,), values))
+    return Said(_filled(_SPOKEN.catalogue.gettext(message), values), tr, message, **values)
 
 
 def tr_in(context: str, message: str, /, **values: Any) -> str:
     """As `tr`, for a word that has several meanings: the context, such as "support", tells them apart."""
     shown = _SPOKEN.catalogue.pgettext(context, message)
-    return _filled(message, shown, values, (tr_in, (context, message), values))
+    return Said(_filled(shown, values), tr_in, context, message, **values)
 
 
 def plural(one: str, many: str, count: int, /, **values: Any) -> str:
     """As `tr`, of two messages that which suits a number; {count} is filled in, too."""
     shown = _SPOKEN.catalogue.ngettext(one, many, count)
-    known = {"count": count, **values}
-    return _filled(one if count == 1 else many, shown, known, (plural, (one, many, count), values))
+    return Said(_filled(shown, {"count": count, **values}), plural, one, many, count, **values)
 
 
 def english(said: object) -> Any:
     """What was said, or an error says, in English, as scripts read it; other values as they are."""
     said = str(said) if isinstance(said, BaseException) else said
-    return getattr(said, "english", said)
+    if not isinstance(said, Said):
+        return said
+    with spoken(ENGLISH):
+        return str.__str__(_anew(said))
 
 
 def joined(parts: Iterable[str], separator: str = " ") -> str:
@@ -151,14 +151,12 @@ def joined(parts: Iterable[str], separator: str = " ") -> str:
     known = [part for part in parts if part]
     if len(known) < 2:
         return known[0] if known else ""
-    same = separator.join(map(english, known))
-    return in_both(separator.join(known), same, (joined, (known, separator), {}))
+    return Said(separator.join(known), joined, known, separator)
 
 
 def begun(text: str) -> str:
     """A text as a sentence begins with it: "Rod AB"."""
-    same = str(english(text))
-    return in_both(text[:1].upper() + text[1:], same[:1].upper() + same[1:], (begun, (text,), {}))
+    return Said(text[:1].upper() + text[1:], begun, text)
 
 
 def listed(names: Sequence[str]) -> str:
@@ -172,7 +170,7 @@ def decimals(text: str) -> str:
     """A number in English as it is written in the present language: with a comma for the point, or as it is."""
     if _SPOKEN.code not in _COMMA or "." not in text:
         return text
-    return in_both(text.replace(".", ","), text)
+    return Said(text.replace(".", ","), decimals, text)
 
 
 def several(numbers: Iterable[str]) -> str:
@@ -180,7 +178,7 @@ def several(numbers: Iterable[str]) -> str:
     parts = list(numbers)
     if _SPOKEN.code not in _COMMA:
         return ", ".join(parts)
-    return in_both("; ".join(parts), ", ".join(map(english, parts)))
+    return Said("; ".join(parts), several, parts)
 
 
 class _Filling(Formatter):
@@ -191,31 +189,17 @@ class _Filling(Formatter):
         return decimals(text) if isinstance(value, float) else text
 
 
-def in_both(shown: str, same: str, made: Any = None) -> str:
-    """What is shown, with what it is in English unless that is the same; made: what says it again, as in Said."""
-    if shown == same and made is None:
-        return same
-    said = Said(shown)
-    said.code, said.english, said.made = _SPOKEN.code, same, made
-    return said
-
-
-def _filled(message: str, shown: str, values: dict[str, Any], made: Any) -> str:
-    if _SPOKEN.code == ENGLISH:
-        shown = same = message.format(**values) if values else message
-    else:
-        shown = _Filling().vformat(shown, (), values) if values else shown
-        same = message.format(**{name: english(value) for name, value in values.items()}) if values else message
-    return in_both(shown, same, made)
+def _filled(shown: str, values: dict[str, Any]) -> str:
+    if not values:
+        return shown
+    return shown.format(**values) if _SPOKEN.code == ENGLISH else _Filling().vformat(shown, (), values)
 
 
 def _anew(value: Any) -> Any:
     """What was said in another language than the present one is said again in this; other values stay as they are."""
     if isinstance(value, list):
         return list(map(_anew, value))
-    if _SPOKEN.code == ENGLISH:
-        return english(value)
-    if not isinstance(value, Said) or value.code == _SPOKEN.code or value.made is None:
+    if not isinstance(value, Said) or value.code == _SPOKEN.code:
         return value
     say, parts, values = value.made
     return say(*map(_anew, parts), **{name: _anew(part) for name, part in values.items()})

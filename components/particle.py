@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from pinjoint.components.field import CM, Field, FieldError, Vector, derived, state
+from pinjoint.components.field import CM, Field, FieldError, Vector, derived, if_known, state
 from pinjoint.components.handle import Handle
 from pinjoint.components.table import Store, Table, flags
 
@@ -62,31 +62,18 @@ class Particle(Handle):
     radius: Field[float] = Field(
         "m", default=0.05, above=0.0, doc="Radius of its disc, with which it collides.", shown=CM
     )
-    prescribed_mass: Field[float | None] = Field(
+    prescribed_mass: Field[float | None] = if_known(
         "kg",
-        default=None,
-        nullable=True,
-        above=0.0,
-        title="mass",
-        key="mass",
         doc="Its mass; automatic: half the mass of each attached rod, or 1 kg without rods.",
         overrides="mass",
     )
-    prescribed_inertia: Field[float | None] = Field(
+    prescribed_inertia: Field[float | None] = if_known(
         "kg·m²",
-        default=None,
-        nullable=True,
-        above=0.0,
-        title="inertia",
-        key="inertia",
         doc="Its moment of inertia; automatic: from the rods rigidly joined to it, so that no smaller steps are needed.",
         overrides="inertia",
     )
     mass: Field[float] = derived(
-        "kg",
-        default=DEFAULT_MASS,
-        doc="As given, or half the mass of each attached rod, or 1 kg without rods.",
-        overridden_by="prescribed_mass",
+        "kg", default=DEFAULT_MASS, doc="As given, or half the mass of each attached rod, or 1 kg without rods."
     )
     mobility: Field[Vector] = derived(
         "m/s²/kN", shape=(2,), doc="Acceleration per force in each direction: 1000/mass, 0 where constrained."
@@ -95,7 +82,6 @@ class Particle(Handle):
         "kg·m²",
         title="rotational inertia",
         doc="As given, or the sum of ρL₀ min(1.5 EI/EA, L₀²/24) over the rod ends rigidly joined to it.",
-        overridden_by="prescribed_inertia",
     )
     turning: Field[float] = derived(
         "rad/s²/(kN·m)",
@@ -128,44 +114,31 @@ class Particle(Handle):
     def after_change(cls, table: Table[Any], rows: NDArray[np.intp], changed: Collection[str]) -> None:
         """A constrained direction has no velocity; no rod may lose its length."""
         if "velocity" in changed:
-            moving = (table.fixed[rows] & (table.velocity[rows] != 0.0)).any(axis=1)
-            for row in rows[moving][:1].tolist():
-                check_velocities(table.world.describe(table[row]), table[row].fixed, table[row].velocity)
+            for place, axis in np.argwhere(table.fixed[rows] & (table.velocity[rows] != 0.0))[:1].tolist():
+                raise FieldError(
+                    "{where}: velocity {axis} is {speed:g} m/s, but a support holds it along {axis}; set the velocity"
+                    " to 0 or free the direction.",
+                    where=table.world.describe(table[rows[place]], "velocity"),
+                    axis="xy"[axis],
+                    speed=table.velocity[rows[place], axis],
+                )
         elif "fixed" in changed:
             stopped = np.where(table.fixed[rows], 0.0, table.velocity[rows])
             table.world.assign([table[row] for row in rows.tolist()], "velocity", stopped)
         if "angular_velocity" in changed:
             turning = table.fixed_rotation[rows] & (table.angular_velocity[rows] != 0.0)
             for row in rows[turning][:1].tolist():
-                check_spin(table.world.describe(table[row]), table[row].angular_velocity)
+                raise FieldError(
+                    "{where}: angular velocity is {angular_velocity:g} rad/s, but it is clamped; set the angular"
+                    " velocity to 0 or free the rotation.",
+                    where=table.world.describe(table[row], "angular_velocity"),
+                    angular_velocity=table.angular_velocity[row],
+                )
         elif "fixed_rotation" in changed:
             stopped = np.where(table.fixed_rotation[rows], 0.0, table.angular_velocity[rows])
             table.world.assign([table[row] for row in rows.tolist()], "angular_velocity", stopped)
         if "position" in changed:
             _check_rods(table, rows)
-
-
-def check_velocities(where: str, fixed: tuple[bool, bool], velocity: Vector) -> None:
-    """Raise FieldError if a velocity points along a constrained direction."""
-    for axis, held, speed in zip("xy", fixed, velocity, strict=True):
-        if held and speed != 0.0:
-            raise FieldError(
-                "{where}: velocity {axis} is {speed:g} m/s, but a support holds it along {axis}; set the velocity to 0"
-                " or free the direction.",
-                where=where,
-                axis=axis,
-                speed=speed,
-            )
-
-
-def check_spin(where: str, angular_velocity: float) -> None:
-    """Raise FieldError for the angular velocity of a clamped particle."""
-    raise FieldError(
-        "{where}: angular velocity is {angular_velocity:g} rad/s, but it is clamped; set the angular velocity to 0"
-        " or free the rotation.",
-        where=where,
-        angular_velocity=angular_velocity,
-    )
 
 
 def _check_rods(table: Table[Any], rows: NDArray[np.intp]) -> None:

@@ -9,7 +9,18 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from pinjoint.components.field import CM, ENDS, Column, Field, FieldError, Vector, derived, state
+from pinjoint.components.field import (
+    CM,
+    ENDS,
+    Column,
+    Field,
+    FieldError,
+    Vector,
+    by_end,
+    derived,
+    if_known,
+    state,
+)
 from pinjoint.components.handle import Handle
 from pinjoint.components.language import begun, marked, tr
 from pinjoint.components.particle import Particle, rods_without_length
@@ -44,48 +55,33 @@ class Rod(Handle):
         title="ends",
         doc="The particles at its two ends: names in files, rows in Python.",
     )
-    prescribed_stiffness: Field[float | None] = Field(
+    prescribed_stiffness: Field[float | None] = if_known(
         "kN",
-        default=None,
-        nullable=True,
-        above=0.0,
-        title="stiffness",
-        key="stiffness",
         doc="EA, force per unit of strain; automatic: Young's modulus × area, or 164640 kN if either is unknown.",
         overrides="stiffness",
     )
-    youngs_modulus: Field[float | None] = Field(
+    youngs_modulus: Field[float | None] = if_known(
         "kN/m²",
-        default=None,
-        nullable=True,
         absent="unknown",
-        above=0.0,
         title="Young's modulus",
         doc="E of the material: steel 210 GPa, aluminium 70, concrete 30, timber 11.",
         shown=("GPa", 1e-6),
     )
-    area: Field[float | None] = Field(
+    area: Field[float | None] = if_known(
         "m²",
-        default=None,
-        nullable=True,
         absent="unknown",
-        above=0.0,
         doc="A of the cross-section: E·A is the stiffness, axial force / A the stress.",
         shown=("cm²", 1e4),
     )
-    second_moment: Field[float | None] = Field(
+    second_moment: Field[float | None] = if_known(
         "m⁴",
-        default=None,
-        nullable=True,
         absent="unknown",
-        above=0.0,
         title="second moment",
         doc="I of the cross-section: E·I is the bending stiffness.",
         shown=("cm⁴", 1e8),
     )
     section: Field[str | None] = Field(
         dtype=str,
-        default=None,
         nullable=True,
         absent="none",
         choices=SECTIONS,
@@ -94,27 +90,20 @@ class Rod(Handle):
     )
     material: Field[str | None] = Field(
         dtype=str,
-        default=None,
         nullable=True,
         absent="none",
         choices=MATERIALS,
         checker=check_material,
         doc="Sets E and thermal expansion and, if the area is known, weight and strength.",
     )
-    prescribed_rest_length: Field[float | None] = Field(
+    prescribed_rest_length: Field[float | None] = if_known(
         "m",
-        default=None,
-        nullable=True,
-        above=0.0,
-        title="rest length",
-        key="rest_length",
         doc="Length without force; automatic: the distance between the original positions.",
         shown=CM,
         overrides="rest_length",
     )
     tensile_strength: Field[float | None] = Field(
         "kN",
-        default=None,
         nullable=True,
         absent="unlimited",
         minimum=0.0,
@@ -122,7 +111,6 @@ class Rod(Handle):
     )
     compressive_strength: Field[float | None] = Field(
         "kN",
-        default=None,
         nullable=True,
         absent="unlimited",
         minimum=0.0,
@@ -154,11 +142,8 @@ class Rod(Handle):
     )
     prescribed_bending_stiffness: Field[float | None] = Field(
         "kN·m²",
-        default=None,
         nullable=True,
         minimum=0.0,
-        title="bending stiffness",
-        key="bending_stiffness",
         doc="EI, moment per curvature; 0: pinned at both ends; automatic: E × second moment, or 0 if either is unknown.",
         overrides="bending_stiffness",
     )
@@ -179,31 +164,24 @@ class Rod(Handle):
     )
     bending_damping: Field[float | None] = Field(
         "kN·m·s",
-        default=None,
         nullable=True,
         minimum=0.0,
         doc="c in the damping moments at its ends, c [4 2; 2 4] × rates of the end slopes; automatic: damping × EI/EA.",
     )
     plastic_strain: Field[float] = state(doc="Permanent part of the strain.")
     yielded_at: Field[float | None] = state(
-        "s", default=None, nullable=True, absent="not yet", doc="When it first yielded in this run."
+        "s", nullable=True, absent="not yet", doc="When it first yielded in this run."
     )
     stiffness: Field[float] = derived(
         "kN",
         default=DEFAULT_STIFFNESS,
         doc="EA: as given, or Young's modulus × area, or 164640 kN if either is unknown.",
-        overridden_by="prescribed_stiffness",
     )
     bending_stiffness: Field[float] = derived(
-        "kN·m²",
-        doc="EI: as given, or Young's modulus × second moment, or 0: pinned at both ends.",
-        overridden_by="prescribed_bending_stiffness",
+        "kN·m²", doc="EI: as given, or Young's modulus × second moment, or 0: pinned at both ends."
     )
     rest_length: Field[float] = derived(
-        "m",
-        doc="As given, or the distance between the original positions.",
-        shown=CM,
-        overridden_by="prescribed_rest_length",
+        "m", doc="As given, or the distance between the original positions.", shown=CM
     )
     difference: Field[tuple[float, float]] = derived(
         "m",
@@ -232,20 +210,14 @@ class Rod(Handle):
         axes=("ss", "se", "ee"),
         doc="Twice the strain of the axis per slopes: its share of bending.",
     )
-    turning_shares: Field[Vector] = derived(
-        shape=(2,), axes=ENDS, doc="Weight of each end in its mean rotation, from which full turns are counted."
+    turning_shares: Field[Vector] = by_end(
+        doc="Weight of each end in its mean rotation, from which full turns are counted."
     )
-    initial_slopes: Field[Vector] = derived(
-        "rad",
-        shape=(2,),
-        axes=ENDS,
-        doc="Slopes of its ends to its chord while no moment acts, caused by the temperature gradient.",
+    initial_slopes: Field[Vector] = by_end(
+        "rad", doc="Slopes of its ends to its chord while no moment acts, caused by the temperature gradient."
     )
-    load_shares: Field[Vector] = derived(
-        "m²",
-        shape=(2,),
-        axes=ENDS,
-        doc="What a slope of its ends adds to the area below its axis: (L₀², −L₀²)/12.",
+    load_shares: Field[Vector] = by_end(
+        "m²", doc="What a slope of its ends adds to the area below its axis: (L₀², −L₀²)/12."
     )
     tension_limit: Field[float] = derived("kN", doc="Tensile strength; infinite if unlimited.")
     compression_limit: Field[float] = derived("kN", doc="Compressive strength; infinite if unlimited.")
@@ -254,32 +226,20 @@ class Rod(Handle):
     )
     length: Field[float] = derived("m", doc="Present distance between the ends.", shown=CM)
     strain: Field[float] = derived(doc="Elongation / rest length, without thermal expansion.")
-    end_moment: Field[Vector] = derived(
-        "kN·m",
-        shape=(2,),
-        axes=ENDS,
-        doc="Moments on its ends, counter-clockwise; those of its dampers are not included.",
+    end_moment: Field[Vector] = by_end(
+        "kN·m", doc="Moments on its ends, counter-clockwise; those of its dampers are not included."
     )
-    end_axial_force: Field[Vector] = derived(
-        "kN",
-        shape=(2,),
-        axes=ENDS,
-        doc="Axial force at each end; the axial force of the rod is the mean of the two.",
+    end_axial_force: Field[Vector] = by_end(
+        "kN", doc="Axial force at each end; the axial force of the rod is the mean of the two."
     )
-    shear: Field[Vector] = derived(
-        "kN",
-        shape=(2,),
-        axes=ENDS,
-        doc="At its ends: force of the part before a cut on the part beyond it, positive to the left.",
+    shear: Field[Vector] = by_end(
+        "kN", doc="At its ends: force of the part before a cut on the part beyond it, positive to the left."
     )
-    bending_moment: Field[Vector] = derived(
-        "kN·m", shape=(2,), axes=ENDS, doc="At its ends; positive: the side on its right is in tension."
+    bending_moment: Field[Vector] = by_end(
+        "kN·m", doc="At its ends; positive: the side on its right is in tension."
     )
-    end_rotation: Field[Vector] = derived(
-        "rad",
-        shape=(2,),
-        axes=ENDS,
-        doc="By how much its ends have turned, counter-clockwise, also where they are hinged.",
+    end_rotation: Field[Vector] = by_end(
+        "rad", doc="By how much its ends have turned, counter-clockwise, also where they are hinged."
     )
     largest_moment: Field[Vector] = derived(
         "kN·m, m",
@@ -403,18 +363,26 @@ def spawn_rods(world: World, between: ArrayLike, **columns: Any) -> list[Rod]:
 
 
 def _check_ends(table: Table[Any], rows: NDArray[np.intp]) -> None:
-    names = table.world.tables["particles"].column("name")
+    world, names = table.world, table.world.tables["particles"].column("name")
     ends = table.between[rows]
-    for row in ends[ends[:, 0] == ends[:, 1], 0][:1].tolist():
-        raise FieldError("A rod needs two different particles; both ends are {name}.", name=names[row])
-    first, second = table.between.astype(np.uint64).T
-    codes = np.sort((np.minimum(first, second) << np.uint64(32)) | np.maximum(first, second))
-    for code in codes[1:][codes[1:] == codes[:-1]][:1].tolist():
-        one, other = names[[code >> 32, code & 0xFFFFFFFF]]
+    for row in rows[ends[:, 0] == ends[:, 1]][:1].tolist():
         raise FieldError(
-            "There is a rod between {one} and {other} already; two particles share at most one.",
+            "{where}: both ends are {name}; a rod needs two different particles.",
+            where=world.describe(table[row], "between"),
+            name=names[table.between[row, 0]],
+        )
+    first, second = table.between.astype(np.uint64).T
+    pairs = (np.minimum(first, second) << np.uint64(32)) | np.maximum(first, second)
+    ordered = np.sort(pairs)
+    for pair in ordered[1:][ordered[1:] == ordered[:-1]][:1]:
+        *others, row = sorted(np.flatnonzero(pairs == pair).tolist(), key=lambda row: (row in rows, row))
+        one, two = names[table.between[row]]
+        raise FieldError(
+            "{where}: {other} joins {one} and {two} already; two particles share at most one rod.",
+            where=world.describe(table[row], "between"),
+            other=world.describe(table[others[-1]]),
             one=one,
-            other=other,
+            two=two,
         )
 
 

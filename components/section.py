@@ -8,10 +8,10 @@ from __future__ import annotations
 import json
 import math
 import re
-from collections.abc import Callable, Collection
+from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cache
-from importlib.resources import files
+from pathlib import Path
 from typing import Any
 
 from pinjoint.components.field import LARGEST, FieldError
@@ -72,8 +72,16 @@ def tube(d: float, t: float) -> tuple[float, float, float]:
 
 
 def box(b: float, t: float) -> tuple[float, float, float]:
-    """A, I and W_pl of a square hollow section, with corners of radius 1.5 t outside and t inside."""
-    return _less(_rounded(b, 1.5 * t), _rounded(b - 2.0 * t, t))
+    """A, I and W_pl of a square hollow section, with corners of radius 1.5 t outside and t inside.
+
+    Corners are cut away as the fillets of an I-section without flanges are added.
+    """
+    c = b - 2.0 * t
+    parts = rectangle(b, b), rolled(b, 0.0, 0.0, 0.0, 1.5 * t), rectangle(c, c), rolled(c, 0.0, 0.0, 0.0, t)
+    area, second, plastic = (
+        (outer - cut) - (inner - left) for outer, cut, inner, left in zip(*parts, strict=True)
+    )
+    return area, second, plastic
 
 
 def rectangle(b: float, h: float) -> tuple[float, float, float]:
@@ -81,43 +89,10 @@ def rectangle(b: float, h: float) -> tuple[float, float, float]:
     return b * h, b * h**3 / 12.0, b * h**2 / 4.0
 
 
-def _rounded(side: float, r: float) -> tuple[float, float, float]:
-    """Of a solid square with rounded corners: an I-section without flanges, whose fillets are cut away."""
-    area, second, plastic = rectangle(side, side)
-    cut_away = rolled(side, 0.0, 0.0, 0.0, r)
-    return _less((area, second, plastic), cut_away)
-
-
-def _less(one: tuple[float, float, float], other: tuple[float, float, float]) -> tuple[float, float, float]:
-    return one[0] - other[0], one[1] - other[1], one[2] - other[2]
-
-
 _SHAPES: dict[str, Callable[..., tuple[float, float, float]]] = {"I": rolled, "tube": tube, "box": box}
 
 
 # --- by name ---------------------------------------------------------------------------------------------
-
-
-@cache
-def _tables() -> tuple[dict[str, Section], dict[str, Material]]:
-    held = json.loads((files("pinjoint.assets") / "sections.json").read_text(encoding="utf-8"))
-    sections = [
-        _section(f"{family} {size}", _SHAPES[of["shape"]](*dimensions))
-        for family, of in held["families"].items()
-        for size, dimensions in of["sizes"].items()
-    ]
-    materials = [
-        Material(
-            name,
-            of["youngs_modulus"] * _GPA,
-            float(of["density"]),
-            of["tension"] * _MPA,
-            of["compression"] * _MPA,
-            of["expansion"],
-        )
-        for name, of in held["materials"].items()
-    ]
-    return {each.name: each for each in sections}, {each.name: each for each in materials}
 
 
 def _section(name: str, in_mm: tuple[float, float, float]) -> Section:
@@ -127,23 +102,23 @@ def _section(name: str, in_mm: tuple[float, float, float]) -> Section:
     return Section(name, area, second, plastic)
 
 
-class _Names(Collection[str]):
-    """The names of a table, which is not read before they are asked for."""
-
-    def __init__(self, table: int) -> None:
-        self._table = table
-
-    def __contains__(self, name: object) -> bool:
-        return name in _tables()[self._table]
-
-    def __iter__(self) -> Any:
-        return iter(_tables()[self._table])
-
-    def __len__(self) -> int:
-        return len(_tables()[self._table])
-
-
-SECTIONS, MATERIALS = _Names(0), _Names(1)
+_HELD = json.loads((Path(__file__).parents[1] / "assets" / "sections.json").read_text(encoding="utf-8"))
+SECTIONS = {
+    (name := f"{family} {size}"): _section(name, _SHAPES[of["shape"]](*dimensions))
+    for family, of in _HELD["families"].items()
+    for size, dimensions in of["sizes"].items()
+}
+MATERIALS = {
+    name: Material(
+        name,
+        of["youngs_modulus"] * _GPA,
+        float(of["density"]),
+        of["tension"] * _MPA,
+        of["compression"] * _MPA,
+        of["expansion"],
+    )
+    for name, of in _HELD["materials"].items()
+}
 
 
 def section_named(name: str) -> Section | None:
@@ -155,13 +130,13 @@ def section_named(name: str) -> Section | None:
         return _section(f"rectangle {b:.12g}×{h:.12g}", rectangle(b, h)) if sound else None
     if (square := _SQUARE.fullmatch(wanted)) and square[1] == f"shs {square[2]}":
         wanted = f"{square[1]}×{square[3]}"
-    return next((each for known, each in _tables()[0].items() if _folded(known) == wanted), None)
+    return next((each for known, each in SECTIONS.items() if _folded(known) == wanted), None)
 
 
 def material_named(name: str) -> Material | None:
     """The material of a name, whatever its capitals and spaces."""
     wanted = _folded(name)
-    return next((each for known, each in _tables()[1].items() if _folded(known) == wanted), None)
+    return next((each for known, each in MATERIALS.items() if _folded(known) == wanted), None)
 
 
 @cache

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections import ChainMap
 
 from pinjoint.components.extensions import EXTENSIONS
-from pinjoint.components.field import Field, derived, look
+from pinjoint.components.field import Field, derived, if_known, look
 from pinjoint.components.handle import Handle
 
 AUTOMATIC = "automatic"
@@ -31,12 +31,8 @@ class Settings(Handle):
         title="coefficient of restitution",
         doc="Share of the approach speed that an impact gives back: 0 inelastic, 1 elastic.",
     )
-    time_step: Field[float | None] = Field(
-        "s",
-        default=None,
-        nullable=True,
-        above=0.0,
-        doc="A fixed time step; automatic: as small as stability and accuracy need.",
+    time_step: Field[float | None] = if_known(
+        "s", doc="A fixed time step; automatic: as small as stability and accuracy need."
     )
     tolerance: Field[float] = Field(
         default=1e-9,
@@ -55,11 +51,8 @@ class Settings(Handle):
         doc="Parts of the model at rest are left out of the computation until something reaches them.",
     )
     prescribed_displacement_scale: Field[float | None] = look(
-        default=None,
         nullable=True,
         minimum=0.0,
-        title="displacement scale",
-        key="displacement_scale",
         doc="Displacements are drawn this many times larger; automatic: enough to see them, 1 for large motions.",
         overrides="displacement_scale",
     )
@@ -83,8 +76,4 @@ class Settings(Handle):
         choices=(NO_DIAGRAMS, *DIAGRAMS),
     )
     automatic_displacement_scale: Field[float] = derived(default=1.0, doc="The scale that suits the model.")
-    displacement_scale: Field[float] = derived(
-        default=1.0,
-        doc="As given, or the automatic one.",
-        overridden_by="prescribed_displacement_scale",
-    )
+    displacement_scale: Field[float] = derived(default=1.0, doc="As given, or the automatic one.")

@@ -2,63 +2,94 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
-from functools import cached_property
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from pinjoint.components.field import Column, Role
-from pinjoint.components.world import Layout, World
+from pinjoint.components.field import Column, FieldError, Role
+from pinjoint.components.language import marked
+from pinjoint.components.world import World
+
+_REFUSAL = marked(
+    "{where}: this is not what Pinjoint saves here. Remove it: the run then goes on within its accuracy."
+)
 
 
-@dataclass(frozen=True)
-class Snapshot:
-    """Copies of all state as it is stored, and which entities its rows belong to, by table.
+@dataclass(frozen=True, eq=False, repr=False)
+class Snapshot(Mapping[str, Any]):
+    """Copies of all state, by "table.field", and which entities its rows belong to, by table.
 
-    layout: the table and the columns that each array holds; several are numbers of a table with a single row.
+    As a mapping it is what a model file holds: a list of values for each column.
     """
 
-    layout: Layout
-    arrays: tuple[Column, ...]
+    columns: dict[str, Column]
     entities: dict[str, NDArray[np.int64]]
 
     @classmethod
     def take(cls, world: World, *tables: str) -> Snapshot:
         """Copy the state of these tables; none given: of all."""
-        layout = world.layout(Role.STATE, tables)
-        arrays = [world.tables[table].storage(*group).copy() for table, group in layout]
-        return cls(layout, tuple(arrays), world.orders)
+        some = (world.tables[name] for name in tables or world.tables)
+        columns = {f"{t.name}.{name}": t.storage(name).copy() for t in some for name in t.state}
+        return cls(columns, world.orders)
 
     @classmethod
     def initial(cls, world: World) -> Snapshot:
         """The state in which nothing has moved and no time has passed."""
-        layout = world.layout(Role.STATE, ())
-        arrays = [
-            fields[group[0]].allocate(world.tables[table].count)
-            if len(group) == 1
-            else np.array([fields[name].stored(fields[name].default) for name in group], dtype=np.float64)
-            for table, group in layout
-            for fields in (world.tables[table].fields,)
-        ]
-        return cls(layout, tuple(arrays), world.orders)
+        return cls.of_file({}, world, "")
 
-    @cached_property
-    def columns(self) -> dict[str, Column]:
-        """The columns, by "table.field"."""
-        return {
-            f"{table}.{name}": array if len(group) == 1 else array[place : place + 1]
-            for (table, group), array in zip(self.layout, self.arrays, strict=True)
-            for place, name in enumerate(group)
-        }
+    @classmethod
+    def of_file(cls, saved: Mapping[str, Any], world: World, where: str) -> Snapshot:
+        """The state of which a model file holds these columns. Raises FieldError.
+
+        Columns of mods that are not loaded are left out; others that are missing have their defaults.
+        """
+        columns = {}
+        for table in world.tables.values():
+            for field in map(table.fields.__getitem__, table.state):
+                column, key = field.allocate(table.count), f"{table.name}.{field.name}"
+                if key in saved:
+                    values, path = saved[key], f"{where}.{key}"
+                    listed = isinstance(values, list | tuple) and len(values) == table.count
+                    if not listed or field.checker is check_departure:
+                        raise FieldError(_REFUSAL, where=path)
+                    column = field.check_column(list(values), table.count, f"{path}[{{}}]".format)
+                columns[key] = column
+        return cls(columns, world.orders)
 
     @property
-    def size(self) -> int:
+    def nbytes(self) -> int:
         """Bytes that it takes."""
-        objects = (entry for array in self.arrays if array.dtype.hasobject for entry in array)
-        return sum([array.nbytes for array in self.arrays]) + sum(
-            getattr(entry, "nbytes", 0) for entry in objects
-        )
+        columns = self.columns.values()
+        objects = (entry for column in columns if column.dtype.hasobject for entry in column)
+        return sum([column.nbytes for column in columns]) + sum(getattr(o, "nbytes", 0) for o in objects)
+
+    @property
+    def steps(self) -> int:
+        """How many steps had been taken."""
+        return int(self.columns["clock.steps"][0])
+
+    def __iter__(self) -> Iterator[str]:
+        return (name for name, column in self.columns.items() if len(column) != 1 or column[0] is not None)
+
+    def __len__(self) -> int:
+        return sum(1 for _ in self)
+
+    def __getitem__(self, name: str) -> Any:
+        column = self.columns[name]
+        if column.dtype.kind == "f" and np.isnan(column).any():
+            return [None if value != value else value for value in column.tolist()]
+        return column.tolist()
+
+    def __eq__(self, other: object) -> bool:
+        return isinstance(other, Snapshot) and dict(self) == dict(other)
+
+    __hash__ = None  # type: ignore[assignment]
+
+    def __repr__(self) -> str:
+        return f"<Snapshot after {self.steps} steps>"
 
     def column(self, world: World, name: str) -> Column:
         """A state column, "table.field", by the rows of now; entities that did not exist then get its default."""
@@ -72,13 +103,20 @@ class Snapshot:
 
     def restore(self, world: World) -> None:
         """Put the state back, bit for bit; entities that did not exist then get their defaults."""
-        for (name, group), array in zip(self.layout, self.arrays, strict=True):
-            table = world.tables[name]
-            as_now = len(group) > 1 or self._has_rows_of_now(world, name)
-            table.storage(*group)[...] = array if as_now else self.column(world, f"{name}.{group[0]}")
-            table.mark(group[:1], Role.STATE)
+        for table in world.tables.values():
+            kept = [name for name in table.state if f"{table.name}.{name}" in self.columns]
+            for name in kept:
+                table.storage(name)[...] = self.column(world, f"{table.name}.{name}")
+            table.mark(kept, Role.STATE)
 
     def _has_rows_of_now(self, world: World, table: str) -> bool:
         """True if the rows of a table belong to the same entities as then."""
         now = world.orders
         return self.entities is now or np.array_equal(self.entities[table], now[table])
+
+
+def check_departure(value: Any, where: str) -> Mapping[str, Any]:
+    """A snapshot, or what a model file holds of one, until `of_file` makes it one. Raises FieldError."""
+    if isinstance(value, Mapping):
+        return value
+    raise FieldError(_REFUSAL, where=where)

@@ -16,7 +16,6 @@ from pinjoint.components.mistake import NotFound, WrongValue
 from pinjoint.components.suggestions import missing
 
 _SMALLEST_CAPACITY = 8
-_TRIED = 64  # names at once, at least, in search of a free one
 
 
 class Store(Protocol):
@@ -30,11 +29,10 @@ class Store(Protocol):
     def write(self, handle: Any, field: Field[Any], value: Any) -> None: ...
     def assign(self, handles: Sequence[Any], field_name: str, values: Any) -> None: ...
     def row(self, handle: Any) -> int: ...
-    def describe(self, handle: Any) -> str: ...
+    def describe(self, handle: Any, field: str = ...) -> str: ...
     def column(self, name: str) -> Column: ...
     def refresh(self, name: str) -> None: ...
     def next_revision(self, *roles: Role) -> int: ...
-    def forget_layouts(self) -> None: ...
     def place(self, table: Table[Any], first: int) -> None: ...
 
 
@@ -69,6 +67,7 @@ class Table(Generic[H]):
         "handles",
         "kind",
         "name",
+        "state",
         "structure",
     )
 
@@ -77,6 +76,7 @@ class Table(Generic[H]):
         object.__setattr__(self, "name", name)  # assigning to it names the entities
         self.kind = kind
         self.fields: dict[str, Field[Any]] = {}
+        self.state: list[str] = []  # names of the columns that time makes
         self.count = 0
         self.structure = 0  # revision of the last creation or deletion
         self.entity: NDArray[np.int64] = np.empty(1 if kind.single else _SMALLEST_CAPACITY, dtype=np.int64)
@@ -92,7 +92,7 @@ class Table(Generic[H]):
         self._blocks = self._side_by_side() if kind.single else {}
 
     def _side_by_side(self) -> dict[tuple[str, ...], Column]:
-        """Store the numbers of a single row in one array for each type and role, to be copied together."""
+        """Store the numbers of a single row in one array for each type and role, as step programs take them."""
         alike: dict[tuple[Any, Role], list[str]] = {}
         for name, field in self.fields.items():
             if field.dtype in (float, int) and not field.shape:
@@ -122,7 +122,7 @@ class Table(Generic[H]):
                 name=field.name,
             )
         self.fields[field.name] = field
-        self.world.forget_layouts()
+        self.state += [field.name] if field.role is Role.STATE else []
         self._columns[field.name] = field.allocate(len(self.entity))
         self._first_of[field.name] = field.name
         self._versions[field.name] = 0
@@ -196,12 +196,6 @@ class Table(Generic[H]):
         """esper ids in row order, shape (count,)."""
         return read_only(self.entity[: self.count])
 
-    def groups(self, role: Role) -> list[tuple[str, ...]]:
-        """The names of all columns with this role, those together that are stored as one array."""
-        blocks = [block for block in self._blocks if self.fields[block[0]].role is role]
-        known = set(itertools.chain(*blocks))
-        return [*blocks, *((field.name,) for field in self.fields_in(role) if field.name not in known)]
-
     @property
     def names(self) -> list[str]:
         """Names in row order."""
@@ -222,12 +216,9 @@ class Table(Generic[H]):
         self._versions[self._first_of[name]] = self.world.next_revision(self.fields[name].role)
         return self._columns[name][: self.count]
 
-    def storage(self, *group: str) -> Column:
-        """The array of one column, shape (count, ...), or of a group of columns, to write to.
-
-        It is neither marked as changed nor brought up to date: the writer marks it.
-        """
-        return self._columns[group[0]][: self.count] if len(group) == 1 else self._blocks[group]
+    def storage(self, name: str) -> Column:
+        """The column to write to, shape (count, ...), neither brought up to date nor marked as changed: the writer does."""
+        return self._columns[name][: self.count]
 
     def together(self, names: Sequence[str]) -> Column:
         """Numbers of a single row, declared one after the other, as storage of shape (len(names),)."""
@@ -252,17 +243,12 @@ class Table(Generic[H]):
     def free_names(self, count: int, besides: Iterable[str] = ()) -> list[str]:
         """The `count` names of the form "rod n" with the smallest n that neither are used nor among `besides`."""
         noun, used, others = self.kind.noun, self._by_name, set(besides)
-        found: list[str] = []
-        first = self._lowest_number
-        while (wanted := count - len(found)) > 0:
-            last = first + max(wanted, _TRIED)
-            tried = [f"{noun} {n}" for n in range(first, last)]
-            free = tried if used.keys().isdisjoint(tried) else [name for name in tried if name not in used]
-            if not free and first == self._lowest_number:
-                self._lowest_number = last
-            found += free if others.isdisjoint(free) else [name for name in free if name not in others]
-            first = last
-        return found[:count]
+        while f"{noun} {self._lowest_number}" in used:
+            self._lowest_number += 1
+        tried = (f"{noun} {n}" for n in itertools.count(self._lowest_number))
+        return list(
+            itertools.islice((name for name in tried if name not in used and name not in others), count)
+        )
 
     def taken(self, names: Collection[str]) -> set[str]:
         """Those of these names that entities have."""

@@ -10,11 +10,11 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from pinjoint.components.additions import all_points
 from pinjoint.components.bent import AXIAL, middles
 from pinjoint.components.camera import LEAST_MARGIN, Camera, Rectangle, Viewport
 from pinjoint.components.card import Card
 from pinjoint.components.field import Vector
-from pinjoint.components.kind import all_points
 from pinjoint.components.menu import Menu
 from pinjoint.components.model import Model
 from pinjoint.components.rod import bends

@@ -25,7 +25,6 @@ from pinjoint.components.tags import Rare
 from pinjoint.components.wording import cut
 
 H = TypeVar("H", bound=Handle)
-Layout = tuple[tuple[str, tuple[str, ...]], ...]
 
 _world_numbers = itertools.count(1)
 
@@ -55,7 +54,6 @@ class World:
         self.revision = 0
         self.structure = 0  # of the last creation or deletion
         self._orders: tuple[int, dict[str, NDArray[np.int64]]] = (-1, {})
-        self._layouts: dict[tuple[Role, tuple[str, ...]], Layout] = {}
         self._newest = dict.fromkeys(Role, 0)
         self.on_command: Callable[[Command], None] | None = None
         self.before_change: Callable[[], None] | None = None
@@ -66,6 +64,7 @@ class World:
         self._tagged: dict[type, NDArray[np.intp]] = {}  # by tag that is not Rare: esper ids, ascending
         self._tagged_rows: dict[type, tuple[Any, dict[str, NDArray[np.intp]]]] = {}  # with their revisions
         self.changing = False
+        self._naming: Callable[[int, str], str] | None = None
         self._open: list[Command] | None = None
         self._derivations: dict[str, Derivation] = {}
         self._derived_at: dict[Derivation, int] = {}  # revision at which it was last up to date
@@ -110,22 +109,6 @@ class World:
     def newest(self, *roles: Role) -> int:
         """The revision of the newest change to any column with one of these roles."""
         return self._newest[roles[0]] if len(roles) == 1 else max(self._newest[role] for role in roles)
-
-    # --- all columns with a role ---------------------------------------------------------------------
-
-    def layout(self, role: Role, tables: tuple[str, ...]) -> Layout:
-        """How the columns with a role of these tables (none given: of all) are stored: groups by table."""
-        key = (role, tables)
-        if key not in self._layouts:
-            groups = (
-                (name, group) for name in tables or self.tables for group in self.tables[name].groups(role)
-            )
-            self._layouts[key] = tuple(groups)
-        return self._layouts[key]
-
-    def forget_layouts(self) -> None:
-        """Columns were added."""
-        self._layouts.clear()
 
     @property
     def orders(self) -> dict[str, NDArray[np.int64]]:
@@ -237,8 +220,19 @@ class World:
                 )
             given.add(name)
 
-    def describe(self, handle: Handle) -> str:
-        """A handle as a person calls it, such as "rod AB"."""
+    @contextmanager
+    def naming(self, where: Callable[[int, str], str]) -> Iterator[None]:
+        """While inside, call elements, and Fields of theirs, by their rows: as their document does that is read."""
+        self._naming = where
+        try:
+            yield
+        finally:
+            self._naming = None
+
+    def describe(self, handle: Handle, field: str = "") -> str:
+        """A handle, or a Field of it, as a person calls it in a message, such as "rod AB"."""
+        if self._naming is not None:
+            return self._naming(self.row(handle), field)
         table = self.tables[handle.table]
         if "name" not in table.fields:
             return tr(handle.noun)

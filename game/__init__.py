@@ -15,7 +15,7 @@ checks.py                   check_system: a test of any system, for mods
 paths.py                    what particles.B.force and the like mean, wherever a person writes one
 completion.py               registering what is written as mods are, before the first model
 preparation.py              what a window has compiled, and which models wait for that
-elsewhere.py prepare.py     compiling in another process, and loading what it made in a thread
+elsewhere.py                compiling in another process, and loading what it made in a thread
 """
 
 from importlib import import_module

@@ -86,7 +86,12 @@ def open_window(
     expectations are returned.
     """
     path, source = record
-    autosave, trouble = _autosave()
+    autosave: Autosave | None = None
+    trouble = ""
+    try:
+        autosave = Autosave()
+    except OSError as error:  # nothing can be written
+        trouble = unkept(library.data_folder(), error)
     magnification, place = preferred_magnification(), preferred_place()
     app = App(model, file, autosave, theme or preferred_theme(), Preparation(), magnification, place)
     app.session.lesson = lesson
@@ -98,14 +103,6 @@ def open_window(
     if not file.name and lesson is None:
         app.welcome()
     return app.run()
-
-
-def _autosave() -> tuple[Autosave | None, str]:
-    """The autosave of this person; None and the reason where nothing can be written."""
-    try:
-        return Autosave(), ""
-    except OSError as error:
-        return None, unkept(library.data_folder(), error)
 
 
 def window_systems(folder: Path) -> list[System]:
@@ -193,8 +190,7 @@ class App:
         self.session.preparation = self.preparation = preparation
         if preparation is not None:
             preparation.open()
-        self._theme, self._language = theme, language()
-        self._convention = self.session.view.convention
+        self._chosen = self._choices()
         self._magnification = magnification
         self._clock, self._before = pygame.time.Clock(), time.perf_counter()
         self._follow_size()
@@ -216,12 +212,14 @@ class App:
                     self.next_frame()
                     with nullcontext() if played else around("lessons"):  # a script gets its exceptions
                         self.session.take_up_lesson()
-                        failures += self._play()
+                        lesson, self.session.lesson = self.session.lesson, None
+                        failures += Performance(self, lesson).play() if lesson is not None else []
                     played = False
         finally:
             gc.set_threshold(*thresholds)
-        with around("preferences"):
-            self._remember_place()
+        with around("preferences"):  # where the window is, if somebody saw it and it does not fill the screen
+            if not self._full_screen and pygame.display.get_driver() not in UNSEEN:
+                remember("window", [*self.window.position, *self.window.size])
         if self.autosave is not None:
             with around(self.autosave.name):
                 self.autosave.close(self.session.documents)
@@ -230,16 +228,6 @@ class App:
                 self.preparation.close()
         self.close()
         return failures
-
-    def _play(self) -> list[Failure]:
-        """Play the script that was asked for, if one was."""
-        lesson, self.session.lesson = self.session.lesson, None
-        return Performance(self, lesson).play() if lesson is not None else []
-
-    def _remember_place(self) -> None:
-        """Keep where the window is for the next time, if somebody saw it and it does not fill the screen."""
-        if not self._full_screen and pygame.display.get_driver() not in UNSEEN:
-            remember("window", [*self.window.position, *self.window.size])
 
     def close(self) -> None:
         """Close the window at once; the garbage collector would do so later, together with the display of the next one."""
@@ -352,17 +340,18 @@ class App:
         elif gc.get_count()[0] > MANY_NEW:
             gc.collect(0)
 
+    def _choices(self) -> dict[str, str]:
+        """What the person has chosen; not what a script that is performed shows."""
+        view = self.session.view
+        shown = {} if self.session.performing else {"language": language(), "convention": view.convention}
+        return {"theme": view.theme, **shown}
+
     def _follow_choices(self) -> None:
         """Keep what the person chooses for the next time."""
-        if self.session.view.theme != self._theme:
-            self._theme = self.session.view.theme
-            remember("theme", self._theme)
-        if language() != self._language and not self.session.performing:
-            self._language = language()
-            remember("language", self._language)
-        if self.session.view.convention != self._convention and not self.session.performing:
-            self._convention = self.session.view.convention
-            remember("convention", self._convention)
+        for name, chosen in self._choices().items():
+            if chosen != self._chosen.get(name):
+                self._chosen[name] = chosen
+                remember(name, chosen)
 
     def point(self, pixel: Vector) -> None:
         """Take the pointer to a pixel."""

@@ -1,53 +1,105 @@
-"""Elsewhere: another process compiles, one program after the other; a thread loads what is compiled by then."""
+"""Elsewhere: another process compiles, one program after the other; a thread of this one loads what is compiled by then.
+
+A compiler in the process of the window would hold it up, in a thread too. `START` begins the other one, whose standard
+input holds a `Task`; a line for each job says why it could not be done, or is empty.
+"""
 
 from __future__ import annotations
 
+import gc
 import importlib
 import os
 import subprocess
 import sys
 import tempfile
 import threading
-from collections.abc import Mapping
+import time
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
 from pathlib import Path
 
 import msgspec
 
 from pinjoint.components.extensions import EXTENSIONS
-from pinjoint.components.language import language, tr
-from pinjoint.prepare import START, UNITS, Job, Task
+from pinjoint.components.language import language, speak, tr
+from pinjoint.components.model import Model
+from pinjoint.documents.document import parse
+from pinjoint.documents.facts import gathered
+from pinjoint.mods.loading import load
+from pinjoint.session import Session
+from pinjoint.systems import cache
+from pinjoint.systems.base import Integrator, StepSystem
+from pinjoint.systems.collision.driven.compiled import DRIVEN
+from pinjoint.systems.collision.free.discs import EVENTS, HORIZONS, PILES
+from pinjoint.systems.collision.overlaps import PARTING
 from pinjoint.systems.physics.integrators import INTEGRATORS
-from pinjoint.systems.program.compiler import GeneratedModule, interpreted_here, tell
+from pinjoint.systems.program.compiler import (
+    Choice,
+    Compile,
+    GeneratedModule,
+    forget_unused,
+    interpreted_here,
+)
+from pinjoint.systems.program.parallel import make_program
 from pinjoint.systems.program.writer import read_sources
+from pinjoint.systems.render.raster import RASTER
 
+UNITS = {unit.name: unit for unit in (RASTER, PARTING, EVENTS, HORIZONS, PILES, DRIVEN)}
+START = (
+    "import sys; sys.path[:] = sys.argv[1:]; from pinjoint.elsewhere import main; main()"  # of `python -P -c`
+)
 INTERVAL = 0.05  # s between two looks
 ENDING = 0.5  # s that what a thread is at may take before the window goes without it
 
-Jobs = Mapping[Job, GeneratedModule]
+_HOME = Path(__file__).parent
+
+Job = tuple[str, ...]  # the name of a unit, or a step program: integrator, form, traits of the model, systems
 
 
-def slower(problem: str) -> str:
-    """The sentence that says why runs go on without machine code."""
-    return tr("Runs go on without machine code, and slower: {problem}.", problem=problem)
+@dataclass(eq=False)
+class Work:
+    """A job and the module that it is about; None if that cannot be written.
+
+    document: of the model, once it was described. ended: why the other process could not do it, or "" if it could; None
+    until then. told, given_up: that was said; it cannot be compiled in this process either.
+    """
+
+    job: Job
+    module: GeneratedModule | None
+    document: bytes | None = None
+    ended: str | None = None
+    told: bool = False
+    given_up: bool = False
+
+    @property
+    def problem(self) -> str:
+        """Why it cannot be had from the other process; "" if it can, as far as is known."""
+        if self.ended is None or self.module is None or self.module.is_compiled():
+            return ""
+        return self.ended or tr("what was compiled was not kept")
+
+
+def tell_slower(problem: str) -> None:
+    """Say why runs go on without machine code, if they do."""
+    if problem:
+        cache.tell(tr("Runs go on without machine code, and slower: {problem}.", problem=problem))
 
 
 class Elsewhere:
     """What is compiled in another process, and loaded by a thread of this one while its other threads go on.
 
-    ended: the jobs that were done, with what went wrong, or "". lacking: those of which it waits for the documents.
+    needed, later: what is to be compiled and loaded, in order. lacking: of them, those whose documents are waited for.
     compiles: False if nothing ever is compiled. can_load: machine code could be loaded, so far.
     """
 
     def __init__(self, *, compiles: bool = True) -> None:
-        self.ended: dict[Job, str] = {}
-        self.lacking: list[Job] = []
-        self._documents: Mapping[Job, bytes] = {}
+        self.needed: Sequence[Work] = ()
+        self.later: Sequence[Work] = ()
+        self.lacking: list[Work] = []
         self._compiles = compiles
-        self._needed: Jobs = {}
-        self._later: Jobs = {}
         self.can_load = compiles
         self._process: subprocess.Popen[str] | None = None
-        self._at_work: list[Job] = []
+        self._at_work: list[Work] = []
         self._urgent = False  # what is compiled now is needed
         self._closed = threading.Event()
         self._thread = threading.Thread(target=self._run, daemon=True)
@@ -56,15 +108,6 @@ class Elsewhere:
         """Begin to do what was asked for, if it has not begun."""
         if self._thread.ident is None:
             self._thread.start()
-
-    def ask(self, needed: Jobs, later: Jobs, documents: Mapping[Job, bytes]) -> None:
-        """Compile and load what is needed, in order, then what may be needed later; documents: of their models."""
-        self._needed, self._later, self._documents = needed, later, documents
-
-    @property
-    def has_loaded_all(self) -> bool:
-        """True if nothing that is needed runs interpreted any more."""
-        return all(module.is_loaded for module in self._needed.values())
 
     @staticmethod
     def is_ready(module: GeneratedModule) -> bool:
@@ -96,7 +139,7 @@ class Elsewhere:
 
     def _load(self) -> None:
         """Load what is compiled, or else rewrite what will be interpreted; one program at a time."""
-        wanted = [module for jobs in (self._needed, self._later) for module in jobs.values()]
+        wanted = [work.module for work in (*self.needed, *self.later) if work.module is not None]
         for module in (*interpreted_here(), *wanted):
             try:
                 if module.is_loaded:
@@ -108,31 +151,28 @@ class Elsewhere:
                     return
             except Exception as error:  # such as a compiler that is damaged
                 self.can_load = False
-                tell(slower(tr("machine code cannot be loaded ({error})", error=error)))
+                tell_slower(tr("machine code cannot be loaded ({error})", error=error))
                 return
 
     def _compile(self) -> None:
         """Have the other process compile, what is needed first."""
-        process, needed = self._process, self._left(self._needed)
+        process, needed = self._process, _left(self.needed)
         if process is not None and process.poll() is None:
             if not needed or (self._urgent and needed[0] in self._at_work):
                 return
             self._end(process)
         elif process is not None:
             self._note_end(process)
-            needed = self._left(self._needed)
+            needed = _left(self.needed)
         self._urgent, self._process = bool(needed), None
-        self._at_work = needed or self._left(self._later)
-        documents = {job: b"" if job[0] in UNITS else self._documents.get(job) for job in self._at_work}
-        self.lacking = [job for job, document in documents.items() if document is None]
+        self._at_work = needed or _left(self.later)
+        self.lacking = [work for work in self._at_work if work.document is None]
         if self._at_work and not self.lacking and not self._closed.is_set():
             try:
-                self._process = started({job: held or b"" for job, held in documents.items()}, self._urgent)
+                self._process = started({w.job: w.document or b"" for w in self._at_work}, self._urgent)
             except OSError as error:  # no room for another process, or for what it is given
-                self.ended |= dict.fromkeys(self._at_work, error.strerror or str(error))
-
-    def _left(self, jobs: Jobs) -> list[Job]:
-        return [job for job, module in jobs.items() if job not in self.ended and not module.is_compiled()]
+                for work in self._at_work:
+                    work.ended = error.strerror or str(error)
 
     @staticmethod
     def _end(process: subprocess.Popen[str]) -> None:
@@ -143,24 +183,46 @@ class Elsewhere:
         """Note what the other process did; a job at which it ended by itself is not tried again."""
         said = process.communicate()[0].splitlines()
         status = tr("the process that compiles ended with status {status}", status=process.returncode)
-        self.ended |= dict(zip(self._at_work, [*said, *([status] if process.returncode else [])], strict=False))
+        for work, ended in zip(self._at_work, [*said, *([status] if process.returncode else [])], strict=False):
+            work.ended = ended
+
+
+def _left(works: Sequence[Work]) -> list[Work]:
+    return [w for w in works if w.module is not None and w.ended is None and not w.module.is_compiled()]
+
+
+# --- the other process -------------------------------------------------------------------------------
+
+
+class Task(msgspec.Struct, frozen=True):
+    """Jobs, each with the document of its model. asker: the process that wants them. later: nobody waits for it."""
+
+    asker: int
+    language: str
+    mods: list[str]  # their folders
+    later: bool
+    jobs: list[tuple[Job, int]]
+    documents: list[bytes]
 
 
 def started(jobs: Mapping[Job, bytes], urgent: bool) -> subprocess.Popen[str]:
     """The process that compiles jobs for models; the window goes before it, and everything before what is not urgent.
 
-    It imports from where this one does, but never from the folder that somebody happens to be in.
+    It imports from where this one does, but never from the folder that somebody happens to be in, unless the program
+    lies there.
     """
     documents = list(dict.fromkeys(jobs.values()))
     mods = [str(mod.folder) for mod in EXTENSIONS.mods if mod.loaded and mod.folder]
     asked = [(job, documents.index(document)) for job, document in jobs.items()]
     task = Task(os.getpid(), language(), mods, not urgent, asked, documents)
     priority = "BELOW_NORMAL_PRIORITY_CLASS" if urgent else "IDLE_PRIORITY_CLASS"  # as Windows has it
+    here = {Path.cwd()} - {_HOME.parent}
+    imported_from = [entry for entry in sys.path if entry and Path(entry).resolve() not in here]
     with tempfile.TemporaryFile() as given:
         given.write(msgspec.msgpack.encode(task))
         given.seek(0)
         return subprocess.Popen(
-            [sys.executable, "-P", "-c", START, *_imported_from()],
+            [sys.executable, "-P", "-c", START, *imported_from],
             stdin=given,
             stdout=subprocess.PIPE,
             stderr=subprocess.DEVNULL,
@@ -173,10 +235,55 @@ def started(jobs: Mapping[Job, bytes], urgent: bool) -> subprocess.Popen[str]:
         )
 
 
-_HOME = Path(__file__).parent
+def main() -> None:
+    """Compile jobs into the cache."""
+    task = msgspec.msgpack.decode(sys.stdin.buffer.read(), type=Task)
+    threading.Thread(target=_end_after, args=(task.asker,), daemon=True).start()
+    if hasattr(os, "nice"):  # to what runs at the same time, the window above all
+        os.nice(19 if task.later else 5)
+    gc.disable()  # looking through all that the compiler makes would take a fifth of the time
+    Choice.compile = Compile.ALWAYS
+    load(task.mods)
+    speak(task.language)
+    for job, place in task.jobs:
+        print(problem_of(job, task.documents[place]), flush=True)
+    forget_unused()
 
 
-def _imported_from() -> list[str]:
-    """Where this process imports from, but for the current folder, unless the program lies there."""
-    elsewhere = {Path.cwd()} - {_HOME.parent}
-    return [entry for entry in sys.path if entry and Path(entry).resolve() not in elsewhere]
+def _end_after(parent: int) -> None:
+    """End with the process that waits for this one, however that ends; where that is not told, after it is done."""
+    while os.getppid() == parent:
+        time.sleep(0.2)
+    os._exit(1)
+
+
+def described(model: Model) -> bytes:
+    """A model as other processes read it. Raises ModelError."""
+    return msgspec.json.encode(gathered(model))
+
+
+def problem_of(job: Job, document: bytes) -> str:
+    """Do a job for the model of a document; returns why it could not be done, "" if it could."""
+    try:
+        importlib.import_module("pinjoint.systems.machine_code")
+    except Exception as error:  # numba is not there, or damaged
+        return tr("numba cannot be imported ({error})", error=in_a_line(error))
+    try:
+        if job[0] in UNITS:
+            UNITS[job[0]].load()
+        else:
+            make_program(*parts_of(job, document)).load()
+    except Exception as error:  # numba raises many kinds
+        return in_a_line(error)
+    return cache.TROUBLE[0].partition(". ")[0] if cache.TROUBLE else ""
+
+
+def in_a_line(error: Exception) -> str:
+    return " ".join(str(error).split()).removesuffix(".") or type(error).__name__
+
+
+def parts_of(job: Job, document: bytes) -> tuple[Model, Sequence[StepSystem], Integrator, str]:
+    """What the step program of a job is made of, for the very model that asks for it."""
+    integrator, form, _, *systems = job
+    model = parse(msgspec.json.decode(document))
+    return model, Session(model).schedule.named(systems), INTEGRATORS[integrator], form

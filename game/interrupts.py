@@ -77,29 +77,29 @@ def end_in_time() -> None:
     reader, writer = os.pipe()
     os.set_blocking(writer, False)
     signal.set_wakeup_fd(writer, warn_on_full_buffer=False)
-    threading.Thread(target=_cut_off, args=(reader,), name="end in time", daemon=True).start()
 
+    def cut_off() -> None:
+        while (number := os.read(reader, 1)[0]) not in CLOSING:
+            pass
+        time.sleep(PATIENCE)
+        os._exit(128 + number)
 
-def _cut_off(reader: int) -> None:
-    while (number := os.read(reader, 1)[0]) not in CLOSING:
-        pass
-    time.sleep(PATIENCE)
-    os._exit(128 + number)
+    threading.Thread(target=cut_off, name="end in time", daemon=True).start()
 
 
 class Interrupt(KeyboardInterrupt):
     """Ctrl+C."""
 
 
-def _interrupt(number: int, frame: FrameType | None) -> None:
-    raise Interrupt
-
-
 def mark_interrupts() -> None:
     """From now on Ctrl+C raises Interrupt, wherever Python would raise KeyboardInterrupt."""
+
+    def interrupt(number: int, frame: FrameType | None) -> None:
+        raise Interrupt
+
     usual = signal.getsignal(signal.SIGINT) is signal.default_int_handler
     if usual and threading.current_thread() is threading.main_thread():
-        signal.signal(signal.SIGINT, _interrupt)
+        signal.signal(signal.SIGINT, interrupt)
 
 
 def is_persons(error: BaseException) -> bool:
@@ -113,22 +113,19 @@ def is_persons(error: BaseException) -> bool:
 
 def ended_with(status: int) -> int:
     """The exit status; the process ends with it even if threads, which a mod may have started, do not end."""
-    if _threads():
-        threading.Thread(target=_end, args=(status,), daemon=True).start()
-    return status
-
-
-def _threads() -> list[str]:
-    """Names of the threads that Python waits for before it ends."""
     main = threading.main_thread()
-    return [thread.name for thread in threading.enumerate() if not (thread.daemon or thread is main)]
 
+    def left() -> list[str]:
+        return [thread.name for thread in threading.enumerate() if not (thread.daemon or thread is main)]
 
-def _end(status: int) -> None:
-    """End the process if it still waits for threads after a while."""
-    from pinjoint.components.language import listed, tr  # this module is loaded before all that takes time
+    def end() -> None:
+        from pinjoint.components.language import listed, tr  # this module is loaded before all that takes time
 
-    time.sleep(LEFT_OVER)
-    said = tr("These threads did not end and were left: {threads}.", threads=listed(_threads()))
-    print(f"pinjoint: {said}", file=sys.stderr, flush=True)
-    os._exit(status)
+        time.sleep(LEFT_OVER)
+        said = tr("These threads did not end and were left: {threads}.", threads=listed(left()))
+        print(f"pinjoint: {said}", file=sys.stderr, flush=True)
+        os._exit(status)
+
+    if left():  # which Python would wait for
+        threading.Thread(target=end, daemon=True).start()
+    return status

@@ -6,17 +6,16 @@ Programs begin interpreted, so that most models never wait: see `is_live`.
 from __future__ import annotations
 
 import time
-from collections.abc import Iterable, Iterator, Mapping, Sequence, Set
+from collections.abc import Iterator, Mapping, Sequence, Set
 from itertools import islice
 from typing import Any
 
 from pinjoint.components.field import Role
-from pinjoint.components.language import english, tr
+from pinjoint.components.language import english
 from pinjoint.components.model import Model
 from pinjoint.documents.format import ModelError
 from pinjoint.editor.host import Waiting
-from pinjoint.elsewhere import Elsewhere, slower
-from pinjoint.prepare import UNITS, Job, described, in_a_line, problem_of
+from pinjoint.elsewhere import UNITS, Elsewhere, Job, Work, described, in_a_line, problem_of, tell_slower
 from pinjoint.systems import cache
 from pinjoint.systems.base import Law, Phase, StepSystem, System
 from pinjoint.systems.collision.driven.compiled import DRIVEN
@@ -36,13 +35,10 @@ from pinjoint.systems.plasticity.system import FirstYield, Strength, Yielding
 from pinjoint.systems.program.binding import is_our_own
 from pinjoint.systems.program.compiler import (
     LARGE,
-    LOG,
     LONGEST_WORK,
-    UNCOMPILED,
     Choice,
     Compile,
     GeneratedModule,
-    tell,
 )
 from pinjoint.systems.program.program import module_of
 from pinjoint.systems.program.writer import form_of, traits_of
@@ -85,12 +81,9 @@ class Preparation(System):
         self._asked = Choice.compile
         self.elsewhere = Elsewhere(compiles=self._asked is not Compile.NEVER)
         self._frames = 0
-        self._modules: dict[Job, GeneratedModule | None] = {}  # None: it cannot be written
-        self._documents: dict[Job, bytes] = {}  # of models, for the other process
+        self._works: dict[Job, Work] = {}
         self._needed: dict[Job, Simulation] = {}  # by this frame, in order, and by what
         self._waiting: dict[Job, float] = {}  # what keeps a simulation waiting, and since when
-        self._given_up: set[Job] = set()  # of these: what cannot be compiled at all
-        self._told: set[Job] = set()  # of these: what went wrong with them, in the language of then
         self._said: set[str] = set()
         self._draws_many = False
         self._worked: tuple[object, tuple[int, int]] = (), (0, 0)  # by a simulation, as it was then
@@ -115,7 +108,11 @@ class Preparation(System):
         self._frames += 1
         if self._frames == 2:  # after the first picture
             self.elsewhere.begin()
-        self._tell(frame.session)
+        for sentence in cache.SAID:
+            if english(sentence) not in self._said:
+                self._said.add(english(sentence))
+                frame.session.notice = sentence
+                break
 
     def _ask(self, simulation: Simulation) -> None:
         """Have compiled and loaded what this frame needed, then what may be needed next."""
@@ -123,65 +120,47 @@ class Preparation(System):
         if self._draws_many:
             needed = {(RASTER.name,): simulation} | needed
         later = {job: simulation for job in _jobs_later(simulation) if job not in needed}
-        unknown = ((job, by) for job, by in (needed | later).items() if job not in self._modules)
-        for job, by in islice(unknown, 1):  # finding it takes a part of a frame
-            self._modules[job] = _module_of(job, by)
-        if (found := self._known(needed)) is not None:
-            self._describe(needed | later)
-            self.elsewhere.ask(found, self._known(later) or {}, self._documents)
-        for job in needed:
-            if job not in self._told and (problem := self._problem_of(job)):
-                self._told.add(job)
-                tell(slower(problem))
+        asked, works = needed | later, self._works
+        for job in islice((job for job in asked if job not in works), 1):  # finding it takes a part of a frame
+            works[job] = Work(job, _module_of(job, asked[job]), b"" if job[0] in UNITS else None)
+        if all(job in works for job in needed):  # they are compiled by one process
+            self.elsewhere.needed = [works[job] for job in needed]
+            self.elsewhere.later = [works[job] for job in later if job in works]
+            self._describe(asked)
+        for work in (works[job] for job in needed if job in works):
+            if not work.told and work.problem:
+                work.told = True
+                tell_slower(work.problem)
         self._waiting = {job: since for job, since in self._waiting.items() if job in needed}
         self._needed = {}
 
-    def _describe(self, jobs: Mapping[Job, Simulation]) -> None:
+    def _describe(self, asked: Mapping[Job, Simulation]) -> None:
         """Note of which models the jobs are that the other process is about to do."""
-        self._documents = {job: document for job, document in self._documents.items() if job in jobs}
         made: dict[Simulation, bytes] = {}
-        for job in self.elsewhere.lacking:
+        for work in self._works.values():
+            if work.job not in asked and work.document:
+                work.document = None
+        for work in self.elsewhere.lacking:
             try:
-                if (by := jobs.get(job)) is not None:
-                    self._documents[job] = made[by] = made.get(by) or described(by.model)
+                if (by := asked.get(work.job)) is not None:
+                    work.document = made[by] = made.get(by) or described(by.model)
             except ModelError as error:
-                self.elsewhere.ended[job] = in_a_line(error)
-
-    def _known(self, jobs: Iterable[Job]) -> dict[Job, GeneratedModule] | None:
-        """The modules of jobs, once all are known: they are compiled by one process."""
-        if any(job not in self._modules for job in jobs):
-            return None
-        return {job: module for job in jobs if (module := self._modules[job]) is not None}
+                work.ended = in_a_line(error)
 
     def _make_program(self, simulation: Simulation) -> None:
         """Make the program before a key needs it: it is loaded, or rewritten by the thread, so that this is quick."""
         if not simulation.programs.ready and self.waits_for(simulation) is None:
-            modules = [self._modules.get(job) for job in _jobs_of(simulation)]
-            if all(module is not None and self.elsewhere.is_ready(module) for module in modules):
+            works = [self._works.get(job) for job in _jobs_of(simulation)]
+            if all(work and work.module and self.elsewhere.is_ready(work.module) for work in works):
                 simulation.program  # noqa: B018 (it is made when asked for)
 
     def _compile_here(self) -> None:
         """Compile what something waits for and the other process could not hand over, after a picture that says so."""
-        for job in self._waiting:
-            if self._problem_of(job) and job not in self._given_up:
-                self._given_up.add(job)
-                if problem := problem_of(job, self._documents.get(job, b"")):
-                    tell(slower(problem))
+        for work in [self._works[job] for job in self._waiting if job in self._works]:
+            if work.problem and not work.given_up:
+                work.given_up = True
+                tell_slower(problem_of(work.job, work.document or b""))
                 return
-
-    def _tell(self, session: Any) -> None:
-        for sentence in (*cache.REFUSED, *cache.TROUBLE, *UNCOMPILED):
-            if english(sentence) not in self._said:
-                self._said.add(english(sentence))
-                session.notice = sentence
-                return
-
-    def _problem_of(self, job: Job) -> str:
-        """Why a job cannot be had from the other process; "" if it can, as far as is known."""
-        problem, module = self.elsewhere.ended.get(job), self._modules.get(job)
-        if problem is None or module is None or module.is_compiled():
-            return ""
-        return problem or tr("what was compiled was not kept")
 
     # --- what waits ----------------------------------------------------------------------------------
 
@@ -204,9 +183,9 @@ class Preparation(System):
             return None
         now = time.monotonic()
         since = min(self._waiting.setdefault(job, now) for job in left)
-        modules = [module for job in left if (module := self._modules.get(job)) and not module.is_compiled()]
-        expected = BEGINNING + sum(module.expected_seconds() for module in modules)
-        return Waiting(now - since, expected)
+        works = (self._works[job] for job in left if job in self._works)
+        modules = (work.module for work in works if work.module is not None and not work.module.is_compiled())
+        return Waiting(now - since, BEGINNING + sum(module.expected_seconds() for module in modules))
 
     def _jobs(self, simulation: Simulation) -> list[Job]:
         """What a simulation runs with, and what parts its overlaps before, if that takes long."""
@@ -229,10 +208,10 @@ class Preparation(System):
 
     def _is_ready(self, job: Job) -> bool:
         """True if nothing has to wait for a job: it is loaded, or cannot be."""
-        if job not in self._modules:
+        work = self._works.get(job)
+        if work is None:
             return False
-        module, given_up = self._modules[job], job in self._given_up or not self.elsewhere.can_load
-        return module is None or module.is_loaded or given_up
+        return work.module is None or work.module.is_loaded or work.given_up or not self.elsewhere.can_load
 
     def raster(self) -> Raster | None:
         """The raster of large pictures, as soon as it is loaded."""
@@ -266,13 +245,8 @@ def _jobs_later(simulation: Simulation) -> Iterator[Job]:
         present = {system.name for system in simulation.plan}
         for brought, replaced in BY_AN_EDIT:
             if not brought <= present and (not replaced or replaced in present):
-                yield _job_with(simulation, brought, without=replaced)
+                yield _job(simulation, simulation.schedule.named((brought | present) - {replaced}))
     yield from ((unit.name,) for unit in AHEAD)
-
-
-def _job_with(simulation: Simulation, names: Set[str], without: str = "") -> Job:
-    present = {system.name for system in simulation.plan}
-    return _job(simulation, simulation.schedule.named((names | present) - {without}))
 
 
 def _job(simulation: Simulation, plan: Sequence[StepSystem]) -> Job:
@@ -289,5 +263,5 @@ def _module_of(job: Job, simulation: Simulation) -> GeneratedModule | None:
         plan = simulation.schedule.named(job[3:])
         return module_of(simulation.model, plan, simulation.integrator, job[1])
     except Exception:  # of a mod, which is told of when the program is needed
-        LOG.info("A program cannot be written.", exc_info=True)
+        cache.LOG.info("A program cannot be written.", exc_info=True)
         return None

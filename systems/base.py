@@ -135,7 +135,7 @@ class StepSystem(System):
         bound by name: `<table>_<column>`, `time`, `dt`, an entry of `arrays`, or one of the quantities
         that the role provides. "": the system adds nothing to the step program.
     impulsive: it acts at instants, by impacts, at which steps have to end.
-    between: "module:object" of the Between (systems/program/between.py) that acts between steps; "": none does.
+    between: "module:object" of the Between (systems/program/compiler.py) that acts between steps; "": none does.
     """
 
     phase: ClassVar[Phase] = Phase.STEP

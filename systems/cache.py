@@ -18,12 +18,12 @@ from pathlib import Path
 
 from platformdirs import user_cache_path
 
-from pinjoint.components.language import tr
+from pinjoint.components.language import english, tr
 
 NOWHERE = Path(os.devnull)  # stands for a folder where none can be had: there is nothing in it, nor can be
-LOG = logging.getLogger("pinjoint.cache")
+LOG = logging.getLogger("pinjoint.programs")
 TROUBLE: list[str] = []  # the sentence that programs cannot be kept, and why, once that is known
-REFUSED: list[str] = []  # sentences about what was not trusted, and why
+SAID: list[str] = []  # sentences, each once: what could not be kept, compiled or trusted, and why
 
 
 @cache
@@ -36,24 +36,17 @@ def folder() -> Path:
     trouble: OSError = PermissionError(errno.EACCES, os.strerror(errno.EACCES))
     try:
         for tried in (own, Path(tempfile.gettempdir()) / f"pinjoint-programs-{_user()}"):
-            if _can_be_used(tried):
-                return tried
+            with suppress(OSError):
+                tried.mkdir(mode=0o700, parents=True, exist_ok=True)
+                if problem := _folder_problem(tried):
+                    _refuse(tried, problem)
+                else:
+                    with tempfile.TemporaryFile(dir=tried):
+                        return tried
     except OSError as error:
         trouble = error
     _say(own, trouble)
     return NOWHERE
-
-
-def _can_be_used(tried: Path) -> bool:
-    try:
-        tried.mkdir(mode=0o700, parents=True, exist_ok=True)
-        if problem := _folder_problem(tried):
-            _refuse(tried, problem)
-            return False
-        with tempfile.TemporaryFile(dir=tried):
-            return True
-    except OSError:
-        return False
 
 
 def _user() -> int:
@@ -83,19 +76,21 @@ def _folder_problem(path: Path) -> str:
 
 
 def _refuse(path: Path, problem: str) -> None:
-    said = tr(
-        "Compiled programs in {path} are not used, since they would be run and {problem}; delete it, or let nobody but"
-        " yourself write there.",
-        path=path,
-        problem=problem,
+    tell(
+        tr(
+            "Compiled programs in {path} are not used, since they would be run and {problem}; delete it, or let nobody"
+            " but yourself write there.",
+            path=path,
+            problem=problem,
+        )
     )
-    _note(REFUSED, said)
 
 
-def _note(known: list[str], said: str) -> None:
-    if said not in known:
-        known.append(said)
-        LOG.warning(said)
+def tell(sentence: str) -> None:
+    """Say what a person should know of compiled programs, once in whatever language."""
+    if english(sentence) not in map(english, SAID):
+        SAID.append(sentence)
+        LOG.warning(sentence)
 
 
 def read(name: str) -> bytes | None:
@@ -121,9 +116,7 @@ def read(name: str) -> bytes | None:
 def drop(name: str, problem: Exception) -> None:
     """Delete what is whole and can still not be used, which is said once for each kind of problem."""
     kind = f"{type(problem).__name__}: {problem}"
-    _note(
-        REFUSED, tr("What was compiled before cannot be loaded, and is compiled anew: {problem}.", problem=kind)
-    )
+    tell(tr("What was compiled before cannot be loaded, and is compiled anew: {problem}.", problem=kind))
     _delete(folder() / name)
 
 
@@ -166,4 +159,5 @@ def _say(where: Path, error: OSError) -> None:
             folder=where,
             error=error.strerror,
         )
-        _note(TROUBLE, said)
+        TROUBLE.append(said)
+        tell(said)

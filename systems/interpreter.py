@@ -66,10 +66,6 @@ def _power(x: float, y: float) -> float:
         return _NAN
 
 
-def _sqrt(x: float) -> float:
-    return math.sqrt(x) if x >= 0.0 else _NAN
-
-
 def _hypot(x: float, y: float) -> float:
     """hypot() of the C library, by which Python takes the magnitude of complex numbers; its own differs in last bits."""
     try:
@@ -106,15 +102,7 @@ def _fill(row: list[Any], span: slice, value: Any) -> None:
         row[k] = value
 
 
-def _sum(rows: list[Any], column: int) -> float:
-    total = 0.0
-    for row in rows:
-        total += row[column]
-    return total
-
-
 _AS_COMPILED: dict[str, Any] = {
-    "sqrt": _sqrt,
     "hypot": _hypot,
     "pow": _power,
     "floor": _whole(math.floor),
@@ -123,34 +111,7 @@ _AS_COMPILED: dict[str, Any] = {
 }
 
 
-def _like_machine_code(library: Any, name: str) -> Any:
-    """What stands for a function of math or numpy; the other functions of numpy stay what they are."""
-    if name in _AS_COMPILED:
-        return _AS_COMPILED[name]
-    return _quiet(getattr(math, name)) if hasattr(math, name) else getattr(library, name)
-
-
 # --- rewriting -------------------------------------------------------------------------------------
-
-_NUMBER = (bool, int, float)
-
-
-class _Part:
-    """A slice of a list, which like that of an array shares its entries."""
-
-    def __init__(self, whole: Any, start: int | None, stop: int | None) -> None:
-        self._whole = whole
-        self._start, self._stop, _ = slice(start, stop).indices(len(whole))
-
-    def __len__(self) -> int:
-        return max(self._stop - self._start, 0)
-
-    def __getitem__(self, k: int) -> Any:
-        return self._whole[self._start + k]
-
-    def __setitem__(self, k: int, value: Any) -> None:
-        self._whole[self._start + k] = value
-
 
 _TEMPORARY = "t{}__"  # names that end like this are found in no kernel
 _HELPERS = {
@@ -160,8 +121,6 @@ _HELPERS = {
     "floor__": math.floor,
     "whole__": _whole(int),
     "fill__": _fill,
-    "part__": _Part,
-    "sum__": _sum,
 }
 
 
@@ -190,8 +149,8 @@ class _Rewriting(ast.NodeTransformer):
         value = self._value(node)
         if isinstance(value, np.generic):
             value = value.item()
-        if isinstance(value, _NUMBER):
-            return ast.copy_location(ast.Constant(_plain(value)), node)
+        if isinstance(value, bool | int | float):
+            return ast.copy_location(ast.Constant(int(value) if isinstance(value, IntEnum) else value), node)
         return None
 
     def visit_Name(self, node: ast.Name) -> ast.expr:
@@ -209,7 +168,8 @@ class _Rewriting(ast.NodeTransformer):
         owner = self._value(node.value)
         if owner is math or owner is np:
             name = f"{owner.__name__}_{node.attr}__"
-            self.taken[name] = _like_machine_code(owner, node.attr)
+            of_c = _quiet(getattr(math, node.attr)) if hasattr(math, node.attr) else getattr(owner, node.attr)
+            self.taken[name] = _AS_COMPILED.get(node.attr, of_c)
             return ast.copy_location(ast.Name(name, ast.Load()), node)
         if isinstance(owner, ModuleType):
             name = f"{owner.__name__.replace('.', '_')}_{node.attr}__"
@@ -268,18 +228,14 @@ class _Rewriting(ast.NodeTransformer):
         called = self._value(node.func)
         if called is math.sqrt or called is np.sqrt:
             first, second = self._twice(self.visit(node.args[0]))
-            computed = ast.IfExp(_at_least_zero(first), _call_of("root__", second), ast.Constant(_NAN))
+            possible = ast.Compare(first, [ast.GtE()], [ast.Constant(0.0)])
+            computed = ast.IfExp(possible, _call_of("root__", second), ast.Constant(_NAN))
             return ast.copy_location(computed, node)
         if called is math.floor and len(node.args) == 1:
             return self._floor(node)
         name = node.func.id if isinstance(node.func, ast.Name) and node.func.id not in self._outside else ""
         if name in ("min", "max") and len(node.args) == 2:
             return self._least_or_most(node, ast.Lt() if name == "min" else ast.Gt())
-        if isinstance(node.func, ast.Attribute) and node.func.attr == "sum":
-            column = node.func.value  # a[:, k]
-            if isinstance(column, ast.Subscript) and isinstance(column.slice, ast.Tuple):
-                rows, place = self.visit(column.value), self.visit(column.slice.elts[1])
-                return ast.copy_location(_call_of("sum__", rows, place), node)
         self.generic_visit(node)
         if name == "int" and len(node.args) == 1:
             node.func = ast.Name("whole__", ast.Load())
@@ -320,10 +276,6 @@ class _Rewriting(ast.NodeTransformer):
                 for _ in range(depth):
                     row = ast.Subscript(row, ast.Constant(0), ast.Load())
                 return ast.copy_location(_call_of("len", row), node)
-        if isinstance(node.slice, ast.Slice):
-            self.generic_visit(node)
-            ends = [part or ast.Constant(None) for part in (node.slice.lower, node.slice.upper)]
-            return ast.copy_location(_call_of("part__", node.value, *ends), node)
         if isinstance(node.slice, ast.Tuple):
             *outer, last = (self.visit(index) for index in node.slice.elts)
             row = self.visit(node.value)
@@ -353,10 +305,6 @@ class _Rewriting(ast.NodeTransformer):
         return node
 
 
-def _plain(value: Any) -> Any:
-    return int(value) if isinstance(value, IntEnum) else value
-
-
 def _literal(node: ast.expr) -> Any:
     """The number, or another constant, that an expression is; None if it is none."""
     if isinstance(node, ast.Constant):
@@ -370,10 +318,6 @@ def _literal(node: ast.expr) -> Any:
 def _call_of(name: str, *arguments: ast.expr) -> ast.Call:
     """The call of a function by name."""
     return ast.Call(ast.Name(name, ast.Load()), list(arguments), [])
-
-
-def _at_least_zero(node: ast.expr) -> ast.expr:
-    return ast.Compare(node, [ast.GtE()], [ast.Constant(0.0)])
 
 
 # --- functions -------------------------------------------------------------------------------------
@@ -455,8 +399,6 @@ def _when_called(function: Callable[..., Any], name: str, scope: dict[str, Any])
 
 
 _Defined = ast.FunctionDef | ast.Lambda
-
-
 _parsed: dict[str, dict[int, list[_Defined]]] = {}  # by file, what of it is not rewritten yet
 
 
@@ -472,36 +414,26 @@ def _definitions(file: str) -> dict[int, list[_Defined]]:
     except SyntaxError as error:  # it is another text, such as a page with the function in it
         raise NoPlainForm(f"{file} is no source: {error}") from error
     for node in ast.walk(parsed):
-        if isinstance(node, ast.FunctionDef):
-            found.setdefault(min([node.lineno, *(d.lineno for d in node.decorator_list)]), []).append(node)
-        elif isinstance(node, ast.Lambda):
-            found.setdefault(node.lineno, []).append(node)
+        if isinstance(node, _Defined):
+            decorators = node.decorator_list if isinstance(node, ast.FunctionDef) else []
+            found.setdefault(min(n.lineno for n in (node, *decorators)), []).append(node)
     return found
 
 
 def _definition(plain: Any) -> ast.FunctionDef:
     """The definition of a function, to be changed: one that was changed before is read again."""
     code = plain.__code__
-    node = _taken(code, _parsed.get(code.co_filename, {}))
-    if node is None:
-        _parsed[code.co_filename] = _definitions(code.co_filename)
-        node = _taken(code, _parsed[code.co_filename])
-    if node is None:
-        raise NoPlainForm(f"there is no source of {plain.__qualname__} in {code.co_filename}")
-    if isinstance(node, ast.Lambda):
-        body: list[ast.stmt] = [ast.Return(node.body)]
-        return ast.copy_location(ast.FunctionDef("lambda__", node.args, body, []), node)
-    return node
-
-
-def _taken(code: CodeType, parsed: dict[int, list[_Defined]]) -> _Defined | None:
-    """The definition of this function, which is taken from those that were parsed; None if it is not there."""
-    there = parsed.get(code.co_firstlineno, [])
-    same = [node for node in there if _compiles_to(code, node)]
-    if not same:
-        return None
-    there.remove(same[0])
-    return same[0]
+    for known in (_parsed.get(code.co_filename), None):
+        if known is None:
+            known = _parsed[code.co_filename] = _definitions(code.co_filename)
+        there = known.get(code.co_firstlineno, [])
+        for node in [node for node in there if _compiles_to(code, node)][:1]:
+            there.remove(node)
+            if isinstance(node, ast.FunctionDef):
+                return node
+            body: list[ast.stmt] = [ast.Return(node.body)]
+            return ast.copy_location(ast.FunctionDef("lambda__", node.args, body, []), node)
+    raise NoPlainForm(f"there is no source of {plain.__qualname__} in {code.co_filename}")
 
 
 def _compiles_to(code: CodeType, node: _Defined) -> bool:

@@ -46,6 +46,10 @@ class Kernel:
         self.use = use
         self.signature = signature
         self.targetoptions = options
+        self.machine: Any = (
+            None  # what numba makes of it, by itself and as a part of others: see machine_code.py
+        )
+        self.machine_part: Any = None
         update_wrapper(self, function)
 
     @cached_property

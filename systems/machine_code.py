@@ -64,25 +64,21 @@ def machine_code(kernel: Any) -> Any:
     """
     if not isinstance(kernel, Kernel):
         return kernel
-    if kernel not in _made:
-        _made[kernel] = _dispatcher_of(kernel)
-    return _made[kernel]
-
-
-_made: dict[Kernel, Any] = {}
+    if kernel.machine is None:
+        kernel.machine = _dispatcher_of(kernel)
+    return kernel.machine
 
 
 def _part_of(kernel: Kernel) -> Any:
     """What functions that numba compiles call for a kernel."""
     if PLAIN or kernel.use not in (Use.PART, Use.BY_ITSELF):
         return machine_code(kernel)
-    if kernel not in _parts:
+    if kernel.machine_part is None:
         options = {"nopython": True, "boundscheck": None, **_NO_WRAPPERS, **kernel.targetoptions}
-        _parts[kernel] = _Part(kernel.py_func, locals={}, targetoptions=options, pipeline_class=_PartCompiler)
-    return _parts[kernel]
-
-
-_parts: dict[Kernel, Any] = {}
+        kernel.machine_part = _Part(
+            kernel.py_func, locals={}, targetoptions=options, pipeline_class=_PartCompiler
+        )
+    return kernel.machine_part
 
 
 def _dispatcher_of(kernel: Kernel) -> Any:

@@ -17,7 +17,7 @@ from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from fnmatch import fnmatchcase
 from graphlib import CycleError, TopologicalSorter
-from typing import Any, Protocol
+from typing import Any
 
 from pinjoint.components.language import tr
 from pinjoint.components.mistake import Explained
@@ -28,18 +28,6 @@ from pinjoint.systems.base import Commit, Event, Integrator, Law, Phase, StepSys
 
 class ScheduleError(Explained, ValueError):
     """Systems that cannot be put in order; the message names them and says what to declare."""
-
-
-class SceneFrame(Protocol):
-    """A frame as the schedule sees it: the active scene and the open model, which systems may change on the way."""
-
-    @property
-    def scene(self) -> str:
-        """The name of the active scene."""
-
-    @property
-    def model(self) -> Model:
-        """The model that is open."""
 
 
 @dataclass(frozen=True)
@@ -263,9 +251,10 @@ class Schedule:
         """True if systems of a phase run in a scene where there are no frames."""
         return any(self.acts(system, scene, model) for system in self._of_frames[phase, True])
 
-    def run(self, phase: Phase, frame: SceneFrame, *, headless: bool = False) -> None:
+    def run(self, phase: Phase, frame: Any, *, headless: bool = False) -> None:
         """Run one phase of a frame, timing each system; each is asked for when its turn comes.
 
+        frame: has the active `scene` and the open `model`, which systems may change on the way.
         headless: only systems that also run where there are no frames.
         """
         for system in self._of_frames[phase, headless]:

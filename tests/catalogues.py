@@ -5,8 +5,6 @@ compiles it. A sentence whose English changed a little keeps its translation, ma
 Mods among the assets have catalogues of their own.
 """
 
-from __future__ import annotations
-
 import argparse
 import ast
 import json
@@ -30,6 +28,7 @@ SETTINGS = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))[
 KEYWORDS = parse_keywords(
     SETTINGS["keywords"]
 )  # names of functions whose arguments are sentences, and which of them are
+FIELDS = ("Field", "state", "derived", "look", "by_end", "if_known")  # what makes them
 NO_DATE = datetime(2000, 1, 1, tzinfo=UTC)  # a date would make every update a change
 _HEADER = """\
 msgid ""
@@ -64,9 +63,9 @@ def kinds(
     for node in ast.walk(ast.parse(file.read())):
         match node:
             case ast.AnnAssign(target=ast.Name(name), value=ast.Call(func=ast.Name(maker), keywords=given)):
-                if maker in ("Field", "state", "derived", "look"):
+                if maker in FIELDS:
                     known = {g.arg: g.value.value for g in given if isinstance(g.value, ast.Constant)}
-                    words = {"title": name.replace("_", " ")} | known
+                    words = {"title": known.get("overrides", name).replace("_", " ")} | known
                     said = [words.get(key) for key in ("title", "doc", "absent")]
                     yield from ((node.lineno, None, text, []) for text in said if text)
             case ast.Assign(targets=[ast.Tuple([ast.Name("table"), *_])], value=ast.Tuple(names)):

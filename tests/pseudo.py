@@ -1,7 +1,5 @@
 """A language for tests, with accents and a third longer: what is not translated or has no room is seen."""
 
-from __future__ import annotations
-
 import gettext
 import re
 from collections.abc import Iterator

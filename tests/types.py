@@ -1,7 +1,5 @@
 """Types: `python -m tests.types` is mypy, which is shown our folders under the names that they are imported by."""
 
-from __future__ import annotations
-
 import shutil
 import subprocess
 import sys

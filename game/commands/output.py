@@ -14,7 +14,7 @@ import numpy as np
 
 from pinjoint.commands.arguments import UsageError
 from pinjoint.components import written
-from pinjoint.components.language import ENGLISH, Said, decimals, spoken, tr
+from pinjoint.components.language import ENGLISH, Said, decimals, english, spoken, tr
 from pinjoint.components.mistake import Mistake
 from pinjoint.components.wording import printable
 from pinjoint.documents.models import laid_out, replace
@@ -161,7 +161,7 @@ def plain(value: Any, where: str, *, as_said: bool = False) -> Any:
             "{where} is {value}, not a finite number; report an earlier state.", where=where, value=str(value)
         )
     if isinstance(value, Said):
-        return value if as_said else value.english
+        return value if as_said else english(value)
     if isinstance(value, str):
         return value.encode("utf-8", "replace").decode()  # names of files need not be UTF-8
     if isinstance(value, Mapping):

@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 import itertools
-from collections.abc import Callable, Collection, Mapping, Sequence, Set
+from collections.abc import Collection, Mapping, Sequence, Set
 from dataclasses import dataclass, replace
-from types import MappingProxyType, NoneType
+from types import NoneType
 from typing import Any
 
 import msgspec
@@ -13,16 +13,15 @@ import numpy as np
 
 from pinjoint.completion import complete
 from pinjoint.components.commands import Assign
-from pinjoint.components.departure import Departure
 from pinjoint.components.extensions import EXTENSIONS
 from pinjoint.components.field import Column, Field, FieldError
 from pinjoint.components.grid import Grid
 from pinjoint.components.handle import Handle
 from pinjoint.components.language import joined, marked, tr
 from pinjoint.components.model import Model
-from pinjoint.components.particle import Particle, check_spin, check_velocities
 from pinjoint.components.rod import Rod
 from pinjoint.components.section import NAMES, given_by
+from pinjoint.components.snapshot import Snapshot
 from pinjoint.components.suggestions import missing, remedy
 from pinjoint.components.table import fields_of
 from pinjoint.components.wording import cut, is_broken, quoted
@@ -44,8 +43,6 @@ from pinjoint.documents.sliders import KEY as SLIDERS
 from pinjoint.documents.sliders import read_sliders
 
 _HEADER = ("format", "version", "title", "description")
-
-Columns = Mapping[str, Column]
 
 
 def parse(document: Mapping[str, Any], source: str = "") -> Model:
@@ -112,7 +109,7 @@ def _read_departure(model: Model) -> None:
     """Make what the clock holds of a step that is under way a departure; it needs all elements."""
     saved = model.clock.departure
     if saved is not None:
-        model.writable("clock.departure")[0] = Departure.of_file(saved, model, "$.state.departure")
+        model.writable("clock.departure")[0] = Snapshot.of_file(saved, model, "$.state.departure")
 
 
 def _with_data_of_mods(document: Mapping[str, Any]) -> Mapping[str, Any]:
@@ -254,18 +251,21 @@ def _read(model: Model, section: _Section) -> None:
     if kind is Rod and not section.keys.isdisjoint(NAMES):
         section = _with_numbers(section)
     columns = {field.name: _column(model, section, field) for field in saved_fields(kind)}
-    if kind in _CHECKS:
-        _CHECKS[kind](model, section, columns)
+    if kind is Grid:
+        _check_grids(section, columns["shown"])
     handles: Sequence[Handle]
     if kind.single:
         handles = [model.tables[kind.table][0]]
         for name, column in columns.items():
             model.apply(Assign(kind.table, name, (handles[0].entity,), column))
     else:
+        fields = model.tables[kind.table].fields
         try:
-            handles = model.create(kind, len(section.elements), **columns)
-        except FieldError as error:  # the rules of the kind of a mod
-            raise ModelError(joined([f"{section.path}:", str(error)])) from None
+            with model.naming(lambda row, field: section.where(row, fields[field].key if field else "")):
+                handles = model.create(kind, len(section.elements), **columns)
+        except FieldError as error:
+            said = str(error)  # rules of mods need not name the place
+            raise ModelError(said if said.startswith("$") else joined([f"{section.path}:", said])) from None
     if FOREIGN in section.keys:
         _keep_foreign(model, section, handles)
 
@@ -351,60 +351,16 @@ def _rows_by_name(model: Model, section: _Section, field: Field[Any]) -> Column:
     return column
 
 
-# --- what holds between several facts ------------------------------------------------------------------
-# The model checks these rules too; here they are checked first, to name the path.
-
-
-def _check_particles(model: Model, section: _Section, columns: Columns) -> None:
-    fixed, velocity = columns["fixed"], columns["velocity"]
-    for row in np.flatnonzero((fixed & (velocity != 0.0)).any(axis=1))[:1].tolist():
-        check_velocities(section.where(row, "velocity"), fixed[row].tolist(), velocity[row].tolist())
-    spin = columns["angular_velocity"]
-    for row in np.flatnonzero(columns["fixed_rotation"] & (spin != 0.0))[:1].tolist():
-        check_spin(section.where(row, "angular_velocity"), spin[row])
-
-
-def _check_rods(model: Model, section: _Section, columns: Columns) -> None:
-    ends = np.sort(columns["between"].astype(np.int64), axis=1)
-    for row in np.flatnonzero(ends[:, 0] == ends[:, 1])[:1].tolist():
-        particle = model.particles.names[ends[row, 0]]
+def _check_grids(section: _Section, shown: Column) -> None:
+    """In the program the grid that is shown last hides the others."""
+    rows = np.flatnonzero(shown).tolist()
+    if len(rows) > 1:
         fail(
-            section.where(row, "between"),
-            "both ends are '{particle}'; a rod needs two different particles.",
-            particle=particle,
-        )
-    pairs = ends[:, 0] * model.particles.count + ends[:, 1]
-    _, first, pair = np.unique(pairs, return_index=True, return_inverse=True)
-    for row in np.flatnonzero(first[pair] != np.arange(len(ends)))[:1].tolist():
-        other = section.where(int(first[pair[row]]))
-        message = tr("{other} joins these particles already; remove one of the two.", other=other)
-        fail(section.where(row, "between"), message)
-    _check_lengths(model, section, columns)
-
-
-def _check_lengths(model: Model, section: _Section, columns: Columns) -> None:
-    position = model.particles.position[columns["between"]]
-    lengths = np.hypot(*(position[:, 1] - position[:, 0]).T)
-    usable = (lengths > 0.0) | ~np.isnan(columns["prescribed_rest_length"])
-    for row in np.flatnonzero(~usable)[:1].tolist():
-        message = tr("the distance between its ends is 0 m; give it a 'rest_length' or move its ends apart.")
-        fail(section.where(row), message)
-
-
-def _check_grids(model: Model, section: _Section, columns: Columns) -> None:
-    shown = np.flatnonzero(columns["shown"]).tolist()
-    if len(shown) > 1:
-        fail(
-            section.where(shown[1], "shown"),
+            section.where(rows[1], "shown"),
             "{first} is shown already; only one grid can be shown, give the others {form}.",
-            first=section.where(shown[0]),
+            first=section.where(rows[0]),
             form='"shown": false',
         )
-
-
-_CHECKS: Mapping[type[Handle], Callable[[Model, _Section, Columns], None]] = MappingProxyType(
-    {Particle: _check_particles, Rod: _check_rods, Grid: _check_grids}
-)
 
 
 # --- what belongs to mods ------------------------------------------------------------------------------

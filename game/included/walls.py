@@ -37,7 +37,6 @@ class Wall(Handle):
     start: Field[Vector] = Field("m", shape=(2,), doc="Where it begins.", shown=CM)
     end: Field[Vector] = Field("m", shape=(2,), doc="Where it ends.", shown=CM)
     restitution: Field[float | None] = Field(
-        default=None,
         nullable=True,
         minimum=0.0,
         maximum=1.0,

@@ -9,10 +9,9 @@ from pathlib import Path
 from typing import Any
 
 from pinjoint.commands import Command
-from pinjoint.components.component import Component, add_component
+from pinjoint.components.additions import Component, add_component, checked_kind
 from pinjoint.components.extensions import EXTENSIONS
 from pinjoint.components.handle import Handle
-from pinjoint.components.kind import checked_kind
 from pinjoint.components.language import add_catalogues, joined, language, speak, tr
 from pinjoint.components.load import HISTORIES, HistoryKind
 from pinjoint.components.mistake import WrongValue

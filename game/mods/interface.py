@@ -11,7 +11,7 @@ from typing import Any
 
 from pinjoint.commands.arguments import BAD_INPUT, UsageError
 from pinjoint.components.field import FieldError, Vector
-from pinjoint.components.language import english, in_both, tr
+from pinjoint.components.language import Said, tr
 from pinjoint.components.mistake import WrongValue
 from pinjoint.components.view import Plot, Readout, View
 from pinjoint.components.wording import printable
@@ -129,7 +129,7 @@ def _checked_plot(plot: Plot) -> Plot:
 
 def readable(text: str) -> str:
     """A text of a mod as it can be shown."""
-    return in_both(printable(text[:LONGEST]), printable(str(english(text))[:LONGEST]))
+    return Said(printable(text[:LONGEST]), readable, text)
 
 
 # --- scenes ------------------------------------------------------------------------------------------------

@@ -6,9 +6,9 @@ from collections.abc import Callable
 from dataclasses import replace
 from typing import Any
 
+from pinjoint.components.additions import outlines
 from pinjoint.components.field import Vector
 from pinjoint.components.handle import Handle
-from pinjoint.components.kind import outlines
 from pinjoint.components.language import marked
 from pinjoint.components.model import Model
 from pinjoint.components.tags import Hovered

@@ -6,11 +6,11 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from pinjoint.components.additions import outlines
 from pinjoint.components.bent import FLAT, curved_lines
 from pinjoint.components.field import Vector
 from pinjoint.components.grid import Grid
 from pinjoint.components.handle import Handle
-from pinjoint.components.kind import outlines
 from pinjoint.components.model import Model
 from pinjoint.components.particle import Particle
 from pinjoint.components.rod import Rod

@@ -7,8 +7,7 @@ import math
 import numpy as np
 from numpy.typing import NDArray
 
-from pinjoint.components.derived import chord_rotation
-from pinjoint.components.diagrams import rigid_slopes
+from pinjoint.components.derived import chord_rotation, rigid_slopes
 from pinjoint.components.model import Model
 from pinjoint.components.rod import bends
 

@@ -9,25 +9,25 @@ import contextlib
 import hashlib
 import inspect
 import linecache
-import logging
 import math
 import os
 import pickle
 import threading
 import time
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
 from enum import Enum
-from functools import cache as once
 from functools import cached_property
-from itertools import islice
 from pathlib import Path
 from types import ModuleType, SimpleNamespace
 from typing import Any
 
-from pinjoint.components.language import begun, english, tr
+from pinjoint.components.field import Column
+from pinjoint.components.language import begun, tr
 from pinjoint.components.mistake import Mistake
+from pinjoint.components.model import Model
 from pinjoint.systems import cache
-from pinjoint.systems.interpreter import NoPlainForm, Rewriting, plain_function, rewrite
+from pinjoint.systems.interpreter import NoPlainForm, Rewriting, in_lists, plain_function, rewrite
 from pinjoint.systems.kernels import Kernel, Use
 from pinjoint.systems.program.binding import ProgramError
 from pinjoint.systems.program.endless import ending, others_of
@@ -64,14 +64,7 @@ SMALL = 50  # rods or discs up to which the interpreted form may well take all s
 LARGE = 300  # rods or discs from which on one step, interpreted, takes as long as a picture
 LONGEST_CALL = 0.05  # s, interpreted
 LONGEST_WORK = 2**15  # counted operations of a call that nothing divides: about as much, interpreted
-OPERATIONS_PER_BYTE = 130  # of the interpreter's code, that are interpreted while it is compiled
-BEFORE_COMPILING = 1.0  # s of interpreting, for each that compiling is expected to take
-SECONDS_PER_BYTE = (
-    2e-4  # of the interpreter's code, that compiling takes; for a machine that has compiled nothing yet
-)
-
-UNCOMPILED: list[str] = []  # sentences: what could not be compiled, and why
-LOG = logging.getLogger("pinjoint.compiler")
+SECONDS_PER_BYTE = 2e-4  # of the interpreter's code, that compiling takes
 
 
 class Choice:
@@ -141,6 +134,11 @@ class GeneratedModule:
         """The name of the module in the cache, which hashes everything that is compiled into it."""
         return key_of(*self._source_and_kernels)
 
+    @property
+    def _kept(self) -> Path:
+        """The file that is there once all of it is compiled and kept: for which types of arguments its functions are."""
+        return cache.folder() / f"{self.key}.types"
+
     @cached_property
     def module(self) -> ModuleType:
         """The module, executed."""
@@ -204,7 +202,8 @@ class GeneratedModule:
         """Choose the form for a single call of so many counted operations: a long one is not begun interpreted."""
         if Choice.compile is not Compile.SOON or work <= LONGEST_WORK or self._patience == math.inf:
             return
-        if not self._compiled and (self.is_compiled() or work > OPERATIONS_PER_BYTE * self._size):
+        seconds = work * LONGEST_CALL / LONGEST_WORK
+        if not self._compiled and (self.is_compiled() or seconds > self.expected_seconds()):
             self.load_or_tell()
 
     def load_or_tell(self) -> None:
@@ -215,7 +214,7 @@ class GeneratedModule:
             if self.others and isinstance(error, ProgramError):
                 raise
             self._patience = math.inf
-            tell(
+            cache.tell(
                 tr(
                     "{program} cannot be compiled, so it runs interpreted, which is slower ({error}).",
                     program=begun(tr(self.name)),
@@ -270,18 +269,18 @@ class GeneratedModule:
         if Choice.compile is not Compile.SOON:
             self._patience = math.inf
             return
-        self._patience = 0.0 if self.is_compiled() else BEFORE_COMPILING * self.expected_seconds()
+        self._patience = 0.0 if self.is_compiled() else self.expected_seconds()
         if self.spent > self._patience:
             self.load_or_tell()
 
     def is_compiled(self) -> bool:
         """True if another process, or an earlier one, has compiled all of it."""
-        there = self._compiled or _note_of(self.key).exists()
+        there = self._compiled or self._kept.exists()
         return there and all(module.is_compiled() for module in self._needs)
 
     def expected_seconds(self) -> float:
-        """How long compiling it will take, by what that took before on this machine."""
-        own = 0.0 if _note_of(self.key).exists() else _seconds_per_byte() * self._size
+        """How long compiling it will take, about."""
+        own = 0.0 if self._kept.exists() else SECONDS_PER_BYTE * self._size
         return own + sum(module.expected_seconds() for module in self._needs if not module.is_loaded)
 
     @cached_property
@@ -309,10 +308,8 @@ class GeneratedModule:
                 return True
             if not self.is_compiled() or not all(module.load_kept() for module in self._needs):
                 return False
-            kept = cache.read(_types_of(self.key))
+            kept = cache.read(self._kept.name)
             if kept is None:  # damaged: it is compiled anew
-                with contextlib.suppress(OSError):
-                    _note_of(self.key).unlink()
                 return False
             from pinjoint.systems.machine_code import compile_for
 
@@ -320,7 +317,8 @@ class GeneratedModule:
                 compile_for(function, kept, name)
             self._form, self._compiled = self._form_of(machine), True
             Choice.changes += 1
-            _keep_note(self.key, None)
+            with contextlib.suppress(OSError):
+                os.utime(self._kept)  # it was used
             return True
 
     def _form_of(self, machine: dict[str, Callable[..., Any]]) -> SimpleNamespace:
@@ -337,7 +335,7 @@ class GeneratedModule:
         """Compile by calling everything, and keep that."""
         from pinjoint.systems.machine_code import types_of
 
-        before, began, machine = self._form, time.thread_time(), self._machine()
+        before, machine = self._form, self._machine()
         self._form, self._compiled = self._form_of(machine), True
         Choice.changes += 1
         try:
@@ -345,16 +343,7 @@ class GeneratedModule:
         except BaseException:
             self._form, self._compiled = before, False
             raise
-        types = types_of(machine)
-        cache.write(_types_of(self.key), pickle.dumps(types))
-        cost = time.thread_time() - began, self._size
-        _keep_note(self.key, cost if any(types.values()) else None)  # else it is compiled when it is called
-
-
-def tell(sentence: str) -> None:
-    if english(sentence) not in map(english, UNCOMPILED):
-        UNCOMPILED.append(sentence)
-        LOG.warning(sentence)
+        cache.write(self._kept.name, pickle.dumps(types_of(machine)))
 
 
 def interpreted_here() -> list[GeneratedModule]:
@@ -392,47 +381,36 @@ def entries_to(kernels: Mapping[str, Callable[..., Any]]) -> tuple[str, dict[str
     return "\n".join([*lines, ""]), {f"kernel_{name}": kernel for name, kernel in kernels.items()}
 
 
+@dataclass(frozen=True)
+class Between:
+    """Kernels that step programs call by their addresses, so that they are compiled once for all of them.
+
+    module: holds the kernels, by their names. idle: arrays of the kernels with which nothing happens between steps.
+    support: the forces on particles (kN) that last from the step that led to the present state.
+    """
+
+    module: GeneratedModule
+    kernels: Sequence[Kernel]
+    idle: Callable[[], Any]
+    support: Callable[[Model], Column]
+
+    def functions(self, *, compiled: bool) -> list[Any]:
+        """The kernels in one of their forms, to hand to a program in the same."""
+        if compiled:
+            from pinjoint.systems.machine_code import addressed
+
+            form = self.module.form if self.module.is_loaded else self.module.load()
+            return [addressed(getattr(form, kernel.py_func.__name__)) for kernel in self.kernels]
+        return [in_lists(kernel) for kernel in self.kernels]
+
+
 # --- on disk ---------------------------------------------------------------------------------------
-
-
-def _note_of(key: str) -> Path:
-    """A file that is there once all of a module is compiled and kept: it says how long that took, and how much it was."""
-    return cache.folder() / f"{key}.done"
-
-
-def _types_of(key: str) -> str:
-    """The name of the file that says for which types the functions of a module are compiled."""
-    return f"{key}.types"
-
-
-def _keep_note(key: str, cost: tuple[float, int] | None) -> None:
-    """Note that all of a module is compiled, and when it was last used."""
-    if not cache.TROUBLE:
-        with contextlib.suppress(OSError):
-            if cost is None:
-                _note_of(key).touch()
-            else:
-                _note_of(key).write_text(f"{cost[0]} s, {cost[1]} bytes", encoding="ascii")
-
-
-_NOTES = 50  # of those of former compilations that are read
-
-
-@once
-def _seconds_per_byte() -> float:
-    """What compiling took on this machine; without experience, what it took where this was written."""
-    seconds, size = 0.0, 0
-    for path in islice(cache.folder().glob("*.done"), _NOTES):
-        with contextlib.suppress(OSError, ValueError):
-            took, of = path.read_text(encoding="ascii").removesuffix(" bytes").split(" s, ")
-            seconds, size = seconds + float(took), size + int(of)
-    return seconds / size if size else SECONDS_PER_BYTE
 
 
 def forget_unused(days: float = 60.0) -> None:
     """Delete modules unused for so many days, mostly of former versions, and what killed processes left."""
     folder, now = cache.folder(), time.time()
-    for path in (*folder.glob("pinjoint_program_*.done"), *folder.glob("pinjoint_program_*.tmp")):
+    for path in (*folder.glob("pinjoint_program_*.types"), *folder.glob("pinjoint_program_*.tmp")):
         with contextlib.suppress(OSError):
             if now - path.stat().st_mtime > 86400.0 * days:
                 for old in (*folder.glob(f"__pycache__/{path.stem}.*"), *folder.glob(f"{path.stem}.*")):

@@ -53,7 +53,13 @@ class KernelRows:
         if self._bound.each == "loads":
             columns.append(self._bound.arrays[f"{self._bound.prefix}_values"])
         loop = _compiled_loop(self._bound, columns)
-        return min(_seconds(loop, columns) for _ in range(TRIALS)) / CALLS
+        seconds = []
+        for _ in range(TRIALS):
+            loop(*columns)
+            started = time.perf_counter()
+            loop(*columns)
+            seconds.append(time.perf_counter() - started)
+        return min(seconds) / CALLS
 
     def _rows(self) -> Iterator[Sequence[Any]]:
         columns = [map(_as_tuples, column.tolist()) for column in self._columns()]
@@ -113,10 +119,3 @@ def _compiled_loop(bound: Bound, columns: Sequence[NDArray[Any]]) -> Callable[..
     module = generated(marked("the timing of a kernel"), "\n".join(lines), {"kernel": bound.function})
     loop: Callable[..., float] = (module.form if Choice.compile is Compile.NEVER else module.load()).loop
     return loop
-
-
-def _seconds(loop: Callable[..., float], columns: Sequence[NDArray[Any]]) -> float:
-    loop(*columns)
-    started = time.perf_counter()
-    loop(*columns)
-    return time.perf_counter() - started

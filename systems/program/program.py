@@ -23,10 +23,9 @@ from pinjoint.systems.collision.driven.columns import Phase, Real, Whole
 from pinjoint.systems.entries import ACCOUNT, ACCOUNTS, CONTROL, Mark, Measure, Search, Side
 from pinjoint.systems.physics.bending import arm_of, levers
 from pinjoint.systems.physics.kernels import conserved
-from pinjoint.systems.program.between import Between
 from pinjoint.systems.program.binding import Bound, ProgramError, StepRole, bind, find
 from pinjoint.systems.program.block_writer import BlockWriter
-from pinjoint.systems.program.compiler import GeneratedModule, generated
+from pinjoint.systems.program.compiler import Between, GeneratedModule, generated
 from pinjoint.systems.program.controlled_writer import ControlledWriter
 from pinjoint.systems.program.faults import check_plain_forms, explain
 from pinjoint.systems.program.near_pairs import NearPairs

@@ -30,4 +30,4 @@ class Checkpoint:
     @property
     def whole(self) -> bool:
         """True if it keeps all of the state."""
-        return any(table == "particles" for table, _ in self.state.layout)
+        return "particles.displacement" in self.state.columns

@@ -10,7 +10,6 @@ from contextlib import contextmanager
 from dataclasses import dataclass, replace
 from typing import Any
 
-from pinjoint.components.departure import Departure
 from pinjoint.components.extensions import EXTENSIONS
 from pinjoint.components.field import Column, Role
 from pinjoint.components.language import joined, marked, tr
@@ -481,18 +480,18 @@ class Simulation:
         steps = before.columns["clock.steps"][0] + begun
         for name in ("steps", "origin_steps"):
             self.model.writable(f"clock.{name}")[0] = steps
-        self.model.writable("clock.departure")[0] = Departure(before)
+        self.model.writable("clock.departure")[0] = before
 
     def rejoin(self) -> None:
         """Go back to the whole step that the present moment was reached from, if it lies within the next."""
         departure = self.model.clock.departure
         if departure is not None:
-            self.programs.return_to(departure.state)
+            self.programs.return_to(departure)
 
     def _whole(self, state: Snapshot) -> Snapshot:
         """The present state, or that after the last whole step, if the present moment lies within the next."""
         departure = self.model.clock.departure
-        return state if departure is None else departure.state
+        return state if departure is None else departure
 
     def stay(self) -> None:
         """Let the run go on from the present moment, as something changes here: it ends the step that is under way."""
@@ -581,7 +580,7 @@ class Simulation:
         clock, departure = self.model.clock, self.model.clock.departure
         if departure is None or not clock.at_rest:
             return clock.time
-        return float(departure.state.columns["clock.time"][0])
+        return float(departure.columns["clock.time"][0])
 
     @property
     def residual(self) -> float:

@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from pinjoint.components.diagrams import diagrams
+from pinjoint.components.derived import diagrams
 from pinjoint.components.language import marked
 from pinjoint.components.model import Model
 from pinjoint.components.rod import bends

@@ -9,7 +9,7 @@ from functools import cached_property
 import numpy as np
 
 from pinjoint.components import written
-from pinjoint.components.diagrams import NAMES
+from pinjoint.components.derived import DIAGRAM_COLUMNS
 from pinjoint.components.field import ENDS
 from pinjoint.components.language import begun, joined, marked, tr
 from pinjoint.components.model import Model
@@ -98,7 +98,7 @@ def observed(model: Model) -> Answer:
         reaction=particles.reaction.copy(),
         rotation=particles.rotation.copy(),
         reaction_moment=particles.reaction_moment.copy(),
-        diagrams={name: rods.column(name).copy() for name in NAMES},
+        diagrams={name: rods.column(name).copy() for name in DIAGRAM_COLUMNS},
     )
 
 
@@ -244,7 +244,7 @@ class Comparison:
 
 
 def _value(answer: Answer | StaticState, quantity: str) -> Array:
-    value: Array = answer.diagrams[quantity] if quantity in NAMES else getattr(answer, quantity)
+    value: Array = answer.diagrams[quantity] if quantity in DIAGRAM_COLUMNS else getattr(answer, quantity)
     return value
 
 

@@ -1,7 +1,5 @@
 """The page about what a model consists of is made from the Fields: `python -m tests.architecture.test_fields`."""
 
-from __future__ import annotations
-
 import json
 from collections.abc import Iterator
 from pathlib import Path

@@ -1,7 +1,5 @@
 """Who may import whom: components ← systems ← game ← tests, no circles, heavy libraries only where they are used."""
 
-from __future__ import annotations
-
 import ast
 import re
 import subprocess
@@ -245,21 +243,15 @@ def test_ours_are_told_from_others_by_name(module: str, ours: bool) -> None:
         ("components/rod.py", "from pinjoint.session import Session"),
         ("components/rod.py", "def f():\n    import scipy"),
         ("components/rod.py", "if TYPE_CHECKING:\n    from pinjoint.systems.base import System"),
-        ("components/rod.py", "import requests"),
-        ("systems/physics/system.py", "from pinjoint import Session"),
         ("systems/physics/system.py", "from pinjoint.systems.plasticity.system import Yielding"),
         ("systems/physics/system.py", "from pinjoint.systems import plasticity"),
         ("systems/physics/system.py", "from ..plasticity import system"),
-        ("systems/physics/system.py", "import numba"),
         ("systems/physics/system.py", "import pygame.gfxdraw"),
         ("systems/render/scene.py", "import pygame"),
         ("systems/base.py", "from pinjoint.systems.physics.system import Elasticity"),
-        ("systems/render/theme.py", "import pinjoint.assets"),
         ("game/session.py", "import systems.base"),
         ("tests/unit/test_rod.py", "from game import Session"),
         ("game/session.py", "from tests.reference import models"),
-        ("game/session.py", "import pygame"),
-        ("game/session.py", "from numba import njit"),
         ("systems/physics/kernels.py", "from numba import njit"),
         ("game/session.py", "import requests"),
     ],
@@ -271,18 +263,10 @@ def test_a_forbidden_import_is_found(path: str, line: str) -> None:
 @pytest.mark.parametrize(
     ("path", "line"),
     [
-        (
-            "components/rod.py",
-            "import math, numpy as np\nfrom pinjoint.components.field import Field\nimport esper",
-        ),
-        ("components/rod.py", "from .field import Field"),
-        (
-            "systems/physics/system.py",
-            "from pinjoint.systems.base import Law\nfrom pinjoint.systems.physics.kernels import drag",
-        ),
+        ("components/rod.py", "import math, numpy as np\nfrom .field import Field\nimport esper"),
+        ("systems/physics/system.py", "from pinjoint.systems.base import Law"),
         ("systems/physics/system.py", "from pinjoint.systems.plasticity.kernels import limited"),
         ("systems/physics/system.py", "from pinjoint.systems.plasticity import kernels\nfrom . import kernels"),
-        ("systems/physics/kernels.py", "from pinjoint.systems.kernels import compiled"),
         ("systems/render/pygame_canvas.py", "import pygame.gfxdraw"),
         ("game/app.py", "import pygame\nfrom pinjoint.systems.physics.system import Elasticity"),
         ("systems/program/compiler.py", "import numba"),

@@ -1,7 +1,5 @@
 """The README and its further pages are kept true: Python and commands do what is shown, keys exist, links lead somewhere."""
 
-from __future__ import annotations
-
 import ast
 import io
 import json

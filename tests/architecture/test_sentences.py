@@ -1,14 +1,12 @@
 """Sentences for people are said in their language: where they are raised, told, shown in panels or in --help."""
 
-from __future__ import annotations
-
 import ast
 import re
 import sys
 from collections.abc import Iterator
 from pathlib import Path
 
-from tests.catalogues import KEYWORDS, ROOT
+from tests.catalogues import FIELDS, KEYWORDS, ROOT
 
 SOURCES = [path for top in ("components", "systems", "game") for path in sorted((ROOT / top).rglob("*.py"))]
 SAYING = {
@@ -34,7 +32,7 @@ SHOWN = {
     "explanation",
     "note",
 }
-BY_EXTRACTION = {"Field", "state", "derived", "look", "Binding"}  # catalogues hold their titles without a mark
+BY_EXTRACTION = {*FIELDS, "Binding"}  # catalogues hold their titles without a mark
 FOR_PROGRAMMERS = {
     "TypeError",
     "AttributeError",

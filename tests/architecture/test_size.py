@@ -1,7 +1,5 @@
 """How much a person must hold in mind: what the source weighs may fall, and rises only where a commit says why."""
 
-from __future__ import annotations
-
 import ast
 from collections import Counter
 from collections.abc import Iterable

@@ -1,7 +1,5 @@
 """What short commands and scripts import: half of their time, so that nothing is loaded that they do not need."""
 
-from __future__ import annotations
-
 import subprocess
 import sys
 from pathlib import Path

@@ -1,7 +1,5 @@
 """Run time against error for every integrator, scipy's, and the thesis' scheme, on problems with known answers."""
 
-from __future__ import annotations
-
 import math
 import time
 from collections.abc import Callable, Iterable, Iterator, Sequence

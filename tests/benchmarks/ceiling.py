@@ -1,7 +1,5 @@
 """What this machine can do at most: memory bandwidth, and rods as fast as numbers can be streamed through."""
 
-from __future__ import annotations
-
 import math
 import time
 from collections.abc import Callable

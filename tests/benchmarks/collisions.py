@@ -2,8 +2,6 @@
 structures, beside the same structures without discs.
 """
 
-from __future__ import annotations
-
 import time
 from collections.abc import Callable
 from pathlib import Path

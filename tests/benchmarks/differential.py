@@ -5,8 +5,6 @@ the error that the program says it has made; equilibria and load–displacement 
 Newton method in small increments, and their balance with sums written out here.
 """
 
-from __future__ import annotations
-
 import json
 import math
 import time

@@ -1,7 +1,5 @@
 """How long a picture takes on one core: composing it, drawing it, and its share of a running window's frame."""
 
-from __future__ import annotations
-
 import os
 import time
 from typing import Any

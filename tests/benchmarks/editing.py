@@ -1,7 +1,5 @@
 """How soon one sees what one did in a model of 10 000 rods: from the action to the finished picture."""
 
-from __future__ import annotations
-
 import gc
 import os
 import tempfile

@@ -1,7 +1,5 @@
 """Models that benchmarks share: made by size, without a file."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from functools import partial
 from typing import Any

@@ -1,7 +1,5 @@
 """What mods cost: a law of a mod against the same law of ours, and the machinery at the start and in each frame."""
 
-from __future__ import annotations
-
 import os
 import subprocess
 import sys

@@ -1,7 +1,5 @@
 """The equations of motion as one compiled function, for integrators that take any: scipy's."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable
 

@@ -1,7 +1,5 @@
 """Plain single-purpose kernels: what one would write for just this model, as the yardstick for ours."""
 
-from __future__ import annotations
-
 import math
 
 import numpy as np

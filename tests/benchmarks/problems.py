@@ -1,7 +1,5 @@
 """Problems with known answers, for the benchmark of run time against error."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable
 from dataclasses import dataclass

@@ -1,7 +1,5 @@
 """What is saved by leaving out what a model does not need: the same work with each part, and without."""
 
-from __future__ import annotations
-
 import os
 from collections.abc import Callable
 from typing import Any

@@ -3,8 +3,6 @@
 All in the same run, in turns. `pinjoint bench speed --output DIR` also writes the tables as CSV and a picture.
 """
 
-from __future__ import annotations
-
 import gc
 import math
 import os

@@ -1,7 +1,5 @@
 """Where each integrator is right, and where it stops and says why: a map of hard cases; and the drift of energy."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from typing import Any
 

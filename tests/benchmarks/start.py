@@ -5,8 +5,6 @@ window is one of SDL's dummy driver unless the environment names another: SDL_VI
 ones.
 """
 
-from __future__ import annotations
-
 import json
 import os
 import resource
@@ -161,7 +159,9 @@ class Watched:
         first = time.perf_counter() - began
         self.frames_until(lambda: False, SETTLED)
         asked = self.app.preparation.elsewhere  # type: ignore[union-attr]
-        compiled = SETTLED + self.frames_until(lambda: asked.has_loaded_all)
+        compiled = SETTLED + self.frames_until(
+            lambda: all(work.module is None or work.module.is_loaded for work in asked.needed)
+        )
         return {
             "first_step_s": first,
             "compiled_s": compiled,

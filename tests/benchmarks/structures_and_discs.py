@@ -1,7 +1,5 @@
 """Discs on structures, beside the same structures without discs, in one run: what a step costs."""
 
-from __future__ import annotations
-
 import json
 import time
 from importlib.resources import files

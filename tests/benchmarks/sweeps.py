@@ -1,7 +1,5 @@
 """How long a variant of a small model takes in a sweep: together with others, one by one, by several workers."""
 
-from __future__ import annotations
-
 import os
 import time
 from collections.abc import Callable

@@ -1,7 +1,5 @@
 """Benchmarks measure what they say; how fast it is, is not tested."""
 
-from __future__ import annotations
-
 import importlib
 import json
 import math
@@ -13,9 +11,7 @@ from pinjoint.commands import bench
 from pinjoint.commands.arguments import UsageError
 from pinjoint.commands.output import FORMATS, Format
 from pinjoint.components.settings import INTEGRATORS
-from tests.benchmarks import collisions, drawing, ratios, speed, stability, start
-from tests.benchmarks.ceiling import bandwidth, seconds_per_rod
-from tests.benchmarks.models import lattice, mesh
+from tests.benchmarks import collisions, drawing, speed, stability, start
 from tests.reference.scenes_of_discs import gas, packed
 from tests.stability.cases import damped
 
@@ -61,35 +57,6 @@ def test_one_model_is_examined_by_its_number(capsys: pytest.CaptureFixture[str])
     assert bench.command(["differential", "--seed", "14", "--format", "json"]) == 0
     (row,) = json.loads(capsys.readouterr().out)["differential"]["model"]
     assert row["seed"] == 14
-
-
-@pytest.mark.parametrize("rods", [100, 1_000, 10_000])
-def test_models_have_about_the_size_they_are_asked_for(rods: int) -> None:
-    for model in (lattice(rods), mesh(rods)):
-        assert model.rods.count == pytest.approx(rods, rel=0.3)
-    assert mesh(rods).particles.count == pytest.approx(rods / 2, rel=0.3)
-
-
-def test_the_ceiling_is_a_speed() -> None:
-    assert bandwidth(1e5) > 1e8
-    assert 0.0 < seconds_per_rod() < 1e-6
-
-
-def test_an_exponent_of_one_is_found() -> None:
-    rows = [
-        {"kind": kind, "rods": n, "us_per_step": 0.01 * n} for kind in speed.KINDS for n in (1000, 10**4, 10**5)
-    ]
-    assert [row["exponent"] for row in speed.scaling(rows)] == pytest.approx([1.0, 1.0])
-
-
-def test_ratios_that_do_not_hold_are_told() -> None:
-    good = {"kind": "elastic", "rods": "1000", "ns_per_rod": "8", "ratio_to_plain": "1.1"}
-    large = good | {"rods": "100000", "ns_per_rod": "16"}
-    assert list(ratios.broken([good, large])) == []
-    small = good | {"rods": "3", "ns_per_rod": "90", "ratio_to_plain": "3"}
-    assert list(ratios.broken([small, good])) == []
-    assert "2.50 times a plain kernel" in "".join(ratios.broken([good | {"ratio_to_plain": "2.5"}]))
-    assert "80.0 ns a rod among 100000" in "".join(ratios.broken([good, large | {"ns_per_rod": "80"}]))
 
 
 def test_every_part_of_a_frame_is_told(monkeypatch: pytest.MonkeyPatch) -> None:

@@ -1,7 +1,5 @@
 """The session that the editing benchmark measures does what it says."""
 
-from __future__ import annotations
-
 from contextlib import closing
 from pathlib import Path
 

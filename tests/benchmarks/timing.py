@@ -1,7 +1,5 @@
 """How benchmarks take times: the shortest of several, in turns, of programs that take so many steps."""
 
-from __future__ import annotations
-
 import os
 import time
 from collections.abc import Callable, Iterator

@@ -1,7 +1,5 @@
 """Usual exercises of the force method, as textbooks have them."""
 
-from __future__ import annotations
-
 from pinjoint.components.model import Model
 from pinjoint.documents import models
 from tests.systems.render.frame_models import CLAMPED, PINNED, ROLLER, frame

@@ -1,16 +1,16 @@
 """The boundary of a window: whatever raises inside is told of once, the model is kept, and a person goes on."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
 import numpy as np
+import pygame
 import pytest
 
 from pinjoint import boundary
+from pinjoint.app import App
 from pinjoint.boundary import FAULTS
 from pinjoint.documents import library, models
 from pinjoint.documents.autosave import Autosave
@@ -19,17 +19,12 @@ from pinjoint.systems.input.actions import ACTIONS, FILES
 from pinjoint.systems.render.pygame_canvas import Canvas
 from tests.reference.models import triangle
 
-pygame = pytest.importorskip("pygame")
-
-from pinjoint.app import App  # noqa: E402 (it imports pygame)
-
 ERRORS = (np.linalg.LinAlgError("singular"), MemoryError(), RecursionError("too deep"), OSError(28, "no room"))
 
 
 @pytest.fixture
 def app(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> App:
     """A window with a model that nobody saved."""
-    monkeypatch.setenv("SDL_VIDEODRIVER", "dummy")
     monkeypatch.setenv(library.DATA_VARIABLE, str(tmp_path))
     app = App(models.parse(triangle()), ModelFile(None, "work"), Autosave(interval=0.0))
     app.session.rods[0].stiffness = 5.0

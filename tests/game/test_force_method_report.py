@@ -1,7 +1,5 @@
 """The report of the force method: what it says is what theory says, to the digits shown."""
 
-from __future__ import annotations
-
 import re
 from collections.abc import Iterator, Sequence
 from typing import Any

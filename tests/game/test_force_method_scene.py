@@ -1,7 +1,5 @@
 """The force method as a person goes through it, by the real scenes and keys."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import numpy as np
@@ -33,6 +31,13 @@ def guide_of(session: Session) -> Guide:
     return scene.guide
 
 
+def asked(session: Session) -> Guide:
+    """Go to part 2, which asks what to release."""
+    session.press("k")
+    session.press("k")
+    return guide_of(session)
+
+
 def test_seven_parts_from_pause_to_pause() -> None:
     session = Session.open("hyperstatic")
     before = models.document(session.model)
@@ -40,6 +45,7 @@ def test_seven_parts_from_pause_to_pause() -> None:
     assert session.scene == "force method"
     guide = guide_of(session)
     assert (guide.part, len(guide.sets)) == (1, 1)
+    assert words.working(guide)[0] == "g = m + r − 2n = 6 + 3 − 2·4 = 1"
     session.frame(1 / 60)
     assert guide.sets[0].model.clock.steps > 0
     session.click(0.5, 1.0)
@@ -83,9 +89,7 @@ def test_the_base_structure_keeps_all_nodal_masses_and_set_3_only_has_the_unit_f
 
 def test_a_particle_constrained_in_both_directions_asks_which() -> None:
     session = Session.open("three_bar_plastic")
-    session.press("k")
-    session.press("k")
-    guide = guide_of(session)
+    guide = asked(session)
     support = next(p for p in session.particles if p.fixed == (True, True))
     session.click(*support.position)
     assert words.message(guide) == "Which direction of the support?"
@@ -95,19 +99,10 @@ def test_a_particle_constrained_in_both_directions_asks_which() -> None:
 
 def test_a_rod_that_is_not_redundant_is_refused_and_the_method_goes_on() -> None:
     session = Session.open("isostatic")
-    session.press("k")
-    session.press("k")
-    guide = guide_of(session)
+    guide = asked(session)
     session.click(0.5, 0.5)
     assert guide.part == 2
     assert "mechanism" in words.message(guide)
-
-
-def test_escape_leaves_at_once() -> None:
-    session = Session.open("hyperstatic")
-    session.press("k")
-    session.press("escape")
-    assert session.scene == "pause"
 
 
 def test_where_there_is_no_room_for_three_the_newest_set_is_shown_or_the_one_to_pick_from() -> None:
@@ -157,16 +152,14 @@ def test_a_click_is_picked_where_it_is_seen_even_before_the_first_picture() -> N
         assert guide_of(session).unknown.name == "BD"
 
 
-def released(session: Session, *names: str) -> Guide:
-    """Go through all parts for each of these unknowns."""
-    session.press("k")
-    session.press("k")
-    guide = guide_of(session)
+def released(session: Session, *names: str, part: int = PARTS) -> Guide:
+    """Go through all parts, or to one of them, for each of these unknowns."""
+    guide = asked(session)
     for index, name in enumerate(names):
         if index:
             session.press("n")
         guide.pick(guide.sets[0].model.rods[name])
-        for _ in range(4):
+        while guide.part < part:
             session.press("k")
     return guide
 
@@ -261,21 +254,6 @@ def test_all_sets_are_looked_at_alike() -> None:
     assert [(camera.centre, camera.scale) for camera in scene.cameras(session)] == before
 
 
-def test_the_wheel_zooms_before_the_first_picture_as_after_it() -> None:
-    """As in a recording that is played, where nothing is drawn between two inputs."""
-    cameras = []
-    for drawn in (True, False):
-        session = Session.open("hyperstatic")
-        session.press("k")
-        if drawn:
-            assert session.stages
-        session.press("wheel up", (180.0, 300.0))
-        scene = session.scenes.active
-        assert isinstance(scene, ForceMethod)
-        cameras.append([(camera.centre, camera.scale) for camera in scene.cameras(session)])
-    assert cameras[0] == cameras[1]
-
-
 @pytest.mark.parametrize("size", [(240, 900), (320, 240), (1000, 700)])
 def test_pictures_and_time_between_inputs_move_no_camera(size: tuple[int, int]) -> None:
     cameras = []
@@ -329,32 +307,22 @@ def texts_of_the_working(session: Session) -> set[str]:
     }
 
 
-def test_in_the_end_all_sets_are_drawn_to_one_scale_so_that_they_add_up() -> None:
-    session = Session.open("hyperstatic")
-    guide = released(session, "BD")
-    settings = [one.model.settings for one in guide.sets]
-    assert len({(one.displacement_scale, one.diagram_scale) for one in settings}) == 1
-
-
 def test_displacements_of_all_sets_are_drawn_to_one_scale_in_every_part() -> None:
     """Else the released structure, which moves further, would look stiffer than the real one."""
     session = Session.open("hyperstatic")
-    session.press("k")
-    session.press("k")
-    guide = guide_of(session)
-    guide.pick(guide.sets[0].model.rods["BD"])
+    guide = released(session, "BD", part=3)
     for part in range(3, PARTS + 1):
         assert guide.part == part
         assert {one.model.settings.displacement_scale for one in guide.sets} == {100.0}
+        if part == PARTS:  # where they add up
+            assert len({one.model.settings.diagram_scale for one in guide.sets}) == 1
         session.press("k")
 
 
 def test_the_slider_of_the_displacements_scales_all_sets_and_those_to_come() -> None:
     session = Session.open("hyperstatic")
     session.resize(1000, 720)
-    session.press("k")
-    session.press("k")
-    guide = guide_of(session)
+    guide = asked(session)
     guide.pick(guide.sets[0].model.rods["BD"])
     scales = {one.model.settings.displacement_scale for one in guide.sets}
     [place] = session.focus[1].slider_places
@@ -368,15 +336,6 @@ def test_the_slider_of_the_displacements_scales_all_sets_and_those_to_come() -> 
     assert {one.model.settings.displacement_scale for one in guide.sets} == {1000.0}
     session.press("double click", (left, y))
     assert {one.model.settings.displacement_scale for one in guide.sets} == scales
-
-
-def test_the_degree_is_shown_with_its_formula() -> None:
-    session = Session.open("hyperstatic")
-    session.press("k")
-    scene = session.scenes.active
-    assert isinstance(scene, ForceMethod)
-    assert scene.guide is not None
-    assert words.working(scene.guide)[0] == "g = m + r − 2n = 6 + 3 − 2·4 = 1"
 
 
 def test_a_large_structure_is_worked_on_after_a_picture_that_says_so() -> None:
@@ -500,29 +459,17 @@ def test_both_conventions_have_the_same_parts_and_unknowns() -> None:
 
 def test_part_6_shows_the_virtual_work_of_every_rod() -> None:
     session = Session.open("hyperstatic")
-    guide = guide_of_part(session, 6, "BD")
+    guide = released(session, "BD", part=6)
     assert words.working(guide) == ("δ₁₀ = Σ N₀ n₁ L/EA,  δ₁₁ = Σ n₁² L/EA > 0",)
     rows = {row[0]: row[1:] for row in words.table(guide)}
     assert rows["CD"] == ("150.0", "164640", "−100.0", "−0.7071", "0.06442", "0.45554")
     assert rows["Σ"][-2:] == ("0.06442", "4.39908")
 
 
-def guide_of_part(session: Session, part: int, name: str) -> Guide:
-    session.press("k")
-    session.press("k")
-    guide = guide_of(session)
-    guide.pick(guide.sets[0].model.rods[name])
-    while guide.part < part:
-        session.press("k")
-    return guide
-
-
 @pytest.mark.parametrize(("key", "name"), [("x", "D.x"), ("y", "D.y"), ("m", "D.rotation")])
 def test_a_clamp_asks_which_of_its_reactions(key: str, name: str) -> None:
     session = Session.open("portal")
-    session.press("k")
-    session.press("k")
-    guide = guide_of(session)
+    guide = asked(session)
     session.click(*session.model.particles["D"].position)
     assert "M moment" in words.hint(guide)
     session.press(key)
@@ -535,9 +482,7 @@ def test_a_clamp_asks_which_of_its_reactions(key: str, name: str) -> None:
 @pytest.mark.parametrize(("share", "name"), [(0.2, "BC.start"), (0.7, "BC.end")])
 def test_a_click_near_an_end_of_a_rod_that_bends_releases_the_moment_there(share: float, name: str) -> None:
     session = Session.open("portal")
-    session.press("k")
-    session.press("k")
-    guide = guide_of(session)
+    guide = asked(session)
     start, end = (np.array(particle.position) for particle in session.model.rods["BC"].ends)
     session.click(*((1.0 - share) * start + share * end).tolist())
     assert guide.unknown is not None
@@ -547,9 +492,7 @@ def test_a_click_near_an_end_of_a_rod_that_bends_releases_the_moment_there(share
 
 def test_sets_of_a_frame_show_the_forces_of_first_order_theory_and_add_up() -> None:
     session = Session.open("portal")
-    session.press("k")
-    session.press("k")
-    guide = guide_of(session)
+    guide = asked(session)
     session.click(*session.model.particles["D"].position)
     session.press("x")
     for _ in range(4):
@@ -572,9 +515,7 @@ def test_sets_of_a_frame_show_the_forces_of_first_order_theory_and_add_up() -> N
 
 def test_a_mechanism_of_a_frame_swings() -> None:
     session = Session.open(three_hinged())
-    session.press("k")
-    session.press("k")
-    guide = guide_of(session)
+    guide = asked(session)
     session.click(0.4, 0.4)
     assert "the structure is a mechanism" in words.message(guide)
     session.frame(0.1)

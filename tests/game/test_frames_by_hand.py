@@ -40,14 +40,6 @@ def test_and_of_selected_members() -> None:
     assert session.model.tagged(DiagramShown) == []
 
 
-def test_a_truss_has_one_diagram() -> None:
-    session = Session.open("isostatic")
-    session.press("i")
-    assert session.view.all_diagrams
-    session.press("i")
-    assert not session.view.all_diagrams
-
-
 def test_the_button_says_which_diagram_is_on() -> None:
     session = Session.open(portal())
     session.press("i")

@@ -1,7 +1,5 @@
 """A frame drawn, supported and loaded by mouse, with the toolbar and menus alone; hinges where they are clicked."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 

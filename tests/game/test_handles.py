@@ -1,7 +1,5 @@
 """Whatever has a cross or a knob works in every scene in which it is drawn."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 
 import pytest

@@ -114,7 +114,7 @@ def _move(session: Session, name: str, by: tuple[float, float]) -> None:
     session.particles[name].position = (x + by[0], y + by[1])
 
 
-@settings(max_examples=40)
+@settings(max_examples=15)
 @given(st.lists(st.one_of(EDITS, RUNS, BACK_AND_FORTH), min_size=2, max_size=14))
 def test_undo_all_is_the_start_and_redo_all_the_end(steps: list[Step]) -> None:
     session = Session.open(structure())
@@ -132,7 +132,7 @@ def test_undo_all_is_the_start_and_redo_all_the_end(steps: list[Step]) -> None:
     assert bits.different(bits.columns(session.model), end) == []
 
 
-@settings(max_examples=25)
+@settings(max_examples=15)
 @given(st.lists(st.one_of(EDITS, RUNS), min_size=1, max_size=8))
 def test_undo_goes_back_entry_by_entry_through_every_state(steps: list[Step]) -> None:
     session = Session.open(structure())
@@ -152,7 +152,7 @@ def test_undo_goes_back_entry_by_entry_through_every_state(steps: list[Step]) ->
         assert bits.different(bits.columns(session.model), expected) == []
 
 
-@settings(max_examples=40)
+@settings(max_examples=15)
 @given(st.lists(st.one_of(EDITS, RUNS, BACK_AND_FORTH), min_size=2, max_size=14))
 def test_edits_count_as_work_and_leave_the_energy_balanced(steps: list[Step]) -> None:
     """An edit changes the imbalance by round-off only, a run by the error of integration."""

@@ -138,7 +138,7 @@ def test_anything_ends_when_it_is_told_to(command: str, number: signal.Signals, 
     with (tmp_path / "said").open("w+") as said:
         program = subprocess.Popen(
             [sys.executable, "-m", "pinjoint", *words],
-            env=os.environ | folders | {"SDL_VIDEODRIVER": "dummy", DATA_VARIABLE: str(tmp_path)},
+            env=os.environ | folders | {DATA_VARIABLE: str(tmp_path)},
             cwd=tmp_path,
             stdout=said,
             stderr=said,
@@ -154,7 +154,7 @@ def test_anything_ends_when_it_is_told_to(command: str, number: signal.Signals, 
 
 def test_a_window_ends_cleanly_when_it_is_told_to(tmp_path: Path) -> None:
     """It leaves no recovery file behind."""
-    folders = {"XDG_DATA_HOME": str(tmp_path), "XDG_CONFIG_HOME": str(tmp_path), "SDL_VIDEODRIVER": "dummy"}
+    folders = {"XDG_DATA_HOME": str(tmp_path), "XDG_CONFIG_HOME": str(tmp_path)}
     record, said = tmp_path / "record.jsonl", tmp_path / "said"
     with said.open("w") as file:
         window = subprocess.Popen(

@@ -1,7 +1,5 @@
 """F2 changes the language of all that a window shows, in every scene."""
 
-from __future__ import annotations
-
 import pytest
 
 from pinjoint.components.language import language, spoken
@@ -48,7 +46,6 @@ def test_a_window_remembers_the_choice(monkeypatch, tmp_path):
     from pinjoint.app import App
     from pinjoint.documents import models
 
-    monkeypatch.setenv("SDL_VIDEODRIVER", "dummy")
     monkeypatch.setenv(CONFIG_VARIABLE, str(tmp_path))
     app = App(models.load("isostatic"))
     app.frame(0.0)

@@ -1,7 +1,5 @@
 """Lessons with tasks: every bundled one as its author meant it, other right answers, and wrong ones."""
 
-from __future__ import annotations
-
 import re
 from pathlib import Path
 from typing import Any
@@ -53,16 +51,6 @@ def test_a_lesson_is_as_its_author_means(name: str) -> None:
     script = Script(name)
     assert [str(failure) for failure in check_lesson(script, lambda: Session(Model()))] == []
     assert script.description
-
-
-def test_any_triangle_is_a_first_structure(session: Session) -> None:
-    course = begun(session, "01_first_structure")
-    for x, y in ((5, 5), (-3, 2), (1, -4), (0, 0)):
-        session.press("p", session.point(x, y))
-    session.update_view()
-    assert course.accepted
-    session.press("f5")
-    assert course.at == 1
 
 
 def test_a_refused_selection_is_said_wholly_in_the_language(session: Session) -> None:
@@ -485,7 +473,7 @@ def test_the_start_page_offers_to_continue_what_was_begun(session: Session) -> N
 # --- the card --------------------------------------------------------------------------------------------
 
 
-@pytest.mark.parametrize("size", [(640, 480), (1024, 640), (1280, 800), (1920, 1080)])
+@pytest.mark.parametrize("size", [(640, 480), (1280, 800)])
 @pytest.mark.parametrize("name", lessons_with_tasks())
 def test_every_task_is_legible_in_windows_of_all_sizes(
     session: Session, size: tuple[int, int], name: str

@@ -1,7 +1,5 @@
 """Model files: what is read, what is refused and how that is said, how it is written."""
 
-from __future__ import annotations
-
 import gc
 import json
 import math
@@ -178,9 +176,14 @@ REFUSED_ELEMENTS: dict[str, tuple[str, dict[Any, Any], str, str]] = {
     "ends as text": ("rods", {"name": "r", "between": "AD"}, ".between", "the names of two particles"),
     "three ends": ("rods", {"name": "r", "between": ["A", "B", "D"]}, ".between", "names of two particles"),
     "rows as ends": ("rods", {"name": "r", "between": [0, 3]}, ".between", "the names of two particles"),
-    "same end": ("rods", {"name": "r", "between": ["A", "A"]}, ".between", "both ends are 'A'"),
-    "second rod": ("rods", {"name": "r", "between": ["C", "B"]}, ".between", "$.rods[1] (rod BC) joins these"),
-    "no length": ("rods", rod("A", "O"), "", "distance between its ends is 0 m; give it a 'rest_length'"),
+    "same end": ("rods", {"name": "r", "between": ["A", "A"]}, ".between", "both ends are A; a rod"),
+    "second rod": (
+        "rods",
+        {"name": "r", "between": ["C", "B"]},
+        ".between",
+        "$.rods[1] (rod BC) joins C and B already",
+    ),
+    "no length": ("rods", rod("A", "O"), "", "its ends are at the same place; move one"),
     "far": (
         "particles",
         particle("far", 0, -1.7e308),
@@ -257,10 +260,6 @@ def test_every_bundled_model_loads_and_round_trips(name: str, tmp_path: Path) ->
     assert_same(loaded, models.load(tmp_path / "again.json"))
 
 
-def test_the_thesis_examples_are_bundled() -> None:
-    assert {"isostatic", "hyperstatic"} <= set(models.bundled())
-
-
 def test_a_name_a_path_and_a_document_are_sources(tmp_path: Path) -> None:
     path = tmp_path / "isostatic"
     models.save(models.load("isostatic"), path)
@@ -325,14 +324,6 @@ def test_escapes_are_not_taken_for_repeated_keys(tmp_path: Path) -> None:
     assert models.load(path).title == '" \\" é'
 
 
-def test_a_rod_s_mistake_in_a_file_names_the_file(tmp_path: Path) -> None:
-    path = tmp_path / "model.json"
-    path.write_text(json.dumps(triangle(stiffness=-1)), encoding="utf-8")
-    with pytest.raises(ModelError) as caught:
-        models.load(path)
-    assert str(caught.value).startswith(f"{path}: $.rods[0].stiffness (rod AB): stiffness is -1 kN")
-
-
 # --- writing -------------------------------------------------------------------------------------------
 
 
@@ -369,15 +360,6 @@ def everything() -> Model:
     )
     made.writable("particles.velocity")[2] = (-1e300, 4e-320)
     return made
-
-
-def test_everything_round_trips_bit_for_bit(tmp_path: Path) -> None:
-    made = everything()
-    models.save(made, tmp_path / "all.json")
-    loaded = models.load(tmp_path / "all.json")
-    assert_same(made, loaded)
-    assert_same(made, models.parse(models.document(made)))
-    assert math.copysign(1.0, loaded.particles["A"].position[0]) == -1.0
 
 
 def test_a_document_by_columns_is_the_same_model(tmp_path: Path) -> None:
@@ -426,14 +408,6 @@ def test_what_is_as_by_default_is_left_out() -> None:
     assert document["rods"][2] == {"name": "CA", "between": ["C", "A"]}
     assert document["settings"]["integrator"] == "automatic"
     assert not {"title", "loads", "grids", "state"} & set(document)
-
-
-def test_strengths_of_none_and_zero_stay_what_they_are() -> None:
-    document = square()
-    document["rods"][0] |= {"tensile_strength": None, "compressive_strength": 0}
-    loaded = models.parse(models.document(models.parse(document)))
-    assert loaded.rods["AB"].tensile_strength is None
-    assert loaded.rods["AB"].compressive_strength == 0.0
 
 
 def test_files_have_one_element_a_line(tmp_path: Path) -> None:

@@ -1,7 +1,5 @@
 """Overrides of the command line: what they change, what they refuse and how they say so."""
 
-from __future__ import annotations
-
 import pytest
 
 from pinjoint.components.commands import Command

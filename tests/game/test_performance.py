@@ -1,12 +1,7 @@
 """A script that is played in a window comes to what it comes to without one, and a person can end it."""
 
-from __future__ import annotations
-
-import os
 from collections.abc import Iterator
 from pathlib import Path
-
-os.environ.setdefault("SDL_VIDEODRIVER", "dummy")
 
 import pygame
 import pytest

@@ -1,7 +1,5 @@
 """Readouts beside the model: theory of the selected elements and the worst of all, and the energy account."""
 
-from __future__ import annotations
-
 import pytest
 
 from pinjoint import Session
@@ -155,12 +153,3 @@ def test_the_energy_account_on_demand() -> None:
     assert rows["kinetic"] == "0 J", "less than anybody sees beside the rest"
     assert float(rows["dissipated by yielding"].removesuffix(" J")) > 0.0
     assert "numerical imbalance" in rows
-
-
-def test_a_script_compares_as_the_window_does() -> None:
-    session = Session.open("isostatic")
-    session.run(until="rest")
-    worst = session.compare().worst("linear", "axial_force")
-    assert worst is not None
-    assert (worst.name, worst.exact) == ("CA", pytest.approx(20.0678998039911, rel=1e-12))
-    assert len(list(session.compare().rows)) == 9

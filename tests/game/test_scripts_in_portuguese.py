@@ -1,7 +1,5 @@
 """Scripts, results and files are the same in every language."""
 
-from __future__ import annotations
-
 import json
 import re
 from pathlib import Path

@@ -1,7 +1,5 @@
 """Sessions as a script drives them, with good and with bad input."""
 
-from __future__ import annotations
-
 import copy
 import pickle
 from collections.abc import Callable
@@ -117,13 +115,7 @@ def test_an_expectation_of_nothing_says_so(session: Session, text: str, words: s
 
 
 def test_what_is_expected_holds_or_does_not(session: Session) -> None:
-    for text in (
-        "time <= 0",
-        "time >= 0",
-        "time ≈ 0 +/- 1e-9",
-        "settings.time_step = null",
-        "clock.collisions = 0",
-    ):
+    for text in ("time <= 0", "time >= 0", "time ≈ 0 +/- 1e-9", "settings.time_step = null", " scene = pause "):
         session.expect(text)
     for text in ("time <= -1", "rods.AB.tensile_strength = none", "settings.time_step = 1"):
         with pytest.raises(AssertionError):
@@ -138,10 +130,6 @@ def test_after_an_edit_or_settling_nothing_is_said_of_the_run_before(session: Se
     session.run(until="rest")
     assert session.settle(1e6) == "collapse"
     assert "Plastic collapse" in session.message
-
-
-def test_spaces_around_an_expectation_do_not_matter(session: Session) -> None:
-    session.expect(" scene = pause ")
 
 
 def test_sessions_and_tables_tell_what_they_are(session: Session) -> None:

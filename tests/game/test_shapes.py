@@ -1,7 +1,5 @@
 """Mechanisms and natural modes drawn over the model: titles, places, order, and when they go away."""
 
-from __future__ import annotations
-
 import math
 from itertools import pairwise
 from pathlib import Path

@@ -5,18 +5,15 @@ import pytest
 from pinjoint import Session
 from pinjoint.editor.actions import time as actions
 from pinjoint.systems.collision.free import flight
+from tests.reference.models import model, particle
 
 BOX = [[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]]
-FAST = {
-    "format": "pinjoint model",
-    "version": 1,
-    "particles": [
-        {"name": "A", "position": [0.5, 0.5], "velocity": [1000.0, 300.0], "radius": 0.1},
-        {"name": "B", "position": [0.2, 0.8], "radius": 0.1},
-    ],
-    "components": {"walls.Wall": [{"start": a, "end": b} for a, b in zip(BOX, BOX[1:] + BOX[:1], strict=True)]},
-    "settings": {"restitution": 1.0, "time_step": 1.0},
-}
+FAST = model(
+    [particle("A", 0.5, 0.5, velocity=[1000.0, 300.0], radius=0.1), particle("B", 0.2, 0.8, radius=0.1)],
+    [],
+    components={"walls.Wall": [{"start": a, "end": b} for a, b in zip(BOX, BOX[1:] + BOX[:1], strict=True)]},
+    settings={"restitution": 1.0, "time_step": 1.0},
+)
 
 
 @pytest.mark.parametrize("key", ["right", "shift+right"])

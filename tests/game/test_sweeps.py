@@ -1,7 +1,5 @@
 """Sweeps: which variants there are, what they come to, what survives a kill, and what is refused."""
 
-from __future__ import annotations
-
 import csv
 import socket
 from collections.abc import Callable, Sequence

@@ -1,7 +1,5 @@
 """A real window on a virtual display, with real keys and a real mouse: from drawing a triangle to closing."""
 
-from __future__ import annotations
-
 import ctypes
 import json
 import os

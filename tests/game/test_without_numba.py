@@ -1,7 +1,5 @@
 """PINJOINT_COMPILE=never: no compiler is needed, not even importable; and what is said of other values."""
 
-from __future__ import annotations
-
 import os
 import subprocess
 import sys
@@ -47,7 +45,7 @@ def plugin(app):
 
 def run(tmp_path: Path, *words: str, compile: str = "never") -> subprocess.CompletedProcess[str]:
     own = {f"PINJOINT_{name}": str(tmp_path / name) for name in ("DATA", "CONFIG")}
-    variables = {**os.environ, **own, "PINJOINT_COMPILE": compile, "SDL_VIDEODRIVER": "dummy"}
+    variables = {**os.environ, **own, "PINJOINT_COMPILE": compile}
     command = [sys.executable, *words]
     return subprocess.run(command, cwd=ROOT, env=variables, capture_output=True, text=True, check=False)
 

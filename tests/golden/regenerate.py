@@ -1,7 +1,5 @@
 """Write the golden pictures anew: python -m tests.golden.regenerate [NAME…]; look at each before keeping it."""
 
-from __future__ import annotations
-
 import sys
 
 import pygame

@@ -3,8 +3,6 @@
 They depend on nothing but the program: no saved models, time by steps, fixed windows.
 """
 
-from __future__ import annotations
-
 import os
 from collections.abc import Callable
 from dataclasses import dataclass

@@ -1,7 +1,5 @@
 """What a session asks, refuses and says, and what else can be seen, besides the scenes that are kept as pictures."""
 
-from __future__ import annotations
-
 import tempfile
 from pathlib import Path
 

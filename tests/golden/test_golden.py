@@ -4,8 +4,6 @@ Fonts are drawn a little differently by other versions of the drawing library, s
 seen from a distance: each is blurred by averaging squares of 4 by 4 pixels.
 """
 
-from __future__ import annotations
-
 from pathlib import Path
 
 import numpy as np

@@ -1,7 +1,5 @@
 """The pictures of examples show what the program computes now."""
 
-from __future__ import annotations
-
 import json
 
 import numpy as np

@@ -1,7 +1,5 @@
 """What the tests of mods share."""
 
-from __future__ import annotations
-
 import textwrap
 from collections.abc import Callable, Iterator
 from pathlib import Path

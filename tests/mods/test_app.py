@@ -1,7 +1,5 @@
 """What a mod registers works as what comes with Pinjoint does."""
 
-from __future__ import annotations
-
 import sys
 import typing
 from pathlib import Path
@@ -304,14 +302,6 @@ def test_an_action_with_an_icon_has_a_button_whatever_became_of_its_key(
     mods.unload(mods.MODS[-1:])
     session.update_view()
     assert "apple.toggle" not in [tool.action for group in session.view.toolbar.groups for tool in group]
-
-
-@pytest.mark.parametrize("icon", ["[('circle', (0, 0, 1))]", "[('line', (0, 0, 1))]", "[('disc', (0, 0))]"])
-def test_an_icon_that_cannot_be_drawn_is_refused(write_mod: Write, icon: str) -> None:
-    from pinjoint.mods import ModError
-
-    with pytest.raises(ModError, match=r"The icon of 'apple\.toggle': .* is not a part of an icon; write"):
-        opened(write_mod, TOGGLED.format(key="y", icon=icon))
 
 
 @pytest.mark.skipif(sys.version_info < (3, 12), reason="aliases of types are new in Python 3.12")

@@ -1,7 +1,5 @@
 """What follows where a mod fails: exit statuses, what is said and what is not, threads, Ctrl+C, and the names of modules."""
 
-from __future__ import annotations
-
 import json
 import os
 import signal
@@ -12,7 +10,6 @@ from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import Any
 
-import numpy as np
 import pytest
 
 from pinjoint import Session, mods
@@ -301,13 +298,3 @@ def test_code_of_a_mod_that_no_guard_surrounds_is_named_all_the_same(write_mod: 
         "The mod 'apple' was switched off: code that the program called failed: RuntimeError: no luck"
         in session.fault
     )
-
-
-def test_what_a_frame_system_left_behind_is_taken_back(write_mod: Write) -> None:
-    body = "model.particles['C'].mass = 3.0; model.writable('particles.velocity')[:] = np.nan"
-    session = Session.open(TRUSS, mods=[write_mod("apple", SYSTEM.format(phase="EDIT", body=body))])
-    session.frame(0.01)
-    assert np.array_equal(session.particles.velocity, np.zeros((3, 2)))
-    assert session.particles["C"].mass != 3.0
-    assert not session.can_undo
-    assert "particle A: velocity x is nan; it must be a finite number" in session.fault

@@ -1,7 +1,5 @@
 """check_system finds what a system does beside what it declares; all of ours pass."""
 
-from __future__ import annotations
-
 import sys
 from collections.abc import Callable, Mapping
 from functools import partial

@@ -1,7 +1,5 @@
 """A loop in a kernel of a mod that does not end: the mod is named, and Ctrl+C heard, in machine code, too."""
 
-from __future__ import annotations
-
 import json
 import os
 import signal

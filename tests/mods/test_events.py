@@ -1,7 +1,5 @@
 """Events of mods: the same in all ways of running; one that fails switches its mod off."""
 
-from __future__ import annotations
-
 import io
 import json
 from pathlib import Path

@@ -1,15 +1,14 @@
 """Laws of mods: they are compiled before the first step, else interpreted; faults are told alike in both forms."""
 
-from __future__ import annotations
-
 import sys
 from typing import Any
 
 import pytest
 
 from pinjoint import Session, mods
+from pinjoint.systems import cache
 from pinjoint.systems.program import compiler
-from pinjoint.systems.program.compiler import UNCOMPILED, Choice, Compile
+from pinjoint.systems.program.compiler import Choice, Compile
 from tests.mods.conftest import Write
 from tests.mods.test_isolation import TRUSS
 
@@ -98,7 +97,7 @@ def test_a_law_waits_until_it_is_compiled(opened: Any, kernel: str) -> None:
     session = opened(Compile.SOON, kernel)
     assert session.run(steps=5) == "time reached"
     assert not is_interpreted(session)
-    assert not UNCOMPILED
+    assert not cache.SAID
 
 
 @pytest.mark.parametrize("kernel", COMPILED[1:])
@@ -124,7 +123,7 @@ def test_where_the_compiler_is_damaged_a_law_is_interpreted_and_that_is_told(
     session = opened(Compile.SOON, COMPILED[-1])
     monkeypatch.setitem(sys.modules, "pinjoint.systems.machine_code", None)
     monkeypatch.setattr(compiler, "_modules", {})
-    monkeypatch.setattr(compiler, "UNCOMPILED", told := [])
+    monkeypatch.setattr(cache, "SAID", told := [])
     assert session.run(steps=5) == "time reached"
     assert is_interpreted(session)
     assert "cannot be compiled, so it runs interpreted, which is slower" in told[0]

@@ -1,7 +1,5 @@
 """Hostile mods: each is named, switched off and survived, in the window and without it, and `mods check` finds it."""
 
-from __future__ import annotations
-
 import sys
 from collections.abc import Iterator
 from typing import Any
@@ -12,6 +10,7 @@ from pinjoint import Session, mods
 from pinjoint.commands.command_line import main
 from pinjoint.documents import models
 from pinjoint.mods import guard, mod
+from pinjoint.systems.input import pygame_input
 from tests.mods.conftest import Write
 from tests.mods.hostile import HOSTILE, KEY, LOAD, RUN, WINDOW, Hostile
 from tests.mods.test_isolation import TRUSS
@@ -21,6 +20,7 @@ CASES = pytest.mark.parametrize("hostile", HOSTILE.values(), ids=HOSTILE)
 
 @pytest.fixture(autouse=True)
 def impatient(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(pygame_input, "IDLE_PAUSE", 0.0)
     for module in (guard, mod):
         monkeypatch.setattr(module, "PATIENCE", 0.3)
     monkeypatch.setitem(mod.Mod.call.__kwdefaults__, "patience", 0.3)
@@ -48,8 +48,7 @@ def modelled() -> Any:
 
 
 @CASES
-def test_in_a_window(hostile: Hostile, bad: Any, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setenv("SDL_VIDEODRIVER", "dummy")
+def test_in_a_window(hostile: Hostile, bad: Any) -> None:
     from pinjoint.app import App
 
     mods.load([bad(hostile)])

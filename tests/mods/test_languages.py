@@ -1,7 +1,5 @@
 """Mods bring their own catalogues, which hold what ours do not."""
 
-from __future__ import annotations
-
 from pathlib import Path
 
 import pytest

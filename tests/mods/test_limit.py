@@ -1,7 +1,5 @@
 """What takes too long is interrupted, exactly once, and the interpreter is left as it was."""
 
-from __future__ import annotations
-
 import time
 from collections.abc import Callable
 from contextlib import suppress

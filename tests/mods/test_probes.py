@@ -1,7 +1,5 @@
 """Probes: what they read, when, how it is drawn and written."""
 
-from __future__ import annotations
-
 import csv
 import math
 from pathlib import Path
@@ -13,7 +11,7 @@ from pinjoint import Session
 from pinjoint.commands.command_line import main
 from pinjoint.components.view import Plot
 from pinjoint.included.probes import ENERGIES, probes_of, record
-from pinjoint.paths import PathError, quantity
+from pinjoint.paths import quantity
 from pinjoint.systems.render.marks import Strokes, Text
 from pinjoint.systems.render.picture import compose
 from pinjoint.systems.render.plots import draw_plot, round_ticks
@@ -22,22 +20,6 @@ from tests.systems.render.frame_models import portal_at_rest
 
 LIGHT = load_theme("light")
 BOX = (0.0, 0.0, 300.0, 150.0)
-
-
-@pytest.mark.parametrize(
-    ("path", "said"),
-    [
-        ("rods.XY.axial_force", "There is no 'XY' among the rods"),
-        ("rods.AB.colour", "there is no key 'colour'; choose one of .*axial_force"),
-        ("particles.B.displacement", "write one of displacement.x, displacement.y"),
-        ("rods.AB.strain.x", "write strain."),
-        ("energy.heat", "there is no energy 'heat'; choose one of kinetic"),
-        ("speed", "There is no quantity 'speed'; write it like"),
-    ],
-)
-def test_a_wrong_path_is_explained(path: str, said: str) -> None:
-    with pytest.raises(PathError, match=said):
-        quantity(Session.open("isostatic").model, path)
 
 
 def test_quantities_are_read_in_the_units_on_screen() -> None:

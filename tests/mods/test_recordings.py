@@ -1,7 +1,5 @@
 """Recordings name the mods that they were made with, and are not played as if without them."""
 
-from __future__ import annotations
-
 import io
 import json
 from pathlib import Path
@@ -14,13 +12,9 @@ from pinjoint.commands.command_line import main
 from pinjoint.scripts.playing import Recorder, play, session_of
 from pinjoint.scripts.script import Script, ScriptError
 from tests.mods.conftest import Write
+from tests.reference.models import model, particle
 
-BALL: dict[str, Any] = {
-    "format": "pinjoint model",
-    "version": 1,
-    "settings": {"integrator": "velocity_verlet"},
-    "particles": [{"name": "A", "position": [0, 0]}],
-}
+BALL: dict[str, Any] = model([particle("A", 0, 0)], [], settings={"integrator": "velocity_verlet"})
 BREEZE = """
 from numba import njit
 from pinjoint.systems.base import Law

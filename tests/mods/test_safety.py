@@ -1,7 +1,5 @@
 """After a crash with mods, the next window opens without them, once."""
 
-from __future__ import annotations
-
 import os
 import signal
 import subprocess

@@ -1,7 +1,5 @@
 """Laws of mods that are too much for the steps, and integrators of mods where they do not act: the run says so."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Data of mods in files: written with the version of the mod, and brought up to date by later versions."""
 
-from __future__ import annotations
-
 import json
 from pathlib import Path
 from typing import Any
@@ -11,6 +9,7 @@ import pytest
 from pinjoint import Session, mods
 from pinjoint.documents import models
 from pinjoint.documents.models import ModelError
+from tests.reference.models import model, particle
 
 CHARGE = """
 from pinjoint.components import Component, Field, Handle, Particle
@@ -37,11 +36,7 @@ def upgrade(document, version):
         if "amount" in data:
             data["value"] = data.pop("amount") * (1.0 if version else 1e-3)
 """
-BALL: dict[str, Any] = {
-    "format": "pinjoint model",
-    "version": 1,
-    "particles": [{"name": "A", "position": [0, 0]}],
-}
+BALL: dict[str, Any] = model([particle("A", 0, 0)], [])
 
 
 @pytest.fixture

@@ -5,8 +5,6 @@ compiles all that it runs, in a cache folder of its own, for what was compiled w
 address cannot raise: numba prints the error and goes on with zero, so its process ends at once instead.
 """
 
-from __future__ import annotations
-
 import os
 import subprocess
 import sys

@@ -4,8 +4,6 @@ Disks fail, fill up, and lose power; people edit. Whatever a file holds then, th
 read, loses nothing else, and can write the file again. `python -m tests.properties.fuzz damage` has as many as one likes.
 """
 
-from __future__ import annotations
-
 import io
 import os
 import random

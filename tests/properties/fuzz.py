@@ -6,8 +6,6 @@ the end, undoing everything leads to the start bit for bit, doing it all again t
 played in another session to the same end.
 """
 
-from __future__ import annotations
-
 import argparse
 import contextlib
 import importlib
@@ -60,27 +58,7 @@ MOUSE = (
 )
 OFTEN = {  # keys that are pressed more often than others, so that every scene is seen as much as any
     "simulation": ("l", "p", "i", "drag", "space"),
-    "pause": (
-        "p",
-        "p",
-        "l",
-        "l",
-        "l",
-        "c",
-        "f",
-        "v",
-        "ctrl+r",
-        "ctrl+j",
-        "ctrl+m",
-        "k",
-        "k",
-        "k",
-        "return",
-        "space",
-        "space",
-        "e",
-        "h",
-    ),
+    "pause": (*"pplllcfv", "ctrl+r", "ctrl+j", "ctrl+m", *"kkk", "return", "space", "space", *"eh"),
     "properties": ("escape", "tab", "tab", "return", "up", "down"),
     "save": ("escape", "return", "return"),
     "load": ("escape", "escape", "down", "return", "return"),

@@ -1,7 +1,5 @@
 """What every model holds and keeps, whatever was done to it."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import numpy as np

@@ -1,7 +1,5 @@
 """No array is read or written outside its bounds, whatever a person does."""
 
-from __future__ import annotations
-
 from tests.properties.bounds import OUTSIDE, checked
 
 READS = """

@@ -1,7 +1,5 @@
 """Editing by random actions: nothing crashes, the model stays sound, undo and redo are exact."""
 
-from __future__ import annotations
-
 from typing import Any
 
 from hypothesis import HealthCheck, settings
@@ -29,7 +27,7 @@ class Editing(RuleBasedStateMachine):
         self.session = Session.open(model)
         self.session.view.camera.scale = 100.0
         put_states_aside(
-            self.session, beyond=4 * self.session.simulation.checkpoint().state.size
+            self.session, beyond=4 * self.session.simulation.checkpoint().state.nbytes
         )  # most of them
         self.start = contents(self.session.model)
 
@@ -110,7 +108,7 @@ class Editing(RuleBasedStateMachine):
 
 TestEditing = Editing.TestCase
 TestEditing.settings = settings(
-    max_examples=60,
+    max_examples=25,
     stateful_step_count=40,
     deadline=None,
     suppress_health_check=[HealthCheck.too_slow, HealthCheck.filter_too_much],

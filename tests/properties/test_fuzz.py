@@ -1,7 +1,5 @@
 """Some of everything that `python -m tests.properties.fuzz` tries, which has as many as one likes."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 
 import pytest

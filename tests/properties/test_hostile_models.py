@@ -1,7 +1,5 @@
 """A few models of any numbers in every command; `python -m tests.properties.fuzz models` has as many as one likes."""
 
-from __future__ import annotations
-
 from pathlib import Path
 
 import pytest

@@ -1,7 +1,5 @@
 """Any model survives its file bit for bit; no file, however wrong, gives more than a ModelError."""
 
-from __future__ import annotations
-
 import copy
 import json
 import struct

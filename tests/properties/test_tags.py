@@ -1,7 +1,5 @@
 """Tags against brute force, through deletion and undo: in columns, and in esper where few elements carry them."""
 
-from __future__ import annotations
-
 import random
 
 import esper

@@ -1,7 +1,5 @@
 """A model under random editing, compared after every step with a document of plain dictionaries."""
 
-from __future__ import annotations
-
 import copy
 import math
 from collections.abc import Iterator
@@ -500,4 +498,4 @@ class Editing(RuleBasedStateMachine):
 
 
 TestEditing = Editing.TestCase
-TestEditing.settings = settings(max_examples=80, stateful_step_count=30, deadline=None)
+TestEditing.settings = settings(max_examples=50, stateful_step_count=30, deadline=None)

@@ -4,8 +4,6 @@ Nothing that it does may raise, warn, or take a minute; the models stay sound, a
 when the window was closed. `python -m tests.properties.fuzz windows` has as many as one likes.
 """
 
-from __future__ import annotations
-
 import contextlib
 import os
 import random

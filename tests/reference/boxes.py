@@ -1,7 +1,5 @@
 """Boxes (left, top, right, bottom) of what is drawn, and which of them overlap."""
 
-from __future__ import annotations
-
 import itertools
 from collections.abc import Iterable
 

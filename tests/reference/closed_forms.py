@@ -38,31 +38,9 @@ def free_vibration(
     )
 
 
-def step_response(time: float, omega: float, zeta: float) -> float:
-    """Return u/u_static at `time` after a constant force is applied suddenly: 1 − (free vibration from 1)."""
-    return 1 - free_vibration(time, omega, zeta, 1.0, 0.0)[0]
-
-
 def step_overshoot(zeta: float) -> float:
     """Return max u/u_static under a suddenly applied force, ζ < 1: 1 + e^(−πζ/√(1−ζ²)); 2 undamped."""
     return 1 + math.exp(-math.pi * zeta / math.sqrt(1 - zeta**2))
-
-
-def falling_weight_factor(height_over_deflection: float) -> float:
-    """Return max u/δ of a spring that a weight falls on from h, δ under it at rest: 1 + √(1 + 2h/δ)."""
-    return 1 + math.sqrt(1 + 2 * height_over_deflection)
-
-
-def harmonic_amplification(frequency_ratio: float, zeta: float) -> float:
-    """Return the steady-state amplitude over the static one: 1/√((1−r²)² + (2ζr)²)."""
-    r = frequency_ratio
-    return 1 / math.hypot(1 - r**2, 2 * zeta * r)
-
-
-def ramp_response_factor(rise_over_period: float) -> float:
-    """Return max u/u_static for a force rising linearly during t_r, undamped: 1 + |sin(πt_r/T)|/(πt_r/T)."""
-    x = math.pi * rise_over_period
-    return 1 + abs(math.sin(x)) / x
 
 
 def ramp_response(time: float, rise: float, omega: float) -> float:
@@ -73,11 +51,6 @@ def ramp_response(time: float, rise: float, omega: float) -> float:
     if time <= rise:
         return (time - math.sin(omega * time) / omega) / rise
     return 1 + (math.sin(omega * (time - rise)) - math.sin(omega * time)) / (omega * rise)
-
-
-def logarithmic_decrement(zeta: float) -> float:
-    """Return ln of the ratio of successive maxima: 2πζ/√(1−ζ²)."""
-    return 2 * math.pi * zeta / math.sqrt(1 - zeta**2)
 
 
 def elastoplastic_ductility(force_over_strength: float) -> float:
@@ -159,22 +132,12 @@ def galperin_contacts(power: int) -> int:
 # Integrators on u'' + 2ζω u' + ω² u = 0
 
 
-def verlet_stability_limit(omega: float, zeta: float) -> float:
-    """Return Δt up to which velocity Verlet is stable at least: (2/ω) (√(1+ζ²) − ζ)."""
-    return 2 / omega * (math.sqrt(1 + zeta**2) - zeta)
-
-
 def taylor2_growth(omega_step: float) -> float:
     """Return the energy's growth per step of the thesis' scheme, undamped: 1 + (ωΔt)²/2.
 
     It is the determinant of [[1 − z²/2, z], [−z, 1]], z = ωΔt, whose eigenvalues are conjugate.
     """
     return 1 + omega_step**2 / 2
-
-
-def rk4_growth(omega_step: float) -> float:
-    """Return the energy's growth per step of classical Runge–Kutta, undamped: 1 − z⁶/72 + z⁸/576, z = ωΔt."""
-    return 1 - omega_step**6 / 72 + omega_step**8 / 576
 
 
 # Von Mises truss: two equal rods from supports 2b apart to a crown H above, loaded down at the crown

@@ -1,7 +1,5 @@
 """Complementarity: which of many contacts push, and how strongly; plainly, in numpy."""
 
-from __future__ import annotations
-
 import numpy as np
 from numpy.typing import NDArray
 

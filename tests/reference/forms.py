@@ -1,7 +1,5 @@
 """Choosing the form that programs run in, for one part of a test."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 from contextlib import contextmanager
 

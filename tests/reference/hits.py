@@ -1,7 +1,5 @@
 """What can be pressed in the pictures of a session, and pressing it, as a person with a mouse does."""
 
-from __future__ import annotations
-
 from pinjoint import Session
 from pinjoint.components.view import Hit
 from pinjoint.systems.render.picture import compose

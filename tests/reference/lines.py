@@ -1,7 +1,5 @@
 """How many lines of Python some work runs: what it costs, whatever else the machine does meanwhile."""
 
-from __future__ import annotations
-
 import sys
 from collections.abc import Callable
 from types import FrameType

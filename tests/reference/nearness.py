@@ -1,7 +1,5 @@
 """How near the texts of a picture stand to what is drawn: exact distances of boxes to lines, areas and circles."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 from dataclasses import dataclass
 

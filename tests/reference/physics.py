@@ -151,17 +151,6 @@ class Simulation:
         self.dissipated_damping += time_step * (before.damping_power + after.damping_power) / 2
         self.dissipated_drag += time_step * (before.drag_power + after.drag_power) / 2
 
-    def advance_with_quadrature(
-        self, end: float, u: np.ndarray, v: np.ndarray, stages: list[tuple[float, Forces, np.ndarray]]
-    ) -> None:
-        """Accept (u, v) at the time `end`; book work and dissipation of (weight, forces, velocity) stages."""
-        time_step = end - self.time
-        for weight, forces, velocity in stages:
-            self.work += time_step * weight * NEWTONS_PER_KN * float(np.sum(forces.applied * velocity))
-            self.dissipated_damping += time_step * weight * forces.damping_power
-            self.dissipated_drag += time_step * weight * forces.drag_power
-        self._accept(end, u, v)
-
     def _accept(self, end: float, u: np.ndarray, v: np.ndarray) -> None:
         self.time = end
         self.u, self.v = u, v
@@ -229,24 +218,9 @@ def velocity_verlet(model: Model, time_step: float, steps: int, observe: Observe
     return _run(_verlet_step, model, time_step, steps, observe)
 
 
-def semi_implicit_euler(
-    model: Model, time_step: float, steps: int, observe: Observer | None = None
-) -> Document:
-    """Run `steps` steps of v₊ = v + h a(x, v), x₊ = x + h v₊: first order, symplectic without dampers."""
-    return _run(_semi_implicit_step, model, time_step, steps, observe)
-
-
 def taylor2(model: Model, time_step: float, steps: int, observe: Observer | None = None) -> Document:
     """Run `steps` steps of the thesis' scheme, x₊ = x + h v + h²/2 a, v₊ = v + h a: first order."""
     return _run(_taylor_step, model, time_step, steps, observe)
-
-
-def rk4(model: Model, time_step: float, steps: int, observe: Observer | None = None) -> Document:
-    """Run `steps` steps of the classical fourth-order Runge–Kutta method.
-
-    Trial states use the return map without committing it; yielding is committed once, after the step.
-    """
-    return _run(_rk4_step, model, time_step, steps, observe)
 
 
 def _run(
@@ -276,29 +250,8 @@ def _verlet_step(s: Simulation, h: float, end: float) -> None:
     s.advance(end, u, s.v + h / 2 * (a + predicted.acceleration))
 
 
-def _semi_implicit_step(s: Simulation, h: float, end: float) -> None:
-    v = s.v + h * s.forces.acceleration
-    u = s.u + h * v
-    s.commit_plasticity(u)
-    s.advance(end, u, v)
-
-
 def _taylor_step(s: Simulation, h: float, end: float) -> None:
     a = s.forces.acceleration
     u = s.u + h * s.v + h**2 / 2 * a
     s.commit_plasticity(u)
     s.advance(end, u, s.v + h * a)
-
-
-def _rk4_step(s: Simulation, h: float, end: float) -> None:
-    v1, f1 = s.v, s.forces
-    v2 = s.v + h / 2 * f1.acceleration
-    f2 = s.evaluate(s.time + h / 2, s.u + h / 2 * v1, v2)
-    v3 = s.v + h / 2 * f2.acceleration
-    f3 = s.evaluate(s.time + h / 2, s.u + h / 2 * v2, v3)
-    v4 = s.v + h * f3.acceleration
-    f4 = s.evaluate(end, s.u + h * v3, v4)
-    u = s.u + h / 6 * (v1 + 2 * v2 + 2 * v3 + v4)
-    v = s.v + h / 6 * (f1.acceleration + 2 * f2.acceleration + 2 * f3.acceleration + f4.acceleration)
-    s.commit_plasticity(u)
-    s.advance_with_quadrature(end, u, v, [(1 / 6, f1, v1), (1 / 3, f2, v2), (1 / 3, f3, v3), (1 / 6, f4, v4)])

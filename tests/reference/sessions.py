@@ -1,7 +1,5 @@
 """Sessions for tests, as no person has them."""
 
-from __future__ import annotations
-
 from pinjoint import Session
 from pinjoint.documents.history.history import History
 from pinjoint.documents.history.log import Run

@@ -1,7 +1,5 @@
 """Scripted sessions: they are played in the real scenes with the real keys, and replay to the same bits."""
 
-from __future__ import annotations
-
 import io
 import json
 from pathlib import Path

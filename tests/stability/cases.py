@@ -4,8 +4,6 @@ One list for the tests and for `pinjoint bench stability`. Each case is a model 
 `follow` runs it by one integrator and says how wrong the result is, or why there is none.
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable
 from dataclasses import dataclass

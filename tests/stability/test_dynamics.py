@@ -1,7 +1,5 @@
 """Motion at its limits, by every integrator: the answer is right, or the program says why it is not."""
 
-from __future__ import annotations
-
 import pytest
 
 from pinjoint import Session

@@ -1,7 +1,5 @@
 """Energy that steps make or lose: told where it matters, stopped where it is most of it, and never called rest."""
 
-from __future__ import annotations
-
 import json
 from pathlib import Path
 from typing import Any

@@ -1,7 +1,5 @@
 """Statics at its limits: either the answer is right, or it is said why there is none."""
 
-from __future__ import annotations
-
 import copy
 from typing import Any
 

@@ -1,7 +1,5 @@
 """Events: a compiled predicate ends a step where it changes sign, and a handler changes the model by commands."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Sequence
 from pathlib import Path
@@ -16,7 +14,7 @@ from pinjoint.components.handle import Handle
 from pinjoint.components.model import Model
 from pinjoint.systems.base import EVENT_INTERVAL, Event, Phase, System
 from pinjoint.systems.program.binding import ProgramError
-from tests.reference import bits
+from tests.reference import bits, models
 from tests.reference.models import oscillator
 
 OMEGA, LIMIT = 20.0, 0.5  # rad/s; share of the largest elongation at which a rod breaks
@@ -117,21 +115,6 @@ def test_nothing_happens_twice_nor_where_nothing_changes_sign() -> None:
     assert [time for time, _ in seen if time > 0.0] == pytest.approx(
         [half, 2 * half, 3 * half, 4 * half], rel=1e-8
     )
-
-
-# --- the same everywhere -----------------------------------------------------------------------------------
-
-
-@pytest.mark.parametrize("rate", [7.0, 60.0, 241.0])
-def test_a_rod_breaks_at_the_same_time_to_the_bit_in_frames_and_in_a_run(rate: float) -> None:
-    run, frames = Breaking(), Breaking()
-    one = Session.open(pulled(), [run])
-    one.run(time=0.2)
-    other = Session.open(pulled(), [frames])
-    other.press("space")
-    while other.time < 0.1:
-        other.frame(1.0 / rate)
-    assert frames.times == run.times
 
 
 # --- taken back, saved, switched off ---------------------------------------------------------------------------
@@ -263,15 +246,12 @@ def test_an_event_for_neither_rods_nor_particles_is_refused_by_name() -> None:
 
 def bouncing(wall: float) -> dict[str, Any]:
     """A particle under drag that flies to a wall, at most 0.5 m, and back; where it was drawn, its quantity changes sign."""
-    return {
-        "format": "pinjoint model",
-        "version": 1,
-        "environment": {"drag": 0.1},
-        "particles": [
-            {"name": "p", "position": [0.0, 0.0], "displacement": [0.5, 0.0], "velocity": [-5.0, 0.0]}
-        ],
-        "components": {"walls.Wall": [{"name": "w", "start": [wall, -1.0], "end": [wall, 1.0]}]},
-    }
+    return models.model(
+        [models.particle("p", 0.0, 0.0, displacement=[0.5, 0.0], velocity=[-5.0, 0.0])],
+        [],
+        environment={"drag": 0.1},
+        components={"walls.Wall": [{"name": "w", "start": [wall, -1.0], "end": [wall, 1.0]}]},
+    )
 
 
 def test_what_a_step_that_is_taken_again_would_have_led_to_does_not_happen() -> None:

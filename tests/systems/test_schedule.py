@@ -1,11 +1,13 @@
-"""The scheduler: order, ties, cycles, conflicts by name; and that what a model does not need is left out."""
+"""The scheduler: order, ties, cycles, conflicts by name; and that what a model does not need is left out.
+
+What bundled models need is told by their files, in test_skipping.py.
+"""
 
 import random
 from typing import Any
 
 import pytest
 
-from pinjoint import Session
 from pinjoint.components.model import Model
 from pinjoint.documents import models
 from pinjoint.systems.base import Phase, System
@@ -158,57 +160,10 @@ YIELDING = (
     "plasticity.first_yield",
 )
 RAMP, DRAG = ("loads.ramp",), ("physics.drag",)
-BENDING = (*DAMPED, "physics.bending", "physics.bending_damping")
-TURNING_DRAG = (*DRAG, "physics.turning_drag")
-CABLES = ("physics.elasticity", "physics.slackness", "physics.axial_damping_of_cables")
-
-PLANS = {
-    "isostatic": YIELDING,
-    "isostatic_10x": YIELDING,
-    "isostatic_collapse": YIELDING + RAMP,
-    "hyperstatic": YIELDING,
-    "hyperstatic_10x": YIELDING,
-    "hyperstatic_yield": YIELDING + RAMP,
-    "three_bar_plastic": YIELDING + RAMP,
-    "overshoot_yield": YIELDING,
-    "snap_through": DAMPED,
-    "von_mises": DAMPED + RAMP,
-    "pendulum": ELASTIC,
-    "hanging_net": DAMPED + DRAG,
-    "tower": YIELDING + RAMP,
-    "warren_bridge": YIELDING + RAMP,
-    "braced_portal": CABLES + RAMP,
-    "ball_on_truss": DAMPED,
-    "billiards_break": (),
-    "galperin_pi": (),
-    "hard_disc_gas": (),
-    "newtons_cradle": (),
-    "pile": (),
-    "staircase": (),
-    "ball_on_frame": (*CABLES, "physics.bending", "physics.bending_damping"),
-    "eulers_columns": BENDING + TURNING_DRAG + RAMP,
-    "flexible_pendulum": (*ELASTIC, "physics.bending"),
-    "gerber_beam": BENDING,
-    "lees_frame": BENDING + TURNING_DRAG + RAMP,
-    "portal": BENDING + RAMP,
-    "rolled_cantilever": BENDING + TURNING_DRAG + RAMP,
-    "sway_resonance": (*BENDING, "loads.sine"),
-    "three_hinged_arch": BENDING,
-    "two_storey_frame": BENDING + RAMP,
-    "vierendeel": BENDING,
-    "williams_toggle": BENDING + TURNING_DRAG + RAMP,
-} | {f"collision_{number}": () for number in ("i", "ii", "iii", "iv", "v", "vi")}
 
 
 def plan(document: Any) -> set[str]:
     return {s.name for s in Schedule(step_systems()).step_plan("simulation", models.load(document))}
-
-
-@pytest.mark.parametrize("name", models.bundled())
-def test_bundled_models_are_run_by_what_they_need(name: str) -> None:
-    """Forces and history only; what finds impacts has its own tests."""
-    mechanics = {s for s in plan(name) if not s.startswith("collision.")}
-    assert mechanics == set(PLANS[name])
 
 
 def test_nothing_is_done_for_what_is_not_there() -> None:
@@ -228,17 +183,3 @@ def test_nothing_is_done_for_what_is_not_there() -> None:
     bare["rods"][0] |= {"tensile_strength": 0, "plastic_strain": 0.01}
     assert plan(bare) == {"physics.elasticity_after_yielding"}
     assert plan(model([particle("p", 0, 0)], [])) == set()
-
-
-def test_the_plan_follows_edits() -> None:
-    session = Session.open(oscillator(100.0, displacement=[0.01, 0]))
-    session.run(steps=10)
-    names = [[s.name for s in session.simulation.programs.compiled.systems]]
-    session.environment.drag = 1.0
-    session.run(steps=10)
-    names.append([s.name for s in session.simulation.programs.compiled.systems])
-    session.undo()
-    session.undo()
-    session.run(steps=10)
-    names.append([s.name for s in session.simulation.programs.compiled.systems])
-    assert names == [["physics.elasticity"], ["physics.elasticity", "physics.drag"], ["physics.elasticity"]]

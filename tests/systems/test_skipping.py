@@ -1,7 +1,5 @@
 """A plan holds what its model needs and nothing else, as read from the file itself."""
 
-from __future__ import annotations
-
 import itertools
 import json
 from importlib.resources import files

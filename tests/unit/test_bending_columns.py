@@ -6,12 +6,11 @@ from typing import Any
 import numpy as np
 import pytest
 
-from pinjoint import Session
 from pinjoint.components.field import FieldError
 from pinjoint.components.model import Model
 from pinjoint.documents.document import document, parse
-from pinjoint.documents.format import ModelError
 from pinjoint.paths import PathError, apply_override, locate_one
+from tests.reference import models
 
 EI, EA, LENGTH, DENSITY = 10.0, 2e4, 2.0, 6.15
 
@@ -21,13 +20,11 @@ def rod(**facts: Any) -> Model:
     held = {"name": "A", "position": [0.0, 0.0], "fixed": [True, True], "fixed_rotation": True}
     member = {"name": "AB", "between": ["A", "B"], "stiffness": EA, "bending_stiffness": EI, **facts}
     return parse(
-        {
-            "format": "pinjoint model",
-            "version": 1,
-            "particles": [held, {"name": "B", "position": [LENGTH, 0.0]}],
-            "rods": [member],
-            "loads": [{"name": "p", "on": "B", "force": [0.0, -1.0], "moment": 3.0}],
-        }
+        models.model(
+            [held, models.particle("B", LENGTH, 0.0)],
+            [member],
+            loads=[{"name": "p", "on": "B", "force": [0.0, -1.0], "moment": 3.0}],
+        )
     )
 
 
@@ -97,31 +94,6 @@ def test_files_keep_every_fact_and_write_no_defaults() -> None:
     plain = document(rod(bending_stiffness=None))
     assert set(plain["rods"][0]) == {"name", "between", "stiffness"}
     assert set(plain["particles"][1]) == {"name", "position"}
-
-
-def test_undo_and_paste_take_them_along() -> None:
-    session = Session(rod(hinged=[False, True]))
-    beam = session.rods["AB"]
-    beam.hinged = (True, False)
-    session.undo()
-    assert session.rods["AB"].hinged == (False, True)
-
-
-@pytest.mark.parametrize(
-    ("key", "value", "says"),
-    [
-        ("bending_stiffness", -1.0, "bending stiffness is -1 kN·m²; it must be at least 0"),
-        ("hinged", [True], "[start, end]"),
-        ("hinged", [1, 0], "hinged is [1, 0]; it must be true or false"),
-        ("bending_damping", -1.0, "at least 0"),
-        ("temperature_gradient", "warm", "it must be a number"),
-    ],
-)
-def test_messages_name_element_value_and_remedy(key: str, value: Any, says: str) -> None:
-    with pytest.raises((ModelError, FieldError)) as raised:
-        rod(**{key: value})
-    assert says in str(raised.value)
-    assert "AB" in str(raised.value)
 
 
 def test_a_clamped_particle_does_not_spin() -> None:

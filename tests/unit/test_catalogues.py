@@ -1,7 +1,5 @@
 """The catalogues hold the sentences of the sources, and their translations can stand in their place."""
 
-from __future__ import annotations
-
 import ast
 import gettext
 import re

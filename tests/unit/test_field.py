@@ -1,7 +1,5 @@
 """Fields: what a column may hold, how a person is told otherwise, and how a handle reads and writes it."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable
 from typing import Any

@@ -1,7 +1,5 @@
 """Free bodies: the forces on joints and rods are in equilibrium."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 

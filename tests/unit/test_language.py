@@ -34,7 +34,7 @@ def test_errors_and_sentences_in_a_row_keep_their_english() -> None:
         both = joined([said, "", "More."])
     assert said == "It falhou: Passaram 0,5 s. Espaço põe a correr, + acelera."
     assert isinstance(both, Said)
-    assert both.english == f"It failed: {PASSED} More.".format(time=0.5)
+    assert english(both) == f"It failed: {PASSED} More.".format(time=0.5)
 
 
 def test_what_is_translated_already_and_nothing_stay_as_they_are() -> None:

@@ -1,7 +1,5 @@
 """Numbers that can be kept but not computed with are named, with what to do."""
 
-from __future__ import annotations
-
 import json
 from pathlib import Path
 
@@ -12,6 +10,7 @@ from pinjoint.commands.command_line import main
 from pinjoint.components.field import FieldError
 from pinjoint.components.numeric_range import incomputable
 from pinjoint.paths import PathError, apply_override
+from tests.reference.models import model
 
 
 def test_usual_models_can_be_computed() -> None:
@@ -109,13 +108,7 @@ def test_a_wall_so_far_that_nothing_can_be_told_to_touch_it_is_named(end: float,
     ball = {"name": "ball", "position": [0, 0], "radius": 0.5}
     wall = {"name": "ground", "start": [-end, -1.0], "end": [1.0, -1.0]}
     session = Session.open(
-        {
-            "format": "pinjoint model",
-            "version": 1,
-            "particles": [ball],
-            "environment": {"acceleration": [0, -9.81]},
-            "components": {"walls.Wall": [wall]},
-        }
+        model([ball], [], environment={"acceleration": [0, -9.81]}, components={"walls.Wall": [wall]})
     )
     assert (session.run(time=0.5) == "time reached") == computes
     if computes:

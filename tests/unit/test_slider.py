@@ -1,7 +1,5 @@
 """Sliders: their ranges, and where they are."""
 
-from __future__ import annotations
-
 import itertools
 
 import pytest

@@ -1,7 +1,5 @@
 """Names and values in sentences: short, on one line, without characters that do not print."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import pytest

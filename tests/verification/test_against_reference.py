@@ -123,25 +123,25 @@ def flights(draw: Callable[..., Any]) -> Document:
 SHARES = decimals(0.02, 0.5)  # of the stable step
 
 
-@settings(max_examples=40)
+@settings(max_examples=15)
 @given(trusses(full=True, damped=True), SHARES)
 def test_yielding_damped_loaded_trusses_with_verlet(document: Document, share: float) -> None:
     assert_agreement(document, "velocity_verlet", share)
 
 
-@settings(max_examples=30)
+@settings(max_examples=15)
 @given(trusses(full=True, damped=True), SHARES)
 def test_yielding_damped_loaded_trusses_with_the_thesis_scheme(document: Document, share: float) -> None:
     assert_agreement(document, "taylor2", 0.1 * share)
 
 
-@settings(max_examples=30)
+@settings(max_examples=15)
 @given(trusses(full=False, damped=True), SHARES)
 def test_damped_elastic_trusses(document: Document, share: float) -> None:
     assert_agreement(document, "velocity_verlet", share)
 
 
-@settings(max_examples=30)
+@settings(max_examples=15)
 @given(trusses(full=False, damped=False), SHARES)
 def test_undamped_elastic_trusses(document: Document, share: float) -> None:
     assert_agreement(document, "velocity_verlet", share)

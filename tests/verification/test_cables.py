@@ -1,7 +1,5 @@
 """Rods that bear tension only: slack or taut in statics, in motion, and refused where theory is linear."""
 
-from __future__ import annotations
-
 import math
 from typing import Any
 

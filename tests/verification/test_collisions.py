@@ -77,7 +77,7 @@ def test_off_centre() -> None:
     speeds=st.tuples(st.floats(1e-3, 1e3), st.floats(-1e3, -1e-3)),
     restitution=st.floats(0, 1),
 )
-@settings(max_examples=60)
+@settings(max_examples=40)
 def test_any_two_masses_by_newtons_law(
     masses: tuple[float, float], speeds: tuple[float, float], restitution: float
 ) -> None:
@@ -390,7 +390,7 @@ direction = st.tuples(coordinate, coordinate)
 @given(
     distance=st.floats(1.01, 10), angle=st.floats(0, 2 * math.pi), velocity=direction, acceleration=direction
 )
-@settings(max_examples=300)
+@settings(max_examples=150)
 def test_roots_of_the_gap_against_numpy(
     distance: float, angle: float, velocity: tuple[float, float], acceleration: tuple[float, float]
 ) -> None:
@@ -451,7 +451,7 @@ def scenes(draw: st.DrawFn) -> tuple[collisions.Scene, float]:
 
 
 @given(scenes())
-@settings(max_examples=40)
+@settings(max_examples=25)
 def test_random_scenes_as_the_reference_has_them(case: tuple[collisions.Scene, float]) -> None:
     """The same impacts in the same order; places and speeds to 1e-10 of what errors grow to."""
     scene, duration = case

@@ -1,7 +1,5 @@
 """Models drawn by lot with every feature against the references: the small form of `pinjoint bench differential`."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 from hypothesis import given, settings

@@ -1,7 +1,5 @@
 """Programs compute the same bits interpreted and compiled, and when the one follows the other, at any step."""
 
-from __future__ import annotations
-
 import itertools
 import math
 from pathlib import Path
@@ -32,10 +30,11 @@ KINDS = (
 )  # each is compiled
 
 STEPS = 90
+OF_EACH_FORM = "velocity_verlet", "esdirk4", "dop853"  # of step programs
 MEETING = {  # what may meet: steps that were tried are put back, and taken again
-    **{f"truss, {name}": struck(name, bends=False) for name in INTEGRATORS},
+    **{f"truss, {name}": struck(name, bends=False) for name in OF_EACH_FORM},
     **{f"frame, {name}": struck(name) for name in INTEGRATORS},
-    **{f"portal, {name}": portal_in_wind(name) for name in INTEGRATORS},
+    **{f"portal, {name}": portal_in_wind(name) for name in OF_EACH_FORM},
 }
 
 
@@ -55,7 +54,7 @@ def state(model: str | Model, steps: int, choice: Compile, switch: int | None = 
 
 
 @pytest.mark.parametrize("title", KINDS)
-@settings(max_examples=6)
+@settings(max_examples=3)
 @given(turn=st.integers(0, 10_000))
 def test_random_models_have_the_same_bits_in_both_forms(title: str, turn: int) -> None:
     document = case(numbers_of(title, 1, turn)[0]).document
@@ -65,14 +64,14 @@ def test_random_models_have_the_same_bits_in_both_forms(title: str, turn: int) -
 @pytest.mark.parametrize("integrator", list(INTEGRATORS))
 def test_all_integrators_have_the_same_bits_in_both_forms(integrator: str) -> None:
     one, other = (
-        state("hyperstatic_yield", 80, choice, integrator=integrator)
+        state("hyperstatic_yield", 40, choice, integrator=integrator)
         for choice in (Compile.NEVER, Compile.ALWAYS)
     )
     assert one == other
 
 
 @pytest.mark.parametrize("title", ["everything, in motion", "discs on trusses", "free discs that collide"])
-@settings(max_examples=6)
+@settings(max_examples=3)
 @given(turn=st.integers(0, 10_000), switch=st.integers(1, 59))
 def test_machine_code_may_take_over_at_any_step(title: str, turn: int, switch: int) -> None:
     document = case(numbers_of(title, 1, turn)[0]).document
@@ -84,7 +83,7 @@ def test_bits_do_not_depend_on_the_portions_of_interpreted_steps(
     document: Model, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr("pinjoint.systems.program.compiler.LONGEST_CALL", 0.0)
-    assert state(document, 300, Compile.NEVER) == state(document, 300, Compile.ALWAYS)
+    assert state(document, 100, Compile.NEVER) == state(document, 100, Compile.ALWAYS)
 
 
 @pytest.mark.parametrize("document", MEETING.values(), ids=list(MEETING))
@@ -103,7 +102,7 @@ def test_bits_of_what_may_meet_do_not_depend_on_the_portions(
 def test_machine_code_may_take_over_from_frames_at_any_step(title: str) -> None:
     document = MEETING[title]
     interpreted = state(document, STEPS, Compile.NEVER)
-    for switch in (1, 13, 40, STEPS - 1):
+    for switch in (13, STEPS - 1):
         assert state(document, STEPS, Compile.ELSEWHERE, switch) == interpreted, switch
 
 

@@ -51,7 +51,7 @@ def held_by_reference(loaded: Model, state: StaticState, within: float) -> None:
     assert np.abs(moment[particles.turning > 0.0]).max(initial=0.0) < within * size
 
 
-@settings(max_examples=25, deadline=None)
+@settings(max_examples=12, deadline=None)
 @given(seed=st.integers(0, 2**32 - 1))
 def test_random_frames_are_in_balance_by_the_slow_reference(seed: int) -> None:
     document = random_frame(seed)
@@ -130,7 +130,7 @@ def test_a_cantilever_bends_like_the_elastica(parts: int, error: float) -> None:
     assert math.dist(found.displacement[-1] / LENGTH, elastica(5.0)) < 1.1 * error
 
 
-@settings(max_examples=12, deadline=None)
+@settings(max_examples=6, deadline=None)
 @given(seed=st.integers(0, 2**32 - 1))
 def test_braces_that_yield_or_go_slack_beside_members_that_bend(seed: int) -> None:
     """Under the load and after unloading to a fifth of it, by the slow reference; no force beyond a strength."""

@@ -77,7 +77,7 @@ def agrees(document: dict[str, Any], found: StaticState, made: Model, *, within:
         assert np.abs(values - np.array(expected)).max() <= within * size, key
 
 
-@settings(max_examples=60, deadline=None)
+@settings(max_examples=25, deadline=None)
 @given(seed=SEEDS)
 def test_random_frames_agree_with_an_independent_solver(seed: int) -> None:
     document = random_frame(seed)

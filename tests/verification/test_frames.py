@@ -10,19 +10,13 @@ from pinjoint import Session
 from pinjoint.documents.document import parse
 from pinjoint.systems.physics.automatic import _scaled_stiffness
 from pinjoint.systems.physics.spectrum import spectrum
-from tests.reference import frames
+from tests.reference import frames, models
 
 EI, LENGTH, LOAD = 100.0, 2.0, -1e-4
 
 
 def model(particles: list[dict[str, Any]], rods: list[dict[str, Any]], **settings: Any) -> dict[str, Any]:
-    return {
-        "format": "pinjoint model",
-        "version": 1,
-        "settings": {"collisions": False, **settings},
-        "particles": particles,
-        "rods": rods,
-    }
+    return models.model(particles, rods, settings={"collisions": False, **settings})
 
 
 def cantilever(count: int, slenderness: float) -> dict[str, Any]:

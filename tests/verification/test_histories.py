@@ -1,7 +1,5 @@
 """Loads that vary, on oscillators of one degree of freedom, against closed forms (F0 = k δ, ω² = k/m, T = 2π/ω)."""
 
-from __future__ import annotations
-
 import math
 from pathlib import Path
 from typing import Any
@@ -13,6 +11,7 @@ from pinjoint import Session
 from pinjoint.commands.command_line import main
 from pinjoint.components import FieldError
 from pinjoint.included.histories import read_record, shake
+from tests.reference.models import model
 
 STIFFNESS, MASS = 100.0, 100.0  # kN/m, kg
 OMEGA = math.sqrt(1000.0 * STIFFNESS / MASS)
@@ -51,14 +50,12 @@ def oscillators() -> dict[str, Any]:
             }
         )
         loads.append({"on": name, "force": [FORCE, 0.0], "history": history})
-    return {
-        "format": "pinjoint model",
-        "version": 1,
-        "settings": {"time_step": 1e-5, "integrator": "velocity_verlet", "collisions": False},
-        "particles": particles,
-        "rods": rods,
-        "loads": loads,
-    }
+    return model(
+        particles,
+        rods,
+        settings={"time_step": 1e-05, "integrator": "velocity_verlet", "collisions": False},
+        loads=loads,
+    )
 
 
 @pytest.fixture(scope="module")

@@ -1,7 +1,5 @@
 """Load–displacement curves: on the closed form everywhere, through limit points, exactly to their goal."""
 
-from __future__ import annotations
-
 import csv
 import io
 import json
@@ -15,7 +13,7 @@ from pinjoint.commands.command_line import main
 from pinjoint.documents import models
 from pinjoint.systems.statics.path import Goal, load_path
 from tests.reference import closed_forms
-from tests.reference.models import three_bar_truss, von_mises_truss
+from tests.reference.models import model, particle, three_bar_truss, von_mises_truss
 from tests.reference.random_models import case
 
 HEIGHT, HALF_SPAN, STIFFNESS = 1.0, 5.0, 1.28e6
@@ -100,17 +98,15 @@ def test_a_curve_that_ends_early_says_so(capsys: pytest.CaptureFixture[str]) -> 
 
 
 def test_a_curve_of_a_mechanism_says_what_moves(capsys: pytest.CaptureFixture[str], tmp_path: Path) -> None:
-    square = {
-        "format": "pinjoint model",
-        "version": 1,
-        "particles": [
-            {"name": "A", "position": [0, 0], "fixed": [True, True]},
-            {"name": "B", "position": [1, 0], "fixed": [True, True]},
-            {"name": "C", "position": [1, 1], "force": [1, 0]},
-            {"name": "D", "position": [0, 1]},
+    square = model(
+        [
+            particle("A", 0, 0, fixed=[True, True]),
+            particle("B", 1, 0, fixed=[True, True]),
+            particle("C", 1, 1, force=[1, 0]),
+            particle("D", 0, 1),
         ],
-        "rods": [{"name": name, "between": list(name)} for name in ("BC", "CD", "DA")],
-    }
+        [{"name": name, "between": list(name)} for name in ("BC", "CD", "DA")],
+    )
     (tmp_path / "square.json").write_text(json.dumps(square))
     assert main(["curve", str(tmp_path / "square.json")]) == 1
     assert (

@@ -10,6 +10,7 @@ from pinjoint import Session
 from pinjoint.components.obstacles import Obstacles
 from pinjoint.systems.collision.free.discs import Discs
 from tests.reference import persistent_contact
+from tests.reference.models import model, particle
 from tests.reference.scenes_of_discs import GRAVITY, Scene, stacked
 
 DOWN = np.array([0.0, -GRAVITY])
@@ -64,13 +65,12 @@ def test_motion_in_contact_within_steps_is_of_first_order(expected: np.ndarray, 
     ]
     for step, error in ((2e-3, 1.5e-3), (2e-4, 1.5e-4)):
         session = Session.open(
-            {
-                "format": "pinjoint model",
-                "version": 1,
-                "environment": {"acceleration": DOWN.tolist(), "drag": 1e-9},
-                "settings": {"restitution": 0.0, "integrator": integrator, "time_step": step},
-                "particles": particles,
-            }
+            model(
+                particles,
+                [],
+                environment={"acceleration": DOWN.tolist(), "drag": 1e-09},
+                settings={"restitution": 0.0, "integrator": integrator, "time_step": step},
+            )
         )
         session.run(time=UNTIL)
         np.testing.assert_allclose(session.model.particles.displacement, expected, atol=error * RADIUS)
@@ -215,17 +215,16 @@ def test_a_disc_between_a_wall_and_another_slides_down_like_a_ladder() -> None:
 def test_the_account_is_even_at_every_moment_of_discs_that_slide() -> None:
     """Two discs fall onto a floor and slide along it and one another, under two pulls."""
     session = Session.open(
-        {
-            "format": "pinjoint model",
-            "version": 1,
-            "environment": {"acceleration": DOWN.tolist()},
-            "settings": {"restitution": 0.2},
-            "particles": [
-                {"name": "a", "position": [0.0, 0.16], "mass": 10.0, "radius": 0.15, "velocity": [0.3, 0.0]},
-                {"name": "b", "position": [0.02, 0.5], "radius": 0.15, "acceleration": [1.0, 0.0]},
+        model(
+            [
+                particle("a", 0.0, 0.16, mass=10.0, radius=0.15, velocity=[0.3, 0.0]),
+                particle("b", 0.02, 0.5, radius=0.15, acceleration=[1.0, 0.0]),
             ],
-            "components": {"walls.Wall": [{"start": [-3.0, 0.0], "end": [3.0, 0.0]}]},
-        }
+            [],
+            environment={"acceleration": DOWN.tolist()},
+            settings={"restitution": 0.2},
+            components={"walls.Wall": [{"start": [-3.0, 0.0], "end": [3.0, 0.0]}]},
+        )
     )
     session.run(time=0.4)
     energies = []

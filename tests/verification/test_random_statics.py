@@ -1,7 +1,5 @@
 """Settling and curves of structures drawn by lot: yields, unloading, cables, mechanisms, rods that become straight."""
 
-from __future__ import annotations
-
 import json
 from pathlib import Path
 

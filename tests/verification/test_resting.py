@@ -1,7 +1,5 @@
 """Statics of discs that rest on one another and on structures: closed forms, balance, and runs until rest."""
 
-from __future__ import annotations
-
 import math
 from typing import Any
 

@@ -1,7 +1,5 @@
 """Settling: equilibria, yielding, instability and collapse against closed forms and independent solvers."""
 
-from __future__ import annotations
-
 import itertools
 import json
 import math

@@ -1,7 +1,5 @@
 """Rods that warm up or do not fit, and supports that settle: in statics, in motion and in linear theory."""
 
-from __future__ import annotations
-
 import json
 import math
 from collections.abc import Callable

@@ -1,7 +1,5 @@
 """Theory beside the simulation: linear answers, indeterminacy, influence lines, vibrations, `pinjoint verify`."""
 
-from __future__ import annotations
-
 import json
 import math
 from pathlib import Path

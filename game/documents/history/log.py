@@ -53,7 +53,7 @@ class Run:
 
 Entry = Edit | Run
 
-_NOTHING = Snapshot((), (), {})
+_NOTHING = Snapshot({}, {})
 
 
 class DiskStore:
@@ -104,7 +104,7 @@ class Log:
         """Add the newest entry."""
         self._entries.append(entry)
         if entry.whole is not None:
-            self._held += entry.whole.state.size
+            self._held += entry.whole.state.nbytes
             while self._held > self._memory and self._store_oldest():
                 pass
 
@@ -115,7 +115,7 @@ class Log:
         if entry.stored is not None:
             return _with_state(entry, self._store.read(entry.stored), None)
         if entry.whole is not None:
-            self._held -= entry.whole.state.size
+            self._held -= entry.whole.state.nbytes
         return entry
 
     def clear(self) -> None:
@@ -132,7 +132,7 @@ class Log:
             except OSError:  # no room on the disk either
                 return False
             self._entries[self._oldest] = _with_state(entry, _NOTHING, stored)
-            self._held -= entry.whole.state.size
+            self._held -= entry.whole.state.nbytes
         self._oldest += 1
         return True
 

@@ -85,7 +85,7 @@ class Timeline:
             return
         checkpoint = self._checkpoints[now] = self._simulation.checkpoint()
         if len(self._checkpoints) > max(
-            min(MOST_CHECKPOINTS, self._memory // max(checkpoint.state.size, 1)), 2
+            min(MOST_CHECKPOINTS, self._memory // max(checkpoint.state.nbytes, 1)), 2
         ):
             self._interval *= 2
             kept = {self.first, now}

@@ -14,8 +14,7 @@ from pinjoint.systems.collision.driven.columns import Driven, Listing
 from pinjoint.systems.collision.driven.kernels.neighbours import list_pairs
 from pinjoint.systems.collision.driven.kernels.steps import collide
 from pinjoint.systems.collision.system import normals, persistent_contacts, support_forces
-from pinjoint.systems.program.between import Between
-from pinjoint.systems.program.compiler import GeneratedModule, entries_to
+from pinjoint.systems.program.compiler import Between, GeneratedModule, entries_to
 
 
 def _contents() -> tuple[str, dict[str, Callable[..., Any]]]:

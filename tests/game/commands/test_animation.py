@@ -1,7 +1,5 @@
 """GIFs of runs: every picture a later time, at the pace of the window, until the end."""
 
-from __future__ import annotations
-
 from itertools import pairwise
 from pathlib import Path
 from typing import Any

@@ -1,7 +1,5 @@
 """The command line as a person meets it: exit status, one clear line for what is wrong, nothing lost."""
 
-from __future__ import annotations
-
 import csv
 import io
 import json

@@ -1,7 +1,5 @@
 """Work without an end: it says how far it is, Ctrl+C ends it at once, and what was found until then is written."""
 
-from __future__ import annotations
-
 import json
 import signal
 from itertools import pairwise

@@ -1,7 +1,5 @@
 """The language of the program: --language, PINJOINT_LANGUAGE, what the person chose, what the system speaks."""
 
-from __future__ import annotations
-
 import json
 import locale
 import sys

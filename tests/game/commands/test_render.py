@@ -1,11 +1,5 @@
 """`pinjoint render`: pictures for reports."""
 
-from __future__ import annotations
-
-import os
-
-os.environ.setdefault("SDL_VIDEODRIVER", "dummy")
-
 import xml.etree.ElementTree as ET
 from pathlib import Path
 

@@ -1,7 +1,5 @@
 """Reports of runs: the states at the times that were asked for."""
 
-from __future__ import annotations
-
 from pinjoint import Session
 from pinjoint.commands.reports.report import Analysis
 from tests.reference.models import triangle

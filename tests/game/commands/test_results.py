@@ -1,7 +1,5 @@
 """Results as data, JSON, table and CSV."""
 
-from __future__ import annotations
-
 import csv
 import io
 import json

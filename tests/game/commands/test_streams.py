@@ -1,7 +1,5 @@
 """Standard output and standard error: closed, full, or of an encoding that lacks letters; and what comes from files."""
 
-from __future__ import annotations
-
 import json
 import os
 import subprocess

@@ -1,7 +1,5 @@
 """Steps of piles: whatever jams, they supply no energy."""
 
-from __future__ import annotations
-
 import numpy as np
 from hypothesis import example, given, settings
 from hypothesis import strategies as st

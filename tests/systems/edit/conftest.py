@@ -1,7 +1,5 @@
 """Sessions to edit."""
 
-from __future__ import annotations
-
 import pytest
 
 from pinjoint import Session

@@ -1,7 +1,5 @@
 """A person at a session: what they press, and what they see."""
 
-from __future__ import annotations
-
 from collections.abc import Iterable
 from typing import Any
 

@@ -1,7 +1,5 @@
 """Copying, cutting, pasting and duplicating."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Particles and rods, as a person draws them."""
 
-from __future__ import annotations
-
 import math
 
 import pytest
@@ -61,20 +59,18 @@ def test_particles_are_made_while_time_passes(triangle: Session) -> None:
     assert triangle.particles.count == 4
 
 
-def test_l_over_a_particle_then_l_over_another(two: Session) -> None:
+@pytest.mark.parametrize("second", ["l", "click", "drag"])
+def test_l_over_a_particle_then_l_or_a_click_over_another_or_a_drag_there(two: Session, second: str) -> None:
     press_at(two, "l", 0.0, 0.0)
-    press_at(two, "l", 1.5, 0.0)
+    if second == "drag":
+        two.drag((0.0, 0.0), (1.5, 0.0))
+    else:
+        press_at(two, second, 1.5, 0.0)
     [rod] = two.rods
     assert [end.name for end in rod.ends] == ["particle 1", "particle 2"]
     assert two.notice == "Rod 1: 150 cm"
     assert two.particles["particle 1"].mass == pytest.approx(6.15 * 1.5 / 2, rel=1e-15)
     assert two.gesture is None
-
-
-def test_l_then_a_click(two: Session) -> None:
-    press_at(two, "l", 0.0, 0.0)
-    two.click(1.5, 0.0)
-    assert two.rods.count == 1
 
 
 def test_the_length_is_shown_before_the_rod_is_made(two: Session) -> None:
@@ -148,13 +144,6 @@ def test_a_drag_over_nothing_with_the_rod_tool_makes_both_ends(empty: Session) -
     assert (empty.particles.count, empty.rods.count) == (2, 1)
     empty.press("escape")  # of the rod that would follow, and of the tool
     assert (empty.gesture, empty.view.tool) == (None, "")
-
-
-def test_a_drag_with_l_held_makes_a_rod(two: Session) -> None:
-    press_at(two, "l", 0.0, 0.0)
-    two.drag((0.0, 0.0), (1.5, 0.0))
-    assert two.rods.count == 1
-    assert two.gesture is None
 
 
 def test_a_rod_between_displaced_particles_has_their_distance_at_creation(two: Session) -> None:

@@ -1,7 +1,5 @@
 """Pulling a running particle by a spring."""
 
-from __future__ import annotations
-
 import math
 
 import pytest

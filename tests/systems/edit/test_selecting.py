@@ -1,7 +1,5 @@
 """Selecting, deleting and moving, as a person does it."""
 
-from __future__ import annotations
-
 import math
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Supports, forces and velocities, by keys and arrows."""
 
-from __future__ import annotations
-
 import pytest
 
 from pinjoint import Session

@@ -1,7 +1,5 @@
 """Results: what stands beside the boxes of properties."""
 
-from __future__ import annotations
-
 from pathlib import Path
 
 import pytest

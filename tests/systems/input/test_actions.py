@@ -1,7 +1,5 @@
 """The table of keys is true: in every scene that it names, every key does something."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from importlib.resources import files
 from pathlib import Path

@@ -18,7 +18,7 @@ from pinjoint.systems.physics.integrators import INTEGRATORS
 from pinjoint.systems.program.parallel import make_program
 from pinjoint.systems.program.program import Program
 from pinjoint.systems.program.writer import FEW, MANY, VERY_MANY
-from tests.reference import frames
+from tests.reference import frames, models
 
 FORMS = (FEW, MANY, VERY_MANY)
 OF_TURNING = re.compile(
@@ -47,15 +47,13 @@ def beam(count: int = 4, *, clamped: bool = True, **settings: Any) -> dict[str, 
     rods = [{"name": f"R{i}", "between": [f"P{i}", f"P{i + 1}"], **member} for i in range(count)]
     sine = {"kind": "sine", "frequency": 20.0}
     loads = [{"name": "shaken", "on": f"P{count}", "force": [0.5, 0.2], "moment": 0.4, "history": sine}]
-    return {
-        "format": "pinjoint model",
-        "version": 1,
-        "settings": {"collisions": False, **settings},
-        "environment": {"drag": 2.0, "acceleration": [0.0, -9.81]},
-        "particles": particles,
-        "rods": rods,
-        "loads": loads,
-    }
+    return models.model(
+        particles,
+        rods,
+        settings={"collisions": False, **settings},
+        environment={"drag": 2.0, "acceleration": [0.0, -9.81]},
+        loads=loads,
+    )
 
 
 def state_of(session: Session) -> bytes:

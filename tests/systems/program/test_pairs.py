@@ -1,7 +1,5 @@
 """Laws of pairs: fused equals stage by stage; lists of near pairs change no bit; forces, energies and mistakes."""
 
-from __future__ import annotations
-
 import math
 from typing import Any
 

@@ -1,7 +1,5 @@
 """Templates of step programs: what stands for what, and how it is put in."""
 
-from __future__ import annotations
-
 import ast
 import re
 from enum import IntEnum

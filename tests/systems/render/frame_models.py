@@ -1,9 +1,9 @@
 """Models of members that bend, for pictures of them."""
 
-from __future__ import annotations
-
 import itertools
 from typing import Any
+
+from tests.reference.models import model
 
 EA, EI = 1.2e6, 8000.0
 Source = dict[str, Any]
@@ -11,17 +11,15 @@ Source = dict[str, Any]
 
 def frame(particles: dict[str, tuple[float, float, Source]], rods: dict[str, Source], **others: Any) -> Source:
     """A model: particles by name with place and facts; rods by the names of their ends ("A B") with facts."""
-    return {
-        "format": "pinjoint model",
-        "version": 1,
-        "particles": [{"name": name, "position": [x, y], **facts} for name, (x, y, facts) in particles.items()],
-        "rods": [
+    return model(
+        [{"name": name, "position": [x, y], **facts} for name, (x, y, facts) in particles.items()],
+        [
             {"name": ends.replace(" ", ""), "between": ends.split(), "stiffness": EA, "bending_stiffness": EI}
             | facts
             for ends, facts in rods.items()
         ],
         **others,
-    }
+    )
 
 
 CLAMPED: Source = {"fixed": [True, True], "fixed_rotation": True}

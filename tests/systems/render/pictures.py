@@ -1,7 +1,5 @@
 """Models to draw, and what their pictures consist of."""
 
-from __future__ import annotations
-
 import numpy as np
 
 from pinjoint.components.camera import Camera, Viewport

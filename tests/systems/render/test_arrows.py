@@ -1,7 +1,5 @@
 """Arrows that say which way particles are loaded and thrown."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 

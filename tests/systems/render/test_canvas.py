@@ -1,11 +1,5 @@
 """Pictures on a surface, without a display."""
 
-from __future__ import annotations
-
-import os
-
-os.environ.setdefault("SDL_VIDEODRIVER", "dummy")
-
 import numpy as np
 import pygame
 import pytest

@@ -1,7 +1,5 @@
 """Force diagrams in a picture."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 from hypothesis import given

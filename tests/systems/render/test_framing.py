@@ -1,12 +1,7 @@
 """Marks of others are cut to what is seen: the picture is the same, and none is too much for a canvas."""
 
-from __future__ import annotations
-
-import os
 import time
 from typing import Any
-
-os.environ.setdefault("SDL_VIDEODRIVER", "dummy")
 
 import numpy as np
 import pygame

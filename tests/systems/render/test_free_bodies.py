@@ -1,7 +1,5 @@
 """The drawing of free bodies: pairs of opposite arrows, values beside them, and sums with their numbers."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 

@@ -1,13 +1,8 @@
 """Nothing is drawn, and nothing looked for under the pointer, while nothing changes."""
 
-from __future__ import annotations
-
 import gc
-import os
 from collections.abc import Iterator
 from typing import Any
-
-os.environ.setdefault("SDL_VIDEODRIVER", "dummy")
 
 import numpy as np
 import pytest

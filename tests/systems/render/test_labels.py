@@ -1,7 +1,5 @@
 """Names and values, and where they find room."""
 
-from __future__ import annotations
-
 import itertools
 
 import numpy as np
@@ -38,7 +36,7 @@ def random_model(seed: int, particles: int, rods: int) -> Model:
     return model
 
 
-@settings(deadline=None, max_examples=40)
+@settings(deadline=None, max_examples=25)
 @given(
     st.integers(0, 10_000),
     st.integers(2, 30),

@@ -1,7 +1,5 @@
 """What is drawn of models with more elements than can be seen singly, and the fast forms of slow rules."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 

@@ -221,7 +221,7 @@ def test_reactions_turn_in_diagrams() -> None:
 
 
 @pytest.mark.parametrize("quantity", QUANTITIES)
-@pytest.mark.parametrize("size", [1e-300, 1e-30, 1e30, 1e150, np.inf, np.nan])
+@pytest.mark.parametrize("size", [1e-300, 1e150, np.nan])
 def test_extreme_states_are_drawn_or_left_out(size: float, quantity: str) -> None:
     """Nothing raises, whatever a run that diverges has left."""
     for column in ("particles.displacement", "particles.rotation", "rods.end_moment", "rods.axial_force"):

@@ -1,7 +1,5 @@
 """What stands above a model: status, legend, heading, scale."""
 
-from __future__ import annotations
-
 import itertools
 
 import pytest

@@ -1,7 +1,5 @@
 """The numbers of the element under the pointer: right, and never over it."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 

@@ -1,11 +1,5 @@
 """The compiled drawing of large pictures against areas, against small pictures, and within its bounds."""
 
-from __future__ import annotations
-
-import os
-
-os.environ.setdefault("SDL_VIDEODRIVER", "dummy")
-
 import numpy as np
 import pygame
 import pytest

@@ -1,10 +1,5 @@
 """Particles, rods, supports and grids in a picture."""
 
-from __future__ import annotations
-
-import subprocess
-import sys
-
 import numpy as np
 import pytest
 
@@ -13,36 +8,12 @@ from pinjoint.components.grid import Grid
 from pinjoint.components.model import Model
 from pinjoint.components.particle import Particle
 from pinjoint.components.tags import Hovered, Selected
-from pinjoint.components.view import View, drawn_positions
+from pinjoint.components.view import View
 from pinjoint.components.world import Derivation
 from pinjoint.systems.render.marks import Bars, Discs, Fills, Panel, Rectangles, Stamps, Strokes, Text
 from pinjoint.systems.render.picture import compose
 from pinjoint.systems.render.supports import DOWN, LEFT, NO_SUPPORT, RIGHT, UP, freest_sides
 from tests.systems.render.pictures import LIGHT, fill, marks_of, picture_of, triangle, view_of
-
-
-def test_composing_needs_no_pygame() -> None:
-    code = "import sys, pinjoint.systems.render.picture; print('pygame' in sys.modules, 'numba' in sys.modules)"
-    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
-    assert done.stdout.split() == ["False", "False"]
-
-
-def test_drawn_positions_scale_displacements() -> None:
-    model = triangle()
-    model.writable("particles.displacement")[1] = (0.01, -0.02)
-    model.settings.displacement_scale = 10.0
-    np.testing.assert_allclose(drawn_positions(model), [(0, 0), (1.1, 0.8), (2, 0)], rtol=1e-15)
-
-
-def test_rods_are_drawn_between_drawn_positions() -> None:
-    model = triangle()
-    model.writable("particles.displacement")[1] = (0.01, -0.02)
-    model.settings.displacement_scale = 10.0
-    view = view_of(model)
-    (rods,) = marks_of(compose(model, view, LIGHT), Strokes, LIGHT.ink)
-    pixels = view.camera.to_pixels(drawn_positions(model))
-    np.testing.assert_allclose(rods.start, pixels[[0, 1, 2]], rtol=1e-12)
-    np.testing.assert_allclose(rods.end, pixels[[1, 2, 0]], rtol=1e-12)
 
 
 def test_ghost_appears_only_when_displacements_are_seen() -> None:
@@ -130,17 +101,6 @@ def test_derived_columns_are_read_only_when_needed() -> None:
 )
 def test_supports_stand_where_no_rod_is(fixed: tuple, crowd: tuple, side: int) -> None:
     assert freest_sides(np.array([fixed]), np.array([crowd], dtype=float)).tolist() == [side]
-
-
-def test_supports_touch_the_rim_from_outside() -> None:
-    model = triangle()
-    view = view_of(model)
-    stamps = {s.symbol: s for s in marks_of(compose(model, view, LIGHT), Stamps)}
-    pixels = view.camera.to_pixels(model.particles.position)
-    radius = 0.05 * view.camera.scale
-    for symbol, row in (("roller", 0), ("pinned", 2)):
-        assert stamps[symbol].turns == DOWN
-        np.testing.assert_allclose(stamps[symbol].at, [pixels[row] + [0, radius - 1]])
 
 
 def test_positions_that_are_no_numbers_are_left_out() -> None:

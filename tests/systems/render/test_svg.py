@@ -1,7 +1,5 @@
 """Pictures as SVG and PDF: what stands in them, and whose it is."""
 
-from __future__ import annotations
-
 import re
 import xml.etree.ElementTree as ET
 from functools import partial

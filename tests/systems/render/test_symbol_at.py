@@ -1,7 +1,5 @@
 """Arrows and supports stand for their particles and rods, where they are drawn."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 

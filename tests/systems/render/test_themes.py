@@ -1,7 +1,5 @@
 """Themes, and their colours to those who see few."""
 
-from __future__ import annotations
-
 import itertools
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Thumbnails: what is drawn of a model stays inside its card and shows what happens."""
 
-from __future__ import annotations
-
 from pathlib import Path
 
 import pytest

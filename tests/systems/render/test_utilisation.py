@@ -1,7 +1,5 @@
 """How much of its strength each rod bears, in colours."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 

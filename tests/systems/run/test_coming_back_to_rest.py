@@ -1,29 +1,24 @@
 """A run that came to rest is at rest at once wherever its state comes back: from undo, or from a file."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import pytest
 
 from pinjoint import Session
 from pinjoint.documents.document import document
+from tests.reference.models import model, particle
 
 Model = dict[str, Any]
 
 
 def _fallen(drag: float) -> Model:
     """A disc that falls onto another."""
-    return {
-        "format": "pinjoint model",
-        "version": 1,
-        "particles": [
-            {"name": "A", "position": [0, 0], "fixed": [True, True], "radius": 0.1},
-            {"name": "B", "position": [0, 0.5], "radius": 0.1, "mass": 1},
-        ],
-        "environment": {"acceleration": [0, -9.81], "drag": drag},
-        "settings": {"restitution": 0.2},
-    }
+    return model(
+        [particle("A", 0, 0, fixed=[True, True], radius=0.1), particle("B", 0, 0.5, radius=0.1, mass=1)],
+        [],
+        environment={"acceleration": [0, -9.81], "drag": drag},
+        settings={"restitution": 0.2},
+    )
 
 
 CASES = {"rods": "isostatic", "flight": _fallen(0.0), "driven": _fallen(0.3)}

@@ -1,7 +1,5 @@
 """One model, one run: looking at a moment, in whatever way, changes no bit of what comes after."""
 
-from __future__ import annotations
-
 import io
 import json
 import math
@@ -22,7 +20,7 @@ from pinjoint.systems.program.program import Program
 from pinjoint.systems.run.program_steps import ProgramSteps
 from tests.reference import bits
 from tests.reference.elements import Model
-from tests.reference.models import oscillator
+from tests.reference.models import model, oscillator, particle
 
 END = 0.6
 LOOKS = [0.05, 0.0501, 0.17, 0.2, 0.31, 0.4, 0.52]
@@ -40,37 +38,35 @@ def _yielding() -> Model:
 
 def _discs(drag: float = 0.0, **settings: Any) -> Model:
     """Two discs that bounce between two that are held."""
-    return {
-        "format": "pinjoint model",
-        "version": 1,
-        "particles": [
-            {"name": "A", "position": [0, 0], "velocity": [3, 0.5], "mass": 1, "radius": 0.1},
-            {"name": "B", "position": [0.6, 0.1], "velocity": [-2, 0], "mass": 2, "radius": 0.1},
-            {"name": "C", "position": [1.2, 0], "fixed": [True, True], "radius": 0.1},
-            {"name": "D", "position": [-0.6, 0], "fixed": [True, True], "radius": 0.1},
+    return model(
+        [
+            particle("A", 0, 0, velocity=[3, 0.5], mass=1, radius=0.1),
+            particle("B", 0.6, 0.1, velocity=[-2, 0], mass=2, radius=0.1),
+            particle("C", 1.2, 0, fixed=[True, True], radius=0.1),
+            particle("D", -0.6, 0, fixed=[True, True], radius=0.1),
         ],
-        "environment": {"drag": drag},
-        "settings": settings,
-    }
+        [],
+        environment={"drag": drag},
+        settings=settings,
+    )
 
 
 def _stacked(aside: float = 0.0, **settings: Any) -> Model:
     """Two discs that come to lie on a third; a pulse and a ramp lift them off again."""
-    return {
-        "format": "pinjoint model",
-        "version": 1,
-        "particles": [
-            {"name": "A", "position": [0, 0], "fixed": [True, True], "radius": 0.1},
-            {"name": "B", "position": [0, 0.22], "mass": 1, "radius": 0.1},
-            {"name": "C", "position": [aside, 0.45], "mass": 2, "radius": 0.1},
+    return model(
+        [
+            particle("A", 0, 0, fixed=[True, True], radius=0.1),
+            particle("B", 0, 0.22, mass=1, radius=0.1),
+            particle("C", aside, 0.45, mass=2, radius=0.1),
         ],
-        "environment": {"acceleration": [0, -9.81], "drag": 0.3},
-        "loads": [
+        [],
+        environment={"acceleration": [0, -9.81], "drag": 0.3},
+        loads=[
             {"on": "B", "force": [0, 0.05], "history": {"kind": "pulse", "start": 0.5, "duration": 0.05}},
             {"on": "C", "force": [0, 0.06], "history": {"kind": "ramp", "start": 0.7, "duration": 0.05}},
         ],
-        "settings": {"restitution": 0.2, **settings},
-    }
+        settings={"restitution": 0.2, **settings},
+    )
 
 
 CASES = {

@@ -1,7 +1,5 @@
 """LAPACK without scipy.linalg around it: the same functions, wherever scipy keeps them."""
 
-from __future__ import annotations
-
 import sys
 from collections.abc import Iterator
 

@@ -1,7 +1,5 @@
 """Remarks: what a run did that a slowly growing load would not have done, said where it comes to rest."""
 
-from __future__ import annotations
-
 import json
 from typing import Any
 

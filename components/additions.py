@@ -1,9 +1,9 @@
-"""Kinds: elements that a mod adds besides particles, rods, loads and grids."""
+"""What mods add to models: facts about elements, by a Component, and elements of kinds of their own."""
 
 from __future__ import annotations
 
 from collections.abc import Iterator
-from typing import Any
+from typing import Any, ClassVar
 
 import numpy as np
 from numpy.typing import NDArray
@@ -15,6 +15,49 @@ from pinjoint.components.mistake import WrongValue
 from pinjoint.components.model import KINDS, Model
 from pinjoint.components.table import Table, fields_of
 from pinjoint.components.wording import is_identifier
+
+
+class Component:
+    """Facts that a mod adds to elements of one kind; a subclass declares them as Fields.
+
+    Every element of the kind has them, at their defaults to begin with. In Python and in kernels they go by
+    `<mod>_<field>`: `particle.wind_area`, `particles_wind_area`. Files keep them at the element, under
+    "components": {"<mod>.<Component>": {…}}.
+
+    of: the kind of element, such as Particle, Rod, Environment or Settings.
+    """
+
+    of: ClassVar[type[Handle]]
+
+
+def add_component(mod: str, component: type[Component]) -> list[str]:
+    """Let all worlds made from now on have a mod's component, as attributes of its kind; returns their names.
+
+    Raises ValueError if a column of that name is there, or a Field is none that a mod can add.
+    """
+    kind, fields = component.of, fields_of(component)
+    names = [f"{mod}_{field.name.removeprefix(f'{mod}_')}" for field in fields]
+    for field, name in zip(fields, names, strict=True):
+        if hasattr(kind, name):
+            raise WrongValue(
+                "{component}: {table} have a '{name}' already; give this Field another name.",
+                component=component.__name__,
+                table=kind.table,
+                name=name,
+            )
+        if field.references is not None or field.role is Role.DERIVED:
+            raise WrongValue(
+                "{component}.{field}: a mod cannot add references or derived columns, only Fields with values of"
+                " their own (document or state).",
+                component=component.__name__,
+                field=field.name,
+            )
+        field.check_default(component.__name__)
+    for field, name in zip(fields, names, strict=True):
+        field.name, field.component = name, f"{mod}.{component.__name__}"
+        field.key = field.key.removeprefix(f"{mod}_")
+        setattr(kind, name, field)
+    return names
 
 
 def checked_kind(mod: str, kind: type[Handle]) -> str:
@@ -63,8 +106,7 @@ def checked_kind(mod: str, kind: type[Handle]) -> str:
                 name=kind.__name__,
                 point=point,
             )
-    called = f"{mod}.{kind.__name__}"
-    return called
+    return f"{mod}.{kind.__name__}"
 
 
 def outlines(model: Model) -> Iterator[tuple[Table[Any], NDArray[np.float64]]]:
