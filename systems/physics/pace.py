@@ -60,7 +60,10 @@ def loaded_mode(model: Model) -> tuple[float, float] | None:
     """
     if model.rods.count == 0 or not free_coordinates(model).any():
         return None
-    displacement = _static_displacement(model, _exciting_forces(model))
+    force = _forces(model)
+    if not force[free_coordinates(model).ravel()].any():  # some that excite all directions
+        force = np.ones_like(force) * np.where(np.arange(len(force)) % 2, -1.0, 0.3)
+    displacement = _static_displacement(model, force)
     if displacement is None:
         return None
     entries, rows, columns, stiffness, damping = deformations(model)
@@ -82,7 +85,8 @@ def expected_displacement(model: Model) -> Array | None:
     """
     particles, rods = model.particles, model.rods
     moved = np.where(particles.mobility > 0.0, 0.0, particles.displacement)
-    ends, axis = _ends_and_axes(model)
+    ends = rods.between.astype(np.intp)
+    axis = rods.difference / np.where(rods.original_length > 0.0, rods.original_length, 1.0)[:, None]
     elongation = rods.misfit + ((moved[ends[:, 1]] - moved[ends[:, 0]]) * axis).sum(axis=1)
     tension = (rods.stiffness / rods.rest_length * elongation)[:, None] * axis
     force = _forces(model).reshape(free_coordinates(model).shape)
@@ -90,14 +94,6 @@ def expected_displacement(model: Model) -> Array | None:
     np.add.at(force[:, :2], ends[:, 1], -tension)
     displacement = _static_displacement(model, force.ravel())
     return None if displacement is None else displacement[:, :2] + moved
-
-
-def _exciting_forces(model: Model) -> Array:
-    """The forces of the loads (2n,), of models that bend (3n,); without any, some that excite all directions."""
-    force = _forces(model)
-    if not force[free_coordinates(model).ravel()].any():
-        force = np.ones_like(force) * np.where(np.arange(len(force)) % 2, -1.0, 0.3)
-    return force
 
 
 def _static_displacement(model: Model, force: Array) -> Array | None:
@@ -127,13 +123,6 @@ def _forces(model: Model) -> Array:
         force[load.on] += load.force
         moment[load.on] += load.moment
     return (np.column_stack([force, moment]) if bends(model) else force).ravel()
-
-
-def _ends_and_axes(model: Model) -> tuple[NDArray[np.intp], Array]:
-    """Rows of the particles at the ends of each rod, and its unit vector in the original geometry; (rods, 2)."""
-    rods = model.rods
-    length = np.where(rods.original_length > 0.0, rods.original_length, 1.0)
-    return rods.between.astype(np.intp), rods.difference / length[:, None]
 
 
 def _solved_in_full(model: Model, free: NDArray[np.intp], force: Array) -> Array:

@@ -79,11 +79,6 @@ PREDICTED = "time, dt, displacement, predicted, *forces"
 RESISTED = "time, dt, displacement, velocity, resisting, direction"
 NOW = "control[Control.TIME], control[Control.STEP_SIZE]"
 
-SHIFT = {f"s{d}": f"displacement[b, {i}] - displacement[a, {i}]" for i, d in enumerate("xy")}
-TURNED = {f"turn_{end}": f"displacement[{end}, 2] * per_arm[0]" for end in "ab"}
-SPUN = {f"spin_{end}": f"velocity[{end}, 2] * per_arm[0]" for end in "ab"}
-DRIFT = {f"drift_{d}": f"velocity[b, {i}] - velocity[a, {i}]" for i, d in enumerate("xy")}
-
 OF_PAIR = {  # what kernels of pairs are provided with
     "apart": "(x, y)",
     "drift": "(velocity[j, 0] - velocity[i, 0], velocity[j, 1] - velocity[i, 1])",
@@ -164,8 +159,11 @@ class Writer:
         self.warm, self.bends, self.loaded = (trait in traits for trait in TRAITS)
         self.coordinates = 3 if self.bends else 2
         self.collides = any(system.impulsive for system in systems)
-        self.shift = SHIFT | TURNED if self.bends else SHIFT
-        self.drift = DRIFT | SPUN if self.bends else DRIFT
+        self.shift = {f"s{d}": f"displacement[b, {i}] - displacement[a, {i}]" for i, d in enumerate("xy")}
+        self.drift = {f"drift_{d}": f"velocity[b, {i}] - velocity[a, {i}]" for i, d in enumerate("xy")}
+        if self.bends:
+            self.shift |= {f"turn_{end}": f"displacement[{end}, 2] * per_arm[0]" for end in "ab"}
+            self.drift |= {f"spin_{end}": f"velocity[{end}, 2] * per_arm[0]" for end in "ab"}
         bound = (bind(system, model) for system in systems if system.kernel)
         self.bound = [b for b in bound if self.bends or b.each not in ("ends", "rotations")]
         check_names(self.bound)

@@ -64,15 +64,15 @@ class Recovery:
         try:
             found = found or self._programs.blame_by_leaving_out(partial(self._lead_on, steps), tr(NOT_FINITE))
         finally:
-            self._programs.return_to(self.safe)
+            self.safe.restore(self._model)
         if not found:
-            self._programs.return_to(present)
+            present.restore(self._model)
         return found
 
     def _lead_on(self, steps: int) -> bool:
         """Whether so many steps from the good state, as the plan now is, have finite results."""
         assert self.safe is not None
-        self._programs.return_to(self.safe)
+        self.safe.restore(self._model)
         program = self._programs.dynamics
         if not isinstance(program, Program):
             return True
@@ -90,7 +90,7 @@ class Recovery:
             return False
         assert self.safe is not None
         size = self._model.clock.step_size
-        self._programs.return_to(self.safe)
+        self.safe.restore(self._model)
         self._sleep.forget()
         self._step_size.begin(0.5 * size)
         self._halvings += 1
@@ -100,7 +100,7 @@ class Recovery:
         """Return to the good state for good; says what happened, by a message with {time}, and what helps."""
         failed, size = self._model.clock.time, self._model.clock.step_size
         assert self.safe is not None
-        self._programs.return_to(self.safe)
+        self.safe.restore(self._model)
         what = tr(message, time=written.time(failed), steps=REVIEW_INTERVAL)
         kept = tr("The last good state, at t = {time}, was kept.", time=written.time(self._model.clock.time))
         return joined([what, self._step_size.remedy(size), kept, self._acting_mods()])

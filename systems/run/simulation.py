@@ -343,9 +343,13 @@ class Simulation:
         if self.halted:
             return False
         taken, reason = self._stepper.advance(ahead, until)
-        self._heed_and_announce(reason)
-        if is_sleep_review(self.model.clock.steps) and not self.halted:
-            self._review_sleep()
+        self._heed(reason)
+        if reason not in FAILURES:  # else the state in which events happened was given up
+            self._announce_events()
+        self._arm()
+        islands_due = is_sleep_review(self.model.clock.steps) and not self.halted
+        if islands_due and self._sleep.may_happen(self.program) and self._sleep.review(self.program):
+            self.step_size.limit_anew()
         return taken >= max(ahead, 1) or reason is not StopReason.DONE
 
     def _heed(self, reason: StopReason) -> None:
@@ -358,13 +362,6 @@ class Simulation:
             self._review()
         elif self.reason is not StopReason.DONE:
             self._recover(reason)
-
-    def _heed_and_announce(self, reason: StopReason) -> None:
-        """React to the reason, and to events unless the state in which they happened was given up."""
-        self._heed(reason)
-        if reason not in FAILURES:
-            self._announce_events()
-        self._arm()
 
     def _announce_events(self) -> None:
         """Call the handlers of the events that ended the step; handlers may edit the model."""
@@ -408,11 +405,6 @@ class Simulation:
             )
             return
         self.reason = StopReason.DONE
-
-    def _review_sleep(self) -> None:
-        """Let islands at rest sleep."""
-        if self._sleep.may_happen(self.program) and self._sleep.review(self.program):
-            self.step_size.limit_anew()
 
     # --- moments within a step -----------------------------------------------------------------------
 
@@ -458,11 +450,11 @@ class Simulation:
         try:
             reason = self._stepper.land(target)
         except BaseException:  # interrupted, or a mod failed
-            self.programs.return_to(before)
+            before.restore(self.model)
             raise
         happened = reason is StopReason.EVENT and (self.integrator.controlled or self.programs.collides)
         if happened or self.model.clock.time != target:
-            self.programs.return_to(before)
+            before.restore(self.model)
             return False
         self._depart(before, begun=1)
         self.compute_seconds += time.perf_counter() - started
@@ -486,7 +478,7 @@ class Simulation:
         """Go back to the whole step that the present moment was reached from, if it lies within the next."""
         departure = self.model.clock.departure
         if departure is not None:
-            self.programs.return_to(departure)
+            departure.restore(self.model)
 
     def _whole(self, state: Snapshot) -> Snapshot:
         """The present state, or that after the last whole step, if the present moment lies within the next."""
