@@ -87,8 +87,8 @@ def advance(
                 if FORESEES:
                     for i in range(displacement.shape[0]):
                         for d in range(D):
-                            total = force[i, d] + resisting[i, d] if RATES else force[i, d]
-                            predicted[i, d] = velocity[i, d] + compared * total * particles_mobility[i, d]
+                            pull = force[i, d] + resisting[i, d] if RATES else force[i, d]
+                            predicted[i, d] = velocity[i, d] + compared * pull * particles_mobility[i, d]
                     ahead = 1000.0 * compared * abs(load_power(time, predicted, *columns))
                 reason = judge(measures, account, compared, SHADOW, ahead, time >= loads_end)
                 if reason != StopReason.DONE:
