@@ -11,7 +11,14 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from pinjoint.components.derived import all_slopes, chord_rotation, cubic, moments_along, rigid_slopes
+from pinjoint.components.derived import (
+    all_slopes,
+    along_and_across,
+    chord_rotation,
+    cubic,
+    moments_along,
+    rigid_slopes,
+)
 from pinjoint.components.model import Model
 from pinjoint.components.settings import DIAGRAMS
 
@@ -155,8 +162,7 @@ def _state(model: Model, rows: Rows) -> _State:
     length = np.hypot(present[:, 0], present[:, 1])
     along = present / np.where(length > 0.0, length, 1.0)[:, None]
     left = np.stack([-along[:, 1], along[:, 0]], axis=1)
-    force = rods.distributed_force
-    across = (force * left).sum(axis=1)
+    across = along_and_across(rods.distributed_force, along)[1]
     rigid = rigid_slopes(rods, particles.rotation[rods.between], chord_rotation(model))
     start, end = (length[:, None] * all_slopes(rods, rigid, across))[rows].T
     bent = rods.bending_stiffness > 0.0

@@ -265,9 +265,7 @@ def diagrams(
     """
     axial_force, moment = forces
     rest, bent = rods.rest_length, 0.0 if first_order else 1.0
-    left = np.stack([-axis[:, 1], axis[:, 0]], axis=1)
-    force = share * rods.distributed_force
-    transverse, tangential = (force * left).sum(axis=1), (force * axis).sum(axis=1)
+    tangential, transverse = along_and_across(share * rods.distributed_force, axis)
     slopes = rigid_slopes(rods, rotation, chord)
     couple = -bent * tangential * (rods.load_shares * slopes).sum(axis=1)
     with np.errstate(divide="ignore", invalid="ignore"):
@@ -284,6 +282,11 @@ def diagrams(
             bending_moment, slopes, bent * axial_force * length, transverse * rest * length, length
         ),
     }
+
+
+def along_and_across(force: Column, axis: Column) -> tuple[Column, Column]:
+    """Parts of forces (rods, 2) along axes (rods, 2) and to their left, (rods,)."""
+    return (force * axis).sum(axis=1), force[:, 1] * axis[:, 0] - force[:, 0] * axis[:, 1]
 
 
 def rigid_slopes(rods: Table[Any], rotation: Column, chord: Column) -> Column:

@@ -200,7 +200,7 @@ class View:
     utilisation: rods show in colours how much of their strength they bear.
     largest_force: that (kN) of pictures beside this one, with which its arrows share a scale; 0: none.
     free_bodies: rods and joints are drawn apart, with the forces on each.
-    theory, energy, events: show theory beside the run, its energy account, and what happened, among them.
+    wanted: which of our own a person switched on among them: theory beside the run, its energy, its events.
     fitted: the camera shows the whole model, and follows the size of the window until a person zooms or pans.
     shares: the model is fitted beside the panels; else panels may cover it. since: by title, the rank in which each
     panel appeared.
@@ -237,10 +237,8 @@ class View:
     since: dict[str, int] = field(default_factory=dict)
     largest_force: float = 0.0
     utilisation: bool = False
-    theory: bool = False
-    energy: bool = False
+    wanted: frozenset[str] = frozenset()
     free_bodies: bool = False
-    events: bool = False
     shape: Shape | None = None
     swing: float = 1.0
     pointed: Readout | None = None

@@ -7,189 +7,106 @@
 Everything is said in English unless a script says otherwise, by `speak("pt")` or `with spoken("pt")`.
 """
 
-from pinjoint import Context, Session, SystemCheckError, __version__, check_system
-from pinjoint.commands.arguments import Parser, UsageError, count, finite, numbers, positive, times
-from pinjoint.commands.options import ANSWERED, NOT_ANSWERED, add_analysis, add_model, analysis_of, session_of
-from pinjoint.commands.output import Row, add_output, write_result
-from pinjoint.components import (
-    CM,
-    Assign,
-    Command,
-    Component,
-    Create,
-    Custom,
-    Delete,
-    Derivation,
-    Environment,
-    Field,
-    FieldError,
-    Grid,
-    Group,
-    Handle,
-    HistoryKind,
-    Load,
-    Model,
-    Particle,
-    Pieces,
-    Plot,
-    Readout,
-    Rod,
-    Role,
-    Selected,
-    Settings,
-    Snapshot,
-    Table,
-    Vector,
-    World,
-)
-from pinjoint.components.language import english, language, listed, marked, plural, speak, spoken, tr, tr_in
-from pinjoint.documents.models import ModelError
-from pinjoint.editor.scenes import PHYSICS, Scene
-from pinjoint.mods import FAULTS, App, Mod, ModError
-from pinjoint.paths import PathError
-from pinjoint.systems.base import (
-    ACCOUNTS,
-    EVENT_INTERVAL,
-    Commit,
-    Event,
-    Integrator,
-    Law,
-    Phase,
-    StepSystem,
-    StopReason,
-    System,
-)
-from pinjoint.systems.edit import Refusal
-from pinjoint.systems.kernels import compiled
-from pinjoint.systems.physics.integrators import (
-    DormandPrince853,
-    ImplicitRungeKutta4,
-    RungeKutta4,
-    SemiImplicitEuler,
-    ThesisTaylor,
-    VelocityVerlet,
-    runge_kutta_constants,
-)
-from pinjoint.systems.physics.tableaus import Tableau
-from pinjoint.systems.render.icons import Part
-from pinjoint.systems.render.marks import (
-    Bars,
-    Discs,
-    Fills,
-    Mark,
-    Panel,
-    Points,
-    Rectangles,
-    Stamps,
-    Strokes,
-    Text,
-    boxes,
-)
-from pinjoint.systems.render.sheet import Sheet
-from pinjoint.systems.render.theme import Colour, Theme, faded
-
-__all__ = [
-    "ACCOUNTS",
-    "ANSWERED",
-    "CM",
-    "EVENT_INTERVAL",
-    "FAULTS",
-    "NOT_ANSWERED",
-    "PHYSICS",
-    "App",
-    "Assign",
-    "Bars",
-    "Colour",
-    "Command",
-    "Commit",
-    "Component",
-    "Context",
-    "Create",
-    "Custom",
-    "Delete",
-    "Derivation",
-    "Discs",
-    "DormandPrince853",
-    "Environment",
-    "Event",
-    "Field",
-    "FieldError",
-    "Fills",
-    "Grid",
-    "Group",
-    "Handle",
-    "HistoryKind",
-    "ImplicitRungeKutta4",
-    "Integrator",
-    "Law",
-    "Load",
-    "Mark",
-    "Mod",
-    "ModError",
-    "Model",
-    "ModelError",
-    "Panel",
-    "Parser",
-    "Part",
-    "Particle",
-    "PathError",
-    "Phase",
-    "Pieces",
-    "Plot",
-    "Points",
-    "Readout",
-    "Rectangles",
-    "Refusal",
-    "Rod",
-    "Role",
-    "Row",
-    "RungeKutta4",
-    "Scene",
-    "Selected",
-    "SemiImplicitEuler",
-    "Session",
-    "Settings",
-    "Sheet",
-    "Snapshot",
-    "Stamps",
-    "StepSystem",
-    "StopReason",
-    "Strokes",
-    "System",
-    "SystemCheckError",
-    "Table",
-    "Tableau",
-    "Text",
-    "Theme",
-    "ThesisTaylor",
-    "UsageError",
-    "Vector",
-    "VelocityVerlet",
-    "World",
-    "__version__",
-    "add_analysis",
-    "add_model",
-    "add_output",
-    "analysis_of",
-    "boxes",
-    "check_system",
-    "compiled",
-    "count",
-    "english",
-    "faded",
-    "finite",
-    "language",
-    "listed",
-    "marked",
-    "numbers",
-    "plural",
-    "positive",
-    "runge_kutta_constants",
-    "session_of",
-    "speak",
-    "spoken",
-    "times",
-    "tr",
-    "tr_in",
-    "write_result",
-]
+from pinjoint import Context as Context
+from pinjoint import Session as Session
+from pinjoint import SystemCheckError as SystemCheckError
+from pinjoint import __version__ as __version__
+from pinjoint import check_system as check_system
+from pinjoint.commands.arguments import Parser as Parser
+from pinjoint.commands.arguments import UsageError as UsageError
+from pinjoint.commands.arguments import count as count
+from pinjoint.commands.arguments import finite as finite
+from pinjoint.commands.arguments import numbers as numbers
+from pinjoint.commands.arguments import positive as positive
+from pinjoint.commands.arguments import times as times
+from pinjoint.commands.options import ANSWERED as ANSWERED
+from pinjoint.commands.options import NOT_ANSWERED as NOT_ANSWERED
+from pinjoint.commands.options import add_analysis as add_analysis
+from pinjoint.commands.options import add_model as add_model
+from pinjoint.commands.options import analysis_of as analysis_of
+from pinjoint.commands.options import session_of as session_of
+from pinjoint.commands.output import Row as Row
+from pinjoint.commands.output import add_output as add_output
+from pinjoint.commands.output import write_result as write_result
+from pinjoint.components import CM as CM
+from pinjoint.components import Assign as Assign
+from pinjoint.components import Command as Command
+from pinjoint.components import Component as Component
+from pinjoint.components import Create as Create
+from pinjoint.components import Custom as Custom
+from pinjoint.components import Delete as Delete
+from pinjoint.components import Derivation as Derivation
+from pinjoint.components import Environment as Environment
+from pinjoint.components import Field as Field
+from pinjoint.components import FieldError as FieldError
+from pinjoint.components import Grid as Grid
+from pinjoint.components import Group as Group
+from pinjoint.components import Handle as Handle
+from pinjoint.components import HistoryKind as HistoryKind
+from pinjoint.components import Load as Load
+from pinjoint.components import Model as Model
+from pinjoint.components import Particle as Particle
+from pinjoint.components import Pieces as Pieces
+from pinjoint.components import Plot as Plot
+from pinjoint.components import Readout as Readout
+from pinjoint.components import Rod as Rod
+from pinjoint.components import Role as Role
+from pinjoint.components import Selected as Selected
+from pinjoint.components import Settings as Settings
+from pinjoint.components import Snapshot as Snapshot
+from pinjoint.components import Table as Table
+from pinjoint.components import Vector as Vector
+from pinjoint.components import World as World
+from pinjoint.components.language import english as english
+from pinjoint.components.language import language as language
+from pinjoint.components.language import listed as listed
+from pinjoint.components.language import marked as marked
+from pinjoint.components.language import plural as plural
+from pinjoint.components.language import speak as speak
+from pinjoint.components.language import spoken as spoken
+from pinjoint.components.language import tr as tr
+from pinjoint.components.language import tr_in as tr_in
+from pinjoint.documents.models import ModelError as ModelError
+from pinjoint.editor.scenes import PHYSICS as PHYSICS
+from pinjoint.editor.scenes import Scene as Scene
+from pinjoint.mods import FAULTS as FAULTS
+from pinjoint.mods import App as App
+from pinjoint.mods import Mod as Mod
+from pinjoint.mods import ModError as ModError
+from pinjoint.paths import PathError as PathError
+from pinjoint.systems.base import ACCOUNTS as ACCOUNTS
+from pinjoint.systems.base import EVENT_INTERVAL as EVENT_INTERVAL
+from pinjoint.systems.base import Commit as Commit
+from pinjoint.systems.base import Event as Event
+from pinjoint.systems.base import Integrator as Integrator
+from pinjoint.systems.base import Law as Law
+from pinjoint.systems.base import Phase as Phase
+from pinjoint.systems.base import StepSystem as StepSystem
+from pinjoint.systems.base import StopReason as StopReason
+from pinjoint.systems.base import System as System
+from pinjoint.systems.edit import Refusal as Refusal
+from pinjoint.systems.kernels import compiled as compiled
+from pinjoint.systems.physics.integrators import DormandPrince853 as DormandPrince853
+from pinjoint.systems.physics.integrators import ImplicitRungeKutta4 as ImplicitRungeKutta4
+from pinjoint.systems.physics.integrators import RungeKutta4 as RungeKutta4
+from pinjoint.systems.physics.integrators import SemiImplicitEuler as SemiImplicitEuler
+from pinjoint.systems.physics.integrators import ThesisTaylor as ThesisTaylor
+from pinjoint.systems.physics.integrators import VelocityVerlet as VelocityVerlet
+from pinjoint.systems.physics.integrators import runge_kutta_constants as runge_kutta_constants
+from pinjoint.systems.physics.tableaus import Tableau as Tableau
+from pinjoint.systems.render.icons import Part as Part
+from pinjoint.systems.render.marks import Bars as Bars
+from pinjoint.systems.render.marks import Discs as Discs
+from pinjoint.systems.render.marks import Fills as Fills
+from pinjoint.systems.render.marks import Mark as Mark
+from pinjoint.systems.render.marks import Panel as Panel
+from pinjoint.systems.render.marks import Points as Points
+from pinjoint.systems.render.marks import Rectangles as Rectangles
+from pinjoint.systems.render.marks import Stamps as Stamps
+from pinjoint.systems.render.marks import Strokes as Strokes
+from pinjoint.systems.render.marks import Text as Text
+from pinjoint.systems.render.marks import boxes as boxes
+from pinjoint.systems.render.sheet import Sheet as Sheet
+from pinjoint.systems.render.theme import Colour as Colour
+from pinjoint.systems.render.theme import Theme as Theme
+from pinjoint.systems.render.theme import faded as faded

@@ -187,8 +187,9 @@ class App:
         self.session.window = self
         self.session.faults_seen = 0  # so that mods that were left out are shown
         self.session.autosave = self.autosave = autosave
-        self.session.preparation = self.preparation = preparation
+        self.preparation = preparation
         if preparation is not None:
+            self.session.waits_for = preparation.waits_for
             preparation.open()
         self._chosen = self._choices()
         self._magnification = magnification

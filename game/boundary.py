@@ -14,7 +14,7 @@ from pinjoint.components.mistake import Mistake
 from pinjoint.components.wording import cut
 from pinjoint.documents.library import data_folder
 from pinjoint.editor.context import Context
-from pinjoint.mods.heeding import blamed_on_mod
+from pinjoint.mods.mod import blamed_on_mod
 from pinjoint.systems.base import Phase, System
 
 LOG = logging.getLogger("pinjoint.window")

@@ -14,7 +14,7 @@ from pinjoint.components.field import Role
 from pinjoint.components.language import english
 from pinjoint.components.model import Model
 from pinjoint.documents.format import ModelError
-from pinjoint.editor.host import Waiting
+from pinjoint.editor.context import Waiting
 from pinjoint.elsewhere import UNITS, Elsewhere, Job, Work, described, in_a_line, problem_of, tell_slower
 from pinjoint.systems import cache
 from pinjoint.systems.base import Law, Phase, StepSystem, System

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Iterable, Iterator, Sequence
-from contextlib import AbstractContextManager, contextmanager, nullcontext
+from contextlib import contextmanager
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, NoReturn
 
@@ -31,7 +31,6 @@ from pinjoint.documents import models
 from pinjoint.documents.format import ModelError
 from pinjoint.documents.open_documents import ModelFile, Source, file_of
 from pinjoint.editor.context import Context
-from pinjoint.editor.dropping import open_dropped
 from pinjoint.editor.frame import Actions, Exaggerate, Frame, HeadlessFrame, ShowView
 from pinjoint.editor.routing import Layer, for_tools, hit_at, layer, meaning
 from pinjoint.editor.scenes import all_scenes, scene_systems
@@ -42,7 +41,7 @@ from pinjoint.editor.view_model import follows, show
 from pinjoint.lessons.course import Course
 from pinjoint.lessons.tasks import Lesson
 from pinjoint.mods import load_all
-from pinjoint.mods.heeding import blamed_on_mod, heeding_mods
+from pinjoint.mods.mod import blamed_on_mod, heeding_mods
 from pinjoint.scripts.expectation import expect
 from pinjoint.scripts.script import Script, ScriptError
 from pinjoint.systems.base import EVENT_INTERVAL, Phase, StopReason, System
@@ -71,6 +70,7 @@ if TYPE_CHECKING:  # they import scipy
     from pinjoint.systems.statics.path import Curve
     from pinjoint.systems.statics.verify import Comparison
 
+MODEL, SCRIPT = ".json", ".jsonl"  # files that a person may drop on the window
 FARTHEST = 1e9  # pixels from the corner of the window to which a click may be
 LARGEST_SIDE, LARGEST_RATIO = 65_536, 64.0  # of a window, in pixels, and in pixels per point
 DEFAULT_LIMIT = 60.0  # s of simulated time in which a model is expected to come to rest
@@ -228,15 +228,13 @@ class Session(Context):
             if not self.time_passes:
                 document.history.end_run()
 
-    def without_frames(self) -> AbstractContextManager[None]:
-        """While time passes inside, systems of phase EVENTS run every EVENT_INTERVAL steps, and when it has passed."""
-        scene = self.simulation.programs.scene
-        follows = not self.performing and self.schedule.runs_headless(Phase.EVENTS, scene, self.model)
-        return self._followed() if follows else nullcontext()
-
     @contextmanager
-    def _followed(self) -> Iterator[None]:
+    def without_frames(self) -> Iterator[None]:
+        """While time passes inside, systems of phase EVENTS run every EVENT_INTERVAL steps, and when it has passed."""
         simulation, frame = self.simulation, HeadlessFrame(self, 0.0)
+        if self.performing or not self.schedule.runs_headless(Phase.EVENTS, frame.scene, self.model):
+            yield
+            return
 
         def follow() -> int:
             beyond = self.model.clock.steps % EVENT_INTERVAL
@@ -461,7 +459,7 @@ class Session(Context):
         opened, problems = [], []
         for path in map(Path, paths):
             try:
-                open_dropped(self, path)
+                self._open_file(path)
             except (ModelError, ScriptError) as error:
                 problems.append(str(error))
             else:
@@ -476,6 +474,26 @@ class Session(Context):
         if isinstance(scene, FileScene):
             scene.say(self.notice)
         self.offer_tools()
+
+    def _open_file(self, path: Path) -> None:
+        """Open a model file, or play a recorded session. Raises ModelError or ScriptError; then nothing has changed.
+
+        The document in use stays open unless it is empty.
+        """
+        if path.is_dir():
+            raise ModelError("'{name}' is a folder; drop the model files that are in it.", name=path.name)
+        if path.suffix.lower() not in (MODEL, SCRIPT):
+            raise ModelError(
+                "'{name}' is not a model: Pinjoint opens model files ({model}) and recorded sessions ({script}).",
+                name=path.name,
+                model=MODEL,
+                script=SCRIPT,
+            )
+        script = Script(path) if path.suffix.lower() == SCRIPT else None
+        if script is None or not script.has_tasks:  # a lesson opens its models itself
+            source = path if script is None else script.source
+            self.adopt(models.load(source), file_of(source), keep=self.model.particles.count > 0)
+        self.lesson = script or self.lesson
 
     def resize(self, width: int, height: int, pixel_ratio: float = 1.0) -> None:
         """Adapt to a new size of the window, in pixels, with `pixel_ratio` pixels per point. Raises ValueError."""

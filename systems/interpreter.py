@@ -102,6 +102,13 @@ def _fill(row: list[Any], span: slice, value: Any) -> None:
         row[k] = value
 
 
+def _sum(rows: list[Any], column: int) -> float:
+    total = 0.0
+    for row in rows:
+        total += row[column]
+    return total
+
+
 _AS_COMPILED: dict[str, Any] = {
     "hypot": _hypot,
     "pow": _power,
@@ -113,6 +120,24 @@ _AS_COMPILED: dict[str, Any] = {
 
 # --- rewriting -------------------------------------------------------------------------------------
 
+
+class _Part:
+    """A slice of a list, which like that of an array shares its entries."""
+
+    def __init__(self, whole: Any, start: int | None, stop: int | None) -> None:
+        self._whole = whole
+        self._start, self._stop, _ = slice(start, stop).indices(len(whole))
+
+    def __len__(self) -> int:
+        return max(self._stop - self._start, 0)
+
+    def __getitem__(self, k: int) -> Any:
+        return self._whole[self._start + k]
+
+    def __setitem__(self, k: int, value: Any) -> None:
+        self._whole[self._start + k] = value
+
+
 _TEMPORARY = "t{}__"  # names that end like this are found in no kernel
 _HELPERS = {
     "quotient__": _quotient,
@@ -121,6 +146,8 @@ _HELPERS = {
     "floor__": math.floor,
     "whole__": _whole(int),
     "fill__": _fill,
+    "part__": _Part,
+    "sum__": _sum,
 }
 
 
@@ -236,6 +263,11 @@ class _Rewriting(ast.NodeTransformer):
         name = node.func.id if isinstance(node.func, ast.Name) and node.func.id not in self._outside else ""
         if name in ("min", "max") and len(node.args) == 2:
             return self._least_or_most(node, ast.Lt() if name == "min" else ast.Gt())
+        if isinstance(node.func, ast.Attribute) and node.func.attr == "sum":
+            column = node.func.value  # a[:, k]
+            if isinstance(column, ast.Subscript) and isinstance(column.slice, ast.Tuple):
+                rows, place = self.visit(column.value), self.visit(column.slice.elts[1])
+                return ast.copy_location(_call_of("sum__", rows, place), node)
         self.generic_visit(node)
         if name == "int" and len(node.args) == 1:
             node.func = ast.Name("whole__", ast.Load())
@@ -276,6 +308,10 @@ class _Rewriting(ast.NodeTransformer):
                 for _ in range(depth):
                     row = ast.Subscript(row, ast.Constant(0), ast.Load())
                 return ast.copy_location(_call_of("len", row), node)
+        if isinstance(node.slice, ast.Slice):
+            self.generic_visit(node)
+            ends = [part or ast.Constant(None) for part in (node.slice.lower, node.slice.upper)]
+            return ast.copy_location(_call_of("part__", node.value, *ends), node)
         if isinstance(node.slice, ast.Tuple):
             *outer, last = (self.visit(index) for index in node.slice.elts)
             row = self.visit(node.value)

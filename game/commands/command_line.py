@@ -16,7 +16,7 @@ from pinjoint.completion import complete
 from pinjoint.components.extensions import EXTENSIONS
 from pinjoint.components.language import marked, tr
 from pinjoint.components.mistake import Mistake
-from pinjoint.mods.heeding import switched_off
+from pinjoint.mods.mod import switched_off
 from pinjoint.streams import discard_output, tell
 
 

@@ -12,13 +12,12 @@ from pinjoint.commands.arguments import Parser, UsageError
 from pinjoint.commands.options import ANSWERED, NOT_ANSWERED, session_of
 from pinjoint.commands.output import Row, add_output, aligned, writable, write_result, writing
 from pinjoint.components.language import tr
-from pinjoint.components.model import Model
 from pinjoint.components.view import CONVENTIONS, THESIS
+from pinjoint.documents.models import replace
 from pinjoint.streams import tell
 
 if TYPE_CHECKING:  # they import scipy
     from pinjoint.force_method.tables import Tables
-    from pinjoint.systems.statics.force_method import Solution
 
 
 MOST_SETS = 100  # unknowns; what each does to each, and to all rods, takes 100 MB for a thousand of them
@@ -69,10 +68,12 @@ def command(words: Sequence[str]) -> int:
         raise UsageError("--report {file}: write a file that ends with .pdf.", file=options.report)
     session = session_of(options)
     from pinjoint.force_method.tables import Tables
-    from pinjoint.systems.statics.unknowns import ForceMethodError
+    from pinjoint.systems.statics.force_method import solve
+    from pinjoint.systems.statics.unknowns import ForceMethodError, find_unknown, redundants
 
+    model, names = session.model, dict.fromkeys(options.release or ())
     try:
-        solution = _solution(session.model, options.release)
+        solution = solve(model, [find_unknown(model, one) for one in names] if names else redundants(model))
     except ForceMethodError as error:
         raise UsageError(str(error)) from None
     if options.report is not None and not solution.unknowns:
@@ -81,28 +82,19 @@ def command(words: Sequence[str]) -> int:
             " gives its forces: pinjoint run {model} --static.",
             model=options.model,
         )
-    tables = Tables.of(session.model, solution)
+    tables = Tables(session.model, solution)
     laws = session.schedule.left_out_of_statics(session.model)
     single, sets = options.release is not None and len(options.release) == 1, options.sets
     found = _data(tables, single=single, sets=sets or len(solution.unknowns) <= MOST_SETS)
     write_result(options, found | {"left_out": laws}, _rows, partial(_lines, tables, options.convention))
     if options.report is not None:
-        from pinjoint.force_method.report import write_report
+        from pinjoint.force_method.report import report
 
         with writing(options.report):
-            write_report(tables, options.report, options.convention)
+            replace(options.report, report(tables, options.convention))
     if laws:
         tell(tr("The force method leaves out the laws of mods: {laws}.", laws=", ".join(laws)))
     return NOT_ANSWERED if laws else ANSWERED
-
-
-def _solution(model: Model, release: Sequence[str] | None) -> Solution:
-    """For these unknowns, or those whose release leaves an isostatic structure. Raises ForceMethodError."""
-    from pinjoint.systems.statics.force_method import solve
-    from pinjoint.systems.statics.unknowns import find_unknown, redundants
-
-    names = None if release is None else dict.fromkeys(release)
-    return solve(model, redundants(model) if names is None else [find_unknown(model, name) for name in names])
 
 
 def _data(tables: Tables, *, single: bool, sets: bool) -> dict[str, Any]:
@@ -129,43 +121,46 @@ def _data(tables: Tables, *, single: bool, sets: bool) -> dict[str, Any]:
     if single:
         found = {key: None if values is None else values[0] for key, values in found.items()}
         found |= {"delta_unit": solution.delta_unit[0, 0], "flexibility": solution.flexibility[0, 0]}
-    return found | {"virtual_work": _work(tables) if sets else {}, "axial_force": _superposed(tables)}
+    forces = solution.superposed.axial_force.tolist()
+    return found | {
+        "virtual_work": _work(tables) if sets else {},
+        "axial_force": dict(zip(tables.model.rods.names, forces, strict=True)),
+    }
 
 
 def _work(tables: Tables) -> dict[str, Any]:
     """By rod: what the sums of virtual work are made of; n, m and terms of each unknown in the order of `released`."""
     from pinjoint.force_method.tables import PRODUCTS
 
-    work, found, count = tables.work, dict[str, Any](), len(tables.solution.unknowns)
-    for row, name in enumerate(tables.model.rods.names):
+    axial, bending = tables.solution.work.axial, tables.solution.work.bending
+    found, count, rods, base = (
+        dict[str, Any](),
+        len(tables.solution.unknowns),
+        tables.model.rods,
+        tables.solution.base,
+    )
+    for row, name in enumerate(rods.names):
         found[name] = {
-            "length": work.length[row],
-            "stiffness": work.stiffness[row],
-            "N0": work.base_axial[row],
-            "n": work.unit_axial[:, row],
-            "N0 n L/EA": work.of_base[:, row],
-            "without force": work.of_free[:, row],
+            "length": rods.rest_length[row],
+            "stiffness": rods.stiffness[row],
+            "N0": base.axial_force[row],
+            "n": axial.unit[:, row, 0],
+            "N0 n L/EA": axial.of_load[:, row],
+            "without force": axial.of_free[:, row] + bending.of_free[:, row],
         }
         if tables.bends:
             found[name] |= {
-                "bending_stiffness": work.bending_stiffness[row],
-                "M0": work.base_moment[row],
-                "m": work.unit_moment[:, row],
-                "M0 m/EI": work.of_bending[:, row],
+                "bending_stiffness": rods.bending_stiffness[row],
+                "M0": base.bending_moment[row],
+                "m": bending.unit[:, row],
+                "M0 m/EI": bending.of_load[:, row],
             }
     if 0 < count <= PRODUCTS:
-        for title, product in (("n n L/EA", work.of_units), ("m m/EI", work.of_unit_bending)):
-            if title[0] == "n" or tables.bends:
-                terms = np.array([[product(i, j) for j in range(count)] for i in range(count)])
-                for row, of_rod in enumerate(found.values()):
-                    of_rod[title] = terms[:, :, row]
+        for title, sums in (("n n L/EA", axial), ("m m/EI", bending))[: 1 + tables.bends]:
+            terms = np.array([[sums.of_units(i, j) for j in range(count)] for i in range(count)])
+            for row, of_rod in enumerate(found.values()):
+                of_rod[title] = terms[:, :, row]
     return found
-
-
-def _superposed(tables: Tables) -> dict[str, float]:
-    """N₀ + Σ X n of every rod (kN)."""
-    forces = tables.solution.superposed.axial_force
-    return dict(zip(tables.model.rods.names, forces.tolist(), strict=True))
 
 
 def _rows(found: Mapping[str, Any]) -> Iterator[Row]:
@@ -194,14 +189,12 @@ def _rows(found: Mapping[str, Any]) -> Iterator[Row]:
 
 def _lines(tables: Tables, convention: str, found: Mapping[str, Any]) -> Iterator[str]:
     """The solution to read: in the textbook's convention with its tables, in the thesis' with its displacements."""
-    from pinjoint.force_method import words
+    from pinjoint.force_method import index, words
     from pinjoint.force_method.tables import PRODUCTS
 
     solution, units = tables.solution, tables.units
     yield from aligned(_rows(found))
-    if not solution.unknowns:
-        return
-    if convention == THESIS:
+    if not solution.unknowns or convention == THESIS:
         return
     if not found["virtual_work"]:
         yield ""
@@ -210,13 +203,13 @@ def _lines(tables: Tables, convention: str, found: Mapping[str, Any]) -> Iterato
         return
     yield ""
     for i, unknown in enumerate(solution.unknowns):
-        yield f"X{words.index(i + 1)}: {words.meaning(unknown)}"
+        yield f"X{index(i + 1)}: {words.meaning(unknown)}"
     every = range(len(solution.unknowns))
     works = [tables.bending(every)] if tables.bends else []
     works.append(tables.virtual_work(every))
     parts = [*(works if len(every) <= PRODUCTS else [tables.forces(every)]), tables.settlements()]
     yield ""
-    yield from words.formulas(tables.bends, "₁" if len(every) == 1 else "ᵢ")
+    yield words.formulas(tables.bends, "₁" if len(every) == 1 else "ᵢ")
     for table in parts:
         if table:
             yield ""

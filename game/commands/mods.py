@@ -6,16 +6,15 @@ from collections.abc import Iterator, Sequence
 from pathlib import Path
 from typing import Any
 
+from pinjoint.checks import mistakes_of
 from pinjoint.commands.arguments import Parser
 from pinjoint.commands.options import ANSWERED, NOT_ANSWERED
 from pinjoint.commands.output import Row, add_output, write_result
 from pinjoint.components.extensions import EXTENSIONS
 from pinjoint.components.language import tr
-from pinjoint.mods.finding import mods_folder
-from pinjoint.mods.loading import load
+from pinjoint.mods.loading import load, mods_folder
 from pinjoint.mods.mod import INCLUDED, Mod, ModError
 from pinjoint.mods.skeleton import write_skeleton
-from pinjoint.mods.trial import mistakes_of
 from pinjoint.version import __version__
 
 

@@ -42,7 +42,7 @@ def command(words: Sequence[str]) -> int:
     run = replace(analysis_of(options), measures_error=options.measure_error).run_in(session, options.model)
     write_result(options, run, run_rows, run_lines)
     if options.events is not None:
-        write(session.impacts.as_csv(), options.events)
+        write(session.simulation.impacts.as_csv(), options.events)
     if run["status"] == INTERRUPTED:
         return STOPPED
     return ANSWERED if run["status"] in FOUND else NOT_ANSWERED

@@ -209,7 +209,7 @@ class Chronicle:
 
     def _look_at_stability(self) -> None:
         """A structure that is held no more collapses if rods yield on and on; else it snaps through."""
-        from pinjoint.systems.statics.stability import is_held  # not at the start of the program
+        from pinjoint.systems.statics.factor import is_held  # not at the start of the program
 
         model, rods = self._model, self._model.rods
         edited = model.newest(Role.DOCUMENT)

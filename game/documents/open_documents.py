@@ -15,7 +15,7 @@ from pinjoint.components.field import SAVED
 from pinjoint.components.language import joined, plural, tr
 from pinjoint.components.load import load_ends
 from pinjoint.components.model import Model
-from pinjoint.components.rod import bends, idle_moment
+from pinjoint.components.rod import idle_moment
 from pinjoint.components.snapshot import Snapshot
 from pinjoint.documents import models
 from pinjoint.documents.assessment import Assessment
@@ -175,17 +175,13 @@ class OpenDocument:
         It is not called "equilibrium" where laws of mods act that statics does not know.
         """
         from pinjoint.systems.statics.settle import settle  # scipy
+        from pinjoint.systems.statics.state import apply
 
         self._note_undeformed()
         model, clock = self.model, self.model.clock
         found, strain = settle(model, factors), model.rods.plastic_strain.copy()
         with model.transaction("settle"):
-            model.give("particles.displacement", found.final.displacement)
-            model.give("particles.velocity", np.zeros_like(found.final.displacement))
-            if bends(model):
-                model.give("particles.rotation", found.final.rotation)
-                model.give("particles.angular_velocity", np.zeros_like(found.final.rotation))
-            model.give("rods.plastic_strain", found.final.plastic_strain)
+            apply(model, found.final)
             time = max([clock.time, *(end for end in load_ends(model) if end < math.inf)])
             model.give("clock.time", np.array([time]))
             model.give("clock.origin", np.array([time]))

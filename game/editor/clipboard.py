@@ -1,9 +1,8 @@
-"""Clipboard: a part of a model as data, as the text of a document, and back."""
+"""Clipboard: a part of a model as the text of a document, and back."""
 
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
 from typing import Any
 
 import msgspec
@@ -18,7 +17,7 @@ from pinjoint.components.load import Load
 from pinjoint.components.model import Model
 from pinjoint.components.particle import Particle
 from pinjoint.components.rod import Rod
-from pinjoint.components.table import Table, fields_of
+from pinjoint.components.table import fields_of
 from pinjoint.components.tags import Selected
 from pinjoint.documents.document import parse
 from pinjoint.documents.facts import document_of
@@ -27,29 +26,10 @@ from pinjoint.documents.models import laid_out
 from pinjoint.systems.edit import Refusal
 from pinjoint.systems.edit.moving import moving_rows
 
-Rows = NDArray[np.int64]
-Kind = type[Handle]
-RowsByKind = Mapping[Kind, Rows]  # particles first, then rods and loads, then kinds of mods
-
-PASTE = marked("paste")  # the title of what is undone
+RowsByKind = Mapping[
+    type[Handle], NDArray[np.int64]
+]  # particles first, then rods and loads, then kinds of mods
 REFERENCES = {"between", "on"}  # Fields that refer to particles
-
-
-@dataclass(frozen=True)
-class Part:
-    """Particles, the rods between and the loads on them, and elements of mods, apart from any model.
-
-    columns: by kind, values by Field; references are places among the particles of the part.
-    foreign: by kind and place, the data of mods that are not loaded.
-    """
-
-    columns: Mapping[Kind, Mapping[str, Any]]
-    foreign: Mapping[tuple[Kind, int], dict[str, Any]]
-
-    @property
-    def position(self) -> NDArray[np.float64]:
-        """Original positions of the particles, and the points of other elements (m), shape (n, 2)."""
-        return np.concatenate([held[point] for kind, held in self.columns.items() for point in _points(kind)])
 
 
 def selected_rows(model: Model) -> RowsByKind:
@@ -74,57 +54,61 @@ def as_text(model: Model, rows: RowsByKind) -> str:
         raise Refusal("This cannot be copied: {error}", error=error) from None
 
 
-def part_in(text: str) -> Part:
-    """The part that the text of a document describes. Raises Refusal if it describes none."""
+def source_in(text: str) -> tuple[Model, RowsByKind]:
+    """The model that the text of a document describes, and the rows of all that is in it. Raises Refusal if it is none."""
     try:
         source = parse(msgspec.json.decode(text))
     except (ModelError, ValueError, RecursionError):
         source = Model()
-    kinds: list[Kind] = [Particle, Rod, Load, *_added()]
+    kinds: list[type[Handle]] = [Particle, Rod, Load, *_added()]
     rows = {kind: np.arange(source.tables[kind.table].count) for kind in kinds}
-    part = part_of(source, rows)
-    if not len(part.position):
+    if not len(places(source, rows)):
         raise Refusal("The clipboard holds no particles or rods; select some and copy them with Ctrl+C.")
-    return part
+    return source, rows
 
 
-def part_of(model: Model, rows: RowsByKind) -> Part:
-    """The part of a model in these rows."""
-    place = np.zeros(model.particles.count, dtype=np.int64)
-    place[rows[Particle]] = np.arange(len(rows[Particle]))
-    foreign: dict[tuple[Kind, int], dict[str, Any]] = {}
-    for kind in rows if model.foreign else ():
-        entities = enumerate(model.tables[kind.table].entities[rows[kind]].tolist())
-        foreign |= {(kind, n): model.foreign[entity] for n, entity in entities if entity in model.foreign}
-    return Part({kind: _columns(model, kind, rows[kind], place) for kind in rows}, foreign)
+def places(model: Model, rows: RowsByKind) -> NDArray[np.float64]:
+    """Original positions of particles in some rows, and the points of other elements (m), shape (n, 2)."""
+    points = [(kind, point) for kind in rows for point in _points(kind)]
+    return np.concatenate([model.tables[kind.table].column(point)[rows[kind]] for kind, point in points])
 
 
-def paste(model: Model, part: Part, offset: Vector, title: str = PASTE) -> list[Handle]:
-    """Create elements like those of a part, moved by an offset (m), as one edit of a title; returns all but the loads.
+def paste(
+    model: Model, source: Model, rows: RowsByKind, offset: Vector, title: str = marked("paste")
+) -> list[Handle]:
+    """Create elements like those in rows of a model, moved by an offset (m), as one edit; returns all but the loads.
 
-    Names that are taken are replaced by free ones.
+    title: what undo calls it. Names that are taken are replaced by free ones.
     """
-    first = model.particles.count
-    made: dict[Kind, list[Handle]] = {}
+    place = np.zeros(source.particles.count, dtype=np.int64)
+    place[rows[Particle]] = model.particles.count + np.arange(len(rows[Particle]))
+    made: list[Handle] = []
     with model.transaction(title):
-        for kind, held in part.columns.items():
-            columns = {**held, "name": _free_names(model.tables[kind.table], held["name"])}
+        for kind, those in rows.items():
+            table = source.tables[kind.table]
+            columns: dict[str, Any] = {
+                field.name: table.column(field.name)[those] for field in table.fields_in(*SAVED)
+            }
             for point in _points(kind):
                 columns[point] = columns[point] + offset
             for reference in columns.keys() & REFERENCES:
-                columns[reference] = first + columns[reference]
-            made[kind] = model.create(kind, len(held["name"]), **columns)
-        for (kind, place), kept in part.foreign.items():
-            model.foreign[made[kind][place].entity] = kept
-    return [handle for kind, handles in made.items() if kind is not Load for handle in handles]
+                columns[reference] = place[columns[reference]]
+            columns["name"] = _free_names(model, kind, columns["name"].tolist())
+            entities = table.entities[those].tolist()
+            new = model.create(kind, len(those), **columns)
+            for handle, entity in zip(new, entities, strict=True) if source.foreign else ():
+                if entity in source.foreign:
+                    model.foreign[handle.entity] = source.foreign[entity]
+            made += new if kind is not Load else []
+    return made
 
 
-def _points(kind: Kind) -> tuple[str, ...]:
+def _points(kind: type[Handle]) -> tuple[str, ...]:
     """The Fields of a kind that are places in the plane."""
     return ("position",) if kind is Particle else kind.points
 
 
-def _added() -> list[Kind]:
+def _added() -> list[type[Handle]]:
     """The kinds of mods that can be copied: they have points, and refer to no other elements."""
     return [
         kind
@@ -133,18 +117,9 @@ def _added() -> list[Kind]:
     ]
 
 
-def _columns(model: Model, kind: Kind, rows: Rows, place: Rows) -> dict[str, Any]:
-    """Values of some rows by Field; references by the new places of particles."""
-    table = model.tables[kind.table]
-    columns: dict[str, Any] = {field.name: table.column(field.name)[rows] for field in table.fields_in(*SAVED)}
-    for reference in columns.keys() & REFERENCES:
-        columns[reference] = place[columns[reference]]
-    columns["name"] = columns["name"].tolist()
-    return columns
-
-
-def _free_names(table: Table[Any], names: list[str]) -> list[str] | None:
+def _free_names(model: Model, kind: type[Handle], names: list[str]) -> list[str] | None:
     """The names, those that are taken replaced by new ones; None: all are new."""
+    table = model.tables[kind.table]
     taken = table.taken(names)
     if len(taken) == len(names):
         return None

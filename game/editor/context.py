@@ -6,9 +6,10 @@
 from __future__ import annotations
 
 import operator
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import dataclass
 from pathlib import Path
-from typing import Any, ClassVar, TypeVar
+from typing import Any, ClassVar, Protocol, TypeVar
 
 from pinjoint.components.camera import Viewport
 from pinjoint.components.extensions import EXTENSIONS
@@ -27,8 +28,6 @@ from pinjoint.documents.autosave import Autosave
 from pinjoint.documents.chronicle import Happening
 from pinjoint.documents.format import missing_mods
 from pinjoint.documents.open_documents import ModelFile, OpenDocument, OpenDocuments, Source, file_of
-from pinjoint.editor.clipboard import Part
-from pinjoint.editor.host import ProgramPreparation, Waiting, Window
 from pinjoint.scripts.script import Script
 from pinjoint.systems.base import Mod
 from pinjoint.systems.collision.impacts import Impacts
@@ -39,6 +38,39 @@ from pinjoint.systems.run.energy import Energy
 from pinjoint.systems.run.simulation import Simulation
 from pinjoint.systems.run.system import Time
 from pinjoint.systems.schedule import Schedule
+
+# --- what a window gives ---------------------------------------------------------------------------------
+
+
+class Window(Protocol):
+    """The window, for actions that only make sense in one."""
+
+    def toggle_full_screen(self) -> None:
+        """Fill the screen, or stop doing so."""
+
+    def magnify(self, by: int) -> str:
+        """Draw type and symbols a step larger or smaller; 0: as they suit the window. Returns which it is."""
+
+    def screenshot(self, suffix: str) -> str:
+        """Save a picture in the format of that suffix; returns where. Raises OSError."""
+
+    def save(self, name: str, contents: bytes) -> str:
+        """Save a file under this name, or one like it that is free; returns where. Raises OSError."""
+
+    def copied(self) -> str:
+        """The text on the system's clipboard."""
+
+    def copy(self, text: str) -> None:
+        """Put a text on the system's clipboard."""
+
+
+@dataclass(frozen=True)
+class Waiting:
+    """That a model waits for its program to be compiled: for how long already, and in all, probably (s)."""
+
+    seconds: float
+    expected: float
+
 
 # --- gestures --------------------------------------------------------------------------------------------
 
@@ -151,7 +183,7 @@ class Scene:
 
     def scaled(self, context: Context) -> list[Settings]:
         """The settings of the models whose displacements are drawn to the scale that its slider sets."""
-        return [context.settings]
+        return [context.model.settings]
 
     def type(self, context: Context, text: str) -> None:
         """Text was typed."""
@@ -239,9 +271,9 @@ H = TypeVar("H", bound=Handle)
 class Context:
     """The open documents with their runs, logs and files, what is seen of them, and what a person is doing with them.
 
-    schedule: all systems. notice: the last sentence said. copied: what was put on the clipboard last, as text and as
-    data. window, autosave, preparation: what a window gives, see host.py; None without one. awaited: the simulation that
-    is too large to go on before its step program is compiled.
+    schedule: all systems. notice: the last sentence said. window, autosave: what a window gives; None without one.
+    waits_for: what a simulation waits for, None if it can go on. awaited: the one that is too large to go on before its
+    step program is compiled.
     scenes: the mode, and its transitions. gesture: what is being drawn or dragged. performing: a script is shown in the
     window, so input is not for the scenes and no time passes by itself. footer: the strip below the picture meanwhile.
     lesson: the script that a person asked for. course: the lessons.course.Course that a person is in; beside: its card, in
@@ -255,11 +287,10 @@ class Context:
         self.pull = pull
         self.documents = OpenDocuments(model, schedule, pull, file)
         self._clipboard = ""
-        self.copied: tuple[str, Part] | None = None
         self.notice = ""
         self.window: Window | None = None
         self.autosave: Autosave | None = None
-        self.preparation: ProgramPreparation | None = None
+        self.waits_for: Callable[[Simulation], Waiting | None] = lambda simulation: None
         self.awaited: Simulation | None = None
         self.scenes = Scenes(scenes)
         self.view = view
@@ -380,12 +411,8 @@ class Context:
 
     def has_program(self, simulation: Simulation) -> bool:
         """False while a large model waits for another process to compile its step program (see `awaited`)."""
-        self.awaited = None if self.waited_for(simulation) is None else simulation
+        self.awaited = None if self.waits_for(simulation) is None else simulation
         return self.awaited is None
-
-    def waited_for(self, simulation: Simulation) -> Waiting | None:
-        """What a simulation waits for; None if it can go on."""
-        return self.preparation.waits_for(simulation) if self.preparation is not None else None
 
     @property
     def time_passes(self) -> bool:
@@ -499,19 +526,13 @@ class Context:
 
     def undo(self) -> str:
         """Take back the last edit or run, or the opening of the document; returns what it was, or ""."""
-        return (
-            self._through_log(self.document.history.undo())
-            if self.document.history.can_undo
-            else self._to_document(-1)
-        )
+        history = self.document.history
+        return self._to_document(-1) if not history.can_undo else self._through_log(history.undo())
 
     def redo(self) -> str:
         """Repeat what was taken back; returns what it was, "" if there is nothing."""
-        return (
-            self._through_log(self.document.history.redo())
-            if self.document.history.can_redo
-            else self._to_document(1)
-        )
+        history = self.document.history
+        return self._to_document(1) if not history.can_redo else self._through_log(history.redo())
 
     def _through_log(self, title: str) -> str:
         self._go_on()
@@ -600,6 +621,5 @@ class Context:
         Called after actions, never because of time or frames, so that a recording is replayed in the same picture.
         """
         view = self.view
-        own = view.theory or view.energy or view.events or view.free_bodies
-        wanted = own or any(readout.is_large for readout in self.panels())
-        view.share(self.model, shares=view.legend and wanted)
+        wanted = view.wanted or view.free_bodies or any(readout.is_large for readout in self.panels())
+        view.share(self.model, shares=view.legend and bool(wanted))

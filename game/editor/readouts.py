@@ -10,7 +10,7 @@ from textwrap import wrap
 from typing import TYPE_CHECKING
 
 from pinjoint.components import written
-from pinjoint.components.field import CM, FieldError
+from pinjoint.components.field import FieldError
 from pinjoint.components.free_body import Force, on_joint, on_rod
 from pinjoint.components.handle import Handle
 from pinjoint.components.language import begun, joined, marked, plural, tr
@@ -36,15 +36,6 @@ NOTHING = 1e-12  # of the largest exact value of its kind: round-off, shown as 0
 NO_ENERGY = 1e-5  # of the largest energy: less is shown as 0 beside it
 
 _BEFORE_SIGNS = re.compile("([+−=]) ")  # where a sum may be broken
-_SHOWN = {
-    "axial_force": ("kN", 1.0),
-    "reaction": ("kN", 1.0),
-    "displacement": CM,
-    "rotation": ("rad", 1.0),
-    "reaction_moment": ("kN·m", 1.0),
-    "shear": ("kN", 1.0),
-    "bending_moment": ("kN·m", 1.0),
-}
 _WAYS = {
     "simulation": marked("the run"),
     "linear": marked("linear theory"),
@@ -81,15 +72,11 @@ _INSTABILITIES = {"snap-through": marked("snap-through"), "bifurcation": marked(
 
 def own_readouts(context: Context) -> Iterator[Readout]:
     """The readouts that a person switched on, each with the action that switches it off."""
-    view = context.view
-    for shown, action, read in (
-        (view.free_bodies, "toggle free bodies", _equilibrium),
-        (view.theory, "toggle theory", _theory),
-        (view.energy, "toggle energy", _energy),
-        (view.events, "toggle events", _events),
-    ):
-        if shown:
-            yield from (replace(readout, closes=action) for readout in read(context))
+    panels = {"free bodies": _equilibrium, "theory": _theory, "energy": _energy, "events": _events}
+    shown = context.view.wanted | ({"free bodies"} if context.view.free_bodies else set())
+    for name, read in panels.items():
+        if name in shown:
+            yield from (replace(readout, closes=f"toggle {name}") for readout in read(context))
 
 
 def _events(context: Context) -> Iterator[Readout]:
@@ -135,7 +122,11 @@ def _equilibrium(context: Context) -> Iterator[Readout]:
         title = tr("Free body: {element}", element=model.describe(handle))
         yield Readout(title, (*rows, *_sums(forces)))
     if not chosen:
-        shown = [row for particle in list(model.particles)[:MOST_JOINTS] for row in _sums_of(model, particle)]
+        shown = [
+            (f"{particle.name} {title}" if title else "", total)
+            for particle in list(model.particles)[:MOST_JOINTS]
+            for title, total in _sums(on_joint(model, particle.row))
+        ]
         more = model.particles.count - MOST_JOINTS
         rest = (
             [(plural("and one more", "and {count} more", more), tr("select one to see it"))] if more > 0 else []
@@ -152,11 +143,6 @@ def _parts(force: Force, forces: Sequence[Force]) -> str:
         return f"x {x}   y {y} kN"
     moment = written.moment(force.moment)
     return f"x {x}   y {y} kN   M {moment}" if max(abs(force.x), abs(force.y)) > nothing else f"M {moment}"
-
-
-def _sums_of(model: Model, particle: Particle) -> Iterator[tuple[str, str]]:
-    for title, total in _sums(on_joint(model, particle.row)):
-        yield f"{particle.name} {title}" if title else "", total
 
 
 def _sums(forces: Sequence[Force]) -> Iterator[tuple[str, str]]:
@@ -190,13 +176,16 @@ def _theory(context: Context) -> Iterator[Readout]:
             return
         yield Readout(tr(BESIDE), tuple(_overview(context, theory, comparison)))
         for handle in context.selected[:MOST_ELEMENTS]:
-            yield from _of_element(handle, comparison)
+            yield from _of_element(context.model, handle, comparison)
 
 
 def _overview(context: Context, theory: Theories, comparison: Comparison) -> Iterator[tuple[str, str]]:
     settlement = theory.settlement
     yield from _verdict(context, comparison)
-    yield from _indeterminacy(context)
+    count, degrees = counted(context.model), context.document.assessment.indeterminacy
+    yield count.formula, count.numbers
+    if said := count.by_rank(degrees.static, degrees.mechanisms):
+        yield tr("by matrix rank"), said
     if theory.refusal is not None:
         mechanism = theory.refusal.status == "mechanism"
         yield (
@@ -227,14 +216,6 @@ def _overview(context: Context, theory: Theories, comparison: Comparison) -> Ite
         yield tr(_DISTURBED[disturbed]), tr("theory leaves this out")
 
 
-def _indeterminacy(context: Context) -> Iterator[tuple[str, str]]:
-    """The degree with its formula, and what the rank says beside it."""
-    count, degrees = counted(context.model), context.document.assessment.indeterminacy
-    yield count.formula, count.numbers
-    if said := count.by_rank(degrees.static, degrees.mechanisms):
-        yield tr("by matrix rank"), said
-
-
 def _verdict(context: Context, comparison: Comparison) -> Iterator[tuple[str, str]]:
     """Whether a run at rest is where a slowly growing load leads to, and if not, why."""
     from pinjoint.systems.statics.verify import DEPARTURES, differs
@@ -253,24 +234,19 @@ def _verdict(context: Context, comparison: Comparison) -> Iterator[tuple[str, st
         yield tr("at rest"), tr("as static theory predicts")
 
 
-def _of_element(handle: Handle, comparison: Comparison) -> Iterator[Readout]:
-    """Readouts of all quantities of an element that theory computes."""
-    if isinstance(handle, Rod | Particle):
-        for quantity, place in sorted(comparison.of(handle.table, handle.row), key=itemgetter(1)):
-            yield _beside(comparison, quantity, place)
-
-
-def _beside(comparison: Comparison, quantity: str, place: tuple[int, ...]) -> Readout:
-    """One quantity of one element in the run and by both theories, with errors."""
-    row, nothing = comparison.row(quantity, place), NOTHING * comparison.scale(quantity)
-    unit, factor = _SHOWN[row.quantity]
-    rows = []
-    for way, title in _WAYS.items():
-        value, error = getattr(row, way), getattr(row, f"{way}_error", None)
-        clear = 0.0 if value is not None and abs(value) <= nothing else value
-        shown = "—" if clear is None else f"{written.number(factor * clear)} {unit}"
-        named = tr(title)
-        if error is not None:
-            named = tr("{theory}, error {error}", theory=named, error=_error(error))
-        rows.append((named, shown))
-    return Readout(begun(tr(row.title)), tuple(rows))
+def _of_element(model: Model, handle: Handle, comparison: Comparison) -> Iterator[Readout]:
+    """Readouts of all quantities of an element that theory computes: in the run and by both theories, with errors."""
+    if not isinstance(handle, Rod | Particle):
+        return
+    for quantity, place in sorted(comparison.of(handle.table, handle.row), key=itemgetter(1)):
+        row, nothing = comparison.row(quantity, place), NOTHING * comparison.scale(quantity)
+        unit, factor = model.tables[handle.table].fields[row.quantity].shown
+        rows = []
+        for way, title in _WAYS.items():
+            value, error = getattr(row, way), getattr(row, f"{way}_error", None)
+            clear = 0.0 if value is not None and abs(value) <= nothing else value
+            named = tr(title)
+            if error is not None:
+                named = tr("{theory}, error {error}", theory=named, error=_error(error))
+            rows.append((named, "—" if clear is None else f"{written.number(factor * clear)} {unit}"))
+        yield Readout(begun(tr(row.title)), tuple(rows))

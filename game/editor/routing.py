@@ -20,7 +20,6 @@ DIGITS = frozenset("0123456789.,-+")
 Layer = tuple[
     str, bool, int, str | None
 ]  # the scene, whether a menu and the help are open, and what is pressed
-Meaning = tuple[str | None, Vector]  # the name of an action, if any, and the pixel where it acts
 
 
 def hit_at(context: Context, key: str, pixel: Vector) -> Hit | None:
@@ -30,16 +29,12 @@ def hit_at(context: Context, key: str, pixel: Vector) -> Hit | None:
     theme = load_theme(context.view.theme)
     for shown, view in reversed(context.stages):
         for hit in reversed(hits_at(shown, view, theme, pixel)):
-            if _takes(context, hit, key):
+            taken = (
+                hit.wheel is not None if key in WHEEL else key != "right click" or hit.action != "close menu"
+            )
+            if taken and not (isinstance(hit.item, Readout) and context.performing):
                 return hit if hit.action is not None else None
     return None
-
-
-def _takes(context: Context, hit: Hit, key: str) -> bool:
-    """True if a hit keeps a key from what lies below it; while a script is shown, panels do not."""
-    if isinstance(hit.item, Readout) and context.performing:
-        return False
-    return hit.wheel is not None if key in WHEEL else key != "right click" or hit.action != "close menu"
 
 
 def layer(context: Context, hit: Hit | None) -> Layer:
@@ -48,8 +43,11 @@ def layer(context: Context, hit: Hit | None) -> Layer:
     return context.scene, view.menu is not None, view.help > 0, hit.action if hit is not None else None
 
 
-def meaning(context: Context, key: str, pixel: Vector, hit: Hit | None) -> Meaning:
-    """What a key or button means at a pixel: to a lesson, an open menu, the help, what is hit there, or the scene."""
+def meaning(context: Context, key: str, pixel: Vector, hit: Hit | None) -> tuple[str | None, Vector]:
+    """The action, if any, that a key or button means at a pixel, and where it acts.
+
+    It means it to a lesson, an open menu, the help, what is hit there, or the scene.
+    """
     view = context.view
     if (answer := _to_lesson(context, key)) is not None:
         return answer or None, pixel
@@ -63,9 +61,11 @@ def meaning(context: Context, key: str, pixel: Vector, hit: Hit | None) -> Meani
         return (entry.action, view.menu.at) if entry is not None and entry.enabled else (action, pixel)
     if view.help and key == "escape":
         return "close help", pixel
-    return (
-        action_for(LIVE[0], key) if for_tools(context, key, pixel) else scene_meaning(context.scene, key)
-    ), pixel
+    scene = LIVE[0] if for_tools(context, key, pixel) else context.scene
+    found = action_for(scene, key)
+    if found is None and key == "double click":  # where it means nothing special, it is another click
+        found = action_for(scene, "click")
+    return found, pixel
 
 
 def _pressed(context: Context, key: str, hit: Hit) -> str | None:
@@ -107,9 +107,3 @@ def for_tools(context: Context, key: str, pixel: Vector) -> bool:
         return False
     beside = key == "right click" and context.scene in FORMS and not context.focus[1].covers(pixel)
     return beside or view.strip.contains(pixel)
-
-
-def scene_meaning(scene: str, key: str) -> str | None:
-    """The action of a key in a scene; where a second click means nothing special, it is another click."""
-    found = action_for(scene, key)
-    return action_for(scene, "click") if found is None and key == "double click" else found

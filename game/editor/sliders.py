@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
+from dataclasses import replace
 from typing import Any
 
 from pinjoint.components.box import Box
@@ -21,7 +22,7 @@ from pinjoint.components.slider import Aim, Control, SetSliders, Slider, SliderS
 from pinjoint.documents.sliders import unmovable
 from pinjoint.editor.context import Context
 from pinjoint.systems.edit import Refusal
-from pinjoint.systems.edit.arrows import extent, usual_force
+from pinjoint.systems.edit.arrows import extent, usual
 from pinjoint.systems.input.actions import LIVE
 
 SCALE = -1  # the key of the control of the displacement scale
@@ -141,22 +142,16 @@ def move_to(context: Context, key: int, value: float) -> None:
     control = _control(model, key, slider)
     with model.transaction(control.title if control is not None else marked("slider")):
         for aim in slider.aims:
-            handles = aim.handles(model.tables)
-            model.assign(handles, aim.field, [_with(aim, handle, value) for handle in handles])
+            handles, values = aim.handles(model.tables), list[Any]()
+            for x, y in (getattr(handle, aim.field) for handle in handles if aim.axis):
+                values.append((value, y) if aim.axis == "x" else (x, value))
+            model.assign(handles, aim.field, values or [value] * len(handles))
 
 
 def scale_to(context: Context, scale: float | None) -> None:
     """Draw displacements to a scale; None: to the automatic one."""
     for settings in context.scenes.active.scaled(context):
         settings.displacement_scale = scale
-
-
-def _with(aim: Aim, handle: Handle, value: float) -> Any:
-    """The value of a Field whose component a slider sets."""
-    if not aim.axis:
-        return value
-    x, y = getattr(handle, aim.field)
-    return (value, y) if aim.axis == "x" else (x, value)
 
 
 # --- making and removing -------------------------------------------------------------------------------------
@@ -183,7 +178,11 @@ def add_slider(context: Context, elements: Sequence[Handle], field: str, axis: s
             quantity=begun(tr(found.title)),
             absent=tr(found.absent),
         )
-    slider = _limited(_around(model, found, value, aims), found)
+    slider = _around(model, found, value, aims)
+    low = -math.inf if found.minimum is None else found.minimum
+    high = math.inf if found.maximum is None else found.maximum
+    first_end, last_end = (min(max(end, low), high) for end in (slider.first, slider.last))
+    slider = replace(slider, first=first_end, last=last_end)
     _set(context, (*model.sliders, slider), marked("new slider"))
     context.view.legend = True  # it is hidden with the toolbar and the legend
     context.view.sliders = sliders_of(context)
@@ -212,16 +211,8 @@ def _around(model: Model, field: Field[Any], value: float, aims: tuple[Aim, ...]
         return Slider(aims, 0.5 * value, 1.5 * value)
     if value != 0.0:
         return Slider(aims, 0.0, math.copysign(round_up(2.0 * abs(value)), value))
-    reach = round_up(usual_force(model)) if field.name == "force" else NOTHING.get(field.unit, 1.0)
+    reach = round_up(usual(model, "force")) if field.name == "force" else NOTHING.get(field.unit, 1.0)
     return Slider(aims, -reach, reach)
-
-
-def _limited(slider: Slider, field: Field[Any]) -> Slider:
-    """The slider within the limits of the Field."""
-    low = -math.inf if field.minimum is None else field.minimum
-    high = math.inf if field.maximum is None else field.maximum
-    first, last = (min(max(end, low), high) for end in (slider.first, slider.last))
-    return Slider(slider.aims, first, last, slider.logarithmic)
 
 
 def add_usual_slider(context: Context) -> None:

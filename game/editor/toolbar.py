@@ -1,13 +1,22 @@
-"""Toolbar: the buttons of the active scene, and what they and the entries of menus say of actions now."""
+"""Toolbar and menus: what can be done now in a scene, with what is selected, at a place, from the records of actions."""
 
 from __future__ import annotations
 
+from collections.abc import Iterable, Sequence
+
 from pinjoint.components.extensions import EXTENSIONS
-from pinjoint.components.language import tr
+from pinjoint.components.field import Vector
+from pinjoint.components.language import begun, marked, tr
+from pinjoint.components.menu import Menu
+from pinjoint.components.particle import Particle
+from pinjoint.components.rod import Rod, rigid_joints
 from pinjoint.components.toolbar import Tool, Toolbar
 from pinjoint.editor.context import Context
 from pinjoint.editor.gestures.drawing import tool_in_hand
-from pinjoint.systems.input.actions import ACTIONS, FORMS
+from pinjoint.systems.edit.dividing import DIVISIONS
+from pinjoint.systems.edit.rods import is_rigid, share_at
+from pinjoint.systems.forms.properties import heading
+from pinjoint.systems.input.actions import ACTIONS, FORCE_METHOD, FORMS
 
 PLACE = "place"  # the tools of mods stand at the end of its group, their other buttons in a group of their own
 
@@ -63,3 +72,87 @@ def tool(context: Context, name: str, title: str = "") -> Tool | None:
     said = tr(title or pressed_title or binding.title)
     enabled = scene in binding.scenes and bool(action.enabled(context))
     return Tool(name, said, binding.key, icon or name, pressed, enabled)
+
+
+# --- menus -----------------------------------------------------------------------------------------------
+
+
+Entry = str | tuple[str, str]  # an action, or an action and the title that suits the place
+Groups = Iterable[Sequence[Entry]]
+
+
+def menu_at(context: Context, pixel: Vector) -> Menu:
+    """The menu of the selected elements, or of the canvas, opened at a pixel."""
+    groups = _of_selection(context, pixel) if context.has_selected else _of_canvas(context)
+    title = begun(heading(context.model, context.selected)) if context.has_selected else ""
+    if context.scene == FORCE_METHOD:
+        groups, title = [[("pick unknown", marked("release this"))], *actions_of_toolbar(context)], ""
+    entries = ([(entry, "") if isinstance(entry, str) else entry for entry in group] for group in groups)
+    tools = (tuple(filter(None, (tool(context, *entry) for entry in group))) for group in entries)
+    return Menu(title, tuple(group for group in tools if group), pixel, pointed=pixel)
+
+
+def _of_selection(context: Context, pixel: Vector) -> Groups:
+    """What the elements have in common comes first."""
+    particles, rods, alone = context.selected_of(Particle), context.selected_of(Rod), len(context.selected) == 1
+    turns = bool(particles) and bool(rigid_joints(context.model)[[one.row for one in particles]].any())
+    results = [
+        ("toggle diagrams", marked("force diagram")),
+        ("probes.plot", marked("plot")),  # where the mod that plots is there
+        ("new slider", marked("slider for its load or stiffness")),
+    ]
+    yield [("properties", marked("properties")), *(results if particles or rods else ())]
+    if particles:
+        clamps = ("clamp", "guide y", "guide x", "hold rotation") if turns else ()
+        yield ["free", "pin", "hold y", "hold x", *clamps]
+    if particles and alone:
+        yield [
+            ("force", marked("load: click where its arrow ends")),
+            *([("moment", marked("moment: click left or right of it"))] if turns else ()),
+            ("velocity", marked("velocity: click where its arrow ends")),
+            ("rod", marked("rod from here")),
+        ]
+    if rods:
+        hinge = [("hinge", _hinge_of(context, rods[0], pixel))] if alone else []
+        yield [*hinge, ("rigid", marked("rigid at both ends"))]
+    if rods and alone:
+        yield [("force", marked("distributed load: click where its arrow ends")), "weight along"]
+    if any(rod.bending_stiffness > 0.0 for rod in rods):
+        yield [*(["split"] if alone else ()), *DIVISIONS.values()]
+    if rods:
+        release = [("release", marked("release it in the force method"))] if alone else []
+        yield [("toggle cable", marked("cable: tension only")), *release]
+    yield [("copy", marked("copy")), ("duplicate", marked("duplicate")), ("delete", marked("delete"))]
+
+
+def _hinge_of(context: Context, rod: Rod, pixel: Vector) -> str:
+    """What a hinge would make of the nearer end of a rod."""
+    end = int(share_at(rod, context.view.camera.to_model(pixel)) > 0.5)
+    if is_rigid(rod, end):
+        return tr("hinge at {particle}", particle=rod.ends[end].name)
+    return tr("make rigid at {particle}", particle=rod.ends[end].name)
+
+
+def _of_canvas(context: Context) -> Groups:
+    """Where the toolbar is hidden, all that it has, too."""
+    groups: list[list[Entry]] = [
+        [
+            ("place", marked("new particle here")),
+            "rod",
+            "rigid",
+            *of_mods(draw=True),
+            ("paste", marked("paste here")),
+            "select all",
+        ],
+        ["toggle run", "restart", "settle"],
+        ["toggle diagrams", "toggle free bodies", "toggle utilisation"],
+        ["toggle theory", "toggle energy", "toggle events", "next shape"],
+        [*of_mods(draw=False)],
+        ["fit", "zoom in", "zoom out", "new grid", "next grid", "toggle legend", "next theme", "next language"],
+        ["environment", "toggle full screen", "toggle help"],
+        ["screenshot", "picture as svg", "picture as pdf"],
+    ]
+    if context.view.strip.width == 0:
+        known = {entry if isinstance(entry, str) else entry[0] for group in groups for entry in group}
+        groups += [[action for action in group if action not in known] for group in actions_of_toolbar(context)]
+    return groups

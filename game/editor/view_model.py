@@ -11,9 +11,8 @@ from pinjoint.components.language import begun, english, joined, listed, marked,
 from pinjoint.components.model import Model
 from pinjoint.components.tags import Hovered
 from pinjoint.components.view import MARGIN, Preview, Readout, Status, drawn_places, drawn_positions
-from pinjoint.editor.context import Context
+from pinjoint.editor.context import Context, Waiting
 from pinjoint.editor.gestures.drawing import end_pointed_at, hint_of_tool
-from pinjoint.editor.host import Waiting
 from pinjoint.editor.readouts import own_readouts
 from pinjoint.systems.base import StopReason
 from pinjoint.systems.edit import Refusal
@@ -24,7 +23,6 @@ from pinjoint.systems.render.overlays import BAR
 from pinjoint.systems.render.theme import load_theme
 
 COMPILING = marked("Compiling the program for this model, once: about {seconds:.0f} s left.")
-COMPILED_SOON = marked("Compiling the program for this model, once: nearly done.")
 STILL = ("pause", "properties")  # scenes of the model in which time stands still
 FLASH = 0.15  # s shown, for which an impact is marked
 MOST_WATCHED = 2000  # particles, up to which it is told that they left the picture
@@ -36,7 +34,7 @@ MOST_FLASHES = 500  # impacts marked at a time
 def show(context: Context, elapsed: float) -> None:
     """Let the view show the session as it is now, so many seconds after the last time."""
     view, scene = context.view, context.scenes.active
-    view.forces_known = context.waited_for(context.simulation) is None
+    view.forces_known = context.waits_for(context.simulation) is None
     awaited = _awaited(context)
     said = _told(awaited) or (scene.message if scene.mod is not None else "")
     lately = context.document.chronicle.told(elapsed) if context.scene in LIVE else ""
@@ -58,14 +56,16 @@ def show(context: Context, elapsed: float) -> None:
     view.swing = context.document.shapes.swing(elapsed) if view.shape is not None else 1.0
     _show_readouts(context)
     _point_out(context)
+    drawing = tr(context.gesture.hint) if context.gesture is not None else hint_of_tool(context)
+    drawing = drawing if context.scene in LIVE else ""
     view.status = Status(
         time=context.time,
         speed=context.document.live.clock.shown_pace if context.busy else 0.0,
         state=_state_word(context),
-        hint=_drawing_hint(context) or scene.hint(context),
+        hint=drawing or scene.hint(context),
         problem=_problem(context),
         notice=said or joined([lately, *lasting]),
-        share=awaited.share if awaited is not None else None,
+        share=min(awaited.seconds / awaited.expected, 0.99) if awaited is not None else None,
     )
 
 
@@ -158,7 +158,7 @@ def _point_out(context: Context) -> None:
 
 def _awaited(context: Context) -> Waiting | None:
     """What the run waits for, None if it does not (any more)."""
-    waited = context.waited_for(context.awaited) if context.awaited is not None else None
+    waited = context.waits_for(context.awaited) if context.awaited is not None else None
     if waited is None:
         context.awaited = None
     return waited
@@ -169,12 +169,14 @@ def _told(waited: Waiting | None) -> str:
     if waited is None:
         return ""
     left = waited.expected - waited.seconds
-    return tr(COMPILING, seconds=left) if left > 1.0 else tr(COMPILED_SOON)
+    if left > 1.0:
+        return tr(COMPILING, seconds=left)
+    return tr("Compiling the program for this model, once: nearly done.")
 
 
 def _flashes(context: Context) -> NDArray[np.float64]:
     """Where particles collided within the last FLASH seconds shown (m), shape (k, 2)."""
-    impacts = context.impacts
+    impacts = context.simulation.impacts
     if not context.busy or len(impacts) == 0:
         return np.zeros((0, 2))
     since = context.time - FLASH * context.document.live.clock.shown_pace
@@ -190,12 +192,6 @@ def _preview(context: Context) -> Preview | None:
     except Refusal as error:
         context.gesture, context.notice = None, str(error)
         return None
-
-
-def _drawing_hint(context: Context) -> str:
-    if context.scene not in LIVE:
-        return ""
-    return tr(context.gesture.hint) if context.gesture is not None else hint_of_tool(context)
 
 
 def _state_word(context: Context) -> str:

@@ -12,8 +12,7 @@ from pinjoint.components.model import Model
 from pinjoint.components.written import ROUNDING
 from pinjoint.systems.statics.equations import largest
 from pinjoint.systems.statics.external import external_forces
-from pinjoint.systems.statics.force_method import unit_force
-from pinjoint.systems.statics.released import SetState
+from pinjoint.systems.statics.force_method import SetState, unit_load
 from pinjoint.systems.statics.settle import settle
 from pinjoint.systems.statics.unknowns import Unknown
 
@@ -73,11 +72,11 @@ def loaded(model: Model, released: Sequence[Unknown], amounts: Sequence[float]) 
     copy = unloaded(model, released)
     force = np.zeros((model.particles.count, 3))
     for unknown, amount in zip(released, amounts, strict=True):
-        unit = unit_force(model, unknown)
-        force[:, : unit.shape[1]] += amount * unit
-        if unknown.of_end:  # seen on the joint; the other of the pair acts on the rod
-            joint = model.rods.between[unknown.element.row, unknown.axis]
-            force[joint, 2] += amount * (1.0 if unknown.axis == 0 else -1.0)
+        unit, couple = unit_load(model, unknown)
+        np.add.at(
+            unit[:, 2], model.rods.between, -couple
+        )  # seen on the joint; the other of the pair acts on the rod
+        force += amount * unit
     copy.assign(list(copy.particles), "force", force[:, :2].tolist())
     copy.assign(list(copy.particles), "moment", force[:, 2].tolist())
     return copy
@@ -86,25 +85,24 @@ def loaded(model: Model, released: Sequence[Unknown], amounts: Sequence[float]) 
 def still(copy: Model, whole: Model, state: SetState) -> Model:
     """A copy of a structure, perhaps without some of its rods, undeformed and with the forces of a state; no run may go on
     in it."""
-    rods = copy.rods
+    particles, rods = copy.particles, copy.rods
     here = [whole.rods[name].row for name in rods.names]
     copy.writable("particles.displacement")[...] = 0.0
     copy.writable("particles.rotation")[...] = 0.0
     if rods.bending_stiffness.any():
         copy.writable("rods.bending_stiffness")[...] *= _STIFF
-    load = external_forces(copy).at(1.0)
-    reaction = np.where(np.abs(state.reaction) > ROUNDING * largest(state.axial_force), state.reaction, 0.0)
+    load = np.pad(external_forces(copy).at(1.0), ((0, 0), (0, 1)))
+    held = np.column_stack([particles.fixed, particles.fixed_rotation])
+    counts = held & (np.abs(state.reaction) > ROUNDING * largest(state.axial_force))
+    reaction = np.where(counts, state.reaction, 0.0)
     told = {
         "particles.reaction": reaction[:, :2],
+        "particles.reaction_moment": reaction[:, 2],
         "particles.applied_force": load[:, :2],
+        "particles.applied_moment": load[:, 2],
         "rods.axial_force": state.axial_force[here],
+        "rods.end_moment": state.end_moment[here],
     }
-    if len(state.end_moment):
-        told |= {
-            "particles.applied_moment": load[:, 2] if load.shape[1] > 2 else np.zeros(len(load)),
-            "particles.reaction_moment": reaction[:, 2],
-            "rods.end_moment": state.end_moment[here],
-        }
     for name in told:
         table, _, column = name.partition(".")
         copy.tables[table].column(column)  # up to date first, so that what is told stays
@@ -120,16 +118,14 @@ def exact_forces(model: Model, unknowns: Sequence[Unknown]) -> list[float] | Non
     final = settle(elastic_copy(model)).final
     if not final.balanced:
         return None
-    found = []
-    for unknown in unknowns:
-        row, axis = unknown.element.row, unknown.axis
-        if axis is None:
-            found.append(float(final.axial_force[row]))
-        elif unknown.of_end:
-            found.append(float(final.diagrams["bending_moment"][row, axis]))
-        else:
-            found.append(float(final.reaction_moment[row] if axis == 2 else final.reaction[row, axis]))
-    return found
+    reaction, moment = (
+        np.column_stack([final.reaction, final.reaction_moment]),
+        final.diagrams["bending_moment"],
+    )
+    return [
+        float((final.axial_force if one.of_bar else moment if one.of_end else reaction)[one.place])
+        for one in unknowns
+    ]
 
 
 def _release(model: Model, unknown: Unknown) -> None:

@@ -15,7 +15,7 @@ from pinjoint.components.handle import Handle
 from pinjoint.components.language import tr
 from pinjoint.components.model import Model
 from pinjoint.components.particle import Particle
-from pinjoint.components.rod import Rod
+from pinjoint.components.rod import Rod, bends
 from pinjoint.components.round_numbers import round_down
 from pinjoint.components.table import Table
 from pinjoint.components.tags import Selected
@@ -30,9 +30,9 @@ from pinjoint.systems.run.simulation import Simulation
 from pinjoint.systems.schedule import Schedule
 from pinjoint.systems.statics.counting import counted
 from pinjoint.systems.statics.equations import largest
-from pinjoint.systems.statics.force_method import Solution, solve
-from pinjoint.systems.statics.released import SetState
+from pinjoint.systems.statics.force_method import SetState, Solution, solve, superposed
 from pinjoint.systems.statics.settle import settle
+from pinjoint.systems.statics.state import apply
 from pinjoint.systems.statics.unknowns import ForceMethodError, Unknown, is_turned
 
 DIAGRAM_HEIGHT = 34.0  # px of the largest force diagram
@@ -43,27 +43,29 @@ SWING = 3.0  # s in which a mechanism is shown to move there and back
 class Set:
     """One of the three systems: its model, its view and its run in real time.
 
-    suited: the scale that shows its own displacements well.
+    live: None of a frame, which stays undeformed, its forces drawn at once by first-order theory. suited: the scale that
+    shows its own displacements well.
     """
 
     model: Model
     view: View
-    live: RealTimeRunner
+    live: RealTimeRunner | None = None
     suited: float = 1.0
 
     @property
-    def simulation(self) -> Simulation:
-        """The run of the set."""
-        return self.live.simulation
+    def simulation(self) -> Simulation | None:
+        """The run of the set, if it has one."""
+        return self.live.simulation if self.live is not None else None
 
     @property
     def moves(self) -> bool:
         """True if frames change the set."""
-        return not self.simulation.halted
+        return self.live is not None and not self.live.simulation.halted
 
     def advance(self, elapsed: float) -> None:
         """Let the time of one frame pass."""
-        self.live.frame(elapsed)
+        if self.live is not None:
+            self.live.frame(elapsed)
 
     def scale_to(self, state: SetState) -> None:
         """Choose drawing scales for the displacements and forces of a final state."""
@@ -73,39 +75,15 @@ class Set:
 
     def settle(self) -> None:
         """Skip the rest of the motion: go to its equilibrium, if there is one."""
-        final = settle(self.model).final
-        if final.balanced:
+        final = settle(self.model).final if self.live is not None else None
+        if final is not None and final.balanced:
             with self.model.transaction("settle"):
-                self.model.give("particles.displacement", final.displacement)
-                self.model.give("particles.velocity", np.zeros_like(final.displacement))
-
-
-@dataclass
-class Still:
-    """A system of a frame, undeformed: its forces are drawn at once, by first-order theory."""
-
-    model: Model
-    view: View
-    suited = 1.0
-    moves = False
-    simulation = None
-
-    def advance(self, elapsed: float) -> None:
-        """It does not move."""
-
-    def scale_to(self, state: SetState) -> None:
-        """Its diagrams have scales of their own."""
-
-    def settle(self) -> None:
-        """It is at rest."""
+                apply(self.model, final)
 
 
 def _scale_to(drawn: float, size: float) -> float:
     """The round scale at which a size is drawn so large; 1 where it, or the picture, has none."""
     return round_down(drawn / size) if min(drawn, size) > 0.0 else 1.0
-
-
-AnySet = Set | Still
 
 
 class Mechanism:
@@ -150,7 +128,7 @@ class Guide:
         self.quantity = MOMENT
         real = solve(model, [])
         self.count = counted(model)
-        self.sets: list[AnySet] = []
+        self.sets: list[Set] = []
         self.sets = [self._make_set([], real.real)]
         self._scale_alike()
 
@@ -172,7 +150,7 @@ class Guide:
     @property
     def is_frame(self) -> bool:
         """True if members bend, so that the sets stay still."""
-        return isinstance(self.sets[0], Still)
+        return bends(self.model)
 
     def next_quantity(self) -> None:
         """Show diagrams of M, V or N in all sets of a frame."""
@@ -186,7 +164,7 @@ class Guide:
         """The tables of the solution."""
         assert self.solution is not None
         if self._tables is None or self._tables.solution is not self.solution:
-            self._tables = Tables.of(self.model, self.solution)
+            self._tables = Tables(self.model, self.solution)
         return self._tables
 
     @property
@@ -196,7 +174,7 @@ class Guide:
 
     # --- sets --------------------------------------------------------------------------------------
 
-    def _make_set(self, released: Sequence[Unknown], state: SetState, amounts: Sequence[float] = ()) -> AnySet:
+    def _make_set(self, released: Sequence[Unknown], state: SetState, amounts: Sequence[float] = ()) -> Set:
         """A copy of the structure without some unknowns, under the real load, or under so much of them alone.
 
         Where members bend it stays still; else it runs towards the state.
@@ -204,10 +182,10 @@ class Guide:
         copy = loaded(self.model, released, amounts) if amounts else base_structure(self.model, released)
         known = self.sets[0].model.settings if released else None  # a person may have chosen its scale
         copy.settings.displacement_scale = known.prescribed_displacement_scale if known is not None else None
-        if len(state.end_moment):
+        if bends(self.model):
             view = view_like(self._view)
             view.all_diagrams, view.quantity = True, self.quantity
-            return Still(still(copy, self.model, state), view)
+            return Set(still(copy, self.model, state), view)
         live = RealTimeRunner(Simulation(copy, self._schedule, "force method"))
         made = Set(copy, view_like(self._view), live)
         made.scale_to(state)
@@ -220,17 +198,17 @@ class Guide:
             one.model.writable("settings.automatic_displacement_scale")[0] = scale
 
     @property
-    def running(self) -> list[AnySet]:
+    def running(self) -> list[Set]:
         """The sets that move in this part."""
         return {1: self.sets[:1], 3: self.sets[1:2], 5: self.sets[2:3], 7: self.sets[2:3]}.get(self.part, [])
 
     @property
-    def shown(self) -> list[AnySet | Mechanism]:
+    def shown(self) -> list[Set | Mechanism]:
         """The structures in the picture, from left to right."""
         return [*self.sets, self.mechanism] if self.mechanism is not None else [*self.sets]
 
     @property
-    def moving(self) -> list[AnySet | Mechanism]:
+    def moving(self) -> list[Set | Mechanism]:
         """The structures that frames change."""
         return [one for one in (*self.running, self.mechanism) if one is not None and one.moves]
 
@@ -330,19 +308,17 @@ class Guide:
     def _times(self, amounts: Sequence[float]) -> SetState:
         """The state of the released structure under so much of its unknowns."""
         assert self.solution is not None
-        states = self.solution.units
-        parts = {
-            name: sum(amount * getattr(unit, name) for amount, unit in zip(amounts, states, strict=True))
-            for name in vars(states[0])
-        }
-        return SetState(**parts)
+        state = superposed(self.solution.units, amounts)
+        for bar in (unknown for unknown in self.released if unknown.of_bar):
+            state.axial_force[bar.place] = 0.0  # cut
+        return state
 
     def _apply_forces(self) -> None:
         """The unknowns' values in place of the unit force (part 7)."""
         assert self.solution is not None
         amounts = self.solution.force.tolist()
         third, state = self.sets[2], self._times(amounts)
-        if isinstance(third, Still):
+        if self.is_frame:
             self.sets[2] = self._make_set(self.released, state, amounts)
             return
         force = loaded(self.model, self.released, amounts).particles.force

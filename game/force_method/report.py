@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from dataclasses import replace
 from functools import partial
-from pathlib import Path
 
 import numpy as np
 from reportlab.platypus import Flowable
@@ -19,11 +18,10 @@ from pinjoint.components.rod import rigid_joints
 from pinjoint.components.round_numbers import round_down
 from pinjoint.components.tags import DiagramShown
 from pinjoint.components.view import THESIS, Cut, View
-from pinjoint.documents import models
-from pinjoint.force_method import thesis, words
+from pinjoint.force_method import index, words
 from pinjoint.force_method.copies import base_structure, loaded, still, unloaded
 from pinjoint.force_method.tables import PRODUCTS, Table, Tables
-from pinjoint.force_method.words import EXACT, index
+from pinjoint.force_method.words import EXACT
 from pinjoint.systems.render.arrows import largest_force
 from pinjoint.systems.render.paper import (
     GUTTER,
@@ -43,7 +41,7 @@ from pinjoint.systems.render.theme import load_theme
 from pinjoint.systems.statics.counting import counted
 from pinjoint.systems.statics.equations import largest
 from pinjoint.systems.statics.external import external_forces
-from pinjoint.systems.statics.released import SetState
+from pinjoint.systems.statics.force_method import SetState, superposed
 from pinjoint.systems.statics.unknowns import Unknown
 
 _BESIDE_IT, _ABOVE, _BELOW = 56.0, 46.0, 62.0  # pixels around a structure, for supports, loads and diagrams
@@ -56,11 +54,6 @@ _TERMS = 6  # of a sum that are written one by one
 _SHOWN = 2  # unknowns of a frame up to which each has a column of superposition
 _BESIDE = 26  # rows of a table that stands beside others
 _APART = ",\u2003"  # between formulas in a line
-
-
-def write_report(solved: Tables, path: str | Path, convention: str) -> None:
-    """Write the report of a solution to a PDF file, as a whole or not at all. Raises OSError."""
-    models.replace(Path(path), report(solved, convention))
 
 
 def report(solved: Tables, convention: str) -> bytes:
@@ -211,7 +204,7 @@ class _Page:
         model, solution, layout = self.model, self.solution, self.layout
         quantity, unit = (MOMENT, "kN·m") if self.solved.bends else (AXIAL, "kN")
         symbol, unknowns = "M" if self.solved.bends else "N", list(solution.unknowns)
-        nothing = replace(solution.real, **{name: 0.0 * part for name, part in vars(solution.real).items()})
+        nothing = superposed([solution.real], [0.0])
         real = still(base_structure(model, []), model, nothing)
         released = base_structure(model, unknowns)
         blocks = [_figure(layout, real, tr("The structure, its supports and its loads"))]
@@ -283,7 +276,7 @@ class _Page:
             ends = tr("M and M′ are the moments at both ends of a rod; qL²/8 is how far M bulges between them.")
             heading.append(self._text(ends, "caption"))
             blocks += _printed(self.layout, solved.bending(every))
-            warm = solved.work.free.any()
+            warm = solved.solution.work.axial.of_free.any()
             axial = solved.virtual_work(every) if warm else solved.forces(every)
             blocks += _printed(self.layout, axial) if self._pulls else []
         else:
@@ -311,14 +304,12 @@ class _Page:
         said = tr("The unknowns close the gaps ({units}):", units=units.all)
         found = [f"X{index(i + 1)} = {words.amount(solution, i)}" for i in range(count)]
         if count == 1:
-            [line] = words.equations(solution, units.all, units.factor)
-            symbols, _, numbers = line.partition(":")
-            equation, _, _ = numbers.rpartition("  (")
+            symbols, numbers = words.equation(solution, 0, units.factor)
             return [
                 heading,
                 self._text(said),
                 self._text(symbols, "equation"),
-                self._text(equation.strip().replace(" = ", "\u00a0=\u00a0"), "equation"),
+                self._text(numbers.replace(" = ", "\u00a0=\u00a0"), "equation"),
                 self._text(found[0], "result"),
             ]
         lines = [matrices([*self._numbers()], self.layout)]
@@ -353,7 +344,7 @@ class _Page:
 
     def of_thesis(self) -> list[Flowable]:
         """The same in the thesis' convention."""
-        lines = thesis.solved_lines(self.solution)
+        lines = words.in_thesis(self.solution)
         heading = self._text(tr("2  Unknowns"), "heading")
         return [together(heading, *(self._text(line, "equation") for line in lines))]
 
@@ -444,22 +435,13 @@ def _counted(solved: Tables) -> str:
 
 def _formulas(solved: Tables, *, pulls: bool) -> Iterator[str]:
     """What the sums are, for every pair of unknowns alike; pulls: there are axial forces."""
-    work, several = solved.work, len(solved.solution.unknowns) > 1
-
-    def pair(bending: str, axial: str) -> list[str]:
-        return [f"∫ {bending} dx/EI"] * solved.bends + [f"Σ {axial} L/EA"] * pulls
-
-    gap = pair("M₀ m₁", "N₀ n₁")
-    if work.free.any():
-        gap.append("Σ n₁ ΔL")
-    if work.curvature.any():
-        gap.append("∫ m₁ κ dx")
-    if len(work.settled):
-        gap.append("(− Σ r₁ c)")
-    yield f"δ₁₀ = {' + '.join(gap)}"
-    yield f"δ₁₁ = {' + '.join(pair('m₁²', 'n₁²'))} > 0"
-    if several:
-        yield f"δ₁₂ = δ₂₁ = {' + '.join(pair('m₁ m₂', 'n₁ n₂'))}"
+    work, bends = solved.solution.work, solved.bends
+    more = ["Σ n₁ ΔL"] * bool(work.axial.of_free.any()) + ["∫ m₁ κ dx"] * bool(work.bending.of_free.any())
+    more += ["(− Σ r₁ c)"] * bool(len(work.settled))
+    yield f"δ₁₀ = {words.sums(bends, 'M₀ m₁', 'N₀ n₁', pulls=pulls, more=more)}"
+    yield f"δ₁₁ = {words.sums(bends, 'm₁²', 'n₁²', pulls=pulls)} > 0"
+    if len(solved.solution.unknowns) > 1:
+        yield f"δ₁₂ = δ₂₁ = {words.sums(bends, 'm₁ m₂', 'n₁ n₂', pulls=pulls)}"
 
 
 def _balance(model: Model, state: SetState) -> Iterator[tuple[str, list[float]]]:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
 from typing import overload
 
@@ -13,22 +13,17 @@ from pinjoint.components import written
 from pinjoint.components.field import CM, ENDS
 from pinjoint.components.language import decimals, joined, tr
 from pinjoint.components.model import Model
-from pinjoint.systems.statics.equations import Array, Rows, largest
-from pinjoint.systems.statics.force_method import Solution
-from pinjoint.systems.statics.unknowns import AXES, Unknown
-from pinjoint.systems.statics.virtual_work import Work, virtual_work
+from pinjoint.components.rod import bends, nodes
+from pinjoint.force_method import index
+from pinjoint.systems.statics.equations import AXES, Array, Rows, largest
+from pinjoint.systems.statics.force_method import SetState, Solution, Terms, bulge
+from pinjoint.systems.statics.unknowns import Unknown
 
 _SMALL = 1e-2  # smaller numbers are written as multiples of a power of 1000
 _FINER = 5  # significant digits of forces that are added
 PRODUCTS = 4  # unknowns up to which all products of virtual work are listed
 _SHOWN = 3  # unknowns up to which each has a column of superposition
 _ABOVE = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
-_BELOW = str.maketrans("0123456789", "₀₁₂₃₄₅₆₇₈₉")
-
-
-def index(*numbers: int) -> str:
-    """Indices as they stand below: "₁₀"; apart from each other if one has two digits."""
-    return ("" if max(numbers) < 10 else "\u2009").join(str(number).translate(_BELOW) for number in numbers)
 
 
 class Column:
@@ -159,12 +154,6 @@ class Tables:
 
     model: Model
     solution: Solution
-    work: Work
-
-    @classmethod
-    def of(cls, model: Model, solution: Solution) -> Tables:
-        """Those of a solution."""
-        return cls(model, solution, virtual_work(model, solution))
 
     @property
     def units(self) -> Units:
@@ -174,135 +163,92 @@ class Tables:
     @property
     def bends(self) -> bool:
         """True if members bend."""
-        return len(self.solution.real.end_moment) > 0
+        return bends(self.model)
 
     @property
     def _carrying(self) -> Rows:
         """Rods with an axial force that counts: all of a truss, those with one in a frame."""
-        work = self.work
-        least = written.ROUNDING * np.abs(work.unit_axial).max(axis=1, initial=0.0, keepdims=True)
-        pulled = (
-            (np.abs(work.unit_axial) > least).any(axis=0)
-            if self.bends
-            else np.ones(len(work.length), dtype=bool)
-        )
-        return np.flatnonzero(pulled)
-
-    @property
-    def _bending(self) -> Rows:
-        return np.flatnonzero((self.work.unit_moment != 0.0).any(axis=(0, 2)))
+        pulls = np.abs(self.solution.work.axial.unit[:, :, 0])
+        least = written.ROUNDING * pulls.max(axis=1, initial=0.0, keepdims=True)
+        return np.flatnonzero((pulls > least).any(axis=0) | (not self.bends))
 
     def forces(self, which: Sequence[int]) -> Table:
         """What the sums of axial forces are made of: L, EA, N₀, and n of some unknowns."""
-        work, rows = self.work, self._carrying
+        solution, rods, rows = self.solution, self.model.rods, self._carrying
         columns = [
-            Column("L", self.units.length, self.units.factor * work.length[rows]),
-            Column("EA", "kN", work.stiffness[rows]),
-            Column("N₀", "kN", work.base_axial[rows], least=largest(self.solution.real.axial_force)),
-            *(self._unit_forces(i) for i in which),
+            Column("L", self.units.length, self.units.factor * rods.rest_length[rows]),
+            Column("EA", "kN", rods.stiffness[rows]),
+            Column("N₀", "kN", solution.base.axial_force[rows], least=largest(solution.real.axial_force)),
         ]
+        for i in which:
+            force, per = solution.units[i].axial_force, "1/m" if solution.unknowns[i].is_moment else ""
+            columns.append(Column(f"n{index(i + 1)}", per, force[rows], digits=_FINER, least=largest(force)))
         return Table(tr("rod"), self._names(rows), columns)
-
-    def _unit_forces(self, i: int) -> Column:
-        force = self.work.unit_axial[i]
-        return Column(
-            f"n{index(i + 1)}", self._per(i), force[self._carrying], digits=_FINER, least=largest(force)
-        )
-
-    def _per(self, unknown: int) -> str:
-        return "1/m" if self.solution.unknowns[unknown].is_moment else ""
 
     def _names(self, rows: Rows) -> list[str]:
         names = self.model.rods.names
         return [names[row] for row in rows.tolist()]
 
-    def products(self, which: Sequence[int], *, base: bool = True) -> list[Column]:
-        """N₀ n L/EA of some unknowns, what elongations without force add, and n n' L/EA."""
-        work, rows, units = self.work, self._carrying, self.units
-        found = []
-        for i in which if base else ():
-            title = f"N₀n{index(i + 1)}L/EA"
-            found.append(self._terms(title, units.gap(i), work.of_base[i], rows, work.of_bending[i]))
-        if base and work.free.any():
-            for i in which:
-                values = units.factor * (work.unit_axial[i] * work.free)[rows]
-                found.append(Column(f"n{index(i + 1)}ΔL", units.gap(i), values, summed=True))
-        for i, j in _pairs(which):
-            title = f"n{index(i + 1)}²L/EA" if i == j else f"n{index(i + 1)}n{index(j + 1)}L/EA"
-            least = math.sqrt(work.of_units(i, i).sum() * work.of_units(j, j).sum())
-            found.append(self._terms(title, units.flexibility(i, j), work.of_units(i, j), rows, least))
-        return found
+    def _products(
+        self, which: Sequence[int], rows: Rows, terms: Terms, other: Terms, heads: str
+    ) -> list[Column]:
+        """The terms of some rods for some unknowns: of the load, without force, and of units.
 
-    def _terms(self, title: str, unit: str, terms: Array, rows: Rows, beside: Array | float) -> Column:
-        """Terms of a sum of some rods; beside: others of the same sum, next to which they may be rounding."""
-        factor = self.units.factor
-        least = factor * max(largest(terms), largest(np.asarray(beside)))
-        return Column(title, unit, factor * terms[rows], summed=True, least=least)
+        other: terms of the same sums, next to which they may be rounding. heads: what is summed, such as "∫ M₀ m /EI κ".
+        """
+        whole, large, small, per, free = heads.split(" ")
+        units, found = self.units, []
+
+        def add(title: str, unit: str, values: Array, least: float = 0.0) -> None:
+            least = units.factor * max(largest(values), least)
+            found.append(Column(f"{whole}{title}", unit, units.factor * values[rows], summed=True, least=least))
+
+        for i in which:
+            add(f"{large}{small}{index(i + 1)}{per}", units.gap(i), terms.of_load[i], largest(other.of_load[i]))
+        for i in which if terms.of_free.any() else ():
+            add(f"{small}{index(i + 1)}{free}", units.gap(i), terms.of_free[i])
+        for i, j in _pairs(which):
+            both = f"{index(i + 1)}²" if i == j else f"{index(i + 1)}{small}{index(j + 1)}"
+            least = math.sqrt(terms.of_units(i, i).sum() * terms.of_units(j, j).sum())
+            add(f"{small}{both}{per}", units.flexibility(i, j), terms.of_units(i, j), least)
+        return found
 
     def virtual_work(self, which: Sequence[int]) -> Table:
         """The sums over axial forces, with everything that is multiplied, for some unknowns."""
-        forces = self.forces(which)
-        return Table(forces.corner, forces.names, [*forces.columns, *self.products(which)])
+        forces, work = self.forces(which), self.solution.work
+        products = self._products(which, self._carrying, work.axial, work.bending, " N₀ n L/EA ΔL")
+        return Table(forces.corner, forces.names, [*forces.columns, *products])
 
     def bending(self, which: Sequence[int]) -> Table:
         """The same over bending moments, at the starts and ends of the rods; q L²/8 by which M₀ bulges between."""
-        work, rows, units = self.work, self._bending, self.units
-        moment = largest(self.solution.real.end_moment)
+        solution, rods, work = self.solution, self.model.rods, self.solution.work
+        rows = np.flatnonzero((work.bending.unit != 0.0).any(axis=(0, 2)))
         columns = [
-            Column("L", "m", work.length[rows]),
-            Column("EI", "kN·m²", work.bending_stiffness[rows]),
-            *(
-                Column(f"M₀{end}", "kN·m", work.base_moment[rows, side], least=moment)
-                for side, end in enumerate(("", "′"))
-            ),
+            Column("L", "m", rods.rest_length[rows]),
+            Column("EI", "kN·m²", rods.bending_stiffness[rows]),
+            *_at_ends("M₀", "kN·m", solution.base.bending_moment, rows, largest(solution.real.end_moment)),
         ]
-        if work.load[rows].any():
-            columns.append(Column("qL²/8", "kN·m", -work.load[rows] / 8.0))
+        bulges = bulge(self.model)[rows]
+        if bulges.any():
+            columns.append(Column("qL²/8", "kN·m", -bulges / 8.0))
         for i in which:
-            unit = "" if self.solution.unknowns[i].is_moment else "m"
-            columns += [
-                Column(
-                    f"m{index(i + 1)}{end}",
-                    unit,
-                    work.unit_moment[i, rows, side],
-                    least=largest(work.unit_moment[i]),
-                )
-                for side, end in enumerate(("", "′"))
-            ]
-        for i in which:
-            title = f"∫M₀m{index(i + 1)}/EI"
-            columns.append(self._terms(title, units.gap(i), work.of_bending[i], rows, work.of_base[i]))
-        if work.curvature.any():
-            for i in which:
-                warm = work.length * work.curvature * work.unit_moment[i].mean(axis=1)
-                columns.append(
-                    Column(f"∫m{index(i + 1)}κ", units.gap(i), units.factor * warm[rows], summed=True)
-                )
-        for i, j in _pairs(which):
-            title = f"∫m{index(i + 1)}²/EI" if i == j else f"∫m{index(i + 1)}m{index(j + 1)}/EI"
-            least = math.sqrt(work.of_unit_bending(i, i).sum() * work.of_unit_bending(j, j).sum())
-            terms = work.of_unit_bending(i, j)
-            columns.append(self._terms(title, units.flexibility(i, j), terms, rows, least))
+            unit, moment = "" if solution.unknowns[i].is_moment else "m", work.bending.unit[i]
+            columns += _at_ends(f"m{index(i + 1)}", unit, moment, rows, largest(moment))
+        columns += self._products(which, rows, work.bending, work.axial, "∫ M₀ m /EI κ")
         return Table(tr("rod"), self._names(rows), columns)
 
     def settlements(self) -> Table | None:
         """What moved supports add to the gaps; None if none has moved."""
-        work, units = self.work, self.units
-        if not len(work.settled):
+        settled, units, particles = self.solution.work.settled, self.units, self.model.particles
+        if not len(settled):
             return None
-        particles, names = self.model.particles, self.model.particles.names
-        places = np.column_stack([particles.displacement, particles.rotation])[tuple(work.settled.T)]
-        columns = [Column("c", "m, rad", places)]
-        for i in range(len(self.solution.unknowns)):
-            reaction = self.solution.units[i].reaction[tuple(work.settled.T)]
-            columns.append(Column(f"r{index(i + 1)}", "", reaction))
-            values = units.factor * work.of_supports[i]
+        at = tuple(settled.T)
+        columns = [Column("c", "m, rad", np.column_stack([particles.displacement, particles.rotation])[at])]
+        for i, unit in enumerate(self.solution.units):
+            columns.append(Column(f"r{index(i + 1)}", "", unit.reaction[at]))
+            values = units.factor * self.solution.work.of_supports[i]
             columns.append(Column(f"−r{index(i + 1)}c", units.gap(i), values, summed=True))
-        return Table(
-            tr("support"),
-            [joined([names[row], tr(AXES[axis])], ".") for row, axis in work.settled.tolist()],
-            columns,
-        )
+        return Table(tr("support"), self._supports(settled), columns)
 
     def sums(self, i: int) -> tuple[str, ...]:
         """What δᵢ₀ and δᵢᵢ of a frame are sums of."""
@@ -315,13 +261,15 @@ class Tables:
         return [text.rpartition(" ")[0] for text in sums]
 
     def _sum_of_gap(self, i: int) -> str:
-        work, units = self.work, self.units
-        ways = (work.of_bending, work.of_base, work.of_free, work.of_supports)
+        work, units = self.solution.work, self.units
+        free = work.axial.of_free + work.bending.of_free
+        ways = (work.bending.of_load, work.axial.of_load, free, work.of_supports)
         found = _sum(units.factor * float(way[i].sum()) for way in ways)
         return f"δ{index(i + 1, 0)} = {found} {units.gap(i)}"
 
     def _sum_of_units(self, i: int, j: int) -> str:
-        parts = (self.work.of_unit_bending(i, j), self.work.of_units(i, j))
+        work = self.solution.work
+        parts = (terms.of_units(i, j) for terms in (work.bending, work.axial))
         found = _sum(self.units.factor * float(part.sum()) for part in parts)
         same = "" if i == j else f" = δ{index(j + 1, i + 1)}"
         return f"δ{index(i + 1, j + 1)}{same} = {found} {self.units.flexibility(i, j)}"
@@ -333,80 +281,81 @@ class Tables:
 
         most: unknowns up to which each has a column.
         """
-        solution = self.solution
-        units = self.work.unit_axial
-        parts = [x * unit for x, unit in zip(solution.force.tolist(), units, strict=True)]
-        return self._superposed(
-            "N",
-            ["n"] * len(units),
-            self.model.rods.names,
-            solution.base.axial_force,
-            parts,
-            solution.real.axial_force,
-            "kN",
-            most,
-        )
+        names = self.model.rods.names
+        return self._superposed("N", "kN", tr("rod"), names, lambda state: state.axial_force, most)
 
     def moments(self, most: int = _SHOWN) -> Table:
         """Likewise M = M₀ + Σ X m at both ends of the rods that bend."""
-        solution, rods = self.solution, self.model.rods
+        rods = self.model.rods
         rows = np.flatnonzero((rods.turning_shares > 0.0).any(axis=1))
         names = [joined([rods.names[row], tr(end)], ".") for row in rows.tolist() for end in ENDS]
-        units = [unit.bending_moment[rows].ravel() for unit in solution.units]
-        parts = [x * unit for x, unit in zip(solution.force.tolist(), units, strict=True)]
-        base, real = solution.base.bending_moment[rows].ravel(), solution.real.bending_moment[rows].ravel()
-        return self._superposed("M", ["m"] * len(parts), names, base, parts, real, "kN·m", most)
+        return self._superposed(
+            "M", "kN·m", tr("rod"), names, lambda state: state.bending_moment[rows].ravel(), most
+        )
 
     def reactions(self, most: int = _SHOWN) -> Table:
         """Likewise R = R₀ + Σ X r of all supports; those released have their unknown."""
-        solution, particles = self.solution, self.model.particles
+        particles, used = self.model.particles, nodes(self.model)
         fixed = np.column_stack([particles.fixed, particles.fixed_rotation & self.bends])
-        whole = solution.superposed.reaction
-        used = np.zeros(particles.count, dtype=bool)
-        used[self.model.rods.between] = True
-        places = [tuple(place) for place in np.argwhere(fixed & used[:, None]).tolist()]
-        places = [place for place in places if place[1] < whole.shape[1]]
-        rows = tuple(np.array(places, dtype=np.intp).reshape(-1, 2).T)
-        parts = []
-        for x, unknown, unit in zip(solution.force.tolist(), solution.unknowns, solution.units, strict=True):
-            reaction = unit.reaction.copy()
-            if unknown.of_support:
-                reaction[unknown.element.row, unknown.axis] = 1.0
-            parts.append(x * reaction[rows])
-        names = [joined([particles.names[row], tr(AXES[axis])], ".") for row, axis in places]
-        base, real = solution.base.reaction[rows], solution.real.reaction[rows]
+        places = np.argwhere(fixed & used[:, None])
+        unit = "kN, kN·m" if self.bends else "kN"
         return self._superposed(
-            "R", ["r"] * len(parts), names, base, parts, real, "kN, kN·m" if self.bends else "kN", most
+            "R",
+            unit,
+            tr("support"),
+            self._supports(places),
+            lambda state: state.reaction[tuple(places.T)],
+            most,
         )
+
+    def _supports(self, places: Rows) -> list[str]:
+        """Names of directions of particles, (k, 2)."""
+        names = self.model.particles.names
+        return [joined([names[row], tr(AXES[axis])], ".") for row, axis in places.tolist()]
+
+    def sets(self) -> Table:
+        """Axial forces of set 1 = set 2 + set 3 for every rod, in the thesis' convention."""
+        solution = self.solution
+        total, real, base = (state.axial_force for state in (solution.superposed, solution.real, solution.base))
+        off = np.where(np.abs(total - real) <= written.ROUNDING * largest(real), 0.0, total - real)
+        titles = (tr("set 1"), tr("= set 2"), tr("+ set 3"))
+        values = (real, base, total - base)
+        columns = [Column(title, "", of, digits=_FINER) for title, of in zip(titles, values, strict=True)]
+        return Table("kN", self.model.rods.names, [*columns, Column(tr("residual"), "", off, digits=1)])
 
     def _superposed(
         self,
         symbol: str,
-        small: Sequence[str],
-        names: Sequence[str],
-        base: Array,
-        parts: Sequence[Array],
-        real: Array,
         unit: str,
+        corner: str,
+        names: Sequence[str],
+        of: Callable[[SetState], Array],
         most: int,
     ) -> Table:
-        whole = base + sum(parts, np.zeros_like(base))
-        if len(parts) <= most:
-            terms = [(f"+ X{index(i + 1)}{small[i]}{index(i + 1)}", part) for i, part in enumerate(parts)]
-        else:
-            terms = [(f"+ ΣX{small[0]}", sum(parts, np.zeros_like(base)))]
-        size = max((largest(part) for part in (real, base, *parts)), default=0.0)
-        off = np.where(np.abs(whole - real) <= written.ROUNDING * size, 0.0, whole - real)
+        solution, small = self.solution, symbol.lower()
+        parts = [x * of(state) for x, state in zip(solution.force.tolist(), solution.units, strict=True)]
+        real, base = of(solution.real), of(solution.base)
+        added = sum(parts, np.zeros_like(base))
+        terms = [(f"+ X{index(i + 1)}{small}{index(i + 1)}", part) for i, part in enumerate(parts)]
+        size = max(map(largest, (real, base, *parts)))
+        off = np.where(np.abs(base + added - real) <= written.ROUNDING * size, 0.0, base + added - real)
         shown = [
-            (symbol, unit, whole),
+            (symbol, unit, base + added),
             (f"= {symbol}₀", "", base),
-            *((title, "", part) for title, part in terms),
+            *(
+                (title, "", part)
+                for title, part in (terms if len(terms) <= most else [(f"+ ΣX{small}", added)])
+            ),
         ]
-        columns = [
-            *(Column(*of, digits=_FINER, size=size) for of in shown),
-            Column(tr("difference"), "", off, digits=1),
-        ]
-        return Table(tr("rod") if symbol != "R" else tr("support"), names, columns)
+        columns = [Column(*column, digits=_FINER, size=size) for column in shown]
+        return Table(corner, names, [*columns, Column(tr("difference"), "", off, digits=1)])
+
+
+def _at_ends(title: str, unit: str, moments: Array, rows: Rows, least: float) -> list[Column]:
+    """Moments (rods, 2) at the starts and ends of some rods."""
+    return [
+        Column(f"{title}{end}", unit, moments[rows, side], least=least) for side, end in enumerate(("", "′"))
+    ]
 
 
 def _sum(terms: Iterable[float]) -> str:

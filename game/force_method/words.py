@@ -7,9 +7,10 @@ from typing import TYPE_CHECKING
 
 from pinjoint.components import written
 from pinjoint.components.bent import AXIAL
+from pinjoint.components.field import CM
 from pinjoint.components.language import listed, marked, plural, tr
 from pinjoint.components.view import BETWEEN
-from pinjoint.force_method import PARTS, thesis
+from pinjoint.force_method import PARTS, index
 
 if TYPE_CHECKING:  # they import scipy
     from pinjoint.force_method.guide import Guide
@@ -40,10 +41,19 @@ def message(guide: Guide) -> str:
         if guide.axis_wanted is not None:
             return tr("Which direction of the support?")
         return tr("Choose a rod or a support to release")
+    names, last = listed([unknown.name for unknown in guide.released]), index(len(guide.released))
     if guide.in_thesis:
-        return thesis.message(guide)
-    last = index(len(guide.released))
-    names = listed([unknown.name for unknown in guide.released])
+        return {
+            3: tr("Primary structure: {names} is released", names=names)
+            if len(guide.released) == 1
+            else tr("Primary structure: {names} are released", names=names),
+            4: tr("How far the released place moved"),
+            5: tr("Primary structure under a pair of unit forces alone")
+            if guide.released[-1].of_bar
+            else tr("Primary structure under a unit force alone"),
+            6: tr("How far the unit force moves it"),
+            7: tr("Set 2 + set 3 = set 1"),
+        }[guide.part]
     return {
         3: tr("Released structure under the load: without {names}", names=names),
         4: tr("The gap that the load opens at the release"),
@@ -90,46 +100,56 @@ def captions(guide: Guide) -> list[Caption]:
     solution = guide.solution
     if solution is None or guide.part == 2:
         return shown
-    if guide.in_thesis:
-        return thesis.captions(guide, shown)
-    count = len(guide.released)
-    third = f"X{index(count)} = 1"
-    if guide.part == PARTS:
-        third = tr("the unknowns below") if count > 1 else f"X₁ = {amount(solution, 0)}"
-    for i, load in enumerate((tr("the real load"), tr("the real load"), third)[:there]):
-        shown[i] = (*shown[i], load)
-    units = guide.tables.units
-    if guide.part >= 4:
-        gaps = [
-            f"δ{index(i + 1, 0)} = {_of(units.factor * gap, units.gap(i))}"
-            for i, gap in enumerate(solution.gap.tolist())
-        ]
-        shown[1] = (*shown[1], *gaps)
-    if guide.part >= 6:
-        last = count - 1
-        flexibilities = [
-            f"δ{index(i + 1, count)} = {_of(units.factor * value, units.flexibility(i, last))}"
-            for i, value in enumerate(solution.flexibility[:, last].tolist())
-        ]
-        shown[2] = (*shown[2], *flexibilities) if guide.part == 6 or count == 1 else shown[2]
+    third, *measured = (_of_thesis if guide.in_thesis else _of_textbook)(guide, solution)
+    for i, load in enumerate(((tr("the real load"),), (tr("the real load"),), third)[:there]):
+        opened = (
+            (i < 2 and guide.part >= 4) or guide.part == 6 or (guide.part == PARTS and len(guide.released) == 1)
+        )
+        shown[i] = (*shown[i], *load, *(measured[i] if opened else ()))
     return shown
 
 
-def index(*numbers: int) -> str:
-    """Indices as they stand below: "₁₀"; apart from each other if one has two digits."""
-    from pinjoint.force_method.tables import index as below  # it imports scipy
+def _of_textbook(guide: Guide, solution: Solution) -> tuple[Caption, ...]:
+    """What loads set 3, and the gaps in each set."""
+    count, units = len(guide.released), guide.tables.units
+    third = f"X{index(count)} = 1"
+    if guide.part == PARTS:
+        third = tr("the unknowns below") if count > 1 else f"X₁ = {amount(solution, 0)}"
+    gaps = [
+        f"δ{index(i + 1, 0)} = {written.number(units.factor * gap)} {units.gap(i)}"
+        for i, gap in enumerate(solution.gap.tolist())
+    ]
+    flexibilities = [
+        f"δ{index(i + 1, count)} = {written.number(units.factor * value)} {units.flexibility(i, count - 1)}"
+        for i, value in enumerate(solution.flexibility[:, -1].tolist())
+    ]
+    return (third,), (), tuple(gaps), tuple(flexibilities)
 
-    return below(*numbers)
+
+def _of_thesis(guide: Guide, solution: Solution) -> tuple[Caption, ...]:
+    """What loads set 3, and the displacement of every unknown: Δ, the change of distance of a rod, or u, of a support."""
+    last, several = guide.released[-1], len(guide.released) > 1
+    third = tr("a unit force at {name}", name=last.name)
+    if last.of_bar:
+        third = tr("a pair of unit forces at {name}", name=last.name)
+    if guide.part == PARTS:
+        third = tr("the forces p below") if several else f"p = {written.force(solution.force[0])}"
+
+    def each(number: str, values: Sequence[float], per: str = "") -> Caption:
+        return tuple(
+            f"{'Δ' if unknown.of_bar else 'u'}{number}{f' {unknown.name}' * several}"
+            f" = {f'{written.number(value)} rad' if unknown.is_moment else f'{_cm(value)} cm'}{per}"
+            for unknown, value in zip(guide.released, values, strict=True)
+        )
+
+    deltas = solution.delta_real, solution.delta_base, solution.delta_unit[:, -1]
+    return (third,), *map(each, ("", "₀", "₁"), (delta.tolist() for delta in deltas), ("", "", "/kN"))
 
 
 def amount(solution: Solution, which: int) -> str:
     """An unknown that was solved for, with its unit."""
     value, moment = float(solution.force[which]), solution.unknowns[which].is_moment
     return written.moment(value) if moment else written.force(value)
-
-
-def _of(value: float, unit: str) -> str:
-    return f"{written.number(value)} {unit}"
 
 
 # --- the working -------------------------------------------------------------------------------------
@@ -146,13 +166,11 @@ def working(guide: Guide) -> tuple[str, ...]:
         )
     if solution is None or guide.part < 3:
         return ()
-    if guide.in_thesis:
-        lines = thesis.working(guide)
-    elif guide.part == PARTS:
-        lines = equations(solution, guide.tables.units.all, guide.tables.units.factor)
-    else:
-        lines = explained(guide)
-    if guide.exact is None or guide.part < PARTS:
+    if guide.part < PARTS:
+        return () if guide.in_thesis else explained(guide)
+    units = guide.tables.units
+    lines = in_thesis(solution) if guide.in_thesis else equations(solution, units.all, units.factor)
+    if guide.exact is None:
         return lines
     forces = ", ".join(
         f"{written.moment(x) if unknown.is_moment else written.force(x)}"
@@ -184,18 +202,19 @@ def explained(guide: Guide) -> tuple[str, ...]:
         return (gap_of(guide.solution.unknowns[-1], index(number, 0), index(number)),)
     if guide.part == 5:
         return (tr("The forces that {unknown} = 1 causes are the factors n.", unknown=f"X{index(number)}"),)
-    return (*formulas(guide.tables.bends, index(number)), *guide.tables.sums(number - 1))
+    return (formulas(guide.tables.bends, index(number)), *guide.tables.sums(number - 1))
 
 
-def formulas(bends: bool, number: str) -> tuple[str, ...]:
+def formulas(bends: bool, number: str) -> str:
     """The sums of virtual work for one unknown."""
-    first, zero = f"δ{number}₀", "₀"
-    if bends:
-        return (
-            f"{first} = ∫ M{zero} m{number} dx/EI + Σ N{zero} n{number} L/EA,"
-            f"  δ{number}{number} = ∫ m{number}² dx/EI + Σ n{number}² L/EA > 0",
-        )
-    return (f"{first} = Σ N{zero} n{number} L/EA,  δ{number}{number} = Σ n{number}² L/EA > 0",)
+    gap, own = (sums(bends, *of) for of in ((f"M₀ m{number}", f"N₀ n{number}"), (f"m{number}²", f"n{number}²")))
+    return f"δ{number}₀ = {gap},  δ{number}{number} = {own} > 0"
+
+
+def sums(bends: bool, moments: str, forces: str, *, pulls: bool = True, more: Sequence[str] = ()) -> str:
+    """Sums of virtual work of products of bending moments and of axial forces, if there are some, and what is more."""
+    both = [f"∫ {moments} dx/EI"] * bends + [f"Σ {forces} L/EA"] * pulls
+    return " + ".join([*both, *more])
 
 
 def meaning(unknown: Unknown) -> str:
@@ -232,38 +251,66 @@ def gap_of(unknown: Unknown, gap: str, number: str) -> str:
     return tr("{gap}: how far the load moves {name}; positive in the direction of {unknown}.", **what)
 
 
+def equation(solution: Solution, row: int, factor: float) -> tuple[str, str]:
+    """δ₀ + Σ δ X = c of an unknown in symbols, and with its numbers."""
+    symbols = numbers = ""
+    for j, value in enumerate(solution.flexibility[row].tolist()):
+        text, unknown = written.number(factor * value, EXACT), f"X{index(j + 1)}"
+        symbols += f" + δ{index(row + 1, j + 1)} {unknown}"
+        numbers += f" {'−' if text.startswith('−') else '+'} {text.removeprefix('−')} {unknown}"
+    held, gap = (factor * float(values[row]) for values in (solution.prescribed, solution.gap))
+    return (
+        f"δ{index(row + 1, 0)}{symbols} = {f'c{index(row + 1)}' if held else '0'}",
+        f"{written.number(gap, EXACT)}{numbers} = {written.number(held, EXACT)}",
+    )
+
+
 def equations(solution: Solution, units: str, factor: float) -> tuple[str, ...]:
-    """δ₀ + Σ δ X = c, a line for every unknown with its numbers, and the solution X."""
-    count, lines = len(solution.unknowns), []
-    for i in range(count):
-        symbols = "".join(f" + δ{index(i + 1, j + 1)} X{index(j + 1)}" for j in range(count))
-        terms = "".join(
-            f" {_signed(factor * value)} X{index(j + 1)}"
-            for j, value in enumerate(solution.flexibility[i].tolist())
-        )
-        held = float(solution.prescribed[i])
-        right = f"c{index(i + 1)}" if held else "0"
-        number = written.number(factor * held, EXACT)
-        gap = written.number(factor * float(solution.gap[i]), EXACT)
-        lines.append(f"δ{index(i + 1, 0)}{symbols} = {right}:  {gap}{terms} = {number}  ({units})")
+    """A line for every unknown, and the solution X."""
+    count = len(solution.unknowns)
+    lines = [f"{':  '.join(equation(solution, i, factor))}  ({units})" for i in range(count)]
     found = ",  ".join(f"X{index(i + 1)} = {amount(solution, i)}" for i in range(count))
-    if count == 1:
-        return (f"{lines[0]},  {found}",)
-    return (*lines, found)
+    return (f"{lines[0]},  {found}",) if count == 1 else (*lines, found)
 
 
-def _signed(value: float) -> str:
-    text = written.number(value, EXACT)
-    return f"− {text.removeprefix('−')}" if text.startswith("−") else f"+ {text}"
+def in_thesis(solution: Solution) -> tuple[str, ...]:
+    """p = (Δ − Δ₀) / Δ₁ of the only unknown; of several Δ = Δ₀ + Σ Δ₁ p, a line for every one, and the solution p."""
+    names = [unknown.name for unknown in solution.unknowns]
+    if len(names) > 1:
+        lines = []
+        for row, name in enumerate(names):
+            terms = (
+                f" + {_cm(unit, bracket=True)} p({other})"
+                for unit, other in zip(solution.delta_unit[row], names, strict=True)
+            )
+            lines.append(
+                f"{name}: Δ = Δ₀ + Σ Δ₁ p:  {_cm(solution.delta_real[row])} ="
+                f" {_cm(solution.delta_base[row])}{''.join(terms)}  (cm, kN)"
+            )
+        found = (
+            f"p({name}) = {written.force(p)}" for name, p in zip(names, solution.force.tolist(), strict=True)
+        )
+        return (*lines, ",  ".join(found))
+    real, base, unit = solution.delta_real[0], solution.delta_base[0], solution.delta_unit[0, 0]
+    filled = f"({_cm(real)} − {_cm(base, bracket=True)}) cm / ({_cm(unit)} cm/kN)"
+    if solution.unknowns[0].is_moment:
+        filled = "({} − ({})) rad / ({} rad/kN·m)".format(*map(written.number, (real, base, unit)))
+    return (f"p = (Δ − Δ₀) / Δ₁ = {filled} = {amount(solution, 0)}",)
+
+
+def _cm(metres: float, *, bracket: bool = False) -> str:
+    """Metres as centimetres; a negative number in brackets, if it stands behind a sign."""
+    text = written.number(CM[1] * metres)
+    return f"({text})" if bracket and text.startswith("−") else text
 
 
 def table(guide: Guide) -> Sequence[tuple[str, ...]]:
     """Virtual work, rod by rod (part 6), and superposition (part 7)."""
     if guide.solution is None or guide.part < 6:
         return ()
-    if guide.in_thesis:
-        return thesis.table(guide)
     tables, last = guide.tables, [len(guide.released) - 1]
+    if guide.in_thesis:
+        return tables.sets() if guide.part == PARTS else ()
     if guide.part == 6:
         return tables.bending(last) if tables.bends else tables.virtual_work(last)
     return tables.moments() if tables.bends and guide.quantity != AXIAL else tables.axial_forces()

@@ -54,12 +54,6 @@ class Wall(Handle):
             )
 
 
-def as_pieces(walls: Table[Wall]) -> Pieces:
-    """The walls as pieces with which particles collide."""
-    ends = np.stack([walls.start, walls.end], axis=1)
-    return Pieces(ends, np.arange(walls.count), restitution=walls.restitution)
-
-
 def draw(sheet: Sheet) -> Iterator[Mark]:
     """Every wall as a thick line, with its name while it is selected or pointed at."""
     walls = sheet.model.tables["walls"]
@@ -75,8 +69,12 @@ def draw(sheet: Sheet) -> Iterator[Mark]:
         glow = faded(halo, HALO_OPACITY)
         yield from _thick(start[chosen], end[chosen], 3.5 * width, glow, rows[chosen])
     yield from _thick(start, end, width, sheet.theme.ink, rows)
+    size, backing = sheet.font(12.0), faded(sheet.theme.background, BACKING)
     for row in np.union1d(selected, hovered).tolist():
-        name_wall(sheet, row, *ends[row])
+        name = walls.names[row]
+        places = beside(sheet, name, ends[row, 0], ends[row, 1], (0.5, 0.3, 0.7), WIDTH)
+        label = Label(name, places, size, sheet.theme.text, 1e11, "semibold", backing, of=("walls", row))
+        sheet.labels.append(label)
 
 
 def _thick(start: Points, end: Points, width: float, colour: Colour, rows: Rows) -> Iterator[Mark]:
@@ -88,18 +86,14 @@ def _thick(start: Points, end: Points, width: float, colour: Colour, rows: Rows)
         yield Discs(caps, radius, colour, colour, of=("walls", np.tile(rows, 2)))
 
 
-def name_wall(sheet: Sheet, row: int, start: NDArray[np.float64], end: NDArray[np.float64]) -> None:
-    """Place the name of a wall beside its middle, where there is room."""
-    size, name = sheet.font(12.0), sheet.model.tables["walls"].names[row]
-    places = beside(sheet, name, start, end, (0.5, 0.3, 0.7), WIDTH)
-    backing = faded(sheet.theme.background, BACKING)
-    label = Label(name, places, size, sheet.theme.text, 1e11, "semibold", backing, of=("walls", row))
-    sheet.labels.append(label)
-
-
 def plugin(app: App) -> None:
     """Register the kind, its shape, its picture and its tool."""
     app.kind(Wall)
-    app.shape(Wall, as_pieces)
+    app.shape(
+        Wall,
+        lambda walls: Pieces(
+            np.stack([walls.start, walls.end], axis=1), np.arange(walls.count), restitution=walls.restitution
+        ),
+    )
     app.layer(draw, below=True)
     app.tool(Wall, key="w", title=marked("draw a wall or floor"), icon=ICON)

@@ -6,7 +6,7 @@ from typing import Any
 
 from pinjoint.components.field import Vector
 from pinjoint.lessons.course import Course
-from pinjoint.lessons.shelf import after
+from pinjoint.lessons.progress import after
 from pinjoint.scripts.script import Script, ScriptError
 from pinjoint.systems.edit import Refusal
 from pinjoint.systems.input.actions import IN_LESSONS, actions_of
@@ -51,9 +51,9 @@ def _next(session: Session, pixel: Vector) -> None:
     _leave(session, pixel)
 
 
-@action("hint", "f6", "show a hint for the task", while_drawing=True)
-def _hint(session: Session, pixel: Vector) -> None:
-    _course(session).hint()
+action("hint", "f6", "show a hint for the task", while_drawing=True)(
+    lambda session, pixel: _course(session).hint()
+)
 
 
 @action("show solution", "f7", "show how the task is done")
@@ -69,9 +69,7 @@ def _show(session: Session, pixel: Vector) -> None:
     session.lesson = Script.of_lines(course.lesson.title, course.task.solution)
 
 
-@action("task again", "f8", "begin the task again")
-def _again(session: Session, pixel: Vector) -> None:
-    _course(session).again()
+action("task again", "f8", "begin the task again")(lambda session, pixel: _course(session).again())
 
 
 @action("leave lesson", "f9", "leave the lesson")
@@ -83,26 +81,10 @@ def _leave(session: Session, pixel: Vector) -> None:
         session.scenes.request("load")
 
 
-@action("erase answer", while_drawing=True)
-def _erase(session: Session, pixel: Vector) -> None:
-    _course(session).erase()
-
-
-def _add_answer(number: int) -> None:
-    @action(f"answer {number}", while_drawing=True)
-    def _answer(session: Session, pixel: Vector) -> None:
-        _course(session).choose(number - 1)
-
-
-for _number in range(1, MOST_ANSWERS + 1):
-    _add_answer(_number)
-
-
-@action("lesson up", while_drawing=True)
-def _up(session: Session, pixel: Vector) -> None:
-    _course(session).scroll(-2)
-
-
-@action("lesson down", while_drawing=True)
-def _down(session: Session, pixel: Vector) -> None:
-    _course(session).scroll(2)
+action("erase answer", while_drawing=True)(lambda session, pixel: _course(session).erase())
+for _number in range(MOST_ANSWERS):
+    action(f"answer {_number + 1}", while_drawing=True)(
+        lambda session, pixel, number=_number: _course(session).choose(number)
+    )
+action("lesson up", while_drawing=True)(lambda session, pixel: _course(session).scroll(-2))
+action("lesson down", while_drawing=True)(lambda session, pixel: _course(session).scroll(2))

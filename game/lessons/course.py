@@ -14,7 +14,7 @@ from pinjoint.documents.document import document
 from pinjoint.documents.models import ModelError, load
 from pinjoint.documents.open_documents import ModelFile
 from pinjoint.lessons import progress
-from pinjoint.lessons.judging import Answer, Document, Verdict, filled, judge, unit_of
+from pinjoint.lessons.judging import Answer, Document, Verdict, filled, judge, named, said_of
 from pinjoint.lessons.tasks import CHOICES, NUMBER, SELECT, UNTIL, Lesson, Line, Task
 from pinjoint.scripts.lines import play_line
 from pinjoint.scripts.script import ScriptError
@@ -105,7 +105,7 @@ class Course:
         self._forget()
         session.select()
         self._begun = document(session.model)
-        self._unit = unit_of(session, task.asked[0]) if task.kind == NUMBER else ""
+        self._unit = said_of(session, task.asked[0])[0] if task.kind == NUMBER else ""
         session.offer_tools()
 
     def _forget(self) -> None:
@@ -199,7 +199,7 @@ class Course:
 
     def _selected(self) -> tuple[str, ...]:
         """The names of the selected elements."""
-        return tuple(str(getattr(handle, "name", "")) for handle in self._session.selected)
+        return tuple(map(named, self._session.selected))
 
     def check(self) -> None:
         """Judge the task, and say why it is right or wrong."""
@@ -275,7 +275,11 @@ class Course:
     def _looks(self) -> object:
         """What changes whenever the task may have been done."""
         session = self._session
-        seen = [value for value in vars(session.view).values() if isinstance(value, bool | str | Shape | None)]
+        seen = [
+            value
+            for value in vars(session.view).values()
+            if isinstance(value, bool | str | Shape | frozenset | None)
+        ]
         chosen = self._selected() if self.task.kind == SELECT else ()
         return id(session.document), session.model.revision, session.simulation.halted, seen, chosen
 

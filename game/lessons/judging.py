@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import math
 import re
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Iterable, Mapping
+from contextlib import suppress
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -80,7 +81,11 @@ def judge(session: Session, task: Task, beginning: Document, answer: Answer = No
     if answer is None or answer == ():
         return Verdict(False, tr(_NOTHING[task.kind]))
     truth = copy_of(session, beginning, task.after)
-    return _JUDGES[task.kind](truth, task, answer)
+    if isinstance(answer, tuple):
+        return _judge_selection(truth, task, answer)
+    if isinstance(answer, str):
+        return _judge_choice(truth, task, answer)
+    return _judge_number(truth, task, answer)
 
 
 _NOTHING = {  # what is said while there is no answer
@@ -99,9 +104,12 @@ def copy_of(session: Session, model: Document, lines: Iterable[Line]) -> Session
     return copy
 
 
-def holds(session: Session, conditions: Iterable[str]) -> bool:
-    """True if all conditions hold. Raises ValueError, LookupError."""
-    return all(not list(check(session, condition)) for condition in conditions)
+def holds(session: Session, condition: str, answer: float | None = None) -> bool:
+    """True if a condition holds, of the session or of the number that was typed. Raises ValueError, LookupError."""
+    path, relation, value, slack = parts_of(condition)
+    if path == "answer":
+        return answer is not None and compared(answer, relation, value, slack)
+    return not list(check(session, condition))
 
 
 # --- the four kinds --------------------------------------------------------------------------------------
@@ -109,7 +117,7 @@ def holds(session: Session, conditions: Iterable[str]) -> bool:
 
 def _judge_state(session: Session, task: Task) -> Verdict:
     state = copy_of(session, document(session.model), task.after) if task.after else session
-    failed = next((text for text in task.asked if not holds(state, (text,))), None)
+    failed = next((text for text in task.asked if not holds(state, text)), None)
     if failed is None:
         score = (float(read(state, task.score)), shown(state, task.score)) if task.score else None
         return Verdict(True, filled(task.right, state), score)
@@ -118,9 +126,9 @@ def _judge_state(session: Session, task: Task) -> Verdict:
 
 def _judge_selection(truth: Session, task: Task, answer: tuple[str, ...]) -> Verdict:
     right, values = _asked_for(truth, task.asked[0])
-    chosen = [handle for handle in values if _named(handle) in answer]
+    chosen = [handle for handle in values if named(handle) in answer]
     wrong = next((handle for handle in chosen if handle not in right), None)
-    others = set(answer) - {_named(handle) for handle in values}
+    others = set(answer) - {named(handle) for handle in values}
     if wrong is not None:
         said = tr(
             "{what} does not belong: {value}.", what=begun(truth.model.describe(wrong)), value=values[wrong]
@@ -161,19 +169,12 @@ def _judge_choice(truth: Session, task: Task, answer: str) -> Verdict:
     if choice is None:
         texts = ", ".join(choice.text for choice in task.choices)
         raise NotFound("there is no choice '{text}'; use one of {texts}.", text=answer, texts=texts)
-    if choice.right if isinstance(choice.right, bool) else holds(truth, choice.right):
+    if choice.right if isinstance(choice.right, bool) else all(holds(truth, one) for one in choice.right):
         return Verdict(True, filled(task.right, truth))
     said = filled(choice.say, truth) or tr(
         "No: “{text}” is not what the calculation gives.", text=tr(choice.text)
     )
     return Verdict(False, said)
-
-
-_JUDGES: dict[str, Callable[[Session, Task, Any], Verdict]] = {
-    SELECT: _judge_selection,
-    NUMBER: _judge_number,
-    CHOICES: _judge_choice,
-}
 
 
 def _asked_for(truth: Session, asked: str) -> tuple[list[Handle], dict[Handle, str]]:
@@ -191,9 +192,7 @@ def _asked_for(truth: Session, asked: str) -> tuple[list[Handle], dict[Handle, s
     else:
         path, relation = parts_of(asked)[0], asked[len(parts_of(asked)[0]) :]
         values = each(truth, path)
-        right = [
-            handle for handle, _ in values if holds(truth, (path.replace("*", _named(handle), 1) + relation,))
-        ]
+        right = [handle for handle, _ in values if holds(truth, path.replace("*", named(handle), 1) + relation)]
     target, _ = locate(truth.model, path.strip(), readable)
     unit, factor = target.field.shown
     title = tr(target.field.title)
@@ -235,16 +234,11 @@ def shown(session: Session, path: str) -> str:
     value = read(session, path)
     if isinstance(value, int | str | np.integer) or value is None:
         return str(value)
-    unit, _, _ = _said_of(session, path)
+    unit, _, _ = said_of(session, path)
     return f"{_number(_shown_number(session, path))} {unit}".rstrip()
 
 
-def unit_of(session: Session, path: str) -> str:
-    """The unit in which a person reads and types the quantity at a path; "" if it has none."""
-    return _said_of(session, path)[0]
-
-
-def _said_of(session: Session, path: str) -> tuple[str, float, str]:
+def said_of(session: Session, path: str) -> tuple[str, float, str]:
     """The unit on screen, the factor to it, and the name of the quantity at a path."""
     word, _, of_all = path.partition(" ")
     try:
@@ -266,7 +260,7 @@ def _shown_number(session: Session, path: str) -> float:
     value = read(session, path)
     if not isinstance(value, int | float):
         raise WrongValue("{path} is {value}, not one number.", path=path, value=value)
-    return float(value) * _said_of(session, path)[1]
+    return float(value) * said_of(session, path)[1]
 
 
 def _number(value: float) -> str:
@@ -276,25 +270,12 @@ def _number(value: float) -> str:
 def _explained(task: Task, session: Session, answer: float | None = None) -> str:
     """What the lesson says of a wrong state or answer; "" if nothing."""
     for wrong in task.wrong:
-        if _all_hold(session, wrong.conditions, answer):
+        held = False
+        with suppress(ValueError, LookupError):  # of what cannot be tested here, such as a rod that was removed
+            held = all(holds(session, condition, answer) for condition in wrong.conditions)
+        if held:
             return filled(wrong.say, session, answer)
     return ""
-
-
-def _all_hold(session: Session, conditions: Sequence[str], answer: float | None) -> bool:
-    """As `holds`, also for conditions on the number that was typed; False if one cannot be tested here."""
-    for condition in conditions:
-        path, relation, value, slack = parts_of(condition)
-        try:
-            if path == "answer":
-                held = answer is not None and compared(answer, relation, value, slack)
-            else:
-                held = holds(session, (condition,))
-        except (ValueError, LookupError):
-            return False  # such as of a rod that was removed
-        if not held:
-            return False
-    return True
 
 
 def _lacking(session: Session, condition: str) -> str:
@@ -306,7 +287,7 @@ def _lacking(session: Session, condition: str) -> str:
         present = shown(session, path)
     except (ValueError, LookupError) as error:
         return tr("Not yet: {reason}", reason=str(error.args[0]) if error.args else str(error))
-    unit, factor, name = _said_of(session, path)
+    unit, factor, name = said_of(session, path)
     with_unit = f"{_written(value, factor)} {unit}".rstrip()
     wanted = tr(_RELATIONS[relation], value=with_unit)
     return tr("{name} is {present} now; {wanted}.", name=name, present=present, wanted=wanted)
@@ -320,5 +301,6 @@ def _written(value: str, factor: float) -> str:
         return value
 
 
-def _named(handle: Handle) -> str:
+def named(handle: Handle) -> str:
+    """The name of an element; "" of what has none."""
     return str(getattr(handle, "name", ""))

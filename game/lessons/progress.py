@@ -1,14 +1,16 @@
-"""Progress: which tasks of which lessons a person did, and the best scores, kept in a file of their own."""
+"""Progress: the lessons with tasks that a person can begin, which tasks they did, and their best scores, kept in a file."""
 
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from pathlib import Path
 from typing import NamedTuple
 
 from pinjoint.documents import choices
+from pinjoint.documents.library import data_folder
 from pinjoint.documents.preferences import settings_path
+from pinjoint.scripts.script import Script, ScriptError, lessons_with_tasks
 
 FILE = "lessons.json"
 
@@ -67,3 +69,31 @@ def keep(lesson: str, task: int, score: float | None = None) -> None:
         {"best": {str(number): best[number] for number in sorted(best)}} if best else {}
     )
     choices.keep(path(), lesson, entry)
+
+
+def shelf() -> list[Script]:
+    """Ours, then the person's own; what cannot be read is left out, and says why when it is opened."""
+    found = [Script(name) for name in lessons_with_tasks()]
+    with suppress(OSError):  # of the folder
+        for path in sorted((data_folder() / "lessons").glob("[!.]*.jsonl")):
+            with suppress(ScriptError):
+                found += [script] if (script := Script(path)).has_tasks else []
+    return found
+
+
+def count_of(script: Script) -> int:
+    """The number of tasks."""
+    return sum("task" in entry for _, entry in script.lines)
+
+
+def is_done(script: Script) -> bool:
+    """True if all its tasks were done."""
+    return done(script.name).tasks >= set(range(1, count_of(script) + 1))
+
+
+def after(script: Script) -> Script | None:
+    """The lesson that follows one; None after the last."""
+    all_of_them = shelf()
+    names = [known.name for known in all_of_them]
+    at = names.index(script.name) + 1 if script.name in names else len(names)
+    return all_of_them[at] if at < len(names) else None

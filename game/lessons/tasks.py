@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from typing import Any, NoReturn
 
 from pinjoint.components.language import tr
 from pinjoint.components.suggestions import remedy
 from pinjoint.components.wording import as_json, cut
+from pinjoint.mods.declared import fits
 from pinjoint.scripts.expectation import OVER_ALL
 from pinjoint.scripts.script import Script, ScriptError
 
@@ -67,54 +68,35 @@ class Task:
         return (of_all if word in OVER_ALL else self.asked[0]).strip().partition(".")[0]
 
 
-def _is_text(value: Any) -> bool:
-    return isinstance(value, str)
-
-
-def _are_texts(value: Any) -> bool:
-    return isinstance(value, list) and all(isinstance(text, str) for text in value)
-
-
-def _are_conditions(value: Any) -> bool:
-    return _is_text(value) or (_are_texts(value) and len(value) > 0)
-
-
-def _are_objects(value: Any) -> bool:
-    return isinstance(value, list) and all(isinstance(entry, dict) for entry in value)
-
-
-def _is_share(value: Any) -> bool:
-    return isinstance(value, int | float) and not isinstance(value, bool) and 0.0 <= value < 1.0
-
-
-_Shapes = Mapping[str, tuple[Callable[[Any], bool], Any]]  # by key: whether a value fits, and one that does
+_Shapes = Mapping[str, tuple[Any, Any]]  # by key: the type of a value, and one that there may be
 _CONDITION = "rods.CD.axial_force < 100"
 _LINES = [{"press": "e"}]
+_CONDITIONS, _OBJECTS = str | list[str], list[dict[str, Any]]
 _KEYS: _Shapes = {
-    "task": (_is_text, "Make CD carry less than 100 kN."),
-    "model": (lambda value: isinstance(value, str | dict), "isostatic"),
-    UNTIL: (_are_conditions, _CONDITION),
-    SELECT: (_is_text, "rods.*.axial_force = 0 ± 0.01"),
-    NUMBER: (_is_text, "rods.CD.axial_force"),
-    CHOICES: (_are_objects, [{"text": "Tension", "if": "rods.CD.axial_force > 0"}]),
-    "after": (_are_objects, _LINES),
-    "within": (_is_share, 0.01),
-    "hints": (_are_texts, ["Look at joint C."]),
-    "right": (_is_text, "Joint C has no load, so CD carries nothing."),
-    "wrong": (_are_objects, [{"if": "statics.mechanisms > 0", "say": "That leaves a mechanism."}]),
-    "solution": (_are_objects, _LINES),
-    "score": (_is_text, "sum rods.*.original_length"),
+    "task": (str, "Make CD carry less than 100 kN."),
+    "model": (str | dict[str, Any], "isostatic"),
+    UNTIL: (_CONDITIONS, _CONDITION),
+    SELECT: (str, "rods.*.axial_force = 0 ± 0.01"),
+    NUMBER: (str, "rods.CD.axial_force"),
+    CHOICES: (_OBJECTS, [{"text": "Tension", "if": "rods.CD.axial_force > 0"}]),
+    "after": (_OBJECTS, _LINES),
+    "within": (float, 0.01),
+    "hints": (list[str], ["Look at joint C."]),
+    "right": (str, "Joint C has no load, so CD carries nothing."),
+    "wrong": (_OBJECTS, [{"if": "statics.mechanisms > 0", "say": "That leaves a mechanism."}]),
+    "solution": (_OBJECTS, _LINES),
+    "score": (str, "sum rods.*.original_length"),
 }
 _OF_CHOICE: _Shapes = {
-    "text": (_is_text, "Tension"),
-    "if": (_are_conditions, _CONDITION),
-    "right": (lambda value: isinstance(value, bool), True),
-    "say": (_is_text, "A compressed rod gets shorter."),
+    "text": (str, "Tension"),
+    "if": (_CONDITIONS, _CONDITION),
+    "right": (bool, True),
+    "say": (str, "A compressed rod gets shorter."),
 }
 _OF_WRONG: _Shapes = {
-    "if": (_are_conditions, _CONDITION),
-    "say": (_is_text, "That leaves a mechanism."),
-    "lines": (_are_objects, _LINES),
+    "if": (_CONDITIONS, _CONDITION),
+    "say": (str, "That leaves a mechanism."),
+    "lines": (_OBJECTS, _LINES),
 }
 
 
@@ -124,7 +106,7 @@ class Lesson:
     def __init__(self, script: Script) -> None:
         self.script = script
         self.title, self.description = script.title, script.description
-        self.tasks = tuple(_Reader(script).tasks())
+        self.tasks = tuple(self._tasks())
         if not self.tasks:
             raise ScriptError("{file}: a lesson needs a line with a task.", file=script.path)
 
@@ -133,18 +115,11 @@ class Lesson:
         """By which progress is kept."""
         return self.script.name
 
-
-class _Reader:
-    """Reads the lines of a script from the second on."""
-
-    def __init__(self, script: Script) -> None:
-        self._script = script
-
-    def tasks(self) -> Iterator[Task]:
+    def _tasks(self) -> Iterator[Task]:
         """All tasks; lines between them belong to the next one."""
         setup: list[Line] = []
-        model: Any = self._script.source
-        for number, entry in self._script.lines[1:]:
+        model: Any = self.script.source
+        for number, entry in self.script.lines[1:]:
             if "task" not in entry:
                 setup.append((number, entry))
                 continue
@@ -168,23 +143,19 @@ class _Reader:
         return Task(
             line=line,
             text=entry["task"],
-            model=self._beside(model),
+            model=self.script.beside(model) if isinstance(model, str) else model,
             setup=setup,
             kind=kinds[0],
             asked=() if kinds[0] == CHOICES else _listed(entry[kinds[0]]),
             choices=tuple(self._choice(line, choice) for choice in entry.get(CHOICES, ())),
-            after=self._lines(line, entry.get("after", ())),
+            after=tuple((line, said) for said in entry.get("after", ())),
             within=float(entry.get("within", 0.01)),
             hints=tuple(entry.get("hints", ())),
             right=entry["right"],
             wrong=tuple(self._wrong(line, wrong) for wrong in entry.get("wrong", ())),
-            solution=self._lines(line, entry["solution"]),
+            solution=tuple((line, said) for said in entry["solution"]),
             score=entry.get("score", ""),
         )
-
-    def _beside(self, model: Any) -> Any:
-        """A model by its name, or a file beside the script."""
-        return self._script.beside(model) if isinstance(model, str) else model
 
     def _choice(self, line: int, entry: Mapping[str, Any]) -> Choice:
         self._check(line, entry, _OF_CHOICE)
@@ -197,18 +168,17 @@ class _Reader:
         self._check(line, entry, _OF_WRONG)
         if not {"if", "say"} <= set(entry):
             self._fail(line, tr('a wrong answer needs "if" and "say".'))
-        return Wrong(_listed(entry["if"]), entry["say"], self._lines(line, entry.get("lines", ())))
-
-    def _lines(self, line: int, entries: Sequence[Mapping[str, Any]]) -> tuple[Line, ...]:
-        return tuple((line, entry) for entry in entries)
+        lines = tuple((line, said) for said in entry.get("lines", ()))
+        return Wrong(_listed(entry["if"]), entry["say"], lines)
 
     def _check(self, line: int, entry: Mapping[str, Any], shapes: _Shapes) -> None:
         for key, value in entry.items():
             if key not in shapes:
                 said = tr("there is no key '{key}' here; {remedy}", key=cut(key), remedy=remedy(key, shapes))
                 self._fail(line, said)
-            fits, example = shapes[key]
-            if not fits(value):
+            kind, example = shapes[key]
+            empty = kind is _CONDITIONS and value == []
+            if empty or not fits(value, kind) or (key == "within" and not 0.0 <= value < 1.0):
                 said = tr(
                     "{key} is {value}; write it like {form}.",
                     key=key,
@@ -218,7 +188,7 @@ class _Reader:
                 self._fail(line, said)
 
     def _fail(self, line: int, reason: str) -> NoReturn:
-        raise self._script.error(line, reason)
+        raise self.script.error(line, reason)
 
 
 def _listed(value: str | list[str]) -> tuple[str, ...]:

@@ -21,22 +21,8 @@ from pinjoint.documents import models
 from pinjoint.documents.mod_data import Upgrade
 from pinjoint.editor.gestures.drawing import drawing_of
 from pinjoint.editor.scenes import Scene, all_scenes
-from pinjoint.mods.declared import checks_arguments
-from pinjoint.mods.guard import (
-    guard_checkers,
-    guarded_history,
-    guarded_integrator,
-    guarded_maker,
-    guarded_shape,
-)
-from pinjoint.mods.interface import (
-    Panel,
-    guarded_action,
-    guarded_command,
-    guarded_layer,
-    guarded_panel,
-    guarded_scene,
-)
+from pinjoint.mods.declared import check
+from pinjoint.mods.guard import Guard, Panel
 from pinjoint.mods.mod import INCLUDED, Mod, ModError
 from pinjoint.systems.base import Integrator, System
 from pinjoint.systems.input.actions import ACTIONS, LIVE, Action, Binding, Perform, key_named
@@ -45,7 +31,6 @@ from pinjoint.systems.render.icons import Part, check_icon
 from pinjoint.systems.render.sheet import Layer
 
 
-@checks_arguments
 class App:
     """The program, as a mod's `plugin(app)` sees it: one method for each kind of extension.
 
@@ -54,7 +39,7 @@ class App:
     """
 
     def __init__(self, mod: Mod) -> None:
-        self._mod = mod
+        self._mod, self._guard = mod, Guard(mod)
         self._undo: list[Callable[[], object]] = []
 
     @property
@@ -66,7 +51,7 @@ class App:
 
     def component(self, component: type[Component]) -> None:
         """Add the Fields of a component to all elements of its kind; see components.Component."""
-        guard_checkers(self._mod, fields_of(component))
+        self._guard.checkers(fields_of(component))
         try:
             names = add_component(self.name, component)
         except ValueError as error:
@@ -80,7 +65,7 @@ class App:
         Files keep them under "components": {"<mod>.<Kind>": […]}. Those with `points` can be picked, dragged,
         copied and selected in a box like others; a layer of the mod draws them.
         """
-        guard_checkers(self._mod, fields_of(kind))
+        self._guard.checkers(fields_of(kind))
         try:
             name = checked_kind(self.name, kind)
         except ValueError as error:
@@ -125,7 +110,7 @@ class App:
             table=tr(kind.table),
             key=key.upper(),
         )
-        act = guarded_action(self._mod, name, drawing.use)
+        act = self._guard.action(name, drawing.use)
         self._act(Action(name, act, while_drawing=True, draws=drawing, hint=hint))
         self.key(key, name, title=title or tr("{kind}, from point to point", kind=tr(kind.noun)))
         self._icon(name, icon)
@@ -134,18 +119,18 @@ class App:
         """Let particles collide with elements of a kind: `shape(table)` returns the Pieces that they are."""
         if kind in EXTENSIONS.obstacles:
             raise ModError("The shape of {table} is registered already; register it once.", table=kind.table)
-        self._put(EXTENSIONS.obstacles, kind, guarded_shape(self._mod, kind, shape))
+        self._put(EXTENSIONS.obstacles, kind, self._guard.shape(kind, shape))
 
     def system(self, system: Callable[[], System]) -> None:
         """Add a frame system, a law or a commit, by its class: every session makes one of its own."""
         name = getattr(system, "name", "")
         self._check_prefix("system", name or getattr(system, "__name__", "?"))
-        self._add(EXTENSIONS.systems, guarded_maker(self._mod, system))
+        self._add(EXTENSIONS.systems, self._guard.system(system))
 
     def integrator(self, integrator: type[Integrator]) -> None:
         """Add an integrator that models, the command line and the properties can choose."""
         self._check_prefix("integrator", integrator.name)
-        made = guarded_integrator(self._mod, integrator())
+        made = self._guard.integrator(integrator())
         key = made.key
         if key in INTEGRATORS:
             raise ModError(
@@ -155,7 +140,7 @@ class App:
 
     def history(self, kind: HistoryKind) -> None:
         """Add a way in which loads change in time."""
-        kind = guarded_history(self._mod, kind)
+        kind = self._guard.history(kind)
         if kind.name in HISTORIES:
             raise ModError(
                 "There is a kind of history '{name}' already; give this one another name.", name=kind.name
@@ -180,7 +165,7 @@ class App:
         """Add a mode. Its `sources` are the scenes from which it can be reached; "pause" must be a target."""
         if scene.name in {other.name for other in all_scenes()}:
             raise ModError("There is a scene '{name}' already; give this one another name.", name=scene.name)
-        made = guarded_scene(self._mod, scene)
+        made = self._guard.scene(scene)
         if "pause" not in scene.targets:
             raise ModError(
                 "The scene '{name}' must lead to pause; add 'pause' to its targets.", name=scene.name
@@ -211,7 +196,7 @@ class App:
         self._check_prefix("action", name)
 
         def register(function: Perform) -> Perform:
-            act = guarded_action(self._mod, name, function)
+            act = self._guard.action(name, function)
             offered = (Binding("", tuple(scenes), title or name),) if icon else ()
             self._act(Action(name, act, offered, while_drawing=while_drawing))
             if key:
@@ -239,6 +224,7 @@ class App:
                 name=name,
             )
         key = _checked_key(key)
+        check(title, str, "title")
         before = ACTIONS[name]
         self._undo.append(lambda: ACTIONS.__setitem__(name, before))
         for other, taken in ACTIONS.bind(name, Binding(key, tuple(scenes), title or name)):
@@ -261,17 +247,17 @@ class App:
         """
         if name in EXTENSIONS.commands:
             raise ModError("There is a command '{name}' already; give this one another name.", name=name)
-        self._put(EXTENSIONS.commands, name, Command(guarded_command(self._mod, name, run), about))
+        self._put(EXTENSIONS.commands, name, Command(self._guard.command(name, run), about))
 
     # --- what is seen ------------------------------------------------------------------------------------
 
     def layer(self, draw: Layer, *, below: bool = False) -> None:
         """Draw marks with every picture of a model, above its elements or below them; see systems/render/marks.py."""
-        self._add(EXTENSIONS.below if below else EXTENSIONS.above, guarded_layer(self._mod, draw))
+        self._add(EXTENSIONS.below if below else EXTENSIONS.above, self._guard.layer(draw))
 
     def panel(self, read: Panel) -> None:
         """Show small panels beside the model: `read(session)` returns a Readout, several, or None."""
-        self._add(EXTENSIONS.panels, guarded_panel(self._mod, read))
+        self._add(EXTENSIONS.panels, self._guard.panel(read))
 
     def catalogues(self) -> None:
         """Say what the mod says in the languages of its folder `locale`, if it has one; Pinjoint calls this itself."""

@@ -12,7 +12,7 @@ from __future__ import annotations
 import inspect
 import re
 from collections.abc import Callable, Iterable, Mapping, Sequence
-from functools import cache, wraps
+from functools import cache
 from types import AsyncGeneratorType, CoroutineType, GeneratorType, MappingProxyType, UnionType
 from typing import Any, Literal, TypeVar, Union, get_args, get_origin, get_type_hints
 
@@ -20,8 +20,6 @@ import numpy as np
 
 from pinjoint.components.language import tr
 from pinjoint.components.wording import quoted
-
-C = TypeVar("C")
 
 _NUMBERS: Mapping[type, tuple[type, ...]] = {
     bool: (bool, np.bool_),
@@ -37,7 +35,7 @@ def check(value: Any, declared: Any, called: str) -> None:
 
     Of classes that are plain data (frozen dataclasses and named tuples) each Field is checked.
     """
-    if not _fits(value, declared):
+    if not fits(value, declared):
         said = declared.__name__ if isinstance(declared, type) else re.sub(r"\w[\w.]*\.", "", str(declared))
         told = {"called": called, "value": quoted(value), "type": said}
         raise TypeError(tr("{called} is {value}; it must be of type {type}", **told))
@@ -68,30 +66,10 @@ def result_of(function: Callable[..., Any]) -> Any:
     return inspect.signature(function, eval_str=True).return_annotation
 
 
-def checks_arguments(kind: type[C]) -> type[C]:
-    """Let the public methods of a class check their arguments against their annotations."""
-    for name, method in vars(kind).items():
-        if inspect.isfunction(method) and not name.startswith("_"):
-            setattr(kind, name, _checked(method))
-    return kind
-
-
-def _checked(method: Callable[..., Any]) -> Callable[..., Any]:
-    @wraps(method)
-    def checked(*arguments: Any, **named: Any) -> Any:
-        signature = inspect.signature(method, eval_str=True)
-        for name, value in signature.bind(*arguments, **named).arguments.items():
-            if name != "self":
-                check(value, signature.parameters[name].annotation, name)
-        return method(*arguments, **named)
-
-    return checked
-
-
 # --- by type ---------------------------------------------------------------------------------------------
 
 
-def _fits(value: Any, declared: Any) -> bool:
+def fits(value: Any, declared: Any) -> bool:
     """Whether a value is of a type. Raises TypeError for a field of plain data."""
     kind, parts, plain = _parts(declared)
     if kind in (Any, object) or isinstance(kind, TypeVar):
@@ -101,19 +79,19 @@ def _fits(value: Any, declared: Any) -> bool:
         return isinstance(value, _NUMBERS[kind]) and is_truth == (kind is bool)
     if kind is Union:
         exact = [part for part in parts if type(value) is part]
-        return any(_fits(value, part) for part in exact or parts)
+        return any(fits(value, part) for part in exact or parts)
     if kind is Literal:
         return value in parts
     if kind is tuple and parts[1:] != (...,):
-        fits = isinstance(value, list | tuple) and len(value) == len(parts)
-        return fits and all(map(_fits, value, parts))
+        alike = isinstance(value, list | tuple) and len(value) == len(parts)
+        return alike and all(map(fits, value, parts))
     if kind in (tuple, list, Sequence, Iterable):
         kinds = Iterable if kind is Iterable else Sequence | np.ndarray
         several = isinstance(value, kinds) and not isinstance(value, str)
-        return several and (kind is Iterable or all(_fits(entry, parts[0]) for entry in value))
+        return several and (kind is Iterable or all(fits(entry, parts[0]) for entry in value))
     if kind is Mapping:
         return isinstance(value, Mapping) and all(
-            _fits(key, parts[0]) and _fits(entry, parts[1]) for key, entry in value.items()
+            fits(key, parts[0]) and fits(entry, parts[1]) for key, entry in value.items()
         )
     if kind is np.ndarray:
         number = get_args(parts[1])[0] if parts[1:] else Any

@@ -4,21 +4,23 @@ from __future__ import annotations
 
 import importlib
 import importlib.util
+import math
 import sys
-from collections.abc import Iterable, Sequence
+import threading
+from collections.abc import Iterable, Iterator, Sequence
 from pathlib import Path
 from types import ModuleType
 
+import numpy as np
+
 from pinjoint.components.extensions import EXTENSIONS
 from pinjoint.components.language import tr
+from pinjoint.documents.library import data_folder
 from pinjoint.documents.preferences import preferred_keys
 from pinjoint.interrupts import is_persons, mark_interrupts
-from pinjoint.mods import finding
 from pinjoint.mods.app import App, check_plugin
 from pinjoint.mods.declared import check_has_run
-from pinjoint.mods.finding import in_order, required
-from pinjoint.mods.mod import MANIFEST, Mod, ModError
-from pinjoint.mods.surroundings import Surroundings
+from pinjoint.mods.mod import MANIFEST, Mod, ModError, read_manifest
 from pinjoint.systems.catalogue import all_systems
 from pinjoint.systems.input.actions import ACTIONS
 from pinjoint.systems.schedule import Schedule
@@ -32,9 +34,9 @@ def load(folders: Iterable[str | Path] = (), *, installed: bool = False) -> list
 
     Returns all mods that were found, each with its `problem` if it was left out. Mods that are loaded stay.
     """
-    found = [mod for folder in folders for mod in finding.in_folder(Path(folder))]
+    found = [mod for folder in folders for mod in in_folder(Path(folder))]
     if installed:
-        found += [*finding.in_folder(finding.mods_folder()), *finding.in_packages()]
+        found += [*in_folder(mods_folder()), *in_packages()]
     known: dict[Path | None, Mod] = {
         mod.folder: mod for mod in EXTENSIONS.mods if mod.loaded and mod.folder is not None
     }
@@ -121,15 +123,11 @@ def _load(mod: Mod) -> None:
 def _plug_in(mod: Mod, app: App) -> None:
     """Import a mod and let it register what it has. Raises ModError, or whatever its code raises."""
     app.catalogues()
-    module = _import(mod)
-    check_has_run(check_plugin(getattr(module, "plugin", None))(app), tr("what plugin(app) returned"))
-    Schedule(all_systems())
-
-
-def _import(mod: Mod) -> ModuleType:
     if not mod.source.startswith("package "):
         _find(mod)
-    return importlib.import_module(mod.module)
+    module = importlib.import_module(mod.module)
+    check_has_run(check_plugin(getattr(module, "plugin", None))(app), tr("what plugin(app) returned"))
+    Schedule(all_systems())
 
 
 def _find(mod: Mod) -> None:
@@ -138,8 +136,8 @@ def _find(mod: Mod) -> None:
     file = mod.folder / "__init__.py"
     if not file.is_file():
         raise ModError("It has no __init__.py; write one with a function plugin(app).")
-    origin = finding.origin_of_module(mod.name)
-    if origin is not None and not _is_from(origin, file):
+    origin = origin_of_module(mod.name)
+    if origin is not None and Path(origin).resolve() != file.resolve():
         raise ModError("There is a Python module '{name}' already; give the mod another name.", name=mod.name)
     if mod.name in sys.modules:
         return
@@ -151,10 +149,6 @@ def _find(mod: Mod) -> None:
     spec.loader.exec_module(module)
 
 
-def _is_from(origin: str, file: Path) -> bool:
-    return Path(origin).resolve() == file.resolve()
-
-
 def _forget(mod: Mod) -> None:
     """Let the modules of a mod be imported anew; one of its name that is not its own stays."""
     root = sys.modules.get(mod.module)
@@ -163,3 +157,214 @@ def _forget(mod: Mod) -> None:
         return
     for name in [name for name in sys.modules if name == mod.module or name.startswith(f"{mod.module}.")]:
         del sys.modules[name]
+
+
+# --- what a mod shares with the program ---------------------------------------------------------------------
+
+
+_STREAMS = ("stdin", "stdout", "stderr")
+_LIBRARIES = (math, np)  # by which everything computes
+
+
+class Surroundings:
+    """Modules, streams, threads and functions of libraries as they are before code of a mod runs."""
+
+    def __init__(self) -> None:
+        self._modules, self._threads = dict(sys.modules), set(threading.enumerate())
+        self._streams = {name: getattr(sys, name) for name in _STREAMS}
+        self._functions = [(library, dict(vars(library))) for library in _LIBRARIES]
+
+    def check(self) -> None:
+        """Raise ModError if the mod changed anything of it, or left a thread running."""
+        for name, stream in self._streams.items():
+            if getattr(sys, name, None) is not stream:
+                raise ModError(
+                    "It replaced or removed sys.{name}, which the program needs; leave it as it is.", name=name
+                )
+            if getattr(stream, "closed", False):
+                raise ModError("It closed sys.{name}, which the program needs; leave it open.", name=name)
+        for name, module in self._modules.items():
+            if sys.modules.get(name) is not module:
+                raise ModError(
+                    "It replaced or removed the module '{name}' in sys.modules, which others use; leave it there.",
+                    name=name,
+                )
+        for library, functions in self._functions:
+            for name, function in functions.items():
+                if vars(library).get(name) is not function:
+                    raise ModError(
+                        "It replaced or removed {name}, by which others compute; leave it as it is.",
+                        name=f"{library.__name__}.{name}",
+                    )
+        for thread in set(threading.enumerate()) - self._threads:
+            if thread.is_alive() and not thread.daemon:
+                raise ModError(
+                    "Its plugin(app) left the thread '{name}' running, which would keep the program from ending; start"
+                    " the thread with daemon=True.",
+                    name=thread.name,
+                )
+
+    def put_back(self) -> None:
+        """Undo what can be undone; Python leaves the files of standard streams open that are closed."""
+        sys.modules.update(self._modules)
+        for library, functions in self._functions:
+            vars(library).update(functions)
+        for number, (name, stream) in enumerate(self._streams.items()):
+            if getattr(stream, "closed", False):
+                mode = "r" if name == "stdin" else "w"
+                stream = open(number, mode, encoding=stream.encoding, errors="replace", closefd=False)  # noqa: SIM115
+            setattr(sys, name, stream)
+
+
+# --- finding them ------------------------------------------------------------------------------------------
+
+
+GROUP = "pinjoint.mods"  # entry points of installed packages
+PROGRAM = "pinjoint"  # what a mod calls the program that it requires
+
+
+def mods_folder() -> Path:
+    """The folder with a person's mods, a folder each; it need not exist yet."""
+    return data_folder() / "mods"
+
+
+def in_folder(folder: Path) -> list[Mod]:
+    """The mod that a folder is, or the mods in it, by name of their folders."""
+    if (folder / MANIFEST).is_file():
+        return [read_manifest(folder, str(folder))]
+    try:
+        inside = sorted(entry for entry in folder.iterdir() if entry.is_dir() and entry.name[0] not in "._")
+    except OSError:
+        return []
+    files = (MANIFEST, "__init__.py")
+    return [read_manifest(made, str(made)) for made in inside if any((made / file).is_file() for file in files)]
+
+
+def in_packages() -> list[Mod]:
+    """The mods of installed packages, by name."""
+    files = (file for path in sys.path for file in Path(path).glob("*-info/entry_points.txt"))
+    if not any(GROUP.encode() in file.read_bytes() for file in files):
+        return []  # in 1 ms: importlib.metadata takes 50 ms to import
+    from importlib.metadata import entry_points
+
+    return [_of_package(point.name, point.value) for point in sorted(entry_points(group=GROUP))]
+
+
+def _of_package(name: str, module: str) -> Mod:
+    module = module.partition(":")[0].strip()
+    source = f"package {module}"
+    try:
+        spec = importlib.util.find_spec(module)
+    except (ImportError, ValueError):
+        spec = None
+    if spec is None or spec.origin is None:
+        problem = tr("There is no module '{module}'; install it again.", module=module)
+        return Mod(name, module, source=source, problem=problem)
+    made = read_manifest(Path(spec.origin).parent, source, name)
+    made.module = module
+    return made
+
+
+def origin_of_module(name: str) -> str | None:
+    """Where the Python module of a name is from, such as its file or "built-in"; None if there is none."""
+    if name in sys.modules:
+        return str(getattr(sys.modules[name], "__file__", None) or "built-in")
+    spec = importlib.util.find_spec(name)
+    return spec.origin if spec is not None else None  # a folder without __init__.py has no origin
+
+
+# --- order ---------------------------------------------------------------------------------------------
+
+
+def in_order(found: Iterable[Mod], version: str, loaded: Sequence[Mod] = ()) -> list[Mod]:
+    """The mods that can be loaded, each after those that it requires, otherwise by name.
+
+    The others get a problem: a name that is taken (the first found has it), a requirement that is missing
+    or of a wrong version, or one that leads back to the mod. version: of the program. loaded: mods that
+    are there already.
+    """
+    by_name: dict[str, Mod] = {mod.name: mod for mod in loaded}
+    new: dict[str, Mod] = {}
+    for mod in found:
+        if mod.name in by_name:
+            taken = tr(
+                "There is a mod of this name already, from {source}; rename one of them.",
+                source=by_name[mod.name].source,
+            )
+            mod.problem = mod.problem or taken
+        else:
+            by_name[mod.name] = new[mod.name] = mod
+    ordered: list[Mod] = []
+    for name in _sorted(new):
+        mod = new[name]
+        mod.problem = mod.problem or _unmet(mod, by_name, version)
+        if not mod.off:
+            ordered.append(mod)
+    return ordered
+
+
+def required(mod: Mod) -> list[str]:
+    """Names of what a mod requires, the program included."""
+    return [_parts(entry)[0] for entry in mod.requires]
+
+
+def _sorted(mods: dict[str, Mod]) -> Iterator[str]:
+    """Names of mods, each after those that it requires; every mod that requires itself gets that problem."""
+    left = sorted(mods)
+    while left:
+        usable = [mods[name] for name in left if not mods[name].off]
+        awaited = {mod.name: [name for name in required(mod) if name in left] for mod in usable}
+        ready = next((name for name in left if not awaited.get(name)), None)
+        if ready is not None:
+            left.remove(ready)
+            yield ready
+            continue
+        chain = [left[0]]
+        while chain[-1] not in chain[:-1]:
+            chain.append(awaited[chain[-1]][0])
+        chain = chain[chain.index(chain[-1]) :]
+        for name in chain[:-1]:
+            mods[name].problem = tr(
+                "These mods require each other: {chain}; remove one of the requirements.",
+                chain=" → ".join(chain),
+            )
+
+
+def _parts(entry: str) -> tuple[str, str]:
+    """A requirement's name and its range of versions."""
+    from packaging.requirements import Requirement
+
+    parsed = Requirement(entry)
+    return parsed.name, str(parsed.specifier)
+
+
+def _unmet(mod: Mod, by_name: dict[str, Mod], version: str) -> str:
+    """The first requirement of a mod that is not met, as a sentence; "" if all are."""
+    from packaging.specifiers import SpecifierSet
+
+    for entry in mod.requires:
+        name, allowed = _parts(entry)
+        other = by_name.get(name)
+        if name == PROGRAM:
+            present = version
+        elif other is None:
+            return tr(
+                "It requires the mod '{name}', which is not installed; install it, or remove the requirement.",
+                name=name,
+            )
+        elif other.off:
+            return tr(
+                "It requires the mod '{name}', which cannot be used: {problem}",
+                name=name,
+                problem=other.problem,
+            )
+        else:
+            present = other.version
+        if not SpecifierSet(allowed).contains(present, prereleases=True):
+            return tr(
+                "It requires {name} {allowed}, but {name} {present} is installed; use another version of one of them.",
+                name=name,
+                allowed=allowed,
+                present=present,
+            )
+    return ""

@@ -5,6 +5,7 @@ from __future__ import annotations
 import logging
 import math
 import os
+import sys
 import traceback
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
@@ -12,13 +13,15 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any, TypeVar
 
+from pinjoint.components import written
 from pinjoint.components.extensions import EXTENSIONS
-from pinjoint.components.language import english, tr
+from pinjoint.components.language import english, joined, tr
 from pinjoint.components.mistake import Mistake
 from pinjoint.components.wording import is_identifier, printable, quoted
 from pinjoint.interrupts import is_persons
-from pinjoint.mods.declared import check, check_has_run
+from pinjoint.mods.declared import check, check_has_run, fits
 from pinjoint.mods.limit import within
+from pinjoint.systems.run.simulation import Simulation
 
 T = TypeVar("T")
 
@@ -29,7 +32,12 @@ MANIFEST = "mod.toml"
 LONGEST_MESSAGE = 500  # characters of what an error says
 PATIENCE = 10.0  # s that whatever a mod is asked may take, the compilation of functions of its own included
 
-_KEYS = ("name", "version", "description", "requires")  # of a manifest
+_KEYS = {
+    "name": str,
+    "version": str,
+    "description": str,
+    "requires": list[str],
+}  # of a manifest, and their types
 
 
 class ModError(Mistake, ValueError):
@@ -206,25 +214,21 @@ def _entries(path: Path) -> dict[str, Any]:
 
 
 def _fill(made: Mod, entries: dict[str, Any], named: str | None) -> None:
-    for key in entries:
+    for key, value in entries.items():
+        told = {"file": MANIFEST, "key": key, "value": quoted(value)}
         if key not in _KEYS:
             raise ModError(
                 "{file} has the key '{key}', which means nothing; use only {keys}.",
-                file=MANIFEST,
-                key=key,
+                **told,
                 keys=", ".join(_KEYS),
             )
-    for key in ("name", "version", "description"):
-        value = entries.get(key, "")
-        if not isinstance(value, str):
-            raise ModError(
-                '{file}: {key} is {value}; it must be a text, such as {key} = "…".',
-                file=MANIFEST,
-                key=key,
-                value=quoted(value),
-            )
+        if not fits(value, _KEYS[key]) and key != "requires":
+            raise ModError('{file}: {key} is {value}; it must be a text, such as {key} = "…".', **told)
+        if not fits(value, _KEYS[key]):
+            form = '["pinjoint>=0.1", "gusts"]'
+            raise ModError("{file}: requires is {value}; write a list such as {form}.", **told, form=form)
         if value or key != "name":
-            setattr(made, key, value)
+            setattr(made, key, value if key != "requires" else tuple(value))
     made.module = named or made.name
     check_name(made.name)
     if named is not None and made.name != named:
@@ -234,15 +238,6 @@ def _fill(made: Mod, entries: dict[str, Any], named: str | None) -> None:
             name=made.name,
             other=named,
         )
-    requires = entries.get("requires", [])
-    if not isinstance(requires, list) or not all(isinstance(entry, str) for entry in requires):
-        raise ModError(
-            "{file}: requires is {value}; write a list such as {form}.",
-            file=MANIFEST,
-            value=quoted(requires),
-            form='["pinjoint>=0.1", "gusts"]',
-        )
-    made.requires = tuple(requires)
     _check_versions(made)
 
 
@@ -269,3 +264,46 @@ def _check_versions(made: Mod) -> None:
             raise ModError(
                 "{file}: requires has '{entry}'; write it like 'pinjoint>=0.1,<2'.", file=MANIFEST, entry=entry
             ) from None
+
+
+# --- what follows where a mod fails -------------------------------------------------------------------------
+
+
+def switched_off() -> list[Mod]:
+    """The mods that were loaded and failed since."""
+    return [mod for mod in EXTENSIONS.mods if mod.loaded and mod.off]
+
+
+def check_mods(known: list[Mod] | None = None, time: float | None = None) -> None:
+    """Raise ModError if a mod failed, besides those that are known to. time: where a run stopped therefore (s)."""
+    for mod in switched_off():
+        if mod not in (known or []):
+            said = tr("The mod '{name}' was switched off: {problem}", name=mod.name, problem=mod.problem)
+            stopped = "" if time is None else tr("The run stopped at t = {time}.", time=written.time(time))
+            raise ModError(joined([said, stopped]))
+
+
+def blamed_on_mod(error: BaseException) -> bool:
+    """Switch off the mod from whose code an error came past all guards; False if it came from no mod's."""
+    for mod in EXTENSIONS.mods:
+        if mod.loaded and not mod.off and mod.place_of(error):
+            mod.fail(tr("code that the program called"), error)
+            return True
+    return False
+
+
+@contextmanager
+def heeding_mods(simulation: Simulation) -> Iterator[None]:
+    """A run inside the `with` stops, by ModError, before the first step without a mod that failed meanwhile."""
+    known = switched_off()
+
+    def heed() -> int:
+        check_mods(known, simulation.model.clock.time)
+        return sys.maxsize
+
+    simulation.before_steps.append(heed)
+    try:
+        yield
+    finally:
+        simulation.before_steps.remove(heed)
+    heed()

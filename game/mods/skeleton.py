@@ -4,17 +4,17 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from pinjoint.mods.finding import origin_of_module
+from pinjoint.mods.loading import origin_of_module
 from pinjoint.mods.mod import MANIFEST, ModError, check_name
 
-_MANIFEST = """\
+_FILES = {
+    MANIFEST: """\
 name = "{name}"
 version = "0.1"
 description = "A steady wind on all particles"
 requires = ["pinjoint>={version}"]
-"""
-
-_CODE = '''\
+""",
+    "__init__.py": '''\
 """A steady wind on all particles: a law, the fact that it needs, and what a person sees of it."""
 
 from pinjoint.api import Component, Environment, Field, Law, Readout, compiled
@@ -45,9 +45,8 @@ def plugin(app):
     app.component(Air)
     app.system(Wind)
     app.panel(lambda s: Readout("{name}", (("speed", f"{{s.environment.{name}_speed:g}} m/s"),)))
-'''
-
-_TEST = '''\
+''',
+    "test_{name}.py": '''\
 """Run by: pytest {name}"""
 
 from pathlib import Path
@@ -64,9 +63,8 @@ def test_the_wind_blows_to_the_right():
     session.run(time=0.1)
     # 1 kg with the force m (u − v): v = u (1 − exp(−t))
     assert abs(session.particles["A"].velocity[0] - 0.95162582) < 1e-6
-'''
-
-_FILES = {MANIFEST: _MANIFEST, "__init__.py": _CODE, "test_{name}.py": _TEST}
+''',
+}
 
 
 def write_skeleton(name: str, parent: Path, version: str) -> list[Path]:

@@ -18,17 +18,24 @@ USUAL_ACCELERATION = 10.0  # m/s², of a loaded free body
 USUAL_SPEED = 5.0  # m/s
 
 
-def usual_force(model: Model) -> float:
-    """The usual size (kN) of forces in a model: the largest there is, else one that suits its rods, else its masses."""
-    particles, rods, loads = model.particles, model.rods, model.loads
-    largest = max(np.abs(particles.force).max(initial=0.0), np.abs(loads.force).max(initial=0.0))
+def usual(model: Model, field: str) -> float:
+    """The usual size of a vector of elements: the largest there is, else one that suits the model."""
+    tables = [table for table in (model.particles, model.rods, model.loads) if field in table.fields]
+    largest = max(float(np.abs(table.column(field)).max(initial=0.0)) for table in tables)
     if largest > 0.0:
-        return float(largest)
+        return largest
+    if field == "velocity":
+        return USUAL_SPEED
+    if field == "moment":
+        return LEVER * usual(model, "force") * extent(model)
+    if field == "distributed_force":
+        return usual(model, "force") / extent(model)
+    rods = model.rods
     if rods.count and (bending := rods.bending_stiffness.max()) > 0.0:
         return float(USUAL_SLOPE * bending / extent(model) ** 2)
     if rods.count:
         return float(USUAL_STRAIN * rods.stiffness.max())
-    return float(USUAL_ACCELERATION * particles.mass.max(initial=1.0) / 1000.0)
+    return float(USUAL_ACCELERATION * model.particles.mass.max(initial=1.0) / 1000.0)
 
 
 def extent(model: Model) -> float:
@@ -36,32 +43,13 @@ def extent(model: Model) -> float:
     return float(np.ptp(model.particles.position, axis=0).max(initial=0.0)) or 1.0
 
 
-def usual_moment(model: Model) -> float:
-    """The usual size (kN·m) of moments: the largest there is, else that of a usual force with a lever."""
-    particles, loads = model.particles, model.loads
-    largest = max(np.abs(particles.moment).max(initial=0.0), np.abs(loads.moment).max(initial=0.0))
-    return float(largest) or LEVER * usual_force(model) * extent(model)
-
-
-def usual_distributed_force(model: Model) -> float:
-    """The usual size (kN/m) of distributed forces: the largest there is, else that of usual forces as far apart."""
-    largest = float(np.abs(model.rods.distributed_force).max(initial=0.0))
-    return largest or usual_force(model) / extent(model)
-
-
-def usual_speed(model: Model) -> float:
-    """The usual size (m/s) of velocities in a model."""
-    largest = float(np.abs(model.particles.velocity).max(initial=0.0))
-    return largest if largest > 0.0 else USUAL_SPEED
-
-
-def arrow_value(view: View, start: Vector, pixel: Vector, usual: float) -> Vector:
+def arrow_value(view: View, start: Vector, pixel: Vector, size: float) -> Vector:
     """The vector that an arrow from the point `start` (m) of the picture to a pixel stands for.
 
-    An arrow of COMFORTABLE length is about `usual`, to a scale of 1, 2 or 5 times a power of ten for each
+    An arrow of COMFORTABLE length is about `size`, to a scale of 1, 2 or 5 times a power of ten for each
     point. Whole points count; a component within reach of zero is zero.
     """
-    scale = round_down(usual / COMFORTABLE)
+    scale = round_down(size / COMFORTABLE)
     origin = view.camera.to_pixels(start)
     across = (pixel[0] - origin[0]) / view.pixel_ratio
     up = (origin[1] - pixel[1]) / view.pixel_ratio
@@ -71,7 +59,7 @@ def arrow_value(view: View, start: Vector, pixel: Vector, usual: float) -> Vecto
     return x, y
 
 
-def arrow_end(view: View, start: Vector, value: Vector, usual: float) -> Vector:
+def arrow_end(view: View, start: Vector, value: Vector, size: float) -> Vector:
     """The point (m) of the picture where the arrow for a value ends."""
-    metres = view.pixel_ratio / round_down(usual / COMFORTABLE) / view.camera.scale
+    metres = view.pixel_ratio / round_down(size / COMFORTABLE) / view.camera.scale
     return start[0] + metres * value[0], start[1] + metres * value[1]

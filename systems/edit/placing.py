@@ -25,23 +25,20 @@ def snapped(model: Model, view: View, point: Vector) -> Vector:
     """
     shown = np.flatnonzero(model.grids.shown)
     spacing = model.grids.spacing[shown[-1]].tolist() if len(shown) else (math.inf, math.inf)
-    x, y = (_snapped(value, step, view) for value, step in zip(point, spacing, strict=True))
-    return x, y
+    found = []
+    for value, step in zip(point, spacing, strict=True):
+        line = (
+            float(f"{round(value / step) * step:.12g}") if math.isfinite(step) else math.inf
+        )  # 3 × 0.1 is 0.3
+        near = abs(line - value) * view.camera.scale <= SNAP_REACH * view.pixel_ratio
+        found.append((line if near else round(value, _digits(view))) + 0.0)  # no −0
+    return found[0], found[1]
 
 
 def snapped_to_points(model: Model, view: View, pixel: Vector, besides: Handle | None = None) -> Vector:
     """The point (m) under a pixel: that of another element, within reach, else on the grid if near it."""
     grip = pick_point(model, view, pixel, besides)
     return snapped(model, view, view.camera.to_model(pixel)) if grip is None else grip.place
-
-
-def _snapped(value: float, step: float, view: View) -> float:
-    scale = view.camera.scale
-    if math.isfinite(step):
-        line = float(f"{round(value / step) * step:.12g}")  # 3 × 0.1 is 0.3
-        if abs(line - value) * scale <= SNAP_REACH * view.pixel_ratio:
-            return line + 0.0
-    return round(value, _digits(view)) + 0.0  # no −0
 
 
 def resolution(view: View) -> float:

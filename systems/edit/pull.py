@@ -17,7 +17,7 @@ from pinjoint.components.model import Model
 from pinjoint.components.particle import Particle
 from pinjoint.components.view import View
 from pinjoint.systems.base import Law
-from pinjoint.systems.edit.arrows import COMFORTABLE, usual_force
+from pinjoint.systems.edit.arrows import COMFORTABLE, usual
 
 FOLLOWS_WITHIN = 0.5  # s shown, the period of a free particle on the spring
 FOLLOWED_CLOSELY = 8  # particles without rods, among which the hand's force is followed within a step
@@ -119,7 +119,7 @@ def hand_on(model: Model, view: View, particle: Particle, pace: Callable[[], flo
     fastest = 1.0 / (STEPS_PER_RADIAN * step) if step > 0.0 else math.inf
     if (model.rods.between == particle.row).any():
         reach = COMFORTABLE * view.pixel_ratio / view.camera.scale / model.settings.displacement_scale
-        stiffness = min(particle.mass * fastest**2 / 1000.0, usual_force(model) / reach)
+        stiffness = min(particle.mass * fastest**2 / 1000.0, usual(model, "force") / reach)
     else:
         stiffness = particle.mass * min(2.0 * math.pi / (FOLLOWS_WITHIN * pace()), fastest) ** 2 / 1000.0
     damping = 2.0 * math.sqrt(1000.0 * stiffness * particle.mass) / 1000.0

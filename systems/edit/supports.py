@@ -13,27 +13,17 @@ from pinjoint.components.rod import rigid_joints
 
 Held = tuple[bool, bool, bool]  # in x, in y, and the rotation
 
-# Names of the supports, in the order in which pressing the key goes through them; those that hold the rotation only
-# where rigid rod ends would turn.
-NAMES: dict[Held, str] = {
-    (False, False, False): marked("free"),
-    (True, True, False): marked("pinned: held in x and y"),
-    (True, True, True): marked("clamped: held in x and y, cannot turn"),
-    (False, True, False): marked("roller: held in y"),
-    (True, False, False): marked("roller: held in x"),
-    (False, True, True): marked("guided: held in y, cannot turn"),
-    (True, False, True): marked("guided: held in x, cannot turn"),
-    (False, False, True): marked("cannot turn, free in x and y"),
-}
-SUPPORTS: dict[str, Held] = {  # by the names of the actions of menus
-    "free": (False, False, False),
-    "pin": (True, True, False),
-    "hold y": (False, True, False),
-    "hold x": (True, False, False),
-    "clamp": (True, True, True),
-    "guide y": (False, True, True),
-    "guide x": (True, False, True),
-    "hold rotation": (False, False, True),
+# What each kind of support is called by the action of menus and by people, in the order in which pressing the key goes
+# through them; those that hold the rotation only where rigid rod ends would turn.
+SUPPORTS: dict[Held, tuple[str, str]] = {
+    (False, False, False): ("free", marked("free")),
+    (True, True, False): ("pin", marked("pinned: held in x and y")),
+    (True, True, True): ("clamp", marked("clamped: held in x and y, cannot turn")),
+    (False, True, False): ("hold y", marked("roller: held in y")),
+    (True, False, False): ("hold x", marked("roller: held in x")),
+    (False, True, True): ("guide y", marked("guided: held in y, cannot turn")),
+    (True, False, True): ("guide x", marked("guided: held in x, cannot turn")),
+    (False, False, True): ("hold rotation", marked("cannot turn, free in x and y")),
 }
 DIAGONAL = math.tan(math.pi / 8.0)  # tan 22.5°; a direction farther from an axis counts along both
 
@@ -46,7 +36,7 @@ def held(particle: Particle) -> Held:
 def next_support(model: Model, particles: Sequence[Particle]) -> str:
     """Give particles the support after that of the first one; returns its name."""
     turns, now = rigid_joints(model)[particles[0].row], held(particles[0])
-    cycle = [kind for kind in NAMES if turns or not kind[2] or kind == now]
+    cycle = [kind for kind in SUPPORTS if turns or not kind[2] or kind == now]
     return support(model, particles, cycle[(cycle.index(now) + 1) % len(cycle)])
 
 
@@ -55,7 +45,7 @@ def support(model: Model, particles: Sequence[Particle], wanted: Held) -> str:
     with model.transaction(tr("support of {particle}", particle=model.describe(particles[0]))):
         model.assign(list(particles), "fixed", [wanted[:2]] * len(particles))
         model.assign(list(particles), "fixed_rotation", [wanted[2]] * len(particles))
-    return tr(NAMES[wanted])
+    return tr(SUPPORTS[wanted][1])
 
 
 def support_towards(along: Vector) -> tuple[bool, bool]:

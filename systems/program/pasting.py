@@ -96,8 +96,9 @@ def _filled(lines: Iterable[str], inserts: Mapping[str, Insert]) -> list[str]:
             filled.append(line)
             continue
         whole = _LINE.fullmatch(line)
-        if whole and not isinstance(inserts[whole[2]], str):
-            filled += [whole[1] + inserted for inserted in inserts[whole[2]]]
+        made = inserts[whole[2]] if whole else ""
+        if whole and not isinstance(made, str | bool):
+            filled += [whole[1] + inserted for inserted in made]
         else:
             filled.append(_EXPRESSION.sub(lambda match: str(inserts[match[1]]), line))
     return filled

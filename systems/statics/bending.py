@@ -12,7 +12,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
-from pinjoint.components.derived import FULL_TURN
+from pinjoint.components.derived import FULL_TURN, along_and_across
 from pinjoint.components.model import Model
 
 Array = NDArray[np.float64]
@@ -101,14 +101,6 @@ class Bending:
         stiffness = np.stack([own[:, 0], mixed, own[:, 1]], axis=1)
         return replace(self, end_stiffness=stiffness, load_shares=shares)
 
-    def kinks(self, moment: Array, hinges: NDArray[np.bool_]) -> Array:
-        """The slopes (rods, 2) of hinged ends that moments there would cause while the other ends do not turn."""
-        stiff, mixed = self._of_ends, self.end_stiffness[:, 1:2]
-        crossed = stiff[:, ::-1] * moment - mixed * moment[:, ::-1]
-        both = hinges.all(axis=1, keepdims=True)
-        over, under = np.where(both, crossed, moment), np.where(both, stiff * stiff[:, ::-1] - mixed**2, stiff)
-        return np.divide(over, under, where=hinges & (under != 0.0), out=np.zeros_like(stiff))
-
     # --- states ------------------------------------------------------------------------------------
 
     def bow(self, slopes: Array) -> tuple[Array, Array]:
@@ -124,9 +116,7 @@ class Bending:
         couples: on the bent axis these make a couple, unlike in first-order theory.
         """
         bowed, _ = self.bow(slopes)
-        force = share * self.distributed_force
-        along = (force * axis).sum(axis=1)
-        across = force[:, 1] * axis[:, 0] - force[:, 0] * axis[:, 1]
+        along, across = along_and_across(share * self.distributed_force, axis)
         area = (self.load_shares * slopes).sum(axis=1)
         moment = _product(self.end_stiffness, slopes - self.initial_slopes) + axial_force[:, None] * bowed
         moment -= across[:, None] * self.load_shares
@@ -136,9 +126,7 @@ class Bending:
 
     def carried(self, bent: Bent, axis: Array, length: Array, couples: bool) -> tuple[Array, Array]:
         """What the whole distributed force adds to the moments on the ends (rods, 2) and to the shear (rods,)."""
-        force = self.distributed_force
-        along = (force * axis).sum(axis=1)
-        across = force[:, 1] * axis[:, 0] - force[:, 0] * axis[:, 1]
+        along, across = along_and_across(self.distributed_force, axis)
         moment = -across[:, None] * self.load_shares
         couple = -along * bent.area if couples else 0.0
         return moment, (moment.sum(axis=1) + couple) / np.where(length > 0.0, length, np.inf)

@@ -24,7 +24,6 @@ from pinjoint.systems.statics.factor import (
     pseudo_random,
     regular,
     shifted,
-    soft_modes,
     unresisted,
 )
 from pinjoint.systems.statics.state import Start
@@ -130,8 +129,7 @@ def _resisting(model: Model, structure: Structure, stiffness: Matrix, softening:
             " moved supports. Stiffen it, or let the weight act as forces on particles, which the factor multiplies."
         )
         raise NoEquilibrium("collapse", message)
-    modes = soft_modes(stiffness, weight)
-    modes = unresisted(structure, structure.unmoved, stiffness, modes)
+    modes = unresisted(structure, structure.unmoved, stiffness)
     if not modes.shape[1]:
         return stiffness
     size = float(abs(softening.diagonal()).max(initial=0.0))

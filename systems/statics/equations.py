@@ -33,6 +33,7 @@ Array = NDArray[np.float64]
 Flags = NDArray[np.bool_]
 Rows = NDArray[np.intp]
 
+AXES = ("x", "y", "rotation")  # of a particle
 TURNS_ONLY = 1e-9  # m/rad: a motion that shifts particles by less is one of rotations
 AT_LIMIT = 1e-10  # share of its strength within which a rod counts as yielding
 ROUND_OFF = float(np.finfo(np.float64).eps)
@@ -103,7 +104,7 @@ class Structure:
         particles, rods = model.particles, model.rods
         yields = bool(model.settings.plasticity)
         ends = rods.between.astype(np.intp)
-        body = _bodies(particles.count, ends)
+        body = np.unique(lowest_joined(particles.count, ends), return_inverse=True)[1]
         fixed = particles.fixed.copy()
         bending = Bending.of(model, bows=geometry == "exact") if bends(model) else None
         if bending is not None:
@@ -138,16 +139,6 @@ class Structure:
         if bending is not None:
             bending = replace(bending, initial_slopes=share * bending.initial_slopes)
         return replace(self, misfit=share * self.misfit, bending=bending)
-
-    def released(self, bars: Flags, hinges: Flags, supports: Flags) -> Structure:
-        """The same structure without some bars (rods,) and supports (n, …), and with hinges at some rigid ends (rods, 2)."""
-        return replace(
-            self,
-            stiffness=np.where(bars, 0.0, self.stiffness),
-            bending=None if self.bending is None else self.bending.hinged(hinges),
-            fixed=self.fixed & ~supports,
-            unknown=self.unknown | supports,
-        )
 
     # --- unknowns ----------------------------------------------------------------------------------
 
@@ -270,12 +261,6 @@ class Structure:
         """Rates of the slopes of the rods' ends, (rods, 2), when all particles move at these rates."""
         assert self.bending is not None
         return self.bending.slope_rates(self.relative(field), self.turns(field), response.axis, response.length)
-
-    @cached_property
-    def original_axis(self) -> Array:
-        """Unit vectors from the first original position to the second, (rods, 2); 0 where they are the same."""
-        length = self.original_length[:, None]
-        return np.divide(self.difference, length, out=np.zeros_like(self.difference), where=length > 0.0)
 
     @cached_property
     def extent(self) -> float:
@@ -578,10 +563,6 @@ def _held_by_rods(particles: int, ends: Rows, bending: Bending | None) -> Flags:
     if bending is not None:
         held[ends[bending.rigid], 2] = True
     return held
-
-
-def _bodies(particles: int, ends: Rows) -> Rows:
-    return np.unique(lowest_joined(particles, ends), return_inverse=True)[1]
 
 
 def _arbitrary(fixed: Flags, body: Rows) -> Flags:

@@ -2,23 +2,53 @@
 
 from __future__ import annotations
 
+import sys
 from collections.abc import Callable
-from typing import TYPE_CHECKING
+from dataclasses import replace
+from functools import cache
+from importlib.machinery import PathFinder
+from importlib.util import module_from_spec
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from pinjoint.components.model import Model
 from pinjoint.systems.statics.assembly import SYMMETRIC, Matrix
 from pinjoint.systems.statics.equations import ROUND_OFF, Array, Flags, Structure
-from pinjoint.systems.statics.lapack import lapack
 from pinjoint.systems.statics.response import Response
 
 if TYPE_CHECKING:  # only large structures need it
     from scipy.sparse import csc_matrix
 
+HOLDS_LAPACK = "scipy.linalg._flapack"
 NO_STIFFNESS = 1e-13  # of the rods' stiffness at the same particle: round-off
 SOFT = 1e-12  # of the same: a motion that is resisted less counts as not resisted
+SOFT_MODES = 8  # that are looked for at most
+HELD = 1e-9  # of the largest stiffness: a motion that is resisted less is not held
+HELD_BY_BENDING = 1e-12  # the same where members bend, which long ones do a million times more easily
 INVERSE_ITERATIONS = 30
 NEAREST_ITERATIONS = 12  # near a singular matrix each gains many digits
+
+
+@cache
+def lapack() -> Any:
+    """The module with dsytrf and dsytrs; scipy.linalg.lapack, which has the same, where scipy keeps it elsewhere.
+
+    Importing that takes 0.12 s, longer than most structures take to settle; the module of scipy that holds LAPACK, 3 ms.
+    """
+    import scipy
+
+    if HOLDS_LAPACK in sys.modules:
+        return sys.modules[HOLDS_LAPACK]
+    spec = PathFinder.find_spec(HOLDS_LAPACK, [str(Path(scipy.__file__).parent / "linalg")])
+    if spec is None or spec.loader is None:
+        import scipy.linalg.lapack
+
+        return scipy.linalg.lapack
+    module = module_from_spec(spec)
+    spec.loader.exec_module(module)
+    return sys.modules.setdefault(HOLDS_LAPACK, module)  # scipy.linalg takes the same one
 
 
 class Factor:
@@ -93,6 +123,26 @@ def is_stable(structure: Structure, response: Response, soft: Flags | None = Non
     return regular(matrix, structure.weight).definite
 
 
+def is_held(model: Model, *, at_first: bool = False) -> bool:
+    """True if every small displacement of the nodes is resisted, found quickly enough for every frame.
+
+    at_first: as if no rod bore any force yet, so that mechanisms are not held, whatever tension keeps them in shape.
+    Yielding rods and slack cables do not resist elongation.
+    """
+    particles, rods = model.particles, model.rods
+    structure = replace(Structure.of(model).with_translations(), sparse=False)
+    place = structure.field(particles.displacement, particles.rotation)
+    response = structure.respond(place, rods.plastic_strain, 1.0)
+    soft = rods.yielding | (rods.tension_only & (rods.axial_force <= 0.0))
+    tangent = structure.tangent(response, soft & (not at_first), geometric=not at_first)
+    share = HELD if structure.bending is None else HELD_BY_BENDING
+    try:
+        np.linalg.cholesky(tangent - share * np.eye(structure.size) * np.abs(tangent).max(initial=0.0))
+    except np.linalg.LinAlgError:
+        return False
+    return structure.size > 0
+
+
 def softest(structure: Structure, response: Response, soft: Flags | None = None) -> tuple[float, Array]:
     """The least eigenvalue λ of K φ = λ W φ and its mode, φᵀWφ = 1, by shifted inverse iteration.
 
@@ -124,7 +174,7 @@ def nearest_mode(matrix: Matrix, weight: Array) -> Array:
     return mode
 
 
-def soft_modes(matrix: Matrix, weight: Array, factor: Factor | None = None, most: int = 8) -> Array:
+def soft_modes(matrix: Matrix, weight: Array, factor: Factor | None = None, most: int = SOFT_MODES) -> Array:
     """Up to `most` modes (N, k) that K resists by less than a share SOFT of W, orthonormal in W."""
     factor = factor or regular(matrix, weight)
     if len(weight) == 0 or most == 0 or not factor.exists:
@@ -139,8 +189,15 @@ def soft_modes(matrix: Matrix, weight: Array, factor: Factor | None = None, most
     return modes
 
 
-def unresisted(structure: Structure, response: Response, matrix: Matrix, modes: Array) -> Array:
-    """Those of some soft modes (N, k) that round-off alone resists: not the bending of what many rods divide."""
+def unresisted(
+    structure: Structure,
+    response: Response,
+    matrix: Matrix,
+    factor: Factor | None = None,
+    most: int = SOFT_MODES,
+) -> Array:
+    """Soft modes (N, k) that round-off alone resists: not the bending of what many rods divide."""
+    modes = soft_modes(matrix, structure.weight, factor, most)
     if structure.bending is None:
         return modes
     kept = [float(m @ (matrix @ m)) <= SOFT * structure.effort(m, response) + ROUND_OFF for m in modes.T]

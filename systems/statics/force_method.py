@@ -2,25 +2,112 @@
 positions.
 
 Set 1 is the real structure under the real load, set 2 the released structure (without the static unknowns) under the real
-load, set 3 the released structure under a unit force alone. Superposition is exact in first-order theory.
+load, set 3 the released structure under a unit force alone. Superposition is exact in first-order theory. A released bar is
+cut, an end of a rod at which the moment is released has a hinge, a support lets go in one direction; masses, loads and the
+displacements of the other supports stay.
+
+By how much the releases open is found by virtual work:
+
+    1 · δ = Σ n N L/EA + Σ ∫ m M dx/EI + Σ n ΔL + Σ ∫ m κ dx − Σ r c
+
+n, m and the reactions r are those of a unit force; N, M those of the load; ΔL and κ elongations and curvatures without
+force, by warmth and lack of fit; c displacements of supports. Exact: N is constant along a rod or, with what acts along it,
+counts by its mean; m is linear and M a parabola.
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Sequence
-from dataclasses import dataclass, replace
+from collections.abc import Sequence
+from dataclasses import dataclass, fields, replace
 
 import numpy as np
 
+from pinjoint.components.derived import along_and_across
+from pinjoint.components.language import tr
 from pinjoint.components.model import Model
 from pinjoint.components.numeric_range import incomputable
-from pinjoint.systems.statics.equations import Array
-from pinjoint.systems.statics.explain import cables_named
+from pinjoint.systems.statics.equations import Array, Rows, Structure, normalised
+from pinjoint.systems.statics.events import NoEquilibrium
+from pinjoint.systems.statics.explain import cables_named, describe_motion
 from pinjoint.systems.statics.external import external_forces
-from pinjoint.systems.statics.released import Released, SetState
+from pinjoint.systems.statics.theory import FirstOrder
 from pinjoint.systems.statics.unknowns import ForceMethodError, Unknown, refuse_unsuited
 
 _ROUNDING = 1e-12  # of the geometric mean of their diagonal: smaller flexibilities are 0
+
+
+@dataclass(frozen=True)
+class SetState:
+    """A set by first-order theory: displacement (n, 2) in m, rotation (n,) in rad, axial forces (rods,) in kN.
+
+    end_moment: counter-clockwise on the ends of the rods, kN·m, (rods, 2). reaction: kN and, of clamps, kN·m, (n, 3). Of a
+    unit force they include that force itself, in the cut bar or at the released support.
+    """
+
+    displacement: Array
+    rotation: Array
+    axial_force: Array
+    end_moment: Array
+    reaction: Array
+
+    @property
+    def bending_moment(self) -> Array:
+        """At the ends of the rods, positive where the side on their right is in tension, (rods, 2)."""
+        moment: Array = self.end_moment * np.array([-1.0, 1.0])
+        return moment
+
+
+def superposed(states: Sequence[SetState], amounts: Sequence[float]) -> SetState:
+    """The sum of so much of each of some states."""
+    return SetState(
+        *(
+            sum(amount * getattr(state, part.name) for state, amount in zip(states, amounts, strict=True))
+            for part in fields(SetState)
+        )
+    )
+
+
+@dataclass(frozen=True)
+class Terms:
+    """The terms of the sums over axial forces or over bending moments, for m unknowns, in m or rad.
+
+    unit: n, (m, rods, 1), or m at both ends, (m, rods, 2). softness: L₀/EA or L₀/EI, 0 of bars (rods,). form: (1, 1) or
+    (2, 2), by which two units are multiplied. of_load: n N₀ L/EA or ∫ m M₀ dx/EI; of_free: n ΔL or ∫ m κ dx (m, rods).
+    """
+
+    unit: Array
+    softness: Array
+    form: Array
+    of_load: Array
+    of_free: Array
+
+    def of_units(self, i: int, j: int) -> Array:
+        """n n' L/EA or ∫ m m' dx/EI of two unknowns (rods,)."""
+        terms: Array = self.softness * (self.unit[i] * (self.unit[j] @ self.form)).sum(axis=-1)
+        return terms
+
+    @property
+    def flexibility(self) -> Array:
+        """Sums of these (m, m)."""
+        soft = self.softness[:, None] * (self.unit @ self.form)
+        return np.tensordot(soft, self.unit, axes=([1, 2], [1, 2]))
+
+
+@dataclass(frozen=True)
+class Work:
+    """The terms of virtual work. settled: rows and axes of moved supports (k, 2); of_supports: −r c (m, k)."""
+
+    axial: Terms
+    bending: Terms
+    settled: Rows
+    of_supports: Array
+
+    @property
+    def gap(self) -> Array:
+        """δ₀ (m,)."""
+        parts = [part for terms in (self.axial, self.bending) for part in (terms.of_load, terms.of_free)]
+        total: Array = np.sum([part.sum(axis=1) for part in (*parts, self.of_supports)], axis=0)
+        return total
 
 
 @dataclass(frozen=True)
@@ -35,33 +122,26 @@ class Solution:
     In the thesis': delta_real, delta_base (m,), delta_unit (m, m), of which those of a bar are changes of the distance
     between its ends. All in m, rad, kN, kN·m.
 
-    real, base: sets 1 and 2; units: set 3 of each unknown, under its unit force.
+    real, base: sets 1 and 2; units: set 3 of each unknown, under its unit force. work: what gap and flexibility are sums of.
     """
 
     unknowns: tuple[Unknown, ...]
-    delta_real: Array
-    delta_base: Array
-    delta_unit: Array
-    force: Array
     real: SetState
     base: SetState
     units: tuple[SetState, ...]
+    work: Work
     gap: Array
     flexibility: Array
     prescribed: Array
+    force: Array
+    delta_real: Array
+    delta_base: Array
+    delta_unit: Array
 
     @property
     def superposed(self) -> SetState:
         """Set 2 + Σ X × set 3, which equals set 1."""
-        found = self.base
-        for unknown, force, unit in zip(self.unknowns, self.force.tolist(), self.units, strict=True):
-            parts = {name: part + force * getattr(unit, name) for name, part in vars(found).items()}
-            if unknown.of_bar:
-                parts["axial_force"][unknown.element.row] = force
-            elif unknown.of_support:
-                parts["reaction"][unknown.element.row, unknown.axis] = force
-            found = replace(found, **parts)
-        return found
+        return superposed((self.base, *self.units), (1.0, *self.force.tolist()))
 
 
 def solve(model: Model, unknowns: Sequence[Unknown]) -> Solution:
@@ -82,93 +162,168 @@ def solve(model: Model, unknowns: Sequence[Unknown]) -> Solution:
             cables=cables_named(model),
         )
     refuse_unsuited(model, unknowns)
-    load = external_forces(model).at(1.0)
-    whole = Released(model)
-    real = whole.under(load, prestressed=True)
-    released = Released(model, unknowns) if unknowns else whole
-    base = released.under(load, prestressed=True)
-    units = tuple(
-        released.under(unit_force(model, unknown), prestressed=False, couple=unit_couple(model, unknown))
-        for unknown in unknowns
-    )
-    delta_real, delta_base, *of_units = _deltas(model, unknowns, (real, base, *units))
-    delta_unit = np.array(of_units).reshape(len(unknowns), len(unknowns)).T
-    own, unstrained, prescribed = _own(model, unknowns)
-    sign = np.array([-1.0 if unknown.of_bar else 1.0 for unknown in unknowns])
-    flexibility = sign[:, None] * (delta_unit - np.diag(own)).reshape(delta_unit.shape)
-    gap = sign * (delta_base - unstrained)
+    try:
+        whole = _Released(model, ())
+        real, released = whole.under_load(), _Released(model, unknowns) if unknowns else whole
+        base, units = released.under_load(), tuple(map(released.under, unknowns))
+    except NoEquilibrium as reason:
+        raise ForceMethodError(str(reason)) from None
+    work = _work(model, unknowns, base, units)
+    own, free, stretched, prescribed = np.zeros((4, len(unknowns)))  # of bars: L₀/EA, ΔL, and Δ; of supports: c
+    for index, unknown in enumerate(unknowns):
+        if unknown.of_bar:
+            own[index], free[index] = work.axial.softness[unknown.place], _free(model)[unknown.place]
+            stretched[index] = own[index] * real.axial_force[unknown.place] + free[index]
+        elif unknown.of_support:
+            prescribed[index] = _places(model)[unknown.place]
+    gap, flexibility = work.gap, work.axial.flexibility + work.bending.flexibility
     force: Array = np.linalg.solve(flexibility, prescribed - gap).astype(np.float64)
-    deltas = (delta_real, delta_base, delta_unit)
     size = np.sqrt(np.abs(np.diag(flexibility)))
     flexibility = np.where(np.abs(flexibility) > _ROUNDING * np.outer(size, size), flexibility, 0.0)
+    sign = np.array([-1.0 if unknown.of_bar else 1.0 for unknown in unknowns])
     return Solution(
-        tuple(unknowns), *deltas, force, real, base, units, gap + 0.0, flexibility + 0.0, prescribed
+        tuple(unknowns),
+        real,
+        base,
+        units,
+        work,
+        gap + 0.0,
+        flexibility + 0.0,
+        prescribed,
+        force,
+        delta_real=prescribed + stretched,
+        delta_base=sign * gap + free,
+        delta_unit=(sign[:, None] * flexibility + np.diag(own)).reshape(flexibility.shape),
     )
 
 
-def _own(model: Model, unknowns: Sequence[Unknown]) -> tuple[Array, Array, Array]:
-    """Of released bars their own L₀/EA (m/kN) and their Δ (m) without force; of released supports where they are held."""
-    own, unstrained, prescribed = np.zeros((3, len(unknowns)))
-    particles, rods = model.particles, model.rods
-    for index, unknown in enumerate(unknowns):
-        row = unknown.element.row
-        if unknown.of_bar:
-            own[index] = rods.rest_length[row] / rods.stiffness[row]
-            unstrained[index] = rods.rest_length[row] * rods.plastic_strain[row] - rods.misfit[row]
-        elif unknown.of_support:
-            turned = unknown.axis == 2
-            prescribed[index] = particles.rotation[row] if turned else particles.displacement[row, unknown.axis]
-    return own, unstrained, prescribed
+def unit_load(model: Model, unknown: Unknown) -> tuple[Array, Array]:
+    """What a unit of an unknown does to the particles, (n, 3), and to released ends of rods, counter-clockwise, (rods, 2).
 
-
-def unit_force(model: Model, unknown: Unknown) -> Array:
-    """What a unit of an unknown does to the particles, (n, 2), where members bend (n, 3).
-
-    1 kN along a released constraint, or 1 kN·m; a pair of 1 kN that pulls a released bar's ends together. That at the end
-    of a rod acts on the rod, which hands it on to the joint: see `unit_couple`.
+    1 kN along a released constraint, or 1 kN·m; a pair of 1 kN that pulls a released bar's ends together; 1 kN·m on the end
+    of a rod, which hands its opposite on to the joint.
     """
-    force = np.zeros((model.particles.count, 3 if model.rods.turning_shares.any() else 2))
-    row = unknown.element.row
+    force, couple = np.zeros((model.particles.count, 3)), np.zeros((model.rods.count, 2))
     if unknown.of_bar:
-        first, second = model.rods.between[row]
-        axis = _axis(model, unknown)
-        force[first, :2] += axis
-        force[second, :2] -= axis
+        row = unknown.element.row
+        axis = model.rods.difference[row] / model.rods.original_length[row]
+        force[model.rods.between[row], :2] = axis, -axis
     elif unknown.of_support:
-        force[row, unknown.axis] = 1.0
-    return force
+        force[unknown.place] = 1.0
+    else:
+        couple[unknown.place] = (-1.0, 1.0)[unknown.axis or 0]
+    return force, couple
 
 
-def unit_couple(model: Model, unknown: Unknown) -> Array:
-    """What a unit of an unknown does to the released ends of rods, counter-clockwise, (rods, 2)."""
-    couple = np.zeros((model.rods.count, 2))
-    if unknown.of_end:
-        couple[unknown.element.row, unknown.axis] = (-1.0, 1.0)[unknown.axis or 0]
-    return couple
+class _Released:
+    """A model without some unknowns, but with all masses, loads and moved supports, by first-order theory.
+
+    Raises ForceMethodError, with the motion, if a mechanism is left.
+    """
+
+    def __init__(self, model: Model, unknowns: Sequence[Unknown]) -> None:
+        self._model, self._whole = model, (whole := Structure.of(model, "linear"))
+        bars, supports = np.zeros(len(whole.ends), dtype=bool), np.zeros(whole.fixed.shape, dtype=bool)
+        self._hinges = np.zeros(whole.ends.shape, dtype=bool)
+        for unknown in unknowns:
+            (bars if unknown.of_bar else self._hinges if unknown.of_end else supports)[unknown.place] = True
+        with_all = replace(whole, fixed=whole.fixed & ~supports, unknown=whole.unknown | supports)
+        bending = None if whole.bending is None else whole.bending.hinged(self._hinges)
+        released = replace(with_all, stiffness=np.where(bars, 0.0, whole.stiffness), bending=bending)
+        self._theory = FirstOrder(model, released, with_all)
+        motions = released.fields(self._theory.mechanisms)
+        if not len(motions):
+            return
+        moves = describe_motion(model, motions)
+        if unknowns:
+            message = tr(
+                "Without {names} the structure is a mechanism: {moves} can move."
+                " It is not a static unknown; choose a redundant rod or support.",
+                names=", ".join(unknown.name for unknown in unknowns),
+                moves=moves,
+            )
+        else:
+            message = tr(
+                "The structure is a mechanism already ({moves} can move); support or brace it first.",
+                moves=moves,
+            )
+        raise ForceMethodError(message, normalised(motions[0]))
+
+    def under_load(self) -> SetState:
+        """The state under the real load, lack of fit, warmth and moved supports."""
+        return self._state(external_forces(self._model).at(1.0), 1.0, np.zeros(self._hinges.shape))
+
+    def under(self, unknown: Unknown) -> SetState:
+        """The state under a unit of an unknown alone."""
+        force, couple = unit_load(self._model, unknown)
+        if self._whole.bending is not None:
+            couple += self._whole.bending.carried_over(couple, self._hinges)
+        state = self._state(force[:, : self._whole.width], 0.0, couple)
+        if not unknown.of_end:
+            (state.axial_force if unknown.of_bar else state.reaction)[unknown.place] = 1.0
+        return state
+
+    def _state(self, load: Array, share: float, moment: Array) -> SetState:
+        """The state under a load (n, …), a share of what else acts, and moments on the ends of rods (rods, 2)."""
+        structure, rods, model = self._theory.structure, self._theory.structure.grown(share), self._model
+        if moment.any():
+            load = load - structure.held(np.zeros_like(structure.difference), moment)
+        place = structure.field(model.particles.displacement, model.particles.rotation)
+        supports, strain = share * np.where(structure.fixed, place, 0.0), share * model.rods.plastic_strain
+        moved, response = self._theory.equilibrium(load, supports, strain, share, rods)
+        reaction = np.zeros((len(moved), 3))
+        reaction[:, : structure.width] = np.where(structure.fixed, rods.internal(response) - load, 0.0)
+        end_moment = structure.end_moments(response) + moment
+        return SetState(moved[:, :2], structure.rotation(moved), response.axial_force, end_moment, reaction)
 
 
-def _axis(model: Model, unknown: Unknown) -> Array:
-    row = unknown.element.row
-    axis: Array = model.rods.difference[row] / model.rods.original_length[row]
-    return axis
+def bulge(model: Model) -> Array:
+    """q L₀² of rods (kN·m), of which their moments bulge by −1/8 at the middle, (rods,)."""
+    rods = model.rods
+    axis = rods.difference / rods.original_length[:, None]
+    found: Array = along_and_across(rods.distributed_force, axis)[1] * rods.rest_length**2
+    return found
 
 
-def _deltas(model: Model, unknowns: Sequence[Unknown], states: Iterable[SetState]) -> Iterator[Array]:
-    """Δ of all unknowns in each of some states, (unknowns,)."""
-    between, both = model.rods.between, np.eye(2)
-    rows = np.array([unknown.element.row for unknown in unknowns], dtype=np.intp)
-    axes = np.array([unknown.axis or 0 for unknown in unknowns], dtype=np.intp)
-    bars = np.array([unknown.of_bar for unknown in unknowns], dtype=bool)
-    of_ends = np.array([unknown.of_end for unknown in unknowns], dtype=bool)
-    of_clamps = np.array([unknown.is_moment for unknown in unknowns], dtype=bool) & ~of_ends
-    ends = [between[u.element.row] if u.of_bar else (0 if u.of_end else u.element.row,) * 2 for u in unknowns]
-    first, second = np.array(ends, dtype=np.intp).reshape(-1, 2).T
-    way = np.array([_axis(model, u) if u.of_bar else both[(u.axis or 0) % 2] for u in unknowns]).reshape(-1, 2)
-    for state in states:
-        moved = state.displacement
-        found = ((moved[second] - np.where(bars[:, None], moved[first], 0.0)) * way).sum(axis=1)
-        found[of_clamps] = state.rotation[rows[of_clamps]]
-        if of_ends.any():
-            kink = state.kink if len(state.kink) else np.zeros((model.rods.count, 2))
-            found[of_ends] = kink[rows[of_ends], axes[of_ends]] * np.where(axes[of_ends] == 0, 1.0, -1.0)
-        yield found
+def _work(model: Model, unknowns: Sequence[Unknown], base: SetState, units: Sequence[SetState]) -> Work:
+    rods, count = model.rods, len(units)
+    n = np.array([unit.axial_force for unit in units]).reshape(count, rods.count, 1)
+    m = np.array([unit.bending_moment for unit in units]).reshape(count, rods.count, 2)
+    length, bends = rods.rest_length, rods.bending_stiffness > 0.0
+    softness, turning = length / rods.stiffness, np.zeros(rods.count)
+    np.divide(length, rods.bending_stiffness, out=turning, where=bends)
+    curvature = -rods.thermal_expansion * rods.temperature_gradient * bends
+    linear = np.array([[2.0, 1.0], [1.0, 2.0]]) / 6.0  # ∫ m M dξ by the values at both ends
+    straight = (m * (base.bending_moment @ linear)).sum(axis=2)
+    moved = np.where(
+        np.column_stack([model.particles.fixed, model.particles.fixed_rotation]), _places(model), 0.0
+    )
+    for unknown in unknowns:
+        if unknown.of_support:
+            moved[unknown.place] = 0.0
+    settled = np.argwhere(moved != 0.0)
+    reactions = np.array([unit.reaction for unit in units]).reshape(count, len(moved), 3)[:, *settled.T]
+    return Work(
+        Terms(n, softness, np.eye(1), n[:, :, 0] * base.axial_force * softness, n[:, :, 0] * _free(model)),
+        Terms(
+            m,
+            turning,
+            linear,
+            turning * (straight - bulge(model) * m.sum(axis=2) / 24.0),
+            length * curvature * m.mean(axis=2),
+        ),
+        settled,
+        -reactions * moved[tuple(settled.T)],
+    )
+
+
+def _free(model: Model) -> Array:
+    """ΔL, by which rods are longer without force (m), (rods,)."""
+    rods = model.rods
+    longer: Array = rods.rest_length * rods.plastic_strain - rods.misfit
+    return longer
+
+
+def _places(model: Model) -> Array:
+    """Displacements and rotations of all particles, (n, 3)."""
+    return np.column_stack([model.particles.displacement, model.particles.rotation])

@@ -12,7 +12,7 @@ from pinjoint.components.model import Model
 from pinjoint.systems.statics.equations import Array, Flags, largest, normalised
 from pinjoint.systems.statics.events import Event, NoEquilibrium
 from pinjoint.systems.statics.explain import describe_motion, moved, rod_names, slack_named
-from pinjoint.systems.statics.factor import SOFT, is_stable, regular, soft_modes, softest, unresisted
+from pinjoint.systems.statics.factor import SOFT, is_stable, regular, softest, unresisted
 from pinjoint.systems.statics.follow import HALF, Path, Point, Tangent
 from pinjoint.systems.statics.relax import RUNAWAY, STEPS, relax
 
@@ -74,8 +74,7 @@ class Loading:
         modes = np.zeros((structure.size, 0))
         if self.unstressed:
             matrix = structure.tangent(before.response, tangent.soft)
-            modes = soft_modes(matrix, structure.weight, tangent.factor)
-            modes = unresisted(structure, before.response, matrix, modes)
+            modes = unresisted(structure, before.response, matrix, tangent.factor)
         self.mechanism = modes.shape[1] > 0
         if not path.push(before.response).any():  # improve the equilibrium, or leave it if it is not stable
             found = path.correct(self.point, self.point.displacement, 1.0, None)

@@ -14,7 +14,7 @@ from pinjoint.components.model import Model
 from pinjoint.components.suggestions import missing
 from pinjoint.components.wording import cut
 from pinjoint.systems.statics.critical import BIFURCATION, branch_off, passed
-from pinjoint.systems.statics.equations import Array, Structure
+from pinjoint.systems.statics.equations import AXES, Array, Structure
 from pinjoint.systems.statics.events import Event
 from pinjoint.systems.statics.external import External, external_forces
 from pinjoint.systems.statics.follow import Path, Point, Step, Tangent
@@ -25,7 +25,6 @@ DETAIL = 0.02  # of a rod's length between points; smaller: a smoother curve
 FIRST = 1e-3  # of the same, for the first increment
 LANDED = 1e-13  # of the goal, or of the last increment: near enough
 LANDINGS = 60  # trials
-AXES = ("x", "y", "rotation")
 
 
 @dataclass(frozen=True)

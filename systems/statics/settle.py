@@ -108,24 +108,22 @@ def settle(
     found = _Settling(model, geometry, start).through(wanted)
     if geometry == "exact" and model.settings.collisions:
         discs = Discs.of(model, start.displacement)
-        if len(discs.radius) > 1 and (_may_rest(model, discs, wanted) or _meet(discs, found, start)):
+        if len(discs.radius) > 1 and _touch(model, discs, wanted, found, start):
             return _SettlingWithDiscs(model, discs, start).through(wanted)
     return found
 
 
-def _may_rest(model: Model, discs: Discs, factors: Sequence[float]) -> bool:
-    """True if a body without supports is pulled that other discs may hold."""
+def _touch(model: Model, discs: Discs, factors: Sequence[float], found: Settlement, start: Start) -> bool:
+    """True if a body without supports is pulled that others may hold, if discs overlap that did not at the beginning, or if
+    they move so far that they may pass an obstacle."""
     structure, external = Structure.of(model), external_forces(model)
     loose = [body for factor in factors for body in loose_bodies(structure, external.at(factor))]
-    return any(body.pull and len(body.particles) < len(discs.radius) for body in loose)
-
-
-def _meet(discs: Discs, found: Settlement, start: Start) -> bool:
-    """True if discs overlap that did not at the beginning, or move so far that they may pass an obstacle."""
-    places = [start.displacement, *(state.displacement for state in found.states)]
-    farthest = max(np.hypot(*(end - places[0]).T).max(initial=0.0) for end in places)
+    if any(body.pull and len(body.particles) < len(discs.radius) for body in loose):
+        return True
+    places = [state.displacement for state in found.states]
+    farthest = max(np.hypot(*(end - start.displacement).T).max(initial=0.0) for end in places)
     passes = len(discs.obstacles) and farthest > discs.smallest
-    return bool(passes) or any(len(discs.touching(displacement)) for displacement in places[1:])
+    return bool(passes) or any(len(discs.touching(displacement)) for displacement in places)
 
 
 def _factors(given: Sequence[float] | float) -> list[float]:

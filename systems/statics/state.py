@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from pinjoint.components.derived import diagrams
 from pinjoint.components.language import marked
@@ -57,6 +58,27 @@ class StaticState:
     contact_force: Array
 
     @property
+    def columns(self) -> dict[str, NDArray[Any]]:
+        """What the columns of a model are in this state, by "table.field"."""
+        of_particles: dict[str, NDArray[Any]] = {
+            "displacement": self.displacement,
+            "velocity": np.zeros_like(self.displacement),
+            "reaction": self.reaction,
+            "rotation": self.rotation,
+            "angular_velocity": np.zeros_like(self.rotation),
+            "reaction_moment": self.reaction_moment,
+        }
+        of_rods: dict[str, NDArray[Any]] = {
+            **self.diagrams,
+            "axial_force": self.axial_force,
+            "length": self.length,
+            "strain": self.strain,
+        }
+        of_rods |= {"strain": self.strain, "plastic_strain": self.plastic_strain, "yielding": self.yielding}
+        found = {f"particles.{name}": values for name, values in of_particles.items()}
+        return found | {f"rods.{name}": values for name, values in of_rods.items()}
+
+    @property
     def balanced(self) -> bool:
         """True if all forces are in balance, whether or not the state is stable."""
         return self.status in EQUILIBRIA
@@ -103,7 +125,16 @@ def state_of(
         yielding=structure.at_limit(response)[rods],
         reaction=reaction[:, :2],
         reaction_moment=structure.rotation(reaction),
-        diagrams=_diagrams(model, structure, response, displacement),
+        diagrams=diagrams(
+            model.rods,
+            response.axis[rods],
+            response.length[rods],
+            structure.chords(displacement)[rods],
+            structure.rotation(displacement)[structure.ends[rods]],
+            (response.axial_force[rods], structure.end_moments(response)[rods]),
+            share=response.share,
+            first_order=structure.linear,
+        ),
         elastic_energy=elastic,
         contacts=structure.ends[pressing],
         contact_force=-response.axial_force[pressing],
@@ -113,26 +144,6 @@ def state_of(
 
 def apply(model: Model, state: StaticState) -> None:
     """Put a model into a static state: its displacements and plastic strains, without velocity."""
-    model.writable("particles.displacement")[...] = state.displacement
-    model.writable("particles.velocity")[...] = 0.0
-    if bends(model):
-        model.writable("particles.rotation")[...] = state.rotation
-        model.writable("particles.angular_velocity")[...] = 0.0
-    model.writable("rods.plastic_strain")[...] = state.plastic_strain
-
-
-def _diagrams(
-    model: Model, structure: Structure, response: Response, displacement: Array
-) -> Mapping[str, Array]:
-    """The diagrams of a model's rods in this state, (rods, 2) by the names of columns."""
-    rods = slice(model.rods.count)  # what follows them are contacts
-    return diagrams(
-        model.rods,
-        response.axis[rods],
-        response.length[rods],
-        structure.chords(displacement)[rods],
-        structure.rotation(displacement)[structure.ends[rods]],
-        (response.axial_force[rods], structure.end_moments(response)[rods]),
-        share=response.share,
-        first_order=structure.linear,
-    )
+    moving = ("displacement", "velocity", *(("rotation", "angular_velocity") if bends(model) else ()))
+    for name in (*(f"particles.{name}" for name in moving), "rods.plastic_strain"):
+        model.give(name, state.columns[name])

@@ -4,25 +4,17 @@ influence lines. Lengths in m, forces in kN."""
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
+from functools import cached_property
 
 import numpy as np
 
 from pinjoint.components.language import tr
-from pinjoint.components.mistake import WrongValue
 from pinjoint.components.model import Model
 from pinjoint.systems.statics.equations import ROUND_OFF, Array, Structure, largest, normalised
 from pinjoint.systems.statics.events import NoEquilibrium
 from pinjoint.systems.statics.explain import cables_named, describe_motion
 from pinjoint.systems.statics.external import external_forces, loose_bodies, loose_event
-from pinjoint.systems.statics.factor import (
-    SOFT,
-    Factor,
-    pseudo_random,
-    regular,
-    soft_count,
-    soft_modes,
-    unresisted,
-)
+from pinjoint.systems.statics.factor import SOFT, pseudo_random, regular, soft_count, soft_modes, unresisted
 from pinjoint.systems.statics.response import Response
 from pinjoint.systems.statics.state import STABLE, Start, StaticState, state_of
 
@@ -35,8 +27,86 @@ MOST_MODES = 20  # mechanisms or states of self-stress of larger structures
 # --- linear theory -----------------------------------------------------------------------------------
 
 
+class FirstOrder:
+    """First-order theory of a structure: K u = f about the original positions, K factored once for all loads.
+
+    measure: a structure of the same unknowns by whose stiffness motions are measured; None: the same.
+    """
+
+    def __init__(self, model: Model, structure: Structure, measure: Structure | None = None) -> None:
+        self.model, self.structure = model, structure
+        self._measure = measure or structure
+        self._matrix = structure.initial_tangent
+        self._factor = regular(self._matrix, self._measure.weight)
+
+    @cached_property
+    def mechanisms(self) -> Array:
+        """The motions of the unknowns that nothing resists, (N, k)."""
+        count = soft_count(self._matrix, self._measure.weight)
+        return unresisted(self._measure, self.structure.unmoved, self._matrix, self._factor, most=count)
+
+    def equilibrium(
+        self, load: Array, supports: Array, plastic_strain: Array, share: float, rods: Structure
+    ) -> tuple[Array, Response]:
+        """Displacements (n, …) and rods under a load (n, …), all elastic. Raises NoEquilibrium.
+
+        supports: displacements of constrained directions, else 0. share: of the distributed forces. rods: the structure, or
+        one of another lack of fit.
+        """
+        moved = supports + self.deflection(
+            load - rods.internal(_elastic(rods, supports, plastic_strain, share))
+        )
+        return moved, _elastic(rods, moved, plastic_strain, share)
+
+    def deflection(self, load: Array) -> Array:
+        """Displacements (n, …) of the free directions under a load (n, …), without those that nothing resists.
+
+        Raises NoEquilibrium for cables, and where the load moves a mechanism.
+        """
+        structure, model = self.structure, self.model
+        if structure.sense.any():
+            message = tr(
+                "{cables} in tension only, and linear theory needs rods that bear compression as well. Find the equilibrium"
+                " instead; or make cables that stay taut ordinary rods, and delete those that go slack.",
+                cables=cables_named(model),
+            )
+            raise NoEquilibrium("limit reached", message)
+        right = structure.gather(load)
+        solution = self._refined(right)
+        if float(right @ solution) < SOFT * structure.effort(solution, structure.unmoved):
+            message = tr(
+                "Mechanism: the load moves {motion}, and the resistance is less than {share:g} of the stiffness of the rods"
+                " there. Add rods or supports there, or make the stiffnesses less unequal.",
+                motion=describe_motion(model, structure.spread(solution)[None]),
+                share=SOFT,
+            )
+            raise NoEquilibrium("mechanism", message)
+        modes = self.mechanisms
+        return structure.spread(solution - modes @ (modes.T @ (self._measure.weight * solution)))
+
+    def _refined(self, right: Array) -> Array:
+        """The solution of K u = f to its last digits."""
+        structure, solution = self.structure, self._factor.solve(right)
+        for _ in range(_REFINEMENTS if structure.bending is None else _REFINEMENTS_OF_BENDING):
+            if structure.bending is None:
+                held = self._matrix @ solution
+            else:  # relative motions of the ends lose fewer digits than the matrix
+                held = structure.gather(structure.resistance(structure.spread(solution)))
+            step = self._factor.solve(right - held)
+            solution = solution + step
+            if structure.bending is not None and largest(step) <= ROUND_OFF * largest(solution):
+                break
+        return solution
+
+
+def _elastic(structure: Structure, displacement: Array, plastic_strain: Array, share: float) -> Response:
+    """How rods respond of which none yields."""
+    found = structure.respond(displacement, plastic_strain, share)
+    return replace(found, axial_force=found.elastic_force, plastic_strain=plastic_strain)
+
+
 def linear(model: Model, start: Start | None = None, factor: float = 1.0) -> StaticState:
-    """The direct stiffness method: K u = f about the original positions, all rods elastic.
+    """The direct stiffness method: first-order theory of a model, all rods elastic.
 
     start: a state (None: the present one) of which plastic strain acts as initial forces, like lack of fit, and
     displacements of constrained directions as moved supports. factor: of forces and loads; all else acts in full.
@@ -48,9 +118,8 @@ def linear(model: Model, start: Start | None = None, factor: float = 1.0) -> Sta
         if body.pull:
             raise NoEquilibrium("mechanism", loose_event(model, body, factor).message)
     supports = np.where(structure.fixed, structure.field(start.displacement, start.rotation), 0.0)
-    initial = elastic_response(structure, supports, start.plastic_strain, factor)
-    moved = supports + _deflection(model, structure, load - structure.internal(initial))
-    elastic = elastic_response(structure, moved, start.plastic_strain, factor)
+    theory = FirstOrder(model, structure)
+    moved, elastic = theory.equilibrium(load, supports, start.plastic_strain, factor, structure)
     unbalanced = np.where(structure.fixed, 0.0, structure.internal(elastic) - load)
     forces = max(structure.largest(load), structure.largest_force(elastic))
     return state_of(
@@ -66,54 +135,6 @@ def linear(model: Model, start: Start | None = None, factor: float = 1.0) -> Sta
         message="",
         events=(),
     )
-
-
-def elastic_response(
-    structure: Structure, displacement: Array, plastic_strain: Array, share: float
-) -> Response:
-    """How rods respond of which none yields, as in linear theory."""
-    found = structure.respond(displacement, plastic_strain, share)
-    return replace(found, axial_force=found.elastic_force, plastic_strain=plastic_strain)
-
-
-def refined(structure: Structure, factor: Factor, right: Array) -> Array:
-    """The solution of K u = f about the original positions by a factor of K, to its last digits."""
-    solution = factor.solve(right)
-    for _ in range(_REFINEMENTS if structure.bending is None else _REFINEMENTS_OF_BENDING):
-        if structure.bending is None:
-            held = structure.initial_tangent @ solution
-        else:  # relative motions of the ends lose fewer digits than the matrix
-            held = structure.gather(structure.resistance(structure.spread(solution)))
-        step = factor.solve(right - held)
-        solution = solution + step
-        if structure.bending is not None and largest(step) <= ROUND_OFF * largest(solution):
-            break
-    return solution
-
-
-def _deflection(model: Model, structure: Structure, load: Array) -> Array:
-    """Displacements (n, 2) of the free directions under a load (n, 2). Raises NoEquilibrium."""
-    if structure.sense.any():
-        message = tr(
-            "{cables} in tension only, and linear theory needs rods that bear compression as well. Find the equilibrium"
-            " instead; or make cables that stay taut ordinary rods, and delete those that go slack.",
-            cables=cables_named(model),
-        )
-        raise NoEquilibrium("limit reached", message)
-    matrix, right = structure.initial_tangent, structure.gather(load)
-    factor = regular(matrix, structure.weight)
-    solution = refined(structure, factor, right)
-    if float(right @ solution) < SOFT * structure.effort(solution, structure.unmoved):
-        message = tr(
-            "Mechanism: the load moves {motion}, and the resistance is less than {share:g} of the stiffness of the rods"
-            " there. Add rods or supports there, or make the stiffnesses less unequal.",
-            motion=describe_motion(model, structure.spread(solution)[None]),
-            share=SOFT,
-        )
-        raise NoEquilibrium("mechanism", message)
-    modes = soft_modes(matrix, structure.weight, factor, most=soft_count(matrix, structure.weight))
-    modes = unresisted(structure, structure.unmoved, matrix, modes)
-    return structure.spread(solution - modes @ (modes.T @ (structure.weight * solution)))
 
 
 # --- indeterminacy -------------------------------------------------------------------------------------
@@ -248,53 +269,27 @@ def _localised(basis: Array) -> Array:
 # --- influence -------------------------------------------------------------------------------------------
 
 
-def influence_on_rod(model: Model, rod: int) -> Array:
-    """Axial force in a rod (row) per unit force on each particle along x and y, (n, 2); where members bend, per moment, too.
+def influence_line(model: Model, quantity: str, row: int, axis: int = 0) -> Array:
+    """What a unit force on each particle along x and y, where members bend and a moment, does to a quantity, (n, …).
 
-    Müller-Breslau: the deflection that a unit lack of fit of the rod causes. Raises NoEquilibrium.
+    quantity, row, axis: "axial_force" or "shear" of a rod, its "bending_moment" at an end (0: start, 1: end); of a direction
+    of a particle (2: turning) its "reaction" or "reaction_moment", its "displacement" or "rotation". Of a force, by
+    Müller-Breslau, it is the deflection that a unit displacement in its place causes; of a displacement, by Maxwell, that
+    under a unit load there. Raises NoEquilibrium.
     """
-    structure = Structure.of(model, "linear")
-    pull = np.zeros((len(structure.ends), 2))
-    pull[rod] = structure.stiffness[rod] / structure.rest_length[rod] * structure.unmoved.axis[rod]
-    return _deflection(model, structure, structure.scatter(pull))
-
-
-def influence_on_ends(model: Model, rod: int, slopes: tuple[float, float]) -> Array:
-    """The work of the moments on both ends of a rod on these slopes, per unit force on each particle, (n, 3).
-
-    Müller-Breslau: the deflection that such kinks cause. With (−1, 0) the bending moment at its start, with (0, 1) that at
-    its end, with (1, 1)/L its shear. Raises NoEquilibrium.
-    """
-    structure = Structure.of(model, "linear")
-    kinks = np.zeros((len(structure.ends), 2))
-    kinks[rod] = slopes
-    return _deflection(model, structure, structure.held_kinks(kinks))
-
-
-def influence_on_reaction(model: Model, particle: int, axis: int) -> Array:
-    """Reaction of a constrained direction (row, 0 or 1; of a clamp 2) per unit force on each particle, (n, …)."""
-    structure = Structure.of(model, "linear")
-    if not structure.fixed[particle, axis]:
-        raise WrongValue(
-            "No support holds {particle} along {axis}, so there is no reaction.",
-            particle=model.particles[particle].name,
-            axis=("x", "y", "rotation")[axis],
+    theory = FirstOrder(model, Structure.of(model, "linear"))
+    structure, unit = theory.structure, np.zeros(theory.structure.fixed.shape)
+    if quantity == "axial_force":
+        pull = np.zeros_like(structure.difference)
+        pull[row] = structure.stiffness[row] / structure.rest_length[row] * structure.unmoved.axis[row]
+        return theory.deflection(structure.scatter(pull))
+    if quantity in ("shear", "bending_moment"):
+        kinks = np.zeros(structure.ends.shape)
+        kinks[row] = (
+            1.0 / structure.original_length[row] if quantity == "shear" else np.eye(2)[axis] * [-1.0, 1.0]
         )
-    unit = _unit(structure, particle, axis)
-    return _deflection(model, structure, structure.resistance(unit)) - unit
-
-
-def influence_on_displacement(model: Model, particle: int, axis: int) -> Array:
-    """Displacement (m/kN) of a particle along an axis, or its rotation (2, rad/kN), per unit force on each particle, (n, …).
-
-    Maxwell: the deflection under a unit load there, the unit-load method's virtual state.
-    """
-    structure = Structure.of(model, "linear")
-    return _deflection(model, structure, _unit(structure, particle, axis))
-
-
-def _unit(structure: Structure, particle: int, axis: int) -> Array:
-    """A field (n, 2) of 1 for a particle along an axis, else 0."""
-    field = np.zeros(structure.fixed.shape)
-    field[particle, axis] = 1.0
-    return field
+        return theory.deflection(structure.held_kinks(kinks))
+    unit[row, axis] = 1.0
+    if quantity in ("displacement", "rotation"):
+        return theory.deflection(unit)
+    return theory.deflection(structure.resistance(unit)) - unit

@@ -16,9 +16,8 @@ from pinjoint.components.model import Model
 from pinjoint.components.particle import Particle
 from pinjoint.components.rod import Rod, bends
 from pinjoint.components.suggestions import missing
-from pinjoint.systems.statics.equations import Array, Structure
+from pinjoint.systems.statics.equations import AXES, Array, Structure
 
-AXES = ("x", "y", "rotation")
 _KEPT = 1e6  # weight of supports against rods when redundants are chosen: rods are released first
 _NEVER = 1e8  # of axial forces in rods that bend, which are not released
 _FIRST = 1e-3  # of bending moments, which are released before bars
@@ -50,6 +49,11 @@ class Unknown:
         if self.axis is None:
             return self.element.name
         return f"{self.element.name}.{(ENDS if isinstance(self.element, Rod) else AXES)[self.axis]}"
+
+    @property
+    def place(self) -> int | tuple[int, int]:
+        """Its row, and its axis if it has one: where it stands in a column."""
+        return self.element.row if self.axis is None else (self.element.row, self.axis)
 
     @property
     def of_bar(self) -> bool:

@@ -9,7 +9,6 @@ from functools import cached_property
 import numpy as np
 
 from pinjoint.components import written
-from pinjoint.components.derived import DIAGRAM_COLUMNS
 from pinjoint.components.field import ENDS
 from pinjoint.components.language import begun, joined, marked, tr
 from pinjoint.components.model import Model
@@ -43,19 +42,7 @@ LEAST = 1e-6  # of the strain at first yield: a smaller excess is rounding
 ROUNDING = 64.0 * ROUND_OFF  # of the largest value of the same unit, or of that at a strain of 1
 
 
-@dataclass(frozen=True)
-class Answer:
-    """displacement (n, 2) in m, axial_force (rods,) in kN and reaction (n, 2) in kN, 0 in free directions.
-
-    rotation (n,) in rad and reaction_moment (n,) in kN·m are 0 where nothing bends. diagrams: (rods, 2), by names.
-    """
-
-    displacement: Array
-    axial_force: Array
-    reaction: Array
-    rotation: Array
-    reaction_moment: Array
-    diagrams: Mapping[str, Array]
+Answer = Mapping[str, Array]  # a state, as columns by "table.field"
 
 
 @dataclass(frozen=True)
@@ -91,15 +78,9 @@ def theories(model: Model, start: Start | None = None) -> Theories:
 
 def observed(model: Model) -> Answer:
     """The present state of a model, as a simulation left it."""
-    particles, rods = model.particles, model.rods
-    return Answer(
-        displacement=particles.displacement.copy(),
-        axial_force=rods.axial_force.copy(),
-        reaction=particles.reaction.copy(),
-        rotation=particles.rotation.copy(),
-        reaction_moment=particles.reaction_moment.copy(),
-        diagrams={name: rods.column(name).copy() for name in DIAGRAM_COLUMNS},
-    )
+    return {
+        f"{table}.{name}": model.tables[table].column(name).copy() for name, (table, _) in QUANTITIES.items()
+    }
 
 
 @dataclass(frozen=True)
@@ -142,7 +123,7 @@ class Comparison:
     """The "simulation", "linear" and "exact" answers side by side, None where there is none."""
 
     model: Model
-    answers: Mapping[str, Answer | StaticState | None]
+    answers: Mapping[str, Answer | None]
 
     @property
     def rows(self) -> Iterator[Row]:
@@ -228,7 +209,10 @@ class Comparison:
     def _values(self) -> dict[str, dict[str, Array]]:
         """By quantity and way."""
         given = {way: answer for way, answer in self.answers.items() if answer is not None}
-        return {q: {way: _value(answer, q) for way, answer in given.items()} for q in QUANTITIES}
+        return {
+            name: {way: answer[f"{table}.{name}"] for way, answer in given.items()}
+            for name, (table, _) in QUANTITIES.items()
+        }
 
     @cached_property
     def _errors(self) -> dict[str, dict[str, Array]]:
@@ -243,11 +227,6 @@ class Comparison:
         }
 
 
-def _value(answer: Answer | StaticState, quantity: str) -> Array:
-    value: Array = answer.diagrams[quantity] if quantity in DIAGRAM_COLUMNS else getattr(answer, quantity)
-    return value
-
-
 def differs(comparison: Comparison) -> bool:
     """True if the simulation is farther from the exact equilibrium than errors of integration account for."""
     worst = comparison.worst("simulation")
@@ -256,7 +235,9 @@ def differs(comparison: Comparison) -> bool:
 
 def compare(model: Model, theory: Theories, simulated: Answer | None) -> Comparison:
     """The three answers side by side; simulated: None if there is no simulation at rest."""
-    return Comparison(model, {"simulation": simulated, "linear": theory.linear, "exact": theory.exact})
+    by_theory = {"linear": theory.linear, "exact": theory.exact}
+    found = {way: None if state is None else state.columns for way, state in by_theory.items()}
+    return Comparison(model, {"simulation": simulated, **found})
 
 
 # --- departures of a simulation from statics ------------------------------------------------------------------
@@ -273,20 +254,16 @@ def remarks(model: Model, theory: Theories) -> list[Event]:
     worst = compare(model, theory, observed(model)).worst("simulation", "displacement")
     alike = not overshot and (model.rods.plastic_strain == theory.exact.plastic_strain).all()
     if alike and worst is not None and (worst.simulation_error or 0.0) > ELSEWHERE:
-        kinds = {event.kind for event in theory.settlement.events}
-        return [] if kinds & {"bifurcation", "mechanism"} else [_elsewhere(worst)]  # either side was possible
+        if {event.kind for event in theory.settlement.events} & {"bifurcation", "mechanism"}:
+            return []  # either side was possible
+        message = tr(
+            "The model is at rest in another equilibrium than under a slowly growing load: the {quantity} differs by"
+            " {distance}. The sudden load carried the structure past an unstable position.",
+            quantity=worst.title,
+            distance=written.displacement(abs((worst.simulation or 0.0) - (worst.exact or 0.0))),
+        )
+        return [Event("other equilibrium", 1.0, message)]
     return [event for event in theory.settlement.events if event.kind in JUMPS] + overshot
-
-
-def _elsewhere(worst: Row) -> Event:
-    distance = abs((worst.simulation or 0.0) - (worst.exact or 0.0))
-    message = tr(
-        "The model is at rest in another equilibrium than under a slowly growing load: the {quantity} differs by {distance}."
-        " The sudden load carried the structure past an unstable position.",
-        quantity=worst.title,
-        distance=written.displacement(distance),
-    )
-    return Event("other equilibrium", 1.0, message)
 
 
 def overshoots(model: Model, theory: Theories) -> list[Event]:

@@ -14,7 +14,7 @@ from pinjoint.components.extensions import EXTENSIONS
 from pinjoint.components.model import Model
 from pinjoint.documents.document import document
 from pinjoint.mods import Mod
-from pinjoint.mods.guard import guarded_system
+from pinjoint.mods.guard import Guard
 from pinjoint.systems.base import StepSystem, System
 from pinjoint.systems.catalogue import step_systems
 from pinjoint.systems.physics.integrators import INTEGRATORS
@@ -57,7 +57,7 @@ def kernels(*, quick: bool) -> list[Row]:
     for size in (1_000,) if quick else (1_000, 100_000):
         ours, theirs = (lattice(size, damping=0.0) for _ in range(2))
         ours.environment.drag = theirs.environment.drag = 0.5
-        mod: StepSystem = guarded_system(Mod("bench", "bench"), DragOfMod())  # type: ignore[assignment]
+        mod: StepSystem = Guard(Mod("bench", "bench")).wrapped(DragOfMod())  # type: ignore[assignment]
         programs = [_program(ours, Drag()), _program(theirs, mod)]
         steps = max(4_000_000 // size, 4)
         seconds = [min(times) for times in zip(*(_in_turns(programs, steps) for _ in range(9)), strict=True)]

@@ -11,7 +11,7 @@ from pinjoint.documents.chronicle import TOLD
 from pinjoint.scripts.lines import perform
 from pinjoint.scripts.playing import Recorder
 from pinjoint.session import Session
-from pinjoint.systems.statics.stability import is_held
+from pinjoint.systems.statics.factor import is_held
 
 
 def watched(name: str, seconds: float, start: str = "space") -> Session:

@@ -25,7 +25,7 @@ OWN = {"panels": panels, "propped": propped, "two_span": two_span}
 def solved(name: str, *released: str) -> Tables:
     model = OWN[name]() if name in OWN else models.load(name)
     unknowns = [find_unknown(model, one) for one in released] or redundants(model)
-    return Tables.of(model, solve(model, unknowns))
+    return Tables(model, solve(model, unknowns))
 
 
 def written_in(parts: Sequence[Any]) -> Iterator[Any]:
@@ -126,7 +126,7 @@ def test_the_same_solution_gives_the_same_file() -> None:
 
 def test_large_structures_take_several_pages_and_say_what_is_left_out() -> None:
     model = lattice(300)
-    found = Tables.of(model, solve(model, redundants(model)[:1]))
+    found = Tables(model, solve(model, redundants(model)[:1]))
     said = [part for part in written_in(contents(found, TEXTBOOK)) if isinstance(part, str)]
     left_out = model.rods.count - 120
     assert f"{left_out} more rows are not printed; sums are of all." in said

@@ -8,7 +8,7 @@ from pinjoint import Session
 from pinjoint.documents.document import document
 from pinjoint.documents.format import ModelError
 from pinjoint.documents.models import load, save
-from pinjoint.editor.clipboard import as_text, part_in, paste, selected_rows
+from pinjoint.editor.clipboard import as_text, paste, selected_rows, source_in
 from tests.reference.models import model, particle, rod
 
 MEMBER = {
@@ -51,7 +51,7 @@ def test_copies_have_all_facts_of_bending() -> None:
     session.select(*session.particles, *session.rods)
     text = as_text(session.model, selected_rows(session.model))
     other = Session.open({"format": "pinjoint model", "version": 1})
-    paste(other.model, part_in(text), (0.0, 0.0))
+    paste(other.model, *source_in(text), (0.0, 0.0))
     assert other.rods[0].section == "IPE 200"
     assert other.rods[0].hinged == (False, True)
     assert other.particles[1].moment == 1.5

@@ -273,7 +273,7 @@ class Sail(Handle):
 
 def plugin(app):
     app.kind(Sail)
-    app.action("apple.set", key="ctrl+shift+j")(lambda session, pixel: setattr(session, "copied", Trap()))
+    app.action("apple.set", key="ctrl+shift+j")(lambda session, pixel: setattr(session, "trap", Trap()))
 
 class Trap:
     def __getattribute__(self, name):
@@ -289,7 +289,7 @@ def test_code_of_a_mod_that_no_guard_surrounds_is_named_all_the_same(write_mod: 
     session = Session.open(TRUSS, mods=[write_mod("apple", KIND)])
     session.press("ctrl+shift+j")
     frame = session.scenes.active.hint
-    trap: Any = session.copied
+    trap: Any = vars(session)["trap"]
     session.scenes.active.hint = lambda context: bool(trap)  # type: ignore[method-assign, assignment, return-value]
     session.frame(0.01)
     session.scenes.active.hint = frame  # type: ignore[method-assign]

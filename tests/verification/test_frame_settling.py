@@ -13,8 +13,8 @@ from scipy.optimize import brentq
 from pinjoint.components.model import Model
 from pinjoint.documents.models import parse
 from pinjoint.session import Session
+from pinjoint.systems.statics.factor import is_held
 from pinjoint.systems.statics.settle import settle
-from pinjoint.systems.statics.stability import is_held
 from pinjoint.systems.statics.state import StaticState, apply
 from pinjoint.systems.statics.theory import indeterminacy, linear
 from tests.reference import frames

@@ -210,7 +210,7 @@ def test_the_error_is_in_the_report(capsys: pytest.CaptureFixture[str]) -> None:
 
 def test_the_error_is_in_the_energy_panel_while_nothing_moves() -> None:
     session = _run(under_damped(), integrator="velocity_verlet", time_step=0.01)
-    session.view.energy = True
+    session.view.wanted = frozenset({"energy"})
     (readout,) = own_readouts(session)
     assert readout.rows[-3] == (
         "error of displacements",

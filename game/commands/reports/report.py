@@ -8,8 +8,6 @@ from collections.abc import Sequence
 from dataclasses import asdict, dataclass
 from typing import TYPE_CHECKING, Any
 
-import numpy as np
-
 from pinjoint.commands.output import ResultError
 from pinjoint.commands.reports.results import Run, State, state
 from pinjoint.components.language import joined, marked, tr
@@ -18,8 +16,7 @@ from pinjoint.components.model import Model
 from pinjoint.components.rod import bends
 from pinjoint.components.settings import AUTOMATIC
 from pinjoint.documents.open_documents import without_mods
-from pinjoint.mods.heeding import check_mods, heeding_mods
-from pinjoint.mods.mod import ModError
+from pinjoint.mods.mod import ModError, check_mods, heeding_mods
 from pinjoint.paths import ENERGIES
 from pinjoint.session import DEFAULT_LIMIT, Session
 from pinjoint.systems.base import StopReason
@@ -177,18 +174,7 @@ def static_state(model: Model, found: StaticState) -> State:
         "dissipated_plastic": found.dissipated_plastic,
         "work": found.elastic_energy + found.dissipated_plastic,
     }
-    of_rods = ("axial_force", "length", "strain", "plastic_strain", "yielding")
-    columns = {
-        "particles.displacement": found.displacement,
-        "particles.velocity": np.zeros_like(found.displacement),
-        "particles.reaction": found.reaction,
-        "particles.rotation": found.rotation,
-        "particles.angular_velocity": np.zeros_like(found.rotation),
-        "particles.reaction_moment": found.reaction_moment,
-        **{f"rods.{name}": getattr(found, name) for name in of_rods},
-        **{f"rods.{name}": values for name, values in found.diagrams.items()},
-    }
-    return state(model, energy, found.load_factor, found.residual, columns)
+    return state(model, energy, found.load_factor, found.residual, found.columns)
 
 
 def _state(simulation: Simulation) -> State:

@@ -14,21 +14,12 @@ from pinjoint.commands.reports.report import static_state
 from pinjoint.components.field import ENDS
 from pinjoint.components.language import decimals, joined, marked, plural, tr
 from pinjoint.components.model import Model
-from pinjoint.components.rod import Rod
 from pinjoint.session import DEFAULT_LIMIT, Session
 from pinjoint.systems.statics.counting import Count, counted
-from pinjoint.systems.statics.equations import Array
+from pinjoint.systems.statics.equations import AXES
 from pinjoint.systems.statics.events import NoEquilibrium, event_record
 from pinjoint.systems.statics.explain import describe_motion
-from pinjoint.systems.statics.theory import (
-    indeterminacy,
-    influence_on_displacement,
-    influence_on_ends,
-    influence_on_reaction,
-    influence_on_rod,
-    mechanisms,
-    self_stress,
-)
+from pinjoint.systems.statics.theory import indeterminacy, influence_line, mechanisms, self_stress
 from pinjoint.systems.statics.unknowns import ForceMethodError, find_unknown
 from pinjoint.systems.statics.verify import (
     DEPARTURES,
@@ -68,7 +59,6 @@ _TITLES = {
     "linear_error": marked("error of linear theory"),
 }
 
-_AXES = ("x", "y", "rotation")
 _VALUES = ("simulation", "linear", "exact", "simulation_error", "linear_error")
 
 Found = dict[str, Any]
@@ -256,46 +246,41 @@ def influence(model: Model, names: Sequence[str]) -> Found:
 
 
 def _influence(model: Model, name: str) -> Found:
+    quantity, row, axis = _influenced(model, name)
+    field = influence_line(model, quantity, row, axis)[:, :2]
+    cleared = np.where(np.abs(field) > NOTHING * np.abs(field).max(), field, 0.0)
+    of = dict(zip(model.particles.names, cleared.tolist(), strict=True))
+    return {"quantity": quantity, "unit": f"{QUANTITIES[quantity][1]}/kN", "of": of}
+
+
+def _influenced(model: Model, name: str) -> tuple[str, int, int]:
+    """The quantity, row and axis (or end of a rod) that a name means. Raises ForceMethodError."""
     place, _, what = name.rpartition(".")
-    if name not in model.rods and place in model.rods and what in (*ENDS, "shear"):
-        return _influence_on_end(model, model.rods[place], what)
-    if name not in model.rods and place in model.particles and what in _AXES:
-        row, axis = model.particles[place].row, _AXES.index(what)
-        turns = axis == 2
-        if turns and model.particles.inertia[row] == 0.0:
+    if name in model.rods:
+        return "axial_force", model.rods[name].row, 0
+    if place in model.rods and what in (*ENDS, "shear"):
+        row = model.rods[place].row
+        rigid = (model.rods.turning_shares[row] > 0.0).tolist()
+        if not any(rigid):
+            raise ForceMethodError(
+                "{rod} does not bend, so it has no bending moments and no shear force.", rod=place
+            )
+        if what == "shear":
+            return "shear", row, 0
+        if not rigid[ENDS.index(what)]:
+            raise ForceMethodError("{end} is hinged, so there is no bending moment.", end=name)
+        return "bending_moment", row, ENDS.index(what)
+    if place in model.particles and what in AXES:
+        row, axis = model.particles[place].row, AXES.index(what)
+        if axis == 2 and model.particles.inertia[row] == 0.0:
             raise ForceMethodError(
                 "{particle} has no rotation, because no rod that bends is rigidly joined to it; choose another one.",
                 particle=place,
             )
-        if not (model.particles.fixed_rotation[row] if turns else model.particles.fixed[row, axis]):
-            line, unit = influence_on_displacement(model, row, axis), "rad/kN" if turns else "m/kN"
-            return {"quantity": "rotation" if turns else "displacement", "unit": unit, "of": _line(model, line)}
-        line, unit = influence_on_reaction(model, row, axis), "kN·m/kN" if turns else "kN/kN"
-        return {"quantity": "reaction_moment" if turns else "reaction", "unit": unit, "of": _line(model, line)}
-    line = influence_on_rod(model, find_unknown(model, name).element.row)
-    return {"quantity": "axial_force", "unit": "kN/kN", "of": _line(model, line)}
-
-
-def _influence_on_end(model: Model, rod: Rod, what: str) -> Found:
-    """The influence line of the bending moment at an end of a rod, or of its shear."""
-    rigid = (model.rods.turning_shares[rod.row] > 0.0).tolist()
-    if not any(rigid):
-        raise ForceMethodError(
-            "{rod} does not bend, so it has no bending moments and no shear force.", rod=rod.name
-        )
-    if what in ENDS and not rigid[ENDS.index(what)]:
-        raise ForceMethodError("{end} is hinged, so there is no bending moment.", end=f"{rod.name}.{what}")
-    if what == "shear":
-        line = influence_on_ends(model, rod.row, (1.0 / rod.original_length,) * 2)
-        return {"quantity": "shear", "unit": "kN/kN", "of": _line(model, line)}
-    line = influence_on_ends(model, rod.row, (-1.0, 0.0) if what == ENDS[0] else (0.0, 1.0))
-    return {"quantity": "bending_moment", "unit": "kN·m/kN", "of": _line(model, line)}
-
-
-def _line(model: Model, field: Array) -> dict[str, list[float]]:
-    field = field[:, :2]
-    cleared = np.where(np.abs(field) > NOTHING * np.abs(field).max(), field, 0.0)
-    return dict(zip(model.particles.names, cleared.tolist(), strict=True))
+        fixed = (*model.particles.fixed[row], model.particles.fixed_rotation[row])
+        kinds = ("reaction", "reaction_moment") if fixed[axis] else ("displacement", "rotation")
+        return kinds[axis == 2], row, axis
+    return "axial_force", find_unknown(model, name).element.row, 0
 
 
 # --- as text -------------------------------------------------------------------------------------------

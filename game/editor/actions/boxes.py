@@ -13,7 +13,7 @@ from pinjoint.editor.scenes.form import FormScene
 from pinjoint.editor.sliders import add_slider_for
 from pinjoint.systems.edit import Refusal
 from pinjoint.systems.forms import typing
-from pinjoint.systems.input.actions import FORMS, LOAD, PROPERTIES, SAVE, Perform, actions_of
+from pinjoint.systems.input.actions import ACTIONS, FORMS, LOAD, PROPERTIES, SAVE, Perform, actions_of
 
 action = actions_of("Boxes", FORMS)
 FILES = (SAVE, LOAD)
@@ -45,25 +45,21 @@ action("next box", "tab", "go to the next box", repeats=True)(
 action("previous box", "shift+tab", "go to the previous box", repeats=True)(
     _on_form(lambda s, context: s.next_box(context, -1))
 )
+action("click form", "click", "select a box, or accept its value", (PROPERTIES,))(
+    lambda context, pixel: _form_scene(context).click(context, pixel)
+)
+action("click form", "click", "choose", FILES)(ACTIONS["click form"].perform)
 
 
-@action("click form", "click", "choose", FILES)
-@action("click form", "click", "select a box, or accept its value", (PROPERTIES,))
-def _click_form(context: Context, pixel: Vector) -> None:
-    _form_scene(context).click(context, pixel)
-
-
-def _goes(way: str, title: str) -> None:
-    """The action of an arrow key."""
-    act = _on_form(lambda s, context: s.move(context, way))
-    action(f"go {way}", way, title, (PROPERTIES,), repeats=True)(act)
-    action(f"go {way}", way, "choose a picture", FILES)(act)
-
-
-_goes("up", marked("go up, or to the previous choice"))
-_goes("down", marked("go down, or to the next choice"))
-_goes("left", marked("move the cursor left"))
-_goes("right", marked("move the cursor right"))
+for _way, _title in (
+    ("up", marked("go up, or to the previous choice")),
+    ("down", marked("go down, or to the next choice")),
+    ("left", marked("move the cursor left")),
+    ("right", marked("move the cursor right")),
+):
+    _act = _on_form(lambda s, context, way=_way: s.move(context, way))  # type: ignore[misc]
+    action(f"go {_way}", _way, _title, (PROPERTIES,), repeats=True)(_act)
+    action(f"go {_way}", _way, "choose a picture", FILES)(_act)
 action("to the beginning", "home")(_on_form(lambda s, context: typing.place_caret(s.form, 0)))
 action("to the end", "end")(_on_form(lambda s, context: typing.place_caret(s.form, typing.MOST_CHARACTERS)))
 action("erase", "backspace", "erase", repeats=True)(_on_form(lambda s, context: s.erase(context)))

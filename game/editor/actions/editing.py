@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from functools import partial
 from operator import attrgetter
 
 import numpy as np
@@ -11,12 +12,12 @@ from pinjoint.components import written
 from pinjoint.components.field import Vector
 from pinjoint.components.handle import Handle
 from pinjoint.components.language import begun, listed, marked, plural, tr
-from pinjoint.editor.clipboard import Part, as_text, part_in, part_of, paste, selected_rows
+from pinjoint.editor.clipboard import as_text, paste, places, selected_rows, source_in
 from pinjoint.editor.context import Context
 from pinjoint.editor.gestures.drawing import Drawing, DrawSupport, tool_in_hand
 from pinjoint.editor.gestures.moving import BoxSelect, Move, MovePoint, PullParticle
-from pinjoint.editor.menu import menu_at
 from pinjoint.editor.scenes.properties import Properties
+from pinjoint.editor.toolbar import menu_at
 from pinjoint.systems.edit import Refusal
 from pinjoint.systems.edit.moving import Movable, nudged
 from pinjoint.systems.edit.picking import everything, pick, pick_grid, pick_line, pick_particle, pick_point
@@ -30,7 +31,6 @@ from pinjoint.systems.input.actions import (
     LIVE,
     PAUSE,
     SIMULATION,
-    Perform,
     actions_of,
 )
 from pinjoint.systems.render.symbol_at import symbol_at
@@ -120,15 +120,12 @@ def _drag(context: Context, pixel: Vector) -> None:
         context.gesture = BoxSelect(context, pixel, adding=False)
 
 
-@action("drag to add", "ctrl+drag", "add all in a box to the selection")
-def _drag_to_add(context: Context, pixel: Vector) -> None:
-    context.gesture = BoxSelect(context, pixel, adding=True)
-
-
-@action("drag to", "drag to", where=IN_LESSONS, while_drawing=True)
-def _drag_to(context: Context, pixel: Vector) -> None:
-    if context.gesture is not None:
-        context.gesture.move(context, pixel)
+action("drag to add", "ctrl+drag", "add all in a box to the selection")(
+    lambda context, pixel: setattr(context, "gesture", BoxSelect(context, pixel, adding=True))
+)
+action("drag to", "drag to", where=IN_LESSONS, while_drawing=True)(
+    lambda context, pixel: context.gesture and context.gesture.move(context, pixel)
+)
 
 
 @action("drop", "drop", where=IN_LESSONS, while_drawing=True)
@@ -227,33 +224,29 @@ def nudge(context: Context, direction: Vector, *, far: bool) -> bool:
     return True
 
 
-def _move(way: str, *, far: bool, always: bool) -> Perform:
-    """The action of an arrow key: move what is selected; once a run has begun only if `always`, as with Ctrl."""
-    direction = {"left": (-1.0, 0.0), "right": (1.0, 0.0), "up": (0.0, 1.0), "down": (0.0, -1.0)}[way]
-
-    def act(context: Context, pixel: Vector) -> None:
-        if (always or context.document.at_beginning) and nudge(context, direction, far=far):
-            return
-        if always:
-            raise Refusal("Nothing that can be moved is selected; click a particle or a rod first.")
-        if context.has_selected:
-            raise Refusal(
-                "Once a run has begun, arrow keys step through time. Ctrl with an arrow moves the selection; R goes back"
-                " to the beginning."
-            )
-
-    return act
+def _move(direction: Vector, far: bool, always: bool, context: Context, pixel: Vector) -> None:
+    """An arrow key: move what is selected; once a run has begun only if `always`, as with Ctrl."""
+    if (always or context.document.at_beginning) and nudge(context, direction, far=far):
+        return
+    if always:
+        raise Refusal("Nothing that can be moved is selected; click a particle or a rod first.")
+    if context.has_selected:
+        raise Refusal(
+            "Once a run has begun, arrow keys step through time. Ctrl with an arrow moves the selection; R goes back"
+            " to the beginning."
+        )
 
 
-for _held, _name, _ways, _title in (  # without Ctrl, left and right go through time
-    ("", "arrow", ("up", "down"), marked("move the selection (before a run)")),
-    ("shift+", "far arrow", ("up", "down"), marked("move it by the grid (before a run)")),
-    ("ctrl+", "move", ("left", "right", "up", "down"), marked("move the selection")),
-    ("ctrl+shift+", "move far", ("left", "right", "up", "down"), marked("move it by the grid")),
+for _held, _name, _title in (
+    ("", "arrow", marked("move the selection (before a run)")),
+    ("shift+", "far arrow", marked("move it by the grid (before a run)")),
+    ("ctrl+", "move", marked("move the selection")),
+    ("ctrl+shift+", "move far", marked("move it by the grid")),
 ):
-    for _way in _ways:
-        _act = _move(_way, far="far" in _name, always="move" in _name)
-        action(f"{_name} {_way}", _held + _way, _title, (PAUSE,), repeats=True)(_act)
+    for _way, _direction in {"left": (-1, 0), "right": (1, 0), "up": (0, 1), "down": (0, -1)}.items():
+        if "move" in _name or _direction[1]:  # without Ctrl, left and right go through time
+            _act = partial(_move, _direction, "far" in _name, "move" in _name)
+            action(f"{_name} {_way}", _held + _way, _title, (PAUSE,), repeats=True)(_act)
 
 
 @action("undo", "ctrl+z", "undo", repeats=True, enabled=attrgetter("can_undo"))
@@ -277,13 +270,13 @@ def _select_all(context: Context, pixel: Vector) -> None:
 
 @action("copy", "ctrl+c", "copy the selection", enabled=attrgetter("has_selected"))
 def _copy(context: Context, pixel: Vector) -> None:
-    _put_on_clipboard(context)
+    context.clipboard = as_text(context.model, selected_rows(context.model))
     context.notice = tr("Copied. Ctrl+V pastes it at the pointer.")
 
 
 @action("cut", "ctrl+x", "cut the selection")
 def _cut(context: Context, pixel: Vector) -> None:
-    _put_on_clipboard(context)
+    _copy(context, pixel)
     delete(context.model, context.selected)
     context.notice = tr("Cut. Ctrl+V pastes it at the pointer.")
 
@@ -293,12 +286,12 @@ def _paste(context: Context, pixel: Vector) -> None:
     """Paste around the pointer, from the toolbar around the middle of the view; the first place snaps to the grid."""
     if context.view.strip.contains(pixel):
         pixel = context.view.canvas.middle
-    source = _clipboard(context)
-    position = source.position
+    source, rows = source_in(context.clipboard)
+    position = places(source, rows)
     middle = 0.5 * (position.min(axis=0) + position.max(axis=0))
     x, y = (position[0] + context.view.camera.to_model(pixel) - middle).tolist()
     offset = np.subtract(snapped(context.model, context.view, (x, y)), position[0]).tolist()
-    made = paste(context.model, source, (offset[0], offset[1]))
+    made = paste(context.model, source, rows, (offset[0], offset[1]))
     context.select(*made)
     context.notice = plural(
         "Pasted {count} element; drag it where it belongs.",
@@ -311,23 +304,11 @@ def _paste(context: Context, pixel: Vector) -> None:
 def _duplicate(context: Context, pixel: Vector) -> None:
     view = context.view
     beside = BESIDE * view.pixel_ratio / view.camera.scale
-    source = part_of(context.model, selected_rows(context.model))
-    made = paste(context.model, source, snapped(context.model, view, (beside, -beside)), marked("duplicate"))
+    model, rows = context.model, selected_rows(context.model)
+    made = paste(model, model, rows, snapped(model, view, (beside, -beside)), marked("duplicate"))
     context.select(*made)
     context.notice = plural(
         "Duplicated {count} element; drag the copy where it belongs.",
         "Duplicated {count} elements; drag the copies where they belong.",
         len(made),
     )
-
-
-def _put_on_clipboard(context: Context) -> None:
-    rows = selected_rows(context.model)
-    context.clipboard = text = as_text(context.model, rows)
-    context.copied = text, part_of(context.model, rows)
-
-
-def _clipboard(context: Context) -> Part:
-    """The part on the clipboard; its text is parsed only if it was not copied here."""
-    text, copied = context.clipboard, context.copied
-    return copied[1] if copied is not None and copied[0] == text else part_in(text)

@@ -9,15 +9,13 @@ from pinjoint.documents.models import ModelError
 from pinjoint.documents.open_documents import stamp_of
 from pinjoint.editor.context import Context
 from pinjoint.systems.edit import Refusal
-from pinjoint.systems.input.actions import PAUSE, actions_of
+from pinjoint.systems.input.actions import ACTIONS, PAUSE, actions_of
 
 action = actions_of("Files")
 
 
-@action("save", "ctrl+shift+s", "save as")
-@action("save", "s", "save as", (PAUSE,))
-def _save(context: Context, pixel: Vector) -> None:
-    context.scenes.request_from_pause("save")
+action("save", "s", "save as", (PAUSE,))(lambda context, pixel: context.scenes.request_from_pause("save"))
+action("save", "ctrl+shift+s", "save as")(ACTIONS["save"].perform)
 
 
 @action("save again", "ctrl+s", "save")
@@ -41,10 +39,6 @@ def _save_again(context: Context, pixel: Vector) -> None:
         context.notice = str(error)
 
 
-@action("load", "ctrl+o", "open a model")
-@action("load", "d", "open a model", (PAUSE,))
-def _load(context: Context, pixel: Vector) -> None:
-    context.scenes.request_from_pause("load")
-
-
+action("load", "d", "open a model", (PAUSE,))(lambda context, pixel: context.scenes.request_from_pause("load"))
+action("load", "ctrl+o", "open a model")(ACTIONS["load"].perform)
 action("new", "ctrl+n", "start a new model")(lambda context, pixel: context.open_here(None))

@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from typing import TYPE_CHECKING, Any
+from functools import partial
+from typing import TYPE_CHECKING
 
 from pinjoint.components.field import Vector
 from pinjoint.components.language import tr
@@ -22,19 +23,20 @@ if TYPE_CHECKING:  # it imports scipy
 action = actions_of("Force method", (FORCE_METHOD,))
 
 
-def _guide(context: Context) -> Guide | None:
-    scene = context.scenes.active
-    return scene.guide if isinstance(scene, ForceMethod) else None
+def _guided(act: Callable[[Context, Guide, Vector], object]) -> Perform:
+    """An action with the guide, its announced work done; without one, as of a mechanism, it does nothing."""
+
+    def perform(context: Context, pixel: Vector) -> None:
+        scene = context.scenes.active
+        if isinstance(scene, ForceMethod) and (guide := scene.guide) is not None:
+            act(context, guide, pixel)
+
+    return perform
 
 
-def _guided(condition: Callable[[Any], bool]) -> Condition:
+def _where(condition: Callable[[Guide], bool]) -> Condition:
     """Whether there is a guide of which a condition is true."""
-
-    def holds(context: Context) -> bool:
-        guide = getattr(context.scenes.active, "shown_guide", None)
-        return guide is not None and condition(guide)
-
-    return holds
+    return lambda context: (guide := getattr(context.scenes.active, "shown_guide", None)) and condition(guide)
 
 
 def _work(context: Context, text: str, do: Callable[[], object]) -> None:
@@ -44,10 +46,8 @@ def _work(context: Context, text: str, do: Callable[[], object]) -> None:
 
 
 @action("next part", "k", "go to the next part")
-def _next_part(context: Context, pixel: Vector) -> None:
-    guide = _guide(context)
-    if guide is None:
-        return
+@_guided
+def _next_part(context: Context, guide: Guide, pixel: Vector) -> None:
     if guide.part == PARTS:
         context.scenes.request("pause")
     elif guide.part == 2:
@@ -56,14 +56,12 @@ def _next_part(context: Context, pixel: Vector) -> None:
         _work(context, tr("Computing part {part}", part=guide.part + 1), guide.next)
 
 
-@action(
-    "pick unknown", "click", "choose the redundant in set 1", enabled=_guided(lambda guide: guide.part == 2)
-)
-def _pick_unknown(context: Context, pixel: Vector) -> None:
-    guide = _guide(context)
-    if guide is not None and guide.part == 1:
+@action("pick unknown", "click", "choose the redundant in set 1", enabled=_where(lambda guide: guide.part == 2))
+@_guided
+def _pick_unknown(context: Context, guide: Guide, pixel: Vector) -> None:
+    if guide.part == 1:
         raise Refusal("Press K first: part 2 asks which rod or support to release.")
-    if guide is not None and guide.part == 2:
+    if guide.part == 2:
         model, view = context.focus
         hit = pick(model, view, pixel) if view.camera.viewport.contains(pixel) else None
         near = view.camera.to_model(pixel)
@@ -74,36 +72,32 @@ def _pick_unknown(context: Context, pixel: Vector) -> None:
     "release another",
     "n",
     "release one more redundant",
-    enabled=_guided(lambda guide: guide.can_release_another),
+    enabled=_where(lambda guide: guide.can_release_another),
 )
-def _release_another(context: Context, pixel: Vector) -> None:
-    guide = _guide(context)
-    if guide is not None and not guide.can_release_another:
+@_guided
+def _release_another(context: Context, guide: Guide, pixel: Vector) -> None:
+    if not guide.can_release_another:
         raise Refusal(
             tr("Every unknown is released.")
             if guide.part == PARTS
             else tr("Go through all parts first, with K.")
         )
-    if guide is not None:
-        guide.release_another()
+    guide.release_another()
 
 
-def _pick_axis(axis: int) -> Perform:
-    def act(context: Context, pixel: Vector) -> None:
-        guide = _guide(context)
-        if guide is not None and axis == 2 and not guide.clamp_wanted:
-            raise Refusal("Click a clamped support first; then M releases its moment.")
-        if guide is not None:
-            _work(context, tr("Releasing it and solving anew"), lambda: guide.pick_axis(axis))
-
-    return act
+def _pick_axis(axis: int, context: Context, guide: Guide, pixel: Vector) -> None:
+    if axis == 2 and not guide.clamp_wanted:
+        raise Refusal("Click a clamped support first; then M releases its moment.")
+    _work(context, tr("Releasing it and solving anew"), lambda: guide.pick_axis(axis))
 
 
-_AXIS = _guided(lambda guide: guide.axis_wanted is not None)
-_CLAMP = _guided(lambda guide: guide.clamp_wanted)
-action("release x", "x", "release the support along x", enabled=_AXIS)(_pick_axis(0))
-action("release y", "y", "release the support along y", enabled=_AXIS)(_pick_axis(1))
-action("release moment", "m", "release the moment of the clamp", enabled=_CLAMP)(_pick_axis(2))
+_AXIS = _where(lambda guide: guide.axis_wanted is not None)
+_CLAMP = _where(lambda guide: guide.clamp_wanted)
+action("release x", "x", "release the support along x", enabled=_AXIS)(_guided(partial(_pick_axis, 0)))
+action("release y", "y", "release the support along y", enabled=_AXIS)(_guided(partial(_pick_axis, 1)))
+action("release moment", "m", "release the moment of the clamp", enabled=_CLAMP)(
+    _guided(partial(_pick_axis, 2))
+)
 
 
 @action("next convention", "c", "change the convention: textbook or thesis")
@@ -118,11 +112,11 @@ def _next_convention(context: Context, pixel: Vector) -> None:
 
 
 @action(
-    "report", "p", "save a report of the solution as a PDF", enabled=_guided(lambda guide: guide.part == PARTS)
+    "report", "p", "save a report of the solution as a PDF", enabled=_where(lambda guide: guide.part == PARTS)
 )
 def _report(context: Context, pixel: Vector) -> None:
     """Write the whole solution to a PDF beside the model (part 7)."""
-    guide = _guide(context)
+    guide = getattr(context.scenes.active, "guide", None)
     if guide is None or guide.part < PARTS or guide.solution is None:
         raise Refusal("Go through all parts first, with K; then P writes the report.")
     if context.window is None:
@@ -140,11 +134,11 @@ def _report(context: Context, pixel: Vector) -> None:
 
 
 @action("toggle diagrams of sets", "i", "show or hide force diagrams", pressed=shows_diagrams)
-def _toggle_diagrams(context: Context, pixel: Vector) -> None:
-    guide = _guide(context)
-    if guide is not None and guide.is_frame:
+@_guided
+def _toggle_diagrams(context: Context, guide: Guide, pixel: Vector) -> None:
+    if guide.is_frame:
         guide.next_quantity()
-    elif guide is not None:
+    else:
         context.view.all_diagrams = not context.view.all_diagrams
         for one in guide.shown:
             one.view.all_diagrams = context.view.all_diagrams

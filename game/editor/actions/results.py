@@ -6,7 +6,7 @@ from operator import attrgetter
 
 from pinjoint.components.bent import AXIAL, QUANTITIES, is_frame
 from pinjoint.components.field import Vector
-from pinjoint.components.language import begun, tr
+from pinjoint.components.language import begun, marked, tr
 from pinjoint.components.particle import Particle
 from pinjoint.components.rod import Rod, has_strength
 from pinjoint.components.tags import DiagramShown
@@ -98,13 +98,14 @@ def _toggle_utilisation(context: Context, pixel: Vector) -> None:
     view.utilisation = view.put_together() or not view.utilisation
 
 
-action("toggle theory", "m", "show or hide comparison with theory", pressed=attrgetter("view.theory"))(
-    toggle("theory")
-)
-action("toggle energy", "j", "show or hide energies", pressed=attrgetter("view.energy"))(toggle("energy"))
-action("toggle events", "ctrl+h", "show or hide the list of events", pressed=attrgetter("view.events"))(
-    toggle("events")
-)
+for _panel, _key, _title in (
+    ("theory", "m", marked("show or hide comparison with theory")),
+    ("energy", "j", marked("show or hide energies")),
+    ("events", "ctrl+h", marked("show or hide the list of events")),
+):
+    action(
+        f"toggle {_panel}", _key, _title, pressed=lambda context, panel=_panel: panel in context.view.wanted
+    )(lambda context, pixel, panel=_panel: setattr(context.view, "wanted", context.view.wanted ^ {panel}))
 
 
 @action(
@@ -126,9 +127,9 @@ def _next_shape(context: Context, pixel: Vector) -> None:
     context.view.shape = context.document.shapes.shown
 
 
-@action("new slider", "ctrl+l", "add a slider for selected load or stiffness", while_drawing=False)
-def _new_slider(context: Context, pixel: Vector) -> None:
-    add_usual_slider(context)
+action("new slider", "ctrl+l", "add a slider for selected load or stiffness", while_drawing=False)(
+    lambda context, pixel: add_usual_slider(context)
+)
 
 
 @action(

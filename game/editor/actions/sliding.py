@@ -2,21 +2,40 @@
 
 from __future__ import annotations
 
+from functools import partial
+
 from pinjoint.components.field import Vector
-from pinjoint.components.language import tr
+from pinjoint.components.language import marked, tr
+from pinjoint.components.slider import Place
 from pinjoint.editor.context import Context
-from pinjoint.editor.gestures.sliding import Slide
-from pinjoint.editor.sliders import (
-    SCALE,
-    move_to,
-    remove_slider,
-    scale_to,
-    slider_of,
-)
-from pinjoint.systems.input.actions import Perform, actions_of
+from pinjoint.editor.gestures.moving import Placing
+from pinjoint.editor.sliders import SCALE, move_to, remove_slider, scale_to, slider_of
+from pinjoint.systems.input.actions import actions_of
 
 action = actions_of("More")
 WHEEL = 0.02  # of its length, by which the wheel moves a slider
+KNOB_REACH = 9.0  # points from the knob's middle within which a drag holds it where it was gripped
+
+
+class Slide(Placing):
+    """Drags a knob; a grip beside it takes it there first."""
+
+    hint = marked("drag along the line     let go to finish     Esc put it back")
+
+    def __init__(self, context: Context, place: Place, pixel: Vector) -> None:
+        self._place, self._key = place, place.control.key
+        left, right, _ = place.track
+        share = place.control.share
+        knob = pixel[0] if share is None else left + share * (right - left)
+        held = share is not None and abs(knob - pixel[0]) <= KNOB_REACH * place.unit
+        self._grip = knob - pixel[0] if held else 0.0
+        if not held:
+            self.move(context, pixel)
+
+    def place(self, context: Context, pixel: Vector) -> str:
+        share = self._place.share_at(pixel[0] + self._grip)
+        move_to(context, self._key, slider_of(context, self._key).value_at(share))
+        return ""
 
 
 @action("drag slider")
@@ -58,18 +77,14 @@ def automatic(context: Context) -> None:
     scale_to(context, settings.displacement_scale if is_automatic else None)
 
 
-def _step(by: float) -> Perform:
-    def act(context: Context, pixel: Vector) -> None:
-        place = context.slider_at(pixel)
-        if place is None or place.control.share is None:
-            return
+def _step(by: float, context: Context, pixel: Vector) -> None:
+    place = context.slider_at(pixel)
+    if place is not None and place.control.share is not None:
         value = slider_of(context, place.control.key).value_at(place.control.share + by)
         with context.document.history.as_one(("slider", place.control.key)):
             move_to(context, place.control.key, value)
 
-    return act
 
-
-action("slider up")(_step(WHEEL))
-action("slider down")(_step(-WHEEL))
+action("slider up")(partial(_step, WHEEL))
+action("slider down")(partial(_step, -WHEEL))
 action("automatic displacement scale")(lambda context, pixel: automatic(context))

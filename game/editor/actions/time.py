@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from functools import partial
 from operator import attrgetter
 
 from pinjoint.components import written
@@ -12,7 +13,7 @@ from pinjoint.editor.actions.editing import nudge
 from pinjoint.editor.context import Context
 from pinjoint.systems.collision.impacts import TooManyImpacts
 from pinjoint.systems.edit import Refusal
-from pinjoint.systems.input.actions import PAUSE, Perform, actions_of
+from pinjoint.systems.input.actions import PAUSE, actions_of
 
 action = actions_of("Time")
 
@@ -23,61 +24,47 @@ MOST_IMPACTS = 1_000_000  # of free discs that the steps of one press may hold, 
 MANY = 2000  # elements; the pace that suits larger models takes too long to find
 
 
-@action(
+action(
     "toggle run",
     "space",
     "run or pause",
     pressed=lambda context: context.scenes.active.tools == "simulation",
     pressed_as=lambda context: ("pause", ""),
-)
-def _toggle_run(context: Context, pixel: Vector) -> None:
-    context.scenes.request("pause" if context.scene == "simulation" else "simulation")
-
-
+)(lambda context, pixel: context.scenes.request("pause" if context.scene == "simulation" else "simulation"))
 action("pause")(lambda context, pixel: context.scenes.request("pause"))
 
 
-def _arrow(way: float, *, far: bool) -> Perform:
-    """The action of an arrow key: once there is a run, right is forward in time; before, it moves what is selected."""
+def _arrow(way: float, far: bool, context: Context, pixel: Vector) -> None:
+    """An arrow key: once there is a run, right is forward in time; before, it moves what is selected."""
+    if context.document.at_beginning and nudge(context, (way, 0.0), far=far):
+        return
+    model, steps = context.model, 1
+    size = model.clock.step_size
+    if far and size > 0.0:  # fewer in large models, to keep the wait short
+        elements = model.particles.count + model.rods.count + 1
+        steps = max(MOST_WORK // elements, 1)
+        if elements <= MANY:
+            steps = min(max(round(FAR * context.pace / size), 1), steps)
+    _step(context, round(way) * steps)
 
-    def act(context: Context, pixel: Vector) -> None:
-        if not (context.document.at_beginning and nudge(context, (way, 0.0), far=far)):
-            _step(context, round(way) * (_far(context) if far else 1))
 
-    return act
-
-
-action("arrow right", "right", "step forward", (PAUSE,), repeats=True)(_arrow(1.0, far=False))
-action("arrow left", "left", "step back", (PAUSE,), repeats=True)(_arrow(-1.0, far=False))
-action("far arrow right", "shift+right", "skip ahead", (PAUSE,), repeats=True)(_arrow(1.0, far=True))
-action("far arrow left", "shift+left", "skip back", (PAUSE,), repeats=True)(_arrow(-1.0, far=True))
+action("arrow right", "right", "step forward", (PAUSE,), repeats=True)(partial(_arrow, 1.0, False))
+action("arrow left", "left", "step back", (PAUSE,), repeats=True)(partial(_arrow, -1.0, False))
+action("far arrow right", "shift+right", "skip ahead", (PAUSE,), repeats=True)(partial(_arrow, 1.0, True))
+action("far arrow left", "shift+left", "skip back", (PAUSE,), repeats=True)(partial(_arrow, -1.0, True))
 action("step", ".", "step forward", (PAUSE,), repeats=True)(lambda context, pixel: _step(context, 1))
-
-
-@action(
+action(
     "step back",
     ",",
     "step back",
     (PAUSE,),
     repeats=True,
     enabled=lambda context: context.document.timeline.first < context.model.clock.steps,
-)
-def _step_back(context: Context, pixel: Vector) -> None:
-    _step(context, -1)
-
-
-def _far(context: Context) -> int:
-    """Steps of one skip; fewer in large models, to keep the wait short."""
-    model = context.model
-    elements, size = model.particles.count + model.rods.count + 1, model.clock.step_size
-    most = max(MOST_WORK // elements, 1)
-    if elements > MANY or size == 0.0:
-        return most if size > 0.0 else 1
-    return min(max(round(FAR * context.pace / size), 1), most)
+)(lambda context, pixel: _step(context, -1))
 
 
 def _step(context: Context, steps: int) -> None:
-    clock, impacts = context.model.clock, context.impacts
+    clock, impacts = context.model.clock, context.simulation.impacts
     impacts.most_awaited = MOST_IMPACTS
     try:
         done = context.step(steps)
@@ -132,14 +119,12 @@ def _settle(context: Context, pixel: Vector) -> None:
     context.view.follow(context.model, clear=True)
 
 
-def _pace(by: float) -> Perform:
-    return lambda context, pixel: context.document.live.clock.faster(by)
-
-
-action("faster", "+", "run faster", repeats=True, while_drawing=True)(_pace(PACE_STEP))
-action("slower", "-", "run slower", repeats=True, while_drawing=True)(_pace(1.0 / PACE_STEP))
-
-
-@action("natural pace", "0", "reset the speed to suit the model", while_drawing=True)
-def _natural_pace(context: Context, pixel: Vector) -> None:
-    context.document.live.clock.factor = 1.0
+action("faster", "+", "run faster", repeats=True, while_drawing=True)(
+    lambda context, pixel: context.document.live.clock.faster(PACE_STEP)
+)
+action("slower", "-", "run slower", repeats=True, while_drawing=True)(
+    lambda context, pixel: context.document.live.clock.faster(1.0 / PACE_STEP)
+)
+action("natural pace", "0", "reset the speed to suit the model", while_drawing=True)(
+    lambda context, pixel: setattr(context.document.live.clock, "factor", 1.0)
+)

@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 import math
-from typing import ClassVar
+from dataclasses import replace
+from typing import Any, ClassVar
 
 from pinjoint.components import written
 from pinjoint.components.field import Vector
 from pinjoint.components.handle import Handle
 from pinjoint.components.language import begun, joined, marked, plural, tr
-from pinjoint.components.model import Model
 from pinjoint.components.particle import Particle
 from pinjoint.components.rod import Rod, rigid_joints
 from pinjoint.components.view import BETWEEN, Preview, drawn_positions
@@ -18,15 +18,12 @@ from pinjoint.systems.edit import Refusal
 from pinjoint.systems.edit.arrows import (
     arrow_end,
     arrow_value,
-    usual_distributed_force,
-    usual_force,
-    usual_moment,
-    usual_speed,
+    usual,
 )
 from pinjoint.systems.edit.picking import PARTICLE_REACH, pick_end, pick_particle, pick_rod, ring_of
 from pinjoint.systems.edit.placing import place, place_at, snapped, snapped_to_points
 from pinjoint.systems.edit.rods import check_ends, distance, is_rigid, join
-from pinjoint.systems.edit.supports import NAMES, Held, next_support, support, support_towards
+from pinjoint.systems.edit.supports import SUPPORTS, Held, next_support, support, support_towards
 from pinjoint.systems.forms.properties import heading
 from pinjoint.systems.input.actions import ACTIONS
 
@@ -36,7 +33,7 @@ SMALLEST_RIM = 5.0  # points, of a particle as it is drawn
 
 
 class Drawing(Gesture):
-    """A drawing by clicks, drags or the key of a tool.
+    """A drawing from a particle or a point (m), by clicks, drags or the key of a tool.
 
     tool: the name of the tool and of its action. goes_on: it began by itself where the one before it ended.
     """
@@ -44,10 +41,14 @@ class Drawing(Gesture):
     tool: ClassVar[str]
     goes_on = False
 
+    def __init__(self, context: Context, origin: Particle | Vector) -> None:
+        self.origin = origin
+
     @classmethod
     def begin(cls, context: Context, pixel: Vector) -> Drawing | None:
-        """A new drawing from a pixel; None if none can begin there, or one of this kind is to go on."""
-        raise NotImplementedError
+        """A new drawing from the particle at a pixel; None if none can begin there, or one of this kind is to go on."""
+        particle = pick_particle(context.model, context.view, pixel)
+        return cls(context, particle) if particle is not None else None
 
     @classmethod
     def begin_anywhere(cls, context: Context, pixel: Vector) -> Drawing | None:
@@ -66,6 +67,14 @@ class Drawing(Gesture):
         if context.gesture is None:
             context.take_up(cls.tool)
 
+    def start(self, context: Context) -> Vector:
+        """Where it begins (m), as it is drawn. Raises Refusal if that particle was deleted."""
+        if not isinstance(self.origin, Particle):
+            return self.origin
+        if not self.origin.exists:
+            raise Refusal("The particle where this began has been deleted; begin at another one.")
+        return drawn_at(context, self.origin)
+
     def finish(self, context: Context, pixel: Vector) -> None:
         """End at a pixel; where that is refused, the drawing goes on."""
         self.drop(context, pixel)
@@ -76,29 +85,6 @@ class Drawing(Gesture):
         return None
 
 
-def start_of(context: Context, particle: Particle) -> Vector:
-    """Where a particle from which something is drawn is drawn (m). Raises Refusal if it was deleted."""
-    if not particle.exists:
-        raise Refusal("The particle where this began has been deleted; begin at another one.")
-    return drawn_at(context, particle)
-
-
-class DrawFromParticle(Drawing):
-    """A drawing that begins at a particle."""
-
-    def __init__(self, context: Context, particle: Particle) -> None:
-        self.particle = particle
-
-    @classmethod
-    def begin(cls, context: Context, pixel: Vector) -> Drawing | None:
-        particle = pick_particle(context.model, context.view, pixel)
-        return cls(context, particle) if particle is not None else None
-
-    def start(self, context: Context) -> Vector:
-        """Where the particle is drawn (m). Raises Refusal if it was deleted."""
-        return start_of(context, self.particle)
-
-
 class DrawRod(Drawing):
     """A rod from one particle or place to another; where there is no particle, one is made, on the grid if near it.
 
@@ -107,39 +93,30 @@ class DrawRod(Drawing):
 
     tool = "rod"
 
-    def __init__(self, context: Context, begin: Particle | Vector, *, goes_on: bool = False) -> None:
-        self._begin, self.goes_on = begin, goes_on
+    def __init__(self, context: Context, origin: Particle | Vector, *, goes_on: bool = False) -> None:
+        super().__init__(context, origin)
+        self.goes_on = goes_on
         self._end: Particle | None = None
         self.say(context)
 
     def say(self, context: Context) -> None:
         """Let the hint name the kind of rod that is drawn."""
-        begin = self._begin
         step = (
-            tr("rod from {particle}: click where it ends (or L)", particle=begin.name)
-            if isinstance(begin, Particle)
+            tr("rod from {particle}: click where it ends (or L)", particle=self.origin.name)
+            if isinstance(self.origin, Particle)
             else tr("rod: click where it ends (or L)")
         )
         done = tr("double click ends the chain     Esc done") if self.goes_on else tr("Esc cancel")
         self.hint = joined([step, kind_of_rods(context), done], BETWEEN)
 
     @classmethod
-    def begin(cls, context: Context, pixel: Vector) -> Drawing | None:
-        particle = pick_particle(context.model, context.view, pixel)
-        return cls(context, particle) if particle is not None else None
-
-    @classmethod
     def begin_anywhere(cls, context: Context, pixel: Vector) -> Drawing | None:
         point = snapped(context.model, context.view, context.view.camera.to_model(pixel))
         return cls.begin(context, pixel) or cls(context, point)
 
-    def _start(self, context: Context) -> Vector:
-        """Where it begins (m). Raises Refusal if that particle was deleted."""
-        return start_of(context, self._begin) if isinstance(self._begin, Particle) else self._begin
-
     def drop(self, context: Context, pixel: Vector) -> None:
-        model, view, begin = context.model, context.view, self._begin
-        self._start(context)
+        model, view, begin = context.model, context.view, self.origin
+        self.start(context)
         before = model.particles.count
         with model.transaction(marked("new rod")):
             first = begin if isinstance(begin, Particle) else place_at(model, view, begin)
@@ -153,7 +130,7 @@ class DrawRod(Drawing):
 
     def finish(self, context: Context, pixel: Vector) -> None:
         """End at a pixel; a click where a chain of rods has come to ends the chain."""
-        if self.goes_on and pick_particle(context.model, context.view, pixel) is self._begin:
+        if self.goes_on and pick_particle(context.model, context.view, pixel) is self.origin:
             context.gesture = None
         else:
             super().finish(context, pixel)
@@ -170,58 +147,64 @@ class DrawRod(Drawing):
         """The tool stays in hand."""
 
     def preview(self, context: Context, pixel: Vector) -> Preview | None:
-        start = self._start(context)
+        start = self.start(context)
         other = pick_particle(context.model, context.view, pixel)
-        if other is None or other is self._begin or not isinstance(self._begin, Particle):
+        if other is None or other is self.origin or not isinstance(self.origin, Particle):
             point = snapped(context.model, context.view, context.view.camera.to_model(pixel))
             end = point if other is None else drawn_at(context, other)
             return Preview("rod", start, end, written.length(math.dist(start, end), 3))
         try:
-            check_ends(context.model, self._begin, other)
-            label = written.length(distance(self._begin, other), written.DIGITS)
+            check_ends(context.model, self.origin, other)
+            label = written.length(distance(self.origin, other), written.DIGITS)
         except Refusal:
             label = tr("joined already")
         return Preview("rod", start, drawn_at(context, other), label)
 
 
-class DrawArrow(DrawFromParticle):
-    """A vector of a particle, drawn as an arrow from the particle.
+class DrawArrow(Drawing):
+    """A vector of elements, by default of the particle where it begins, drawn as an arrow.
 
-    asks, says: the status line while it is drawn, and the notice then.
+    field: the Field that it is. asks, says: the status line while it is drawn, and the notice then.
     """
 
+    field: ClassVar[str]
     asks: ClassVar[str]
     says: ClassVar[str]
     unit: ClassVar[str]
-    usual: ClassVar[staticmethod[[Model], float]]  # the size that an arrow of comfortable length stands for
 
-    def __init__(self, context: Context, particle: Particle) -> None:
-        super().__init__(context, particle)
-        self.hint = tr(self.asks, particle=particle.name)
+    def __init__(self, context: Context, origin: Particle | Vector, *elements: Any) -> None:
+        super().__init__(context, origin)
+        self.elements: list[Any] = [*elements] or [origin]
+        alone = len(self.elements) == 1
+        named = self.elements[0].name if alone else heading(context.model, self.elements)
+        self.hint = tr(self.asks, element=named, particle=named, rods=named)
 
-    def value(self, context: Context, pixel: Vector) -> Vector:
-        """The vector that the arrow to a pixel stands for."""
-        return arrow_value(context.view, self.start(context), pixel, self.usual(context.model))
+    def value(self, context: Context, pixel: Vector) -> Any:
+        """What the arrow to a pixel stands for."""
+        return arrow_value(context.view, self.start(context), pixel, usual(context.model, self.field))
 
-    def shown(self, value: Vector) -> str:
-        """The text of a vector."""
+    def shown(self, value: Any) -> str:
+        """The text of a value."""
         return f"{written.vector(value, written.DIGITS)} {self.unit}"
 
     def drop(self, context: Context, pixel: Vector) -> None:
-        value = self.value(context, pixel)
-        context.model.assign([self.particle], self.tool, [value])
-        context.notice = tr(self.says, particle=self.particle.name, value=self.shown(value))
+        value, elements = self.value(context, pixel), [one for one in self.elements if one.exists]
+        if elements:
+            context.model.assign(elements, self.field, [value] * len(elements))
+            named, rods = elements[0].name, begun(heading(context.model, elements))
+            said = self.shown(value)
+            context.notice = tr(self.says, particle=named, rods=rods, value=said, load=said)
 
     def preview(self, context: Context, pixel: Vector) -> Preview | None:
         value, start = self.value(context, pixel), self.start(context)
-        end = arrow_end(context.view, start, value, self.usual(context.model))
-        return Preview(self.tool, start, end, self.shown(value))
+        end = arrow_end(context.view, start, value, usual(context.model, self.field))
+        return Preview(self.field.replace("_", " "), start, end, self.shown(value))
 
 
 class DrawForce(DrawArrow):
     """The constant force on a particle; beside one, the distributed force on a rod."""
 
-    tool, unit, usual = "force", "kN", staticmethod(usual_force)
+    tool, field, unit = "force", "force", "kN"
     asks = marked("load on {particle}: click where its arrow ends (or F)     Esc cancel")
     says = marked("Load on {particle}: {value}")
 
@@ -229,48 +212,38 @@ class DrawForce(DrawArrow):
     def begin(cls, context: Context, pixel: Vector) -> Drawing | None:
         begun = super().begin(context, pixel)
         rod = pick_rod(context.model, context.view, pixel) if begun is None else None
-        outside = context.view.covers(pixel)
-        return begun if rod is None or outside else DrawDistributedForce(context, rod, pixel)
-
-
-class DrawDistributedForce(Drawing):
-    """The distributed force on a rod, or on all selected rods if it is one of them, drawn from a point on it."""
-
-    tool = "force"
-
-    def __init__(self, context: Context, rod: Rod, pixel: Vector) -> None:
+        if rod is None or context.view.covers(pixel):
+            return begun
         rods = context.selected_of(Rod)
-        self._rods = rods if rod in rods else [rod]
-        self._from = context.view.camera.to_model(pixel)
-        named = rod.name if len(self._rods) == 1 else heading(context.model, self._rods)
-        self.hint = tr(
-            "distributed load on {rods}: click where its arrow ends (or F)     Esc cancel", rods=named
+        return DrawDistributedForce(
+            context, context.view.camera.to_model(pixel), *(rods if rod in rods else [rod])
         )
 
-    def _value(self, context: Context, pixel: Vector) -> Vector:
-        return arrow_value(context.view, self._from, pixel, usual_distributed_force(context.model))
 
-    def drop(self, context: Context, pixel: Vector) -> None:
-        value, rods = self._value(context, pixel), [rod for rod in self._rods if rod.exists]
-        if rods:
-            context.model.assign(rods, "distributed_force", [value] * len(rods))
-            named = begun(heading(context.model, rods))
-            load = f"{written.vector(value)} kN/m"
-            context.notice = tr("{rods}: distributed load {load}", rods=named, load=load)
+class DrawDistributedForce(DrawArrow):
+    """The distributed force on a rod, or on all selected rods if it is one of them, drawn from a point on it."""
+
+    tool, field, unit = "force", "distributed_force", "kN/m"
+    asks = marked("distributed load on {rods}: click where its arrow ends (or F)     Esc cancel")
+    says = marked("{rods}: distributed load {load}")
+
+    def shown(self, value: Any) -> str:
+        return f"{written.vector(value)} {self.unit}"
 
     def preview(self, context: Context, pixel: Vector) -> Preview | None:
-        value, usual = self._value(context, pixel), usual_distributed_force(context.model)
-        end = arrow_end(context.view, self._from, value, usual)
+        made = super().preview(context, pixel)
         drawn = drawn_positions(context.model)
-        ends = [drawn[list(rod.between)].tolist() for rod in self._rods if rod.exists]
+        ends = [drawn[list(rod.between)].tolist() for rod in self.elements if rod.exists]
         along = tuple(((first[0], first[1]), (last[0], last[1])) for first, last in ends)
-        return Preview("distributed force", self._from, end, f"{written.vector(value)} kN/m", along)
+        return replace(made, along=along) if made is not None else None
 
 
-class DrawMoment(DrawFromParticle):
+class DrawMoment(DrawArrow):
     """The constant moment on a particle: to the left counter-clockwise, to the right clockwise."""
 
-    tool = "moment"
+    tool, field, unit = "moment", "moment", "kN·m"
+    asks = marked("moment on {particle}: click at its left (counter-clockwise) or right     Esc cancel")
+    says = marked("Moment on {particle}: {value}")
 
     def __init__(self, context: Context, particle: Particle) -> None:
         if not rigid_joints(context.model)[particle.row]:
@@ -280,38 +253,25 @@ class DrawMoment(DrawFromParticle):
                 particle=particle.name,
             )
         super().__init__(context, particle)
-        self.hint = tr(
-            "moment on {particle}: click at its left (counter-clockwise) or right     Esc cancel",
-            particle=particle.name,
-        )
 
-    def _value(self, context: Context, pixel: Vector) -> float:
-        usual = usual_moment(context.model)
-        return -arrow_value(context.view, self.start(context), pixel, usual)[0] + 0.0
+    def value(self, context: Context, pixel: Vector) -> float:
+        x, _ = super().value(context, pixel)
+        return -float(x) + 0.0
 
-    def drop(self, context: Context, pixel: Vector) -> None:
-        value = self._value(context, pixel)
-        context.model.assign([self.particle], "moment", value)
-        context.notice = tr("Moment on {particle}: {value}", particle=self.particle.name, value=_moment(value))
+    def shown(self, value: float) -> str:
+        way = tr("counter-clockwise") if value > 0.0 else tr("clockwise") if value < 0.0 else ""
+        return joined([f"{written.given(abs(value))} {self.unit}", way], ", ")
 
     def preview(self, context: Context, pixel: Vector) -> Preview | None:
-        value, start = self._value(context, pixel), self.start(context)
+        value, start = self.value(context, pixel), self.start(context)
         x, _ = context.view.camera.to_model(pixel) if value else start
-        return Preview("moment", start, (x, start[1]), _moment(value))
-
-
-def _moment(value: float) -> str:
-    size = f"{written.given(abs(value))} kN·m"
-    if value == 0.0:
-        return size
-    way = tr("counter-clockwise") if value > 0.0 else tr("clockwise")
-    return joined([size, way], ", ")
+        return Preview("moment", start, (x, start[1]), self.shown(value))
 
 
 class DrawVelocity(DrawArrow):
     """The velocity of a particle; zero where it is held."""
 
-    tool, unit, usual = "velocity", "m/s", staticmethod(usual_speed)
+    tool, field, unit = "velocity", "velocity", "m/s"
     asks = marked("velocity of {particle}: click where its arrow ends (or V)     Esc cancel")
     says = marked("Velocity of {particle}: {value}")
 
@@ -324,7 +284,7 @@ class DrawVelocity(DrawArrow):
 
     def value(self, context: Context, pixel: Vector) -> Vector:
         x, y = super().value(context, pixel)
-        held = self.particle.fixed
+        held = self.elements[0].fixed
         return 0.0 if held[0] else x, 0.0 if held[1] else y
 
 
@@ -334,8 +294,8 @@ class DrawElement(Drawing):
     kind: ClassVar[type[Handle]]
     key: ClassVar[str]
 
-    def __init__(self, context: Context, pixel: Vector) -> None:
-        self.from_ = snapped_to_points(context.model, context.view, pixel)
+    def __init__(self, context: Context, origin: Particle | Vector) -> None:
+        super().__init__(context, origin)
         self.hint = tr(
             "{element}: click where it ends (or {key})     Esc cancel",
             element=tr(self.kind.noun),
@@ -346,25 +306,25 @@ class DrawElement(Drawing):
     def begin(cls, context: Context, pixel: Vector) -> Drawing | None:
         if isinstance(context.gesture, cls) or context.view.strip.contains(pixel):
             return None
-        return cls(context, pixel)
+        return cls(context, snapped_to_points(context.model, context.view, pixel))
 
     def drop(self, context: Context, pixel: Vector) -> None:
-        end = snapped_to_points(context.model, context.view, pixel)
-        if end == self.from_:
+        start, end = self.start(context), snapped_to_points(context.model, context.view, pixel)
+        if end == start:
             raise Refusal(
                 "The {element} would begin and end at the same point; click another point.",
                 element=tr(self.kind.noun),
             )
         first, last = self.kind.points
-        [made] = context.model.create(self.kind, 1, **{first: [self.from_], last: [end]})
+        [made] = context.model.create(self.kind, 1, **{first: [start], last: [end]})
         context.select(made)
         context.notice = tr(
-            "{element}: {value}", element=context.name(made), value=_length_and_angle(self.from_, end)
+            "{element}: {value}", element=context.name(made), value=_length_and_angle(start, end)
         )
 
     def preview(self, context: Context, pixel: Vector) -> Preview | None:
-        end = snapped_to_points(context.model, context.view, pixel)
-        return Preview("rod", self.from_, end, _length_and_angle(self.from_, end))
+        start, end = self.start(context), snapped_to_points(context.model, context.view, pixel)
+        return Preview("rod", start, end, _length_and_angle(start, end))
 
 
 def _length_and_angle(start: Vector, end: Vector) -> str:
@@ -383,7 +343,7 @@ def drawn_at(context: Context, particle: Particle) -> Vector:
     return x, y
 
 
-class DrawSupport(DrawFromParticle):
+class DrawSupport(Drawing):
     """The support of a particle, or of all selected particles if it is one of them.
 
     A drag that ends on the particle counts as a click, which takes the next kind of support.
@@ -393,7 +353,7 @@ class DrawSupport(DrawFromParticle):
 
     def __init__(self, context: Context, particle: Particle) -> None:
         super().__init__(context, particle)
-        selected = [handle for handle in context.selected if isinstance(handle, Particle)]
+        self.particle, selected = particle, context.selected_of(Particle)
         self._particles = selected if particle in selected else [particle]
         self._turns = bool(rigid_joints(context.model)[particle.row])
         farther = tr("farther away: cannot turn, too") if self._turns else ""
@@ -424,7 +384,7 @@ class DrawSupport(DrawFromParticle):
         start = x + rim * side[0], y + rim * side[1]
         end = start[0] + side[0] / camera.scale, start[1] + side[1] / camera.scale
         symbols = ("guided", "clamped") if wanted[2] else ("roller", "pinned")
-        return Preview(symbols[all(wanted[:2])], start, end, tr(NAMES[wanted]))
+        return Preview(symbols[all(wanted[:2])], start, end, tr(SUPPORTS[wanted][1]))
 
     def _wanted(self, context: Context, pixel: Vector) -> Held | None:
         """What a ground at a pixel holds; None if the pixel lies on the particle."""

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from typing import Any
 
 import numpy as np
 
@@ -24,6 +25,17 @@ class Placing(Gesture):
     """A drag of which every move changes the document; all its moves are one entry of the log."""
 
     hint = marked("let go to place it     Esc put it back")
+
+    def place(self, context: Context, pixel: Vector) -> str:
+        """Change the document as a pointer there says; returns what is said of it. Raises Refusal or FieldError."""
+        raise NotImplementedError
+
+    def move(self, context: Context, pixel: Vector) -> None:
+        try:
+            with context.document.history.as_one(self):
+                context.notice = self.place(context, pixel) or context.notice
+        except (Refusal, FieldError) as error:
+            context.notice = str(error)
 
     def drop(self, context: Context, pixel: Vector) -> None:
         self.move(context, pixel)
@@ -48,18 +60,18 @@ class Move(Placing):
         self._leader = self._movable.index(hit)  # the row of the element under the pointer keeps to the grid
         self._grip = np.subtract(self._start[self._leader], context.view.camera.to_model(pixel))
 
-    def move(self, context: Context, pixel: Vector) -> None:
+    def place(self, context: Context, pixel: Vector) -> str:
         model, view = context.model, context.view
         wanted = np.add(view.camera.to_model(pixel), self._grip)
         target = snapped(model, view, (float(wanted[0]), float(wanted[1])))
-        try:
-            self._check_free(context, target)
-            with context.document.history.as_one(self):
-                self._movable.place(self._start + np.subtract(target, self._start[self._leader]))
-        except (Refusal, FieldError) as error:
-            context.notice = str(error)
-        else:
-            context.notice = self._place_of(target)
+        self._check_free(context, target)
+        self._movable.place(self._start + np.subtract(target, self._start[self._leader]))
+        particles, others, count = self._movable.particles, self._movable.others, len(self._movable)
+        leader: Any = particles[self._leader] if self._leader < len(particles) else others[0]
+        named = leader.name
+        if count > 1:
+            named = tr("{element} and {count} more", element=named, count=count - 1)
+        return tr("{element}: {value}", element=named, value=written.place(target, written.DIGITS))
 
     def _check_free(self, context: Context, target: Vector) -> None:
         """Raise Refusal if the leading particle would come to lie on another."""
@@ -69,13 +81,6 @@ class Move(Placing):
             x, y = np.subtract(drawn_positions(context.model)[leader.row], leader.position).tolist()
             check_free(context.model, context.view, (target[0] + x, target[1] + y), besides=particles)
 
-    def _place_of(self, target: Vector) -> str:
-        particles, count = self._movable.particles, len(self._movable)
-        leader = particles[self._leader] if self._leader < len(particles) else self._movable.others[0]
-        named: str = leader.name  # type: ignore[attr-defined]
-        named = tr("{element} and {count} more", element=named, count=count - 1) if count > 1 else named
-        return tr("{element}: {value}", element=named, value=written.place(target, written.DIGITS))
-
 
 class MovePoint(Placing):
     """Drags one point of an element, such as the end of a wall."""
@@ -84,20 +89,17 @@ class MovePoint(Placing):
         context.select(grip.element)
         self._held = grip
 
-    def move(self, context: Context, pixel: Vector) -> None:
+    def place(self, context: Context, pixel: Vector) -> str:
         element, point = self._held.element, self._held.point
         target = snapped_to_points(context.model, context.view, pixel, besides=element)
-        try:
-            with context.document.history.as_one(self):
-                context.model.assign([element], point, [target])
-        except FieldError as error:
-            context.notice = str(error)
-        else:
-            named = tr(context.model.tables[element.table].fields[point].title)
-            place = written.place(target, written.DIGITS)
-            context.notice = tr(
-                "{element}, {point}: {place}", element=context.name(element), point=named, place=place
-            )
+        context.model.assign([element], point, [target])
+        named = tr(context.model.tables[element.table].fields[point].title)
+        return tr(
+            "{element}, {point}: {place}",
+            element=context.name(element),
+            point=named,
+            place=written.place(target, written.DIGITS),
+        )
 
 
 class PullParticle(Gesture):
@@ -106,7 +108,7 @@ class PullParticle(Gesture):
     hint = marked("pull with the pointer     let go to release it")
 
     def __init__(self, context: Context, particle: Particle) -> None:
-        if context.settings.displacement_scale == 0.0:
+        if context.model.settings.displacement_scale == 0.0:
             raise Refusal(
                 "Displacements are drawn at scale 0, so nothing can be pulled; set the displacement scale above 0."
             )
@@ -117,7 +119,7 @@ class PullParticle(Gesture):
 
     def move(self, context: Context, pixel: Vector) -> None:
         x, y = context.view.camera.to_model(pixel)
-        original, scale = self._particle.position, context.settings.displacement_scale
+        original, scale = self._particle.position, context.model.settings.displacement_scale
         hand = context.pull.hand
         if hand is not None:
             anchor = ((x - original[0]) / scale, (y - original[1]) / scale)
@@ -133,7 +135,7 @@ class PullParticle(Gesture):
         hand = context.pull.hand
         if hand is None or not self._particle.exists:
             return None
-        scale = context.settings.displacement_scale
+        scale = context.model.settings.displacement_scale
         start, end = (
             (self._particle.position[0] + scale * u[0], self._particle.position[1] + scale * u[1])
             for u in (self._particle.displacement, hand.anchor)

@@ -26,7 +26,7 @@ from pinjoint.systems.render.page import page_height
 from pinjoint.systems.render.theme import load_theme
 
 if TYPE_CHECKING:  # it imports scipy
-    from pinjoint.force_method.guide import AnySet, Guide, Mechanism
+    from pinjoint.force_method.guide import Guide, Mechanism, Set
 
 WIDE = 1.1  # width / height from which the sets stand side by side
 MOST_OF_HEIGHT = 0.45  # of the window that the equations and the table take at most; the rest is scrolled
@@ -123,7 +123,7 @@ class ForceMethod(Scene):
         else:
             self._work = _Work(tr("{work} with {count} rods …", work=text, count=context.model.rods.count), do)
 
-    def _moving(self) -> list[AnySet | Mechanism]:
+    def _moving(self) -> list[Set | Mechanism]:
         if self.shown_guide is not None:
             return self.shown_guide.moving
         return [self._mechanism] if self._mechanism is not None else []
@@ -201,9 +201,13 @@ class ForceMethod(Scene):
 
     def _sets(self, context: Context, middle: Viewport, ratio: float) -> list[tuple[Model, View]]:
         captions = words.captions(self.shown_guide) if self.shown_guide else [("",)] * 3
-        there: list[AnySet | Mechanism] = [*self.shown_guide.shown] if self.shown_guide else self._moving()
+        there: list[Set | Mechanism] = [*self.shown_guide.shown] if self.shown_guide else self._moving()
         places = [(index, _third(middle, index)) for index in range(3)]
-        if there and not _readable(places[0][1], ratio):
+        first = places[0][1]  # where it has no room for a set beside or above others, only one is shown
+        if there and (
+            first.width < LEAST_WIDTH * ratio
+            or first.height < (LEAST_LOW if _is_low(first) else LEAST_HEIGHT) * ratio
+        ):
             picks = self.shown_guide is not None and self.shown_guide.part == 2  # from set 1
             places = [(0 if picks else len(there) - 1, middle)]
         stages = [(one.model, one.view) for one in there]
@@ -296,12 +300,6 @@ def _fit(model: Model, view: View) -> None:
     view.camera.fit(
         np.concatenate([original - reserve, original + reserve]), min(MARGIN, 0.2 * v.height / u), within, u
     )
-
-
-def _readable(place: Viewport, ratio: float) -> bool:
-    """True if a set has enough room beside or above others; else only one set is shown."""
-    height = LEAST_LOW if _is_low(place) else LEAST_HEIGHT
-    return place.width >= LEAST_WIDTH * ratio and place.height >= height * ratio
 
 
 def _is_low(place: Viewport) -> bool:

@@ -13,7 +13,7 @@ from pinjoint.documents.open_documents import ModelFile
 from pinjoint.editor.context import Context
 from pinjoint.editor.scenes.files import FileScene, Offer, saved_models
 from pinjoint.lessons import progress
-from pinjoint.lessons.shelf import count_of, is_done, shelf
+from pinjoint.lessons.progress import count_of, is_done, shelf
 from pinjoint.scripts.script import Script, lessons
 
 WELCOME = marked("Welcome to Pinjoint. What would you like to begin with?")
@@ -51,7 +51,12 @@ class Load(FileScene):
         learn = _tasks()
         held = tr("{tasks} to do, {films} to watch", tasks=len(learn), films=len(lessons()))
         rest = Offer(tr(LESSONS), tr("All lessons"), held, "", ALL, symbol="»", rest=True)
-        offers = [*_yours(context), *learn[:1], new, *learn[1:], *_lessons(), rest, *_examples()]
+        films = [Script(name) for name in lessons()]
+        watch = [
+            Offer(tr(LESSONS), tr(s.title), tr("a lesson to watch"), s.name, s, tr(s.description), "▶")
+            for s in films
+        ]
+        offers = [*_yours(context), *learn[:1], new, *learn[1:], *watch, rest, *_examples()]
         form = self.new_form(tr(WELCOME) if self.welcome else tr("Open a model"), "", offers, tr("Open"))
         form.boxes[0].note = tr("type to search, or click a picture")
         return form
@@ -179,14 +184,6 @@ def _tasks() -> list[Offer]:
         title = tr("Continue: {lesson}", lesson=title) if begun else tr("Learn: {lesson}", lesson=title)
         offers[0] = offers[0]._replace(title=title)
     return offers
-
-
-def _lessons() -> list[Offer]:
-    scripts = [(name, Script(name)) for name in lessons()]
-    return [
-        Offer(tr(LESSONS), tr(s.title), tr("a lesson to watch"), name, s, tr(s.description), "▶")
-        for name, s in scripts
-    ]
 
 
 def _examples() -> list[Offer]:

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 import scipy.linalg.lapack
 
-from pinjoint.systems.statics import lapack as ours
+from pinjoint.systems.statics import factor as ours
 
 
 @pytest.fixture(autouse=True)
