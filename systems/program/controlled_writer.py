@@ -11,7 +11,7 @@ from pinjoint.systems.entries import Mark
 from pinjoint.systems.program.binding import Bound, StepRole, bind
 from pinjoint.systems.program.loops import RodLoop
 from pinjoint.systems.program.templates import events, forces, implicit, rods, runge_kutta
-from pinjoint.systems.program.writer import NO_POWER, NOW, POWER_RETURNED, TRIAL_STATE, Writer, sides_of
+from pinjoint.systems.program.writer import NO_POWER, POWER_RETURNED, Writer, sides_of
 
 _AHEAD = 1e-3  # of a step, over which the slope of a margin is taken
 _STEADY = 1e-8  # a margin that changes less in a step is not watched
@@ -55,31 +55,16 @@ class ControlledWriter(Writer):
 
     def _steps(self) -> dict[str, list[str]]:
         return {
-            "evaluate": self._evaluated(),
-            "begin": ["search[Search.LIMIT] = limit"],
+            "present": self.lines(forces.present),
+            "begin": [],
             "step": self.lines(runge_kutta.step),
             "finish": [],
         }
-
-    def _pushed(self) -> list[str]:
-        return ["accelerate(force, resisting, work[0], particles_mobility)"]
-
-    def _evaluated(self) -> list[str]:
-        return [f"{self._evaluation.replace('time, dt', NOW)}", *self._pushed()]
-
-    @property
-    def _evaluation(self) -> str:
-        return f"evaluate({TRIAL_STATE}, power, *columns)"
 
     def _remember(self) -> str:
         compute, lost = self._histories(self.commits)
         loop = RodLoop(self.shift, [*self.geometry(), *compute], scatter=[*lost.values()]).one_by_one()
         return self.function(forces.remember, "compiled", history=self._with_losses(self.commits, loop))
-
-    def _commit(self) -> str:
-        return self.function(
-            forces.commit, "entered", history="remember(time, dt, displacement, account, *columns)"
-        )
 
     def _evaluate(self) -> str:
         lines = [

@@ -13,7 +13,7 @@ from typing import Any
 # What stands for insert(…): an expression, or lines; or whether the lines below `if NAME:` are there, without it.
 Insert = str | Sequence[str] | bool
 
-_CHOICE = re.compile(r"( *)if (\w+):")
+_CHOICE = re.compile(r"( *)if (not )?(\w+):")
 _LINE = re.compile(r"( *)insert\((\w+)\)")
 _EXPRESSION = re.compile(r"insert\((\w+)\)")
 _ON_LINES = re.compile(r"\(\n((?:[^()]|\([^()]*\))*\*columns),?\s*\)")
@@ -67,11 +67,12 @@ def _chosen(lines: Sequence[str], inserts: Mapping[str, Insert]) -> list[str]:
     at = 0
     while at < len(lines):
         choice = _CHOICE.fullmatch(lines[at])
-        made = inserts.get(choice[2]) if choice else None
+        made = inserts.get(choice[3]) if choice else None
         at += 1
         if choice is None or not isinstance(made, bool):
             kept.append(lines[at - 1])
             continue
+        made = not made if choice[2] else made
         for wanted in (made, not made):
             block, at = _block(lines, at, choice[1])
             kept += _chosen(block, inserts) if wanted else []

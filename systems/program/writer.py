@@ -77,7 +77,6 @@ EVERY = "displacement.shape[0]"  # particles
 TRIAL_STATE = "time, dt, *state"
 PREDICTED = "time, dt, displacement, predicted, *forces"
 RESISTED = "time, dt, displacement, velocity, resisting, direction"
-NOW = "control[Control.TIME], control[Control.STEP_SIZE]"
 
 OF_PAIR = {  # what kernels of pairs are provided with
     "apart": "(x, y)",
@@ -233,6 +232,7 @@ class Writer:
             "LOADED": self.loaded,
             "LOADS": bool(self.of[StepRole.LOAD]),
             "MEETS": self.collides,
+            "POWERS": self.powers,
             "WARM": self.warm,
             "mass": "particles_masses[i, d]" if self.bends else "particles_mass[i]",
         }
@@ -289,7 +289,7 @@ class Writer:
             self.function(forces.external, "compiled", particle_forces=self._particle_forces()),
             self._measure(),
             self._observe(),
-            *([self._commit()] if self.commits else []),
+            *([self.function(forces.commit, "entered")] if self.commits else []),
             "".join(f"{name} = {_literal(value)}\n" for name, value in self._values().items()),
         ]
         return expanded("\n\n\n".join(part.rstrip() for part in parts), self.groups)
@@ -331,9 +331,8 @@ class Writer:
             "",
             keep=self._copies("kept_{0}", "{0}"),
             put_back=self._copies("{0}", "kept_{0}"),
-            evaluate=self._evaluated(),
+            present=self.lines(forces.present),
             take=self.lines(driven.take),
-            pushed=self._pushed(),
         )
 
     def _copies(self, to: str, of: str) -> list[str]:
@@ -345,16 +344,6 @@ class Writer:
             copies = (f"    {to.format(name)}[{place}] = {of.format(name)}[{place}]" for place in places)
             lines += [f"for r in range({name}.shape[0]):", *copies]
         return lines
-
-    def _pushed(self) -> list[str]:
-        """What follows from other contact forces."""
-        return []
-
-    def _evaluated(self) -> list[str]:
-        """The forces of the present state."""
-        calls = [f"forces({TRIAL_STATE}, *columns)"]
-        calls += [f"resist({RESISTED}, power, *columns)"] if self.powers else []
-        return [call.replace("time, dt", NOW) for call in calls]
 
     def _pushes(self) -> list[str]:
         """The lines by which contact forces are added to all others."""
@@ -638,8 +627,8 @@ class Writer:
     def _steps(self) -> dict[str, list[str]]:
         """What the loop over steps does with this integrator."""
         return {
-            "evaluate": self._evaluated(),
-            "begin": ["inside = False", *self._begin()],
+            "present": self.lines(forces.present),
+            "begin": self._begin(),
             "step": self.lines(
                 fixed_steps.step,
                 complete=self._complete("not whole"),
@@ -743,23 +732,14 @@ class Writer:
             lines += [f"fx, fy = {self._apply(b, 'i')}", "largest = max(largest, abs(fx), abs(fy))"]
         return lines
 
-    @property
-    def _evaluation(self) -> str:
-        """A call that gives the forces of a state that is observed."""
-        return f"forces({TRIAL_STATE}, *columns)"
-
     def _observe(self) -> str:
         observed = self.lines(rods.observed, at_strength=str(_AT_STRENGTH), moments=self.end_moments())
         loop = RodLoop(self.shift, [*self.geometry(), *self._axial_force(), *observed])
         return self.function(
             observing.observe,
             "entered",
-            evaluation=self._evaluation,
             rods=loop.one_by_one(),
         )
-
-    def _commit(self) -> str:
-        return self.function(forces.commit, "entered", history=f"accept({TRIAL_STATE}, account, *columns)")
 
 
 def read_sources(integrators: Iterable[Integrator]) -> None:

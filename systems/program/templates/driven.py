@@ -68,7 +68,7 @@ def drive(
             return
         if order == Order.EVALUATE.value:
             if whole[Whole.FRESH] == 0:
-                insert(evaluate)
+                insert(present)
                 whole[Whole.FRESH] = 1
             while breaks[coming] <= control[Control.TIME]:
                 coming += 1
@@ -96,7 +96,8 @@ def drive(
                         support[i, d] = pressing[i, d]
                     for d in range(D):
                         force[i, d] = unpushed[i, d] + support[i, d]
-                insert(pushed)
+                if not ALIKE:
+                    accelerate(force, resisting, work[0], particles_mobility)
                 whole[Whole.PUSHED] = whole[Whole.CHOSEN] > 0
             insert(take)
             whole[Whole.FRESH] = 1

@@ -45,4 +45,27 @@ def remember(time, dt, displacement, account, *columns):
 
 def commit(time, dt, state, account, *columns):
     """Bring history up to date in a state that no step has led to."""
-    insert(history)
+    if ALIKE:
+        accept(time, dt, *state, account, *columns)
+    else:
+        remember(time, dt, displacement, account, *columns)
+
+
+def present():
+    """The forces of the present state, and what follows from them."""
+    if ALIKE:
+        forces(control[Control.TIME], control[Control.STEP_SIZE], *state, *columns)
+        if POWERS:
+            resist(
+                control[Control.TIME],
+                control[Control.STEP_SIZE],
+                displacement,
+                velocity,
+                resisting,
+                direction,
+                power,
+                *columns,
+            )
+    else:
+        evaluate(control[Control.TIME], control[Control.STEP_SIZE], *state, power, *columns)
+        accelerate(force, resisting, work[0], particles_mobility)

@@ -63,7 +63,10 @@ def observe(time, dt, displacement, velocity, applied, reaction, forces, power, 
         for i in range(displacement.shape[0]):
             for d in range(2):
                 applied[i, d] += support[i, d]
-    insert(evaluation)
+    if ALIKE:
+        forces(time, dt, *state, *columns)
+    else:
+        evaluate(time, dt, *state, power, *columns)
     measure(displacement, velocity, force, resisting, measures, *columns)
     for i in range(displacement.shape[0]):
         for d in range(D):

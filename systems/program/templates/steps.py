@@ -3,7 +3,7 @@
 The integrator says how one step is taken: a fragment `step`, in fixed_steps.py or runge_kutta.py.
 """
 
-# ruff: noqa: F821, SIM102
+# ruff: noqa: F821, F841, SIM102
 # mypy: ignore-errors
 
 
@@ -52,9 +52,13 @@ def advance(
     that was cut, the conserved energy is that of whole ones again, to which forces of contacts do not belong.
     """
     if not fresh:
-        insert(evaluate)
+        insert(present)
     time = control[Control.TIME]
-    insert(begin)
+    if ALIKE:
+        inside = False
+        insert(begin)
+    else:
+        search[Search.LIMIT] = limit
     rounding = SLACK * (until - time)
     ahead = 0.0
     taken = 0
