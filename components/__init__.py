@@ -14,7 +14,6 @@ For scripts and mods:
 
 from pinjoint.components.additions import Component
 from pinjoint.components.commands import Assign, Command, Create, Custom, Delete, Group
-from pinjoint.components.environment import Environment
 from pinjoint.components.field import CM, Field, FieldError, Role, Vector
 from pinjoint.components.grid import Grid
 from pinjoint.components.handle import Handle
@@ -23,7 +22,7 @@ from pinjoint.components.model import Model
 from pinjoint.components.obstacles import Pieces
 from pinjoint.components.particle import Particle
 from pinjoint.components.rod import Rod
-from pinjoint.components.settings import Settings
+from pinjoint.components.settings import Environment, Settings
 from pinjoint.components.snapshot import Snapshot
 from pinjoint.components.table import Table
 from pinjoint.components.tags import Selected

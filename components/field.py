@@ -77,7 +77,7 @@ class Field(Generic[T]):
     choices: the values that a text may take (None: any); a register may grow later.
     key: the name in model files, by default the attribute's.
     component: the mod's component that it is part of, such as "wind.Sail"; "": of Pinjoint's own.
-    checker: replaces the built-in check for values of dtype object.
+    checker: checks values of dtype object; or texts further, in place of `choices`.
     storage: the numpy type of the column. plain: it is one number in every row, and never None.
     """
 
@@ -196,7 +196,7 @@ class Field(Generic[T]):
         """Return `value` normalised, or raise FieldError naming `where` (such as "rod AB")."""
         if value is None and self.nullable:
             return None
-        if self.checker is not None:
+        if self.checker is not None and self.dtype is not str:
             return self.checker(value, where)
         if self.dtype in (float, int, "reference"):
             return self._check_numbers(value, where)
@@ -276,15 +276,17 @@ class Field(Generic[T]):
         return flags if self.shape else flags[0]
 
     def _check_text(self, value: Any, where: str) -> Any:
-        if self.choices is not None and not (isinstance(value, str) and value in self.choices):
+        choices = self.choices if self.checker is None else None
+        if choices is not None and not (isinstance(value, str) and value in choices):
             message = marked("{where}: {title} is {value}; choose one of {choices}.")
-            raise self._refusal(message, where, value, choices=", ".join(self.choices))
+            raise self._refusal(message, where, value, choices=", ".join(choices))
         if not isinstance(value, str):
             raise self._refusal(marked("{where}: {title} is {value}; it must be a text."), where, value)
         if is_broken(value):
             message = marked("{where}: {title} is {value}; one of its characters is damaged. Type it again.")
             raise self._refusal(message, where, value)
-        return str(value)  # numpy's texts are of another type
+        text = str(value)  # numpy's texts are of another type
+        return text if self.checker is None else self.checker(text, where)
 
     def _components(self, value: Any, where: str, refusal: str) -> list[Any]:
         """The parts of a value. Raises FieldError, with this message if it has none."""

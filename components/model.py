@@ -6,13 +6,12 @@ from typing import Any
 
 from pinjoint.components.clock import Clock
 from pinjoint.components.derived import DERIVATIONS
-from pinjoint.components.environment import Environment
 from pinjoint.components.extensions import EXTENSIONS
 from pinjoint.components.grid import Grid
 from pinjoint.components.load import Load
 from pinjoint.components.particle import Particle
 from pinjoint.components.rod import Rod
-from pinjoint.components.settings import Settings
+from pinjoint.components.settings import Environment, Settings
 from pinjoint.components.slider import Slider
 from pinjoint.components.table import Table
 from pinjoint.components.world import World

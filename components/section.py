@@ -15,9 +15,9 @@ from pathlib import Path
 from typing import Any
 
 from pinjoint.components.field import LARGEST, FieldError
-from pinjoint.components.language import joined, marked, tr
+from pinjoint.components.language import joined, marked
 from pinjoint.components.suggestions import missing
-from pinjoint.components.wording import cut, quoted
+from pinjoint.components.wording import cut
 
 USUAL_SECTION, USUAL_MATERIAL = "IPE 200", "S235"  # of members of which nothing else is known
 RECTANGLE = "rectangle 300×500"  # the form of such a name: width × depth in mm
@@ -146,9 +146,9 @@ def _folded(name: str) -> str:
     return re.sub(r"^(ipe|hea|heb|chs|shs|rectangle|rect|timber|concrete)", r"\1 ", tidy)
 
 
-def check_section(value: Any, where: str) -> str:
+def check_section(value: str, where: str) -> str:
     """The usual spelling of a section's name, or FieldError."""
-    if (found := section_named(_text(value, where, "section"))) is not None:
+    if (found := section_named(value)) is not None:
         return found.name
     family = value.strip()[:3].upper()
     sizes = [name.removeprefix(f"{family} ") for name in SECTIONS if name.startswith(f"{family} ")]
@@ -169,21 +169,13 @@ def check_section(value: Any, where: str) -> str:
     )
 
 
-def check_material(value: Any, where: str) -> str:
+def check_material(value: str, where: str) -> str:
     """The usual spelling of a material's name, or FieldError."""
-    found = material_named(_text(value, where, "material"))
+    found = material_named(value)
     if found is None:
         problem = missing(marked("materials"), value, MATERIALS)
         raise FieldError(joined([f"{where}:", problem]))
     return found.name
-
-
-def _text(value: Any, where: str, what: str) -> str:
-    if not isinstance(value, str):
-        raise FieldError(
-            "{where}: {title} is {value}; it must be a name.", where=where, title=tr(what), value=quoted(value)
-        )
-    return str(value)
 
 
 # --- what they give to rods ------------------------------------------------------------------------------

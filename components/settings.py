@@ -1,11 +1,11 @@
-"""Settings: how a model is computed and drawn; part of the document."""
+"""Settings: how a model is computed and drawn; and environment: what acts on every particle. Part of the document."""
 
 from __future__ import annotations
 
 from collections import ChainMap
 
 from pinjoint.components.extensions import EXTENSIONS
-from pinjoint.components.field import Field, derived, if_known, look
+from pinjoint.components.field import Field, Vector, derived, if_known, look
 from pinjoint.components.handle import Handle
 
 AUTOMATIC = "automatic"
@@ -77,3 +77,16 @@ class Settings(Handle):
     )
     automatic_displacement_scale: Field[float] = derived(default=1.0, doc="The scale that suits the model.")
     displacement_scale: Field[float] = derived(default=1.0, doc="As given, or the automatic one.")
+
+
+class Environment(Handle):
+    """Force, acceleration and drag on all particles. There is exactly one."""
+
+    __slots__ = ()
+    table, noun, single = "environment", "environment", True
+
+    force: Field[Vector] = Field("kN", shape=(2,), doc="Constant force on every particle.")
+    acceleration: Field[Vector] = Field(
+        "m/s²", shape=(2,), doc="Acceleration of every particle, such as gravity (0, -9.81)."
+    )
+    drag: Field[float] = Field("1/s", minimum=0.0, doc="Resistance to motion: force = −drag × mass × velocity.")

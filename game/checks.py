@@ -31,7 +31,7 @@ from pinjoint.systems.catalogue import all_systems
 from pinjoint.systems.input.actions import ACTIONS, PAUSE, SIMULATION
 from pinjoint.systems.physics.integrators import INTEGRATORS
 from pinjoint.systems.program.binding import KERNELS, ProgramError, bind
-from pinjoint.systems.program.endless import Patience
+from pinjoint.systems.program.compiler import Choice
 from pinjoint.systems.program.faults import problem_of
 from pinjoint.systems.program.kernel_rows import KernelRows
 from pinjoint.systems.program.program import MOTION, TURNING
@@ -353,13 +353,13 @@ class _Trial:
     def __init__(self, mod: Mod) -> None:
         self.mod = mod
         self.found: list[str] = []
-        heard, known, patience = LOG.disabled, len(EXTENSIONS.faults), Patience.seconds
-        LOG.disabled, Patience.seconds = True, PATIENCE
+        heard, known, patience = LOG.disabled, len(EXTENSIONS.faults), Choice.patience
+        LOG.disabled, Choice.patience = True, PATIENCE
         try:
             with data_apart():
                 self._try_all()
         finally:
-            LOG.disabled, Patience.seconds = heard, patience
+            LOG.disabled, Choice.patience = heard, patience
             del EXTENSIONS.faults[known:]
 
     def _try_all(self) -> None:

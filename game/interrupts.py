@@ -15,24 +15,22 @@ from contextlib import contextmanager
 from pathlib import Path
 from types import FrameType
 
-_HERE = Path(__file__).parent
 CLOSING = [getattr(signal, name) for name in ("SIGINT", "SIGTERM", "SIGHUP") if hasattr(signal, name)]
 PATIENCE = 1.5  # s that what is in progress may take to end before it is cut off
 LEFT_OVER = 2.0  # s that threads may take to end after the program
 
 
-def is_program() -> bool:
-    """True if the process is the program: `pinjoint` or `python -m pinjoint` (called "-m" before Python has found it)."""
-    called = next(iter(sys.argv), "")
-    return Path(called).stem in ("pinjoint", "pinjoint-script", "-m") or Path(called).parent == _HERE
-
-
 @contextmanager
 def quietly_interrupted() -> Iterator[None]:
-    """Let Ctrl+C end the process at once, if it is the program itself; scripts handle it themselves."""
+    """Let Ctrl+C end the process at once, if it is the program itself; scripts handle it themselves.
+
+    `pinjoint` and `python -m pinjoint` are the program; that is called "-m" before Python has found it.
+    """
+    called = Path(next(iter(sys.argv), ""))
+    is_program = called.stem in ("pinjoint", "pinjoint-script", "-m") or called.parent == Path(__file__).parent
     usual = signal.getsignal(signal.SIGINT) is signal.default_int_handler
     in_main_thread = threading.current_thread() is threading.main_thread()
-    if not (usual and in_main_thread and is_program()):
+    if not (usual and in_main_thread and is_program):
         yield
         return
     signal.signal(signal.SIGINT, signal.SIG_DFL)

@@ -14,7 +14,6 @@ import pinjoint.editor.actions
 import pinjoint.lessons.actions  # noqa: F401 (they register them)
 from pinjoint.components.camera import Viewport
 from pinjoint.components.card import share_of
-from pinjoint.components.environment import Environment
 from pinjoint.components.extensions import EXTENSIONS
 from pinjoint.components.field import FieldError, Vector
 from pinjoint.components.language import begun, joined, listed, marked, tr
@@ -23,6 +22,7 @@ from pinjoint.components.mistake import WrongValue
 from pinjoint.components.model import Model
 from pinjoint.components.particle import Particle
 from pinjoint.components.rod import Rod
+from pinjoint.components.settings import Environment
 from pinjoint.components.suggestions import missing
 from pinjoint.components.table import Table
 from pinjoint.components.view import View

@@ -12,8 +12,6 @@ from hypothesis import HealthCheck, settings
 
 from pinjoint.components.language import ENGLISH, spoken
 from pinjoint.documents import library, preferences
-from pinjoint.systems import is_ours
-from pinjoint.systems.program import endless
 from pinjoint.systems.program.compiler import Choice
 
 ROOT = Path(__file__).resolve().parents[1]
@@ -50,13 +48,13 @@ def form_of_programs() -> Iterator[None]:
 @pytest.fixture(autouse=True)
 def kernels_of_tests(monkeypatch: pytest.MonkeyPatch) -> None:
     """Laws that tests declare begin interpreted, as ours do: compiling each would take most of the time of all tests."""
-    monkeypatch.setattr(endless, "is_ours", lambda module: str(module).startswith(("pinjoint.", "tests.")))
+    monkeypatch.setattr(Choice, "proved", ("pinjoint.", "tests."))
 
 
 @pytest.fixture
 def kernels_of_mods(kernels_of_tests: None, monkeypatch: pytest.MonkeyPatch) -> None:
     """Laws that the test declares are compiled before their first step, as those of mods are."""
-    monkeypatch.setattr(endless, "is_ours", is_ours)
+    monkeypatch.setattr(Choice, "proved", ("pinjoint.",))
 
 
 @pytest.fixture(autouse=True)

@@ -8,7 +8,6 @@ from types import MappingProxyType
 from typing import Any, NoReturn
 
 from pinjoint.components.clock import Clock
-from pinjoint.components.environment import Environment
 from pinjoint.components.extensions import EXTENSIONS
 from pinjoint.components.field import SAVED, Field
 from pinjoint.components.grid import Grid
@@ -19,7 +18,7 @@ from pinjoint.components.mistake import Mistake
 from pinjoint.components.model import Model
 from pinjoint.components.particle import Particle
 from pinjoint.components.rod import Rod
-from pinjoint.components.settings import Settings
+from pinjoint.components.settings import Environment, Settings
 from pinjoint.components.table import fields_of
 from pinjoint.components.wording import is_broken, quoted
 

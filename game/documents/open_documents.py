@@ -10,7 +10,7 @@ from typing import Any
 
 import numpy as np
 
-from pinjoint.components.collision_state import PersistentContacts
+from pinjoint.components.clock import PersistentContacts
 from pinjoint.components.field import SAVED
 from pinjoint.components.language import joined, plural, tr
 from pinjoint.components.load import load_ends

@@ -59,7 +59,7 @@ class Disc(IntEnum):
 
 
 FLIGHT = slice(Disc.UX, Disc.CY + 1)
-"""Columns that time changes: those of `FreeFlightState.motion` (components/collision_state.py)."""
+"""Columns that time changes: those of `FreeFlightState.motion` (components/clock.py)."""
 
 
 class Grid(NamedTuple):

@@ -7,7 +7,7 @@ import math
 import numpy as np
 from numpy.typing import NDArray
 
-from pinjoint.components.collision_state import PersistentContacts
+from pinjoint.components.clock import PersistentContacts
 from pinjoint.components.language import marked
 from pinjoint.components.model import Model
 from pinjoint.components.obstacles import any_obstacles, obstacles

@@ -12,9 +12,10 @@ import linecache
 import math
 import os
 import pickle
+import sys
 import threading
 import time
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from enum import Enum
 from functools import cached_property
@@ -30,7 +31,6 @@ from pinjoint.systems import cache
 from pinjoint.systems.interpreter import NoPlainForm, Rewriting, in_lists, plain_function, rewrite
 from pinjoint.systems.kernels import Kernel, Use
 from pinjoint.systems.program.binding import ProgramError
-from pinjoint.systems.program.endless import ending, others_of
 from pinjoint.systems.program.identity import key_of, reached_from
 
 # --- which form ------------------------------------------------------------------------------------
@@ -72,13 +72,16 @@ class Choice:
 
     changes: how often a program began, or changed its form, in this process; what steps cost is known until then.
     deadline: the time (time.perf_counter, s) from which on a step that is interpreted, and can be gone on with, raises
-    Unfinished.
+    Unfinished. patience: s that a call of kernels of others may take, apart from compiling. proved: how the names of modules
+    begin whose kernels give the same bits in both forms.
     """
 
     compile = _asked()
     changes = 0
     deadline = math.inf
     spent = 0.0  # s of interpreting, of all modules
+    patience = 600.0
+    proved = ("pinjoint.",)
 
 
 class Unfinished(Exception):
@@ -153,7 +156,8 @@ class GeneratedModule:
     @cached_property
     def others(self) -> list[Callable[..., Any]]:
         """The kernels that others wrote among those that it calls: interpreted, they might give other bits."""
-        return others_of(self._source_and_kernels[1].values())
+        called = (kernel for kernel in self._source_and_kernels[1].values() if callable(kernel))
+        return [kernel for kernel in called if not str(kernel.__module__).startswith(Choice.proved)]
 
     @property
     def functions(self) -> dict[str, Kernel]:
@@ -402,6 +406,45 @@ class Between:
             form = self.module.form if self.module.is_loaded else self.module.load()
             return [addressed(getattr(form, kernel.py_func.__name__)) for kernel in self.kernels]
         return [in_lists(kernel) for kernel in self.kernels]
+
+
+# --- calls that do not end ---------------------------------------------------------------------------
+#
+# Nothing can stop machine code but the end of the process. A run of a mod with a loop that does not end hung in silence,
+# and heard no Ctrl+C.
+
+
+def ending(function: Callable[..., Any], kernels: Iterable[Callable[..., Any]]) -> Callable[..., Any]:
+    """A function that calls one of these kernels, and ends the process if it does not return."""
+
+    def called(*given: Any) -> Any:
+        ended = threading.Event()
+        threading.Thread(target=_end, args=(ended, Choice.patience, kernels), daemon=True).start()
+        try:
+            return function(*given)
+        finally:
+            ended.set()
+
+    return called
+
+
+def _end(ended: threading.Event, seconds: float, kernels: Iterable[Callable[..., Any]]) -> None:
+    for _ in range(30):  # a compiler at work is waited for in between: it takes long where a machine is busy
+        compiler = sys.modules.get("numba.core.compiler_lock")
+        with compiler.global_compiler_lock if compiler is not None else contextlib.nullcontext():
+            pass
+        if ended.wait(seconds / 30.0):
+            return
+    codes = [plain_function(kernel).__code__ for kernel in kernels]
+    places = ", ".join(f"{code.co_name} ({code.co_filename}, {code.co_firstlineno})" for code in codes)
+    said = tr(
+        "A step has not ended for {seconds:g} s. It calls kernels of mods: {kernels}. Mend the loop that does not end,"
+        " or run without the mod.",
+        seconds=seconds,
+        kernels=places,
+    )
+    print(f"pinjoint: {said}", file=sys.stderr, flush=True)
+    os._exit(1)
 
 
 # --- on disk ---------------------------------------------------------------------------------------

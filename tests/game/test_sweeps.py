@@ -114,14 +114,6 @@ def test_variants_leave_nothing_behind(name: str) -> None:
     assert compute(plan, range(plan.size)[::-1]).outcomes == alone[::-1]
 
 
-def test_load_factors_are_rows_of_a_variant() -> None:
-    found = sweep(
-        square(), ["rods.CD.compressive_strength=50,60"], ["rods.CD.plastic_strain"], Analysis((1.0, 0.0))
-    )
-    assert found["load_factor"].tolist() == [1.0, 0.0, 1.0, 0.0]
-    assert found["variant"].tolist() == [0, 0, 1, 1]
-
-
 def test_ranges_lists_and_values_from_python() -> None:
     def taken(vary: Any) -> list[Any]:
         return sweep(MODEL, vary, ["residual"], STATIC).columns[STIFFNESS]

@@ -29,8 +29,8 @@ def bad(particles_position):
 RUN = """
 import json, sys
 from pinjoint import Session
-from pinjoint.systems.program.endless import Patience
-Patience.seconds = {seconds}
+from pinjoint.systems.program.compiler import Choice
+Choice.patience = {seconds}
 print("runs", flush=True)
 Session.open(json.loads(sys.argv[1]), mods=[sys.argv[2]]).run(time=0.1)
 """
@@ -61,8 +61,8 @@ def test_a_kernel_that_does_not_end_is_named(write_mod: Write, form: str) -> Non
 COMPILES = """
 import numpy
 from numba import njit
-from pinjoint.systems.program.endless import Patience, ending
-Patience.seconds = 0.3
+from pinjoint.systems.program.compiler import Choice, ending
+Choice.patience = 0.3
 sorts = njit(lambda numbers: numpy.sort(numbers).sum() + numpy.unique(numbers).sum())
 print(ending(sorts, [sorts.py_func])(numpy.ones(3)))
 """

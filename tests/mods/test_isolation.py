@@ -231,37 +231,6 @@ def test_of_several_mods_that_act_the_one_that_spoils_the_run_is_found(write_mod
     assert [mod.name for mod in mods.MODS if mod.off] == ["apple"]
 
 
-HISTORY = """
-from pinjoint.components import HistoryKind
-from numba import njit
-
-@njit
-def factor(time, values, first):
-    {body}
-    return 1.0
-
-def plugin(app):
-    app.history(HistoryKind("apple", {{"a": 1.0}}, {factor}, 1.0, {ends}))
-"""
-
-
-@pytest.mark.parametrize(
-    ("body", "ends", "said"),
-    [
-        ("values[first] = 2.0", "lambda history: 0.0", "loads.apple does not compile"),
-        ("pass", "lambda history: history['b']", "KeyError: 'b' (apple/__init__.py, line 11)"),
-    ],
-)
-def test_a_history_that_fails(session: Any, body: str, ends: str, said: str) -> None:
-    made, _ = session(HISTORY.format(body=body, ends=ends, factor="factor"))
-    session_with = {**TRUSS, "loads": [{"on": "C", "force": [1.0, 0.0], "history": {"kind": "apple"}}]}
-    made.open_here(session_with)
-    before = document(made.model)
-    with pytest.raises(mods.ModError, match="The mod 'apple' was switched off"):
-        made.run(time=0.01)
-    check_switched_off(made, before, said)
-
-
 # --- what is seen and pressed --------------------------------------------------------------------------------------
 
 
@@ -274,32 +243,6 @@ def test_an_action_that_fails_changes_nothing(session: Any) -> None:
     check_switched_off(made, before, "the action 'apple.a' failed: ZeroDivisionError: division by zero (apple/")
     made.press("ctrl+shift+j")
     assert "is switched off" in made.notice
-
-
-@pytest.mark.parametrize("method", ["enter", "hint", "busy"])
-def test_a_scene_that_fails_leads_back_to_pause(session: Any, method: str) -> None:
-    code = f"""
-from pinjoint.editor.scenes import Scene
-
-class Bad(Scene):
-    name = "bad"
-    sources = ("pause",)
-
-    def {method}(self, *arguments):
-        raise RuntimeError("no luck")
-
-def plugin(app):
-    app.scene(Bad)
-    app.action("apple.go", key="ctrl+shift+j")(lambda session, pixel: session.scenes.request("bad"))
-"""
-    made, before = session(code)
-    made.press("ctrl+shift+j")
-    for _ in range(3):
-        made.frame(0.01)
-    assert made.scene == "pause"
-    check_switched_off(
-        made, before, "the scene 'bad' failed: RuntimeError: no luck (apple/__init__.py, line 9)"
-    )
 
 
 INTEGRATOR = """

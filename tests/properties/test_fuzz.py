@@ -7,17 +7,17 @@ import pytest
 from tests.properties import damage
 from tests.properties.bounds import checked, fuzzing
 
-PERSONS = "editing", "windows", "--actions", "150"
+PERSONS = "editing", "windows", "--actions"
 
 
 def test_anything_that_a_person_does_interpreted(fresh_process: Callable[..., str]) -> None:
     interpreted = {"PINJOINT_COMPILE": "never"}
-    fresh_process(fuzzing(*PERSONS, "--count", "3", "--seed", "105"), interpreted, timeout=800.0)
+    fresh_process(fuzzing(*PERSONS, "150", "--count", "3", "--seed", "105"), interpreted, timeout=800.0)
 
 
 def test_whatever_a_person_does_stays_within_arrays() -> None:
-    """Every program is compiled for it, with checks: few persons, in one process."""
-    done = checked(fuzzing(*PERSONS, "--count", "2", "--seed", "50"))
+    """Every program is compiled for it, with checks: one person who does much, in one process."""
+    done = checked(fuzzing(*PERSONS, "300", "--count", "1", "--seed", "50"))
     assert done.returncode == 0, done.stdout
 
 

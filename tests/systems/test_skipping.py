@@ -8,8 +8,8 @@ from typing import Any
 import pytest
 
 from pinjoint import Session
-from pinjoint.components.environment import Environment
 from pinjoint.components.rod import Rod
+from pinjoint.components.settings import Environment
 from pinjoint.documents import models
 from pinjoint.systems.base import Phase
 

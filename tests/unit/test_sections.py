@@ -162,10 +162,10 @@ def test_overrides_choose_sections_and_take_them_away() -> None:
             {"section": "IPE 205"},
             r"\$.rods\[0\].section \(rod AB\): there is no section 'IPE 205'; IPE sections have these sizes: 80",
         ),
-        ({"section": 200}, r"section is 200; it must be a name\."),
+        ({"section": 200}, r"section is 200; it must be a text\."),
         ({"section": "rectangle 0×500"}, "no section 'rectangle 0×500'; write it like IPE 200"),
         ({"material": "steal"}, r"There is no 'steal' among the materials; choose one of S235"),
-        ({"material": ["S235"]}, "it must be a name"),
+        ({"material": ["S235"]}, "it must be a text"),
         (
             {"section": "IPE 200", "area": 1e-2},
             r"area is 100 cm², but IPE 200 has another value; leave out one",

@@ -11,13 +11,13 @@ from numpy.typing import NDArray
 
 from pinjoint.components.commands import Assign, Command, Delete, Group
 from pinjoint.components.derived import DERIVATIONS
-from pinjoint.components.environment import Environment
 from pinjoint.components.field import FieldError, Role
 from pinjoint.components.grid import Grid
 from pinjoint.components.load import Load
 from pinjoint.components.model import KINDS, Model
 from pinjoint.components.particle import DEFAULT_MASS, Particle
 from pinjoint.components.rod import Rod, spawn_rods
+from pinjoint.components.settings import Environment
 from pinjoint.components.tags import DiagramShown, Selected
 from pinjoint.components.world import Derivation, World
 from tests.reference.lines import lines_run

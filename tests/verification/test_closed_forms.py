@@ -105,27 +105,15 @@ def test_undamped_energy_stays_bounded_over_a_million_steps() -> None:
     assert conserved == pytest.approx([conserved[0]] * 1000, rel=1e-10)
 
 
-def test_suddenly_applied_load_has_the_factor_two() -> None:
-    """Undamped from rest under F: u = (F/k) (1 − cos ω'nh), whose maximum is twice the static value."""
-    size, force = 1e-4, 0.5
-    session = Session.open(oscillator(OMEGA, force=force) | {"settings": {"time_step": size}})
-    static = force * 1000 / (2.0 * OMEGA**2)
-    largest = 0.0
-    for _ in range(700):
-        session.run(steps=1)
-        largest = max(largest, moving(session)[0] / static)
-    assert 2.0 - (OMEGA * size) ** 2 / 4 <= largest <= 2.0 + 1e-12
-
-
-@pytest.mark.parametrize("zeta", [0.05, 0.3])
+@pytest.mark.parametrize("zeta", [0.0, 0.05, 0.3])
 def test_overshoot_of_a_damped_step_response(zeta: float) -> None:
-    """Largest displacement over the static one: 1 + e^(−πζ/√(1−ζ²))."""
+    """Largest displacement over the static one: 1 + e^(−πζ/√(1−ζ²)), twice without damping."""
     size, force = 1e-4, 0.5
     session = Session.open(oscillator(OMEGA, zeta, force=force) | {"settings": {"time_step": size}})
     static = force * 1000 / (2.0 * OMEGA**2)
     largest = 0.0
     for _ in range(800):
-        session.run(steps=1)
+        session.simulation.advance(1)
         largest = max(largest, moving(session)[0] / static)
     assert largest == pytest.approx(closed_forms.step_overshoot(zeta), abs=(OMEGA * size) ** 2)
 
@@ -143,7 +131,7 @@ def test_ramp_response(time: float) -> None:
     assert found == pytest.approx(expected, abs=(OMEGA * size) ** 2 * max(OMEGA * time, 1.0) / 12)
 
 
-@pytest.mark.parametrize("share", [0.6, 0.8, 0.9])
+@pytest.mark.parametrize("share", [0.6, 0.8])
 def test_elastic_plastic_ductility(share: float) -> None:
     """Undamped, force suddenly F = share × strength: u_max/u_yield = 1/(2 (1 − F/R))."""
     strength, size = 1.0, 2e-5
@@ -154,7 +142,7 @@ def test_elastic_plastic_ductility(share: float) -> None:
     largest = before = 0.0
     while (displacement := moving(session)[0]) >= before:
         largest = before = displacement
-        session.run(steps=1)
+        session.simulation.advance(1)
     assert largest / yielded == pytest.approx(closed_forms.elastoplastic_ductility(share), rel=1e-5)
     assert session.rods["AB"].plastic_strain == pytest.approx(largest - yielded, rel=1e-9)
 

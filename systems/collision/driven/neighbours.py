@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from pinjoint.components.collision_state import PersistentContacts
+from pinjoint.components.clock import PersistentContacts
 from pinjoint.components.field import Role
 from pinjoint.components.model import Model
 from pinjoint.components.obstacles import obstacles

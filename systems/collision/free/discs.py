@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from pinjoint.components.collision_state import FreeFlightState
+from pinjoint.components.clock import FreeFlightState
 from pinjoint.components.obstacles import NO_OBSTACLES, Obstacles
 from pinjoint.systems.broad_phase import nearest
 from pinjoint.systems.collision.columns import (

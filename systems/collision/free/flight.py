@@ -11,7 +11,7 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import NDArray
 
-from pinjoint.components.collision_state import FreeFlightState
+from pinjoint.components.clock import FreeFlightState
 from pinjoint.components.field import Role
 from pinjoint.components.handle import Handle
 from pinjoint.components.load import loads_end

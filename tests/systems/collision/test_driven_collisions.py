@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 
 from pinjoint import Session
-from pinjoint.components.collision_state import PersistentContacts
+from pinjoint.components.clock import PersistentContacts
 from pinjoint.components.particle import Particle
 from pinjoint.components.rod import spawn_rods
 from pinjoint.systems.collision.columns import Contact, Group

@@ -124,12 +124,3 @@ def test_arrows_point_along_the_force_and_meet_the_rim() -> None:
     lengths = {row: np.hypot(*whole) for row, (_, whole) in by_row.items()}
     assert lengths[2] == pytest.approx(1.5 * lengths[1])
     assert {"1.000 kN", "2.000 kN", "3.000 kN", "0.0001100 kN"} <= set(picture.texts)
-
-
-def test_a_load_on_a_crowded_side_pushes_from_the_free_one() -> None:
-    """The load on top of the triangle stands above it; its head ends at the rim."""
-    model = triangle()
-    view = view_of(model, all_diagrams=True)
-    top = view.camera.to_pixels((1.0, 1.0))
-    [tip] = [tip for tail, tip in arrows_of(compose(model, view, LIGHT), LIGHT.load) if tail[1] < tip[1]]
-    np.testing.assert_allclose(tip, top - [0, 0.05 * view.camera.scale + 2.0])
