@@ -213,8 +213,3 @@ class Clock(Handle):
         doc="All state after the last whole step, where the present moment lies within the next; edits end it.",
         checker=check_departure,
     )
-
-
-def is_error_controlled(clock: Clock) -> bool:
-    """True if the integrator chooses each step by its error, to which any stiffness is good."""
-    return clock.step_limit > 0.0 or clock.step_error > 0.0

@@ -98,6 +98,17 @@ def bending(world: World) -> None:
     rods = world.tables["rods"]
     length, stiffness = rods.rest_length, rods.bending_stiffness
     rigid: Column = ~rods.hinged & np.stack([stiffness, stiffness], axis=1).astype(bool)
+    if not rigid.any():
+        for name in (
+            "end_stiffness",
+            "end_damping",
+            "initial_slopes",
+            "load_shares",
+            "bowing",
+            "turning_shares",
+        ):
+            world.writable(f"rods.{name}")[...] = 0.0
+        return
     both = np.asarray(rigid.all(axis=1))
     start, end = (rigid & ~both[:, None]).T  # the only rigid end
 
@@ -140,6 +151,10 @@ def inertias(world: World) -> None:
     ends, length = rods.between.ravel(), rods.rest_length
     count = np.bincount(ends, minlength=particles.count)
     rigid = (rods.turning_shares > 0.0).ravel()
+    if not rigid.any():
+        for name in ("inertia", "turning"):
+            world.writable(f"particles.{name}")[...] = 0.0
+        return
     with np.errstate(all="ignore"):  # such numbers are reported before a run
         radius = np.minimum(1.5 * rods.bending_stiffness / rods.stiffness, length**2 / 24.0)
         mass = np.repeat(rods.density * length, 2)

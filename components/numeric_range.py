@@ -15,21 +15,26 @@ from pinjoint.components.wording import cut
 UNKNOWN_SHARE = 1e-3  # of a radius: how well places must be known for impacts
 
 _TABLES = ("particles", "rods", "loads", "environment", "settings")
-_FOLLOWING = ("rest_length", "mass")  # derived, from positions that may be too near or too far
-_OF_SECTIONS = "stiffness", "bending_stiffness"  # derived, as E·A and E·I
-_OF_ROTATIONS = "inertia"  # derived, from bending stiffnesses
-# State that a person can type.
-_MOVING = ("displacement", "velocity", "rotation", "angular_velocity", "plastic_strain")
+# What is checked besides what a person made: state that a person can type; and what follows, from positions that may be
+# too near or too far, as E·A and E·I, and from bending stiffnesses.
+_OTHERS = (
+    *("displacement", "velocity", "rotation", "angular_velocity", "plastic_strain"),
+    *("rest_length", "mass", "stiffness", "bending_stiffness", "inertia"),
+)
 
 
-def incomputable(model: Model) -> str:
-    """The sentence that names a number too large or too small to compute with; "" if there is none."""
+def incomputable(model: Model, since: int = -1) -> str:
+    """The sentence that names a number too large or too small to compute with; "" if there is none.
+
+    since: a revision of the model at which there was none.
+    """
     for name in _TABLES:
         table = model.tables[name]
         for field in table.fields.values():
-            if is_computed_with(field):
+            if field.dtype is float and (field.role is Role.DOCUMENT or field.name in _OTHERS):
                 column = table.column(field.name)
-                for row, *axis in np.argwhere(is_extreme(field, column))[:1].tolist():
+                if table.version(field.name) > since and (extreme := _extreme(field, column)).any():
+                    row, *axis = np.argwhere(extreme)[0].tolist()
                     return _sentence(model.describe(table[row]), field, float(column[(row, *axis)]))
     return _too_far(model)
 
@@ -52,22 +57,15 @@ def _too_far(model: Model) -> str:
     return ""
 
 
-def is_extreme(field: Field[Any], column: Column) -> Column:
+def _extreme(field: Field[Any], column: Column) -> Column:
     """Which numbers of a column are too large or too small to compute with, in the shape of the column."""
     size = np.abs(column)
     extreme: Column = (size > LARGEST) & np.isfinite(size)
-    if field.above == 0.0 or field.name in _FOLLOWING:
+    if field.above == 0.0:
         extreme |= size < SMALLEST
-    if field.name == _OF_ROTATIONS:
+    if field.name == "inertia":
         extreme |= (size < SMALLEST) & (size > 0.0)  # 0: it does not turn
     return extreme
-
-
-def is_computed_with(field: Field[Any]) -> bool:
-    """True if the numbers of a Field are checked: those that a person made or can type, and some that follow."""
-    return field.dtype is float and (
-        field.role is Role.DOCUMENT or field.name in (*_FOLLOWING, *_MOVING, *_OF_SECTIONS, _OF_ROTATIONS)
-    )
 
 
 def _sentence(element: str, field: Field[float], value: float) -> str:

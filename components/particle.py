@@ -73,7 +73,10 @@ class Particle(Handle):
         overrides="inertia",
     )
     mass: Field[float] = derived(
-        "kg", default=DEFAULT_MASS, doc="As given, or half the mass of each attached rod, or 1 kg without rods."
+        "kg",
+        default=DEFAULT_MASS,
+        above=0.0,
+        doc="As given, or half the mass of each attached rod, or 1 kg without rods.",
     )
     mobility: Field[Vector] = derived(
         "m/s²/kN", shape=(2,), doc="Acceleration per force in each direction: 1000/mass, 0 where constrained."

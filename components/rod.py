@@ -181,7 +181,7 @@ class Rod(Handle):
         "kN·m²", doc="EI: as given, or Young's modulus × second moment, or 0: pinned at both ends."
     )
     rest_length: Field[float] = derived(
-        "m", doc="As given, or the distance between the original positions.", shown=CM
+        "m", above=0.0, doc="As given, or the distance between the original positions.", shown=CM
     )
     difference: Field[tuple[float, float]] = derived(
         "m",

@@ -181,9 +181,9 @@ class Table(Generic[H]):
         """The column as a read-only view, shape (count, ...), derived columns up to date."""
         storage = self.current(name)
         shown = self._shown.get(name)
-        if shown is None or shown[0] is not storage:
-            shown = self._shown[name] = storage, read_only(storage)
-        return shown[1][: self.count]
+        if shown is None or shown[0] is not storage or len(shown[1]) != self.count:
+            shown = self._shown[name] = storage, read_only(storage)[: self.count]
+        return shown[1]
 
     def current(self, name: str) -> Column:
         """The column's storage, over its whole capacity, derived columns up to date."""

@@ -29,7 +29,7 @@ H = TypeVar("H", bound=Handle)
 _world_numbers = itertools.count(1)
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Derivation:
     """How derived columns follow from others: `compute` writes `targets` once any of `sources` changed."""
 
@@ -271,14 +271,13 @@ class World:
     def refresh(self, name: str) -> None:
         """Bring a derived column, named "table.field", up to date."""
         derivation = self._derivations.get(name)
-        if derivation is None or self._derived_at[derivation] == self.revision:
+        if derivation is None or (known := self._derived_at[derivation]) == self.revision:
             return
-        if max(self.newest(*self._roots_of(derivation)), self.structure) <= self._derived_at[derivation]:
-            return
-        newest = max(self.version(source) for source in derivation.sources)
-        new_rows = max(self.tables[target.split(".")[0]].structure for target in derivation.targets)
-        if max(newest, new_rows) > self._derived_at[derivation]:
-            derivation.compute(self)
+        if max(self.newest(*self._roots_of(derivation)), self.structure) > known:
+            new_rows = (self.tables[target.split(".")[0]].structure for target in derivation.targets)
+            sources = map(self.version, derivation.sources)
+            if any(changed > known for changed in itertools.chain(sources, new_rows)):
+                derivation.compute(self)
         self._derived_at[derivation] = self.revision
 
     def _roots_of(self, derivation: Derivation) -> tuple[Role, ...]:

@@ -33,19 +33,19 @@ def as_csv(rows: Iterable[Iterable[Any]]) -> str:
     A spreadsheet takes a text that begins with =, +, -, @, a tabulator or a carriage return for a formula: such a text, or
     one with apostrophes before that, gets an apostrophe in front, which a reader takes away again.
     """
+
+    def cell(value: Any) -> Any:
+        if isinstance(value, str) and value.lstrip("'").startswith(_FORMULA):
+            return f"'{value}"
+        return int(value) if isinstance(value, bool) else value
+
     text = io.StringIO()
     usual = csv.writer(text, lineterminator="\n")  # leaves carriage returns bare
     quoted = csv.writer(text, lineterminator="\n", quoting=csv.QUOTE_NONNUMERIC)
     for row in rows:
-        cells = [_cell(value) for value in row]
+        cells = list(map(cell, row))
         (quoted if any(isinstance(cell, str) and "\r" in cell for cell in cells) else usual).writerow(cells)
     return text.getvalue()
-
-
-def _cell(value: Any) -> Any:
-    if isinstance(value, str) and value.lstrip("'").startswith(_FORMULA):
-        return f"'{value}"
-    return int(value) if isinstance(value, bool) else value
 
 
 def number(value: float, digits: int = DIGITS, *, nothing: float = 0.0) -> str:

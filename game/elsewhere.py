@@ -238,7 +238,14 @@ def started(jobs: Mapping[Job, bytes], urgent: bool) -> subprocess.Popen[str]:
 def main() -> None:
     """Compile jobs into the cache."""
     task = msgspec.msgpack.decode(sys.stdin.buffer.read(), type=Task)
-    threading.Thread(target=_end_after, args=(task.asker,), daemon=True).start()
+
+    def end_after_asker() -> None:
+        """However that ends; where it is not told, this process ends when it is done."""
+        while os.getppid() == task.asker:
+            time.sleep(0.2)
+        os._exit(1)
+
+    threading.Thread(target=end_after_asker, daemon=True).start()
     if hasattr(os, "nice"):  # to what runs at the same time, the window above all
         os.nice(19 if task.later else 5)
     gc.disable()  # looking through all that the compiler makes would take a fifth of the time
@@ -248,13 +255,6 @@ def main() -> None:
     for job, place in task.jobs:
         print(problem_of(job, task.documents[place]), flush=True)
     forget_unused()
-
-
-def _end_after(parent: int) -> None:
-    """End with the process that waits for this one, however that ends; where that is not told, after it is done."""
-    while os.getppid() == parent:
-        time.sleep(0.2)
-    os._exit(1)
 
 
 def described(model: Model) -> bytes:

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import math
 import re
-from collections.abc import Callable, Collection, Container, Iterator, Mapping
+from collections.abc import Callable, Collection, Container, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass
 from typing import Any, Protocol
@@ -70,6 +70,18 @@ class Target:
         """The component of a value that the path names; the whole value if the path has no axis."""
         return value[self.field.axes.index(self.axis)] if self.axis else value
 
+    def give(self, new: Any) -> None:
+        """Give every element this value, or this part of its value, as one undoable command. Raises FieldError."""
+        self.give_each([new] * len(self.handles))
+
+    def give_each(self, values: Sequence[Any]) -> None:
+        """The same with a value for each element."""
+        if self.axis:
+            place = self.field.axes.index(self.axis)
+            old = (getattr(handle, self.field.name) for handle in self.handles)
+            values = [(*o[:place], new, *o[place + 1 :]) for o, new in zip(old, values, strict=True)]
+        self.table.world.assign(self.handles, self.field.name, values)
+
 
 Keys = Callable[[Table[Any]], Mapping[str, Field[Any]]]  # the facts of a table that may be named, by key
 
@@ -117,7 +129,7 @@ def _parts(key: str, field: Field[Any]) -> str:
 
 def locate_one(model: Model, path: str, keys: Keys = readable) -> Target:
     """The target of a path of one element, with nothing after it. Raises PathError, which quotes the path."""
-    with _quoted(path):
+    with quoted(path):
         target, rest = locate(model, path, keys)
         if rest:
             raise PathError("'{rest}' does not belong to the path; leave it out.", rest=cut(rest))
@@ -133,7 +145,7 @@ def energy_named(name: str) -> str:
 
 
 @contextmanager
-def _quoted(text: str) -> Iterator[None]:
+def quoted(text: str) -> Iterator[None]:
     """Begin the message of an error with the text that a person wrote."""
     try:
         yield
@@ -200,7 +212,7 @@ def apply_override(model: Model, override: str) -> None:
 
     One undoable command. Raises PathError, which quotes the override.
     """
-    with _quoted(override):
+    with quoted(override):
         target, rest = locate(model, override, settable)
         if not rest.startswith("="):
             raise PathError("it has no value; {form}.", form=tr(OVERRIDE_FORM))
@@ -208,23 +220,13 @@ def apply_override(model: Model, override: str) -> None:
             raise PathError(
                 "the model has no {table}; add some, or leave this out.", table=tr(target.table.name)
             )
-        model.assign(target.handles, target.field.name, _values(target, rest[1:].strip()))
+        target.give(read_value(target, rest[1:].strip()))
 
 
 def read_value(target: Target, text: str) -> Any:
     """The value that a text means for a target; the text itself if it means none, which the field then refuses."""
     whole = target.field.shape and not target.axis
     return _vector(target.field, text) if whole else _scalar(target.field, text)
-
-
-def _values(target: Target, text: str) -> list[Any]:
-    """One value per element."""
-    new = read_value(target, text)
-    if not target.axis:
-        return [new] * len(target.handles)
-    old = [getattr(handle, target.field.name) for handle in target.handles]
-    place = target.field.axes.index(target.axis)
-    return [(*value[:place], new, *value[place + 1 :]) for value in old]
 
 
 def _vector(field: Field[Any], text: str) -> tuple[Any, ...]:
@@ -285,7 +287,7 @@ def quantity(model: Model, path: str) -> Quantity:
         return Quantity(path, "t", "s", lambda session: session.time)
     table, _, rest = path.partition(".")
     if table == "energy":
-        with _quoted(path):
+        with quoted(path):
             name = energy_named(rest)
         return Quantity(path, name.replace("_", " "), "J", lambda session: session.energy.as_dict()[name])
     if table not in model.tables or not rest:

@@ -32,7 +32,7 @@ from pinjoint.documents.format import ModelError
 from pinjoint.documents.open_documents import ModelFile, Source, file_of
 from pinjoint.editor.context import Context
 from pinjoint.editor.frame import Actions, Exaggerate, Frame, HeadlessFrame, ShowView
-from pinjoint.editor.routing import Layer, for_tools, hit_at, layer, meaning
+from pinjoint.editor.routing import for_tools, hit_at, meaning
 from pinjoint.editor.scenes import all_scenes, scene_systems
 from pinjoint.editor.scenes.files import FileScene
 from pinjoint.editor.sliders import slider_stack, sliders_of
@@ -105,7 +105,7 @@ class Session(Context):
         # Called with every press and after every change of size; set by a recorder.
         self.on_press: Callable[[str, Vector | None], None] | None = None
         self.on_resize: Callable[[], None] | None = None
-        self._clicked: Layer | None = None  # what took the last press, if that was a click
+        self._clicked: tuple[object, ...] | None = None  # what took the last press, if that was a click
         self.extent = (
             self.view.camera.viewport.width,
             self.view.camera.viewport.height,
@@ -421,7 +421,7 @@ class Session(Context):
             return
         pixel = self.pointer if pixel is None else _near(pixel)
         hit = hit_at(self, key, pixel)
-        here = layer(self, hit)
+        here = self.scene, self.view.menu is not None, self.view.help > 0, hit and hit.action
         if key == "double click" and self._clicked not in (None, here):
             return  # its first click led here, and the second is not meant for what is here
         (name, at), pressed = meaning(self, key, pixel, hit), pixel

@@ -82,7 +82,11 @@ class Schedule:
         found: dict[System, list[System]] = {}
         for system in self._systems:
             for name in (system.replaces,) if isinstance(system.replaces, str) else system.replaces:
-                others = [s for s in self._systems if s is not system and _is_called(s, name)]
+                others = [
+                    s
+                    for s in self._systems
+                    if s is not system and (s.name == name or s.name.startswith(f"{name}."))
+                ]
                 if not others:
                     raise ScheduleError(
                         "{system} replaces '{name}', but there is no such system; {remedy}",
@@ -263,11 +267,6 @@ class Schedule:
                 started = time.perf_counter()
                 self.call(system, frame)
                 self.seconds[system.name] += time.perf_counter() - started
-
-
-def _is_called(system: System, name: str) -> bool:
-    """True if a system has a name, or is of the family of that name."""
-    return system.name == name or system.name.startswith(f"{name}.")
 
 
 def _role(system: System) -> type:

@@ -192,7 +192,7 @@ def _lines(tables: Tables, convention: str, found: Mapping[str, Any]) -> Iterato
     from pinjoint.force_method import index, words
     from pinjoint.force_method.tables import PRODUCTS
 
-    solution, units = tables.solution, tables.units
+    solution = tables.solution
     yield from aligned(_rows(found))
     if not solution.unknowns or convention == THESIS:
         return
@@ -215,7 +215,7 @@ def _lines(tables: Tables, convention: str, found: Mapping[str, Any]) -> Iterato
             yield ""
             yield from aligned(table[:])
     yield ""
-    yield from words.equations(solution, units.all, units.factor)
+    yield from words.equations(tables)
     yield from _forces(tables)
 
 

@@ -9,7 +9,7 @@ from pathlib import Path
 from pinjoint.commands.arguments import Parser, UsageError
 from pinjoint.commands.options import ANSWERED, NOT_ANSWERED, STOPPED, add_analysis, add_model, analysis_of
 from pinjoint.commands.reports.report import FOUND
-from pinjoint.components.language import plural, tr
+from pinjoint.components.language import tr
 from pinjoint.streams import tell
 from pinjoint.sweeps import sweep
 from pinjoint.sweeps.variation import FORMS
@@ -46,17 +46,6 @@ def command(words: Sequence[str]) -> int:
         file, reason = error.filename or options.output, error.strerror
         message = tr("{file} cannot be written: {reason}. Choose another file.", file=file, reason=reason)
         raise UsageError(message) from None
-    for fault, count in results.faults.items():
-        print(
-            plural(
-                "One variant was computed alone, because computing it together with others failed: {fault}",
-                "{count} variants were computed one by one, which is slower, because computing them together failed:"
-                " {fault}",
-                count,
-                fault=fault,
-            ),
-            file=sys.stderr,
-        )
     counts = results.counts()
     told = {
         "file": options.output,

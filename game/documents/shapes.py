@@ -167,8 +167,8 @@ def mode_shapes(model: Model, most: int | None = None) -> list[Shape]:
     else of the unloaded structure, less its mechanisms.
     """
     from pinjoint.systems.statics.state import Start
-    from pinjoint.systems.statics.theory import indeterminacy
-    from pinjoint.systems.statics.vibration import FULL, rests_under_load, vibrations
+    from pinjoint.systems.statics.theory import FULL, indeterminacy
+    from pinjoint.systems.statics.vibration import rests_under_load, vibrations
 
     if model.rods.count == 0:
         return []

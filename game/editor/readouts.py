@@ -67,7 +67,6 @@ _ERRORS = {
     "relative_rotation": marked("error of rotations"),
     "relative_bending_moment": marked("error of bending moments"),
 }
-_INSTABILITIES = {"snap-through": marked("snap-through"), "bifurcation": marked("bifurcation")}
 
 
 def own_readouts(context: Context) -> Iterator[Readout]:
@@ -180,6 +179,8 @@ def _theory(context: Context) -> Iterator[Readout]:
 
 
 def _overview(context: Context, theory: Theories, comparison: Comparison) -> Iterator[tuple[str, str]]:
+    from pinjoint.systems.statics.verify import JUMPS
+
     settlement = theory.settlement
     yield from _verdict(context, comparison)
     count, degrees = counted(context.model), context.document.assessment.indeterminacy
@@ -199,9 +200,9 @@ def _overview(context: Context, theory: Theories, comparison: Comparison) -> Ite
             tr("{status} at {share} of the load", status=tr(settlement.status), share=share),
         )
     for event in settlement.events:
-        if event.kind in _INSTABILITIES:
+        if event.kind in JUMPS:
             yield (
-                tr(_INSTABILITIES[event.kind]),
+                tr(event.kind),
                 tr("at {share} of the load", share=written.share(event.load_factor)),
             )
     for way, title in _WORST.items():

@@ -11,15 +11,10 @@ from pinjoint.systems.render.picture import hits_at
 from pinjoint.systems.render.sliders import SLIDER
 from pinjoint.systems.render.theme import load_theme
 
-CLICKS = ("click", "ctrl+click", "double click", "drag", "ctrl+drag")  # the pointer may slip in a click
-BUTTONS = (*CLICKS, "right click")
+BUTTONS = ("click", "ctrl+click", "double click", "drag", "ctrl+drag", "right click")
 WHEEL = ("wheel up", "wheel down")
 AT_POINTER = (*BUTTONS, *WHEEL)
 DIGITS = frozenset("0123456789.,-+")
-
-Layer = tuple[
-    str, bool, int, str | None
-]  # the scene, whether a menu and the help are open, and what is pressed
 
 
 def hit_at(context: Context, key: str, pixel: Vector) -> Hit | None:
@@ -35,12 +30,6 @@ def hit_at(context: Context, key: str, pixel: Vector) -> Hit | None:
             if taken and not (isinstance(hit.item, Readout) and context.performing):
                 return hit if hit.action is not None else None
     return None
-
-
-def layer(context: Context, hit: Hit | None) -> Layer:
-    """What takes a click."""
-    view = context.view
-    return context.scene, view.menu is not None, view.help > 0, hit.action if hit is not None else None
 
 
 def meaning(context: Context, key: str, pixel: Vector, hit: Hit | None) -> tuple[str | None, Vector]:

@@ -7,7 +7,6 @@ from collections.abc import Sequence
 from dataclasses import replace
 from typing import Any
 
-from pinjoint.components.box import Box
 from pinjoint.components.field import Field
 from pinjoint.components.handle import Handle
 from pinjoint.components.language import begun, decimals, joined, marked, tr
@@ -190,12 +189,6 @@ def add_slider(context: Context, elements: Sequence[Handle], field: str, axis: s
         context.view.fit(model)
     context.notice = tr("New slider at the lower left: {title}", title=_title(model, aims[0], first, found))
     return slider
-
-
-def add_slider_for(context: Context, box: Box) -> Slider:
-    """Put a slider for the number in a box of properties on the canvas. Raises Refusal."""
-    _, field, axis = f"{box.target}.".split(".")[:3]
-    return add_slider(context, box.elements, field, axis)
 
 
 def _around(model: Model, field: Field[Any], value: float, aims: tuple[Aim, ...]) -> Slider:

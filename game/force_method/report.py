@@ -287,7 +287,7 @@ class _Page:
         if solved.bends and len(every) <= PRODUCTS and (self._pulls or settlements is not None):
             space = " " if len(every) == 1 else "\u00a0"  # the lines of several are parted between sums
             sums = _APART.join(line.replace(" ", space) for line in solved.all_sums())
-            sums = tr("Bending and axial forces ({units}):  {sums}", units=solved.units.all, sums=sums)
+            sums = tr("Bending and axial forces ({units}):  {sums}", units=solved.units, sums=sums)
             blocks.append((WIDTH if len(every) > 1 else 0.0, [self._text(sums)]))
         compatibility = self._compatibility()
         if self._rows > _BESIDE:
@@ -298,13 +298,13 @@ class _Page:
 
     def _compatibility(self) -> list[Flowable]:
         """The equations with their numbers, and the unknowns."""
-        solution, units = self.solution, self.solved.units
+        solution = self.solution
         count = len(solution.unknowns)
         heading = self._text(tr("3  Compatibility"), "heading")
-        said = tr("The unknowns close the gaps ({units}):", units=units.all)
+        said = tr("The unknowns close the gaps ({units}):", units=self.solved.units)
         found = [f"X{index(i + 1)} = {words.amount(solution, i)}" for i in range(count)]
         if count == 1:
-            symbols, numbers = words.equation(solution, 0, units.factor)
+            symbols, numbers = words.equation(self.solved, 0)
             return [
                 heading,
                 self._text(said),
@@ -321,7 +321,7 @@ class _Page:
         return [heading, self._text(f"{symmetric} {said}"), *rows, result]
 
     def _numbers(self) -> Iterator[str | list[list[str]]]:
-        solution, factor = self.solution, self.solved.units.factor
+        solution, factor = self.solution, self.solved.factor
 
         def rows(values: Sequence[Sequence[float]]) -> list[list[str]]:
             return [[written.number(factor * value, EXACT) for value in row] for row in values]
@@ -380,7 +380,7 @@ class _Page:
 
     def checks(self) -> list[Flowable]:
         """Equilibrium of the whole, the gaps left, and the difference from linear theory."""
-        solution, units = self.solution, self.solved.units
+        solution = self.solution
         whole, real = solution.superposed, solution.real
         balance = [
             self._text(tr("Equilibrium of the whole structure (kN, kN·m):")),
@@ -389,10 +389,12 @@ class _Page:
                 for name, terms in _balance(self.model, whole)
             ),
         ]
-        gaps = [self._text(tr("The compatibility equations hold ({units}):", units=units.all))]
+        gaps = [self._text(tr("The compatibility equations hold ({units}):", units=self.solved.units))]
         for i in self._every[:PRODUCTS]:
             terms = [solution.gap[i], *(solution.flexibility[i] * solution.force), -solution.prescribed[i]]
-            gaps.append(self._text(written.total(units.factor * float(term) for term in terms), "equation"))
+            gaps.append(
+                self._text(written.total(self.solved.factor * float(term) for term in terms), "equation")
+            )
         size = largest(real.axial_force)
         off = written.force(largest(whole.axial_force - real.axial_force), nothing=_same(size))
         said = tr("The displacement method gives the same axial forces: largest difference {force}.", force=off)

@@ -17,7 +17,6 @@ from pinjoint.components.rod import bends, nodes
 from pinjoint.force_method import index
 from pinjoint.systems.statics.equations import AXES, Array, Rows, largest
 from pinjoint.systems.statics.force_method import SetState, Solution, Terms, bulge
-from pinjoint.systems.statics.unknowns import Unknown
 
 _SMALL = 1e-2  # smaller numbers are written as multiples of a power of 1000
 _FINER = 5  # significant digits of forces that are added
@@ -110,55 +109,45 @@ class Table(Sequence[tuple[str, ...]]):
 
 
 @dataclass(frozen=True)
-class Units:
-    """In what gaps and flexibilities are written: cm and kN; where moments are unknown, m, rad, kN and kN·m, in which
-    flexibilities are symmetric."""
-
-    unknowns: Sequence[Unknown]
-
-    @property
-    def metric(self) -> bool:
-        """True if lengths are in m, not in cm."""
-        return any(unknown.is_moment for unknown in self.unknowns)
-
-    @property
-    def factor(self) -> float:
-        """What gaps and flexibilities in SI units are multiplied by."""
-        return 1.0 if self.metric else CM[1]
-
-    @property
-    def length(self) -> str:
-        """Of lengths."""
-        return "m" if self.metric else "cm"
-
-    def gap(self, i: int) -> str:
-        """Of δᵢ₀."""
-        return "rad" if self.unknowns[i].is_moment else self.length
-
-    def flexibility(self, i: int, j: int) -> str:
-        """Of δᵢⱼ."""
-        moments = self.unknowns[i].is_moment + self.unknowns[j].is_moment
-        return (f"{self.length}/kN", "1/kN", "rad/kN·m")[moments]
-
-    @property
-    def all(self) -> str:
-        """Of an equation."""
-        if not self.metric:
-            return "cm, kN"
-        return "rad, kN·m" if all(unknown.is_moment for unknown in self.unknowns) else "m, rad, kN, kN·m"
-
-
-@dataclass(frozen=True)
 class Tables:
-    """The tables of a solution."""
+    """The tables of a solution.
+
+    Gaps and flexibilities are written in cm and kN; where moments are unknown, in m, rad, kN and kN·m, in which these are
+    symmetric.
+    """
 
     model: Model
     solution: Solution
 
     @property
-    def units(self) -> Units:
-        """Of the sums at the foot."""
-        return Units(self.solution.unknowns)
+    def _metric(self) -> bool:
+        """True if lengths are in m, not in cm."""
+        return any(unknown.is_moment for unknown in self.solution.unknowns)
+
+    @property
+    def factor(self) -> float:
+        """What gaps and flexibilities in SI units are multiplied by."""
+        return 1.0 if self._metric else CM[1]
+
+    @property
+    def _length(self) -> str:
+        return "m" if self._metric else "cm"
+
+    def gap_unit(self, i: int) -> str:
+        """Of δᵢ₀."""
+        return "rad" if self.solution.unknowns[i].is_moment else self._length
+
+    def flexibility_unit(self, i: int, j: int) -> str:
+        """Of δᵢⱼ."""
+        moments = self.solution.unknowns[i].is_moment + self.solution.unknowns[j].is_moment
+        return (f"{self._length}/kN", "1/kN", "rad/kN·m")[moments]
+
+    @property
+    def units(self) -> str:
+        """Of an equation."""
+        if not self._metric:
+            return "cm, kN"
+        return "rad, kN·m" if all(one.is_moment for one in self.solution.unknowns) else "m, rad, kN, kN·m"
 
     @property
     def bends(self) -> bool:
@@ -176,7 +165,7 @@ class Tables:
         """What the sums of axial forces are made of: L, EA, N₀, and n of some unknowns."""
         solution, rods, rows = self.solution, self.model.rods, self._carrying
         columns = [
-            Column("L", self.units.length, self.units.factor * rods.rest_length[rows]),
+            Column("L", self._length, self.factor * rods.rest_length[rows]),
             Column("EA", "kN", rods.stiffness[rows]),
             Column("N₀", "kN", solution.base.axial_force[rows], least=largest(solution.real.axial_force)),
         ]
@@ -197,20 +186,25 @@ class Tables:
         other: terms of the same sums, next to which they may be rounding. heads: what is summed, such as "∫ M₀ m /EI κ".
         """
         whole, large, small, per, free = heads.split(" ")
-        units, found = self.units, []
+        found = []
 
         def add(title: str, unit: str, values: Array, least: float = 0.0) -> None:
-            least = units.factor * max(largest(values), least)
-            found.append(Column(f"{whole}{title}", unit, units.factor * values[rows], summed=True, least=least))
+            least = self.factor * max(largest(values), least)
+            found.append(Column(f"{whole}{title}", unit, self.factor * values[rows], summed=True, least=least))
 
         for i in which:
-            add(f"{large}{small}{index(i + 1)}{per}", units.gap(i), terms.of_load[i], largest(other.of_load[i]))
+            add(
+                f"{large}{small}{index(i + 1)}{per}",
+                self.gap_unit(i),
+                terms.of_load[i],
+                largest(other.of_load[i]),
+            )
         for i in which if terms.of_free.any() else ():
-            add(f"{small}{index(i + 1)}{free}", units.gap(i), terms.of_free[i])
+            add(f"{small}{index(i + 1)}{free}", self.gap_unit(i), terms.of_free[i])
         for i, j in _pairs(which):
             both = f"{index(i + 1)}²" if i == j else f"{index(i + 1)}{small}{index(j + 1)}"
             least = math.sqrt(terms.of_units(i, i).sum() * terms.of_units(j, j).sum())
-            add(f"{small}{both}{per}", units.flexibility(i, j), terms.of_units(i, j), least)
+            add(f"{small}{both}{per}", self.flexibility_unit(i, j), terms.of_units(i, j), least)
         return found
 
     def virtual_work(self, which: Sequence[int]) -> Table:
@@ -239,15 +233,15 @@ class Tables:
 
     def settlements(self) -> Table | None:
         """What moved supports add to the gaps; None if none has moved."""
-        settled, units, particles = self.solution.work.settled, self.units, self.model.particles
+        settled, particles = self.solution.work.settled, self.model.particles
         if not len(settled):
             return None
         at = tuple(settled.T)
         columns = [Column("c", "m, rad", np.column_stack([particles.displacement, particles.rotation])[at])]
         for i, unit in enumerate(self.solution.units):
             columns.append(Column(f"r{index(i + 1)}", "", unit.reaction[at]))
-            values = units.factor * self.solution.work.of_supports[i]
-            columns.append(Column(f"−r{index(i + 1)}c", units.gap(i), values, summed=True))
+            values = self.factor * self.solution.work.of_supports[i]
+            columns.append(Column(f"−r{index(i + 1)}c", self.gap_unit(i), values, summed=True))
         return Table(tr("support"), self._supports(settled), columns)
 
     def sums(self, i: int) -> tuple[str, ...]:
@@ -261,18 +255,18 @@ class Tables:
         return [text.rpartition(" ")[0] for text in sums]
 
     def _sum_of_gap(self, i: int) -> str:
-        work, units = self.solution.work, self.units
+        work = self.solution.work
         free = work.axial.of_free + work.bending.of_free
         ways = (work.bending.of_load, work.axial.of_load, free, work.of_supports)
-        found = _sum(units.factor * float(way[i].sum()) for way in ways)
-        return f"δ{index(i + 1, 0)} = {found} {units.gap(i)}"
+        found = _sum(self.factor * float(way[i].sum()) for way in ways)
+        return f"δ{index(i + 1, 0)} = {found} {self.gap_unit(i)}"
 
     def _sum_of_units(self, i: int, j: int) -> str:
         work = self.solution.work
         parts = (terms.of_units(i, j) for terms in (work.bending, work.axial))
-        found = _sum(self.units.factor * float(part.sum()) for part in parts)
+        found = _sum(self.factor * float(part.sum()) for part in parts)
         same = "" if i == j else f" = δ{index(j + 1, i + 1)}"
-        return f"δ{index(i + 1, j + 1)}{same} = {found} {self.units.flexibility(i, j)}"
+        return f"δ{index(i + 1, j + 1)}{same} = {found} {self.flexibility_unit(i, j)}"
 
     # --- superposition -----------------------------------------------------------------------------
 

@@ -14,6 +14,7 @@ from pinjoint.force_method import PARTS, index
 
 if TYPE_CHECKING:  # they import scipy
     from pinjoint.force_method.guide import Guide
+    from pinjoint.force_method.tables import Tables
     from pinjoint.systems.statics.force_method import Solution
     from pinjoint.systems.statics.unknowns import Unknown
 
@@ -111,16 +112,16 @@ def captions(guide: Guide) -> list[Caption]:
 
 def _of_textbook(guide: Guide, solution: Solution) -> tuple[Caption, ...]:
     """What loads set 3, and the gaps in each set."""
-    count, units = len(guide.released), guide.tables.units
+    count, tables = len(guide.released), guide.tables
     third = f"X{index(count)} = 1"
     if guide.part == PARTS:
         third = tr("the unknowns below") if count > 1 else f"X₁ = {amount(solution, 0)}"
     gaps = [
-        f"δ{index(i + 1, 0)} = {written.number(units.factor * gap)} {units.gap(i)}"
+        f"δ{index(i + 1, 0)} = {written.number(tables.factor * gap)} {tables.gap_unit(i)}"
         for i, gap in enumerate(solution.gap.tolist())
     ]
     flexibilities = [
-        f"δ{index(i + 1, count)} = {written.number(units.factor * value)} {units.flexibility(i, count - 1)}"
+        f"δ{index(i + 1, count)} = {written.number(tables.factor * value)} {tables.flexibility_unit(i, count - 1)}"
         for i, value in enumerate(solution.flexibility[:, -1].tolist())
     ]
     return (third,), (), tuple(gaps), tuple(flexibilities)
@@ -168,8 +169,7 @@ def working(guide: Guide) -> tuple[str, ...]:
         return ()
     if guide.part < PARTS:
         return () if guide.in_thesis else explained(guide)
-    units = guide.tables.units
-    lines = in_thesis(solution) if guide.in_thesis else equations(solution, units.all, units.factor)
+    lines = in_thesis(solution) if guide.in_thesis else equations(guide.tables)
     if guide.exact is None:
         return lines
     forces = ", ".join(
@@ -251,9 +251,9 @@ def gap_of(unknown: Unknown, gap: str, number: str) -> str:
     return tr("{gap}: how far the load moves {name}; positive in the direction of {unknown}.", **what)
 
 
-def equation(solution: Solution, row: int, factor: float) -> tuple[str, str]:
+def equation(tables: Tables, row: int) -> tuple[str, str]:
     """δ₀ + Σ δ X = c of an unknown in symbols, and with its numbers."""
-    symbols = numbers = ""
+    solution, factor, symbols, numbers = tables.solution, tables.factor, "", ""
     for j, value in enumerate(solution.flexibility[row].tolist()):
         text, unknown = written.number(factor * value, EXACT), f"X{index(j + 1)}"
         symbols += f" + δ{index(row + 1, j + 1)} {unknown}"
@@ -265,11 +265,11 @@ def equation(solution: Solution, row: int, factor: float) -> tuple[str, str]:
     )
 
 
-def equations(solution: Solution, units: str, factor: float) -> tuple[str, ...]:
+def equations(tables: Tables) -> tuple[str, ...]:
     """A line for every unknown, and the solution X."""
-    count = len(solution.unknowns)
-    lines = [f"{':  '.join(equation(solution, i, factor))}  ({units})" for i in range(count)]
-    found = ",  ".join(f"X{index(i + 1)} = {amount(solution, i)}" for i in range(count))
+    count = len(tables.solution.unknowns)
+    lines = [f"{':  '.join(equation(tables, i))}  ({tables.units})" for i in range(count)]
+    found = ",  ".join(f"X{index(i + 1)} = {amount(tables.solution, i)}" for i in range(count))
     return (f"{lines[0]},  {found}",) if count == 1 else (*lines, found)
 
 

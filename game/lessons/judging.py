@@ -76,16 +76,27 @@ class Verdict(NamedTuple):
 
 def judge(session: Session, task: Task, beginning: Document, answer: Answer = None) -> Verdict:
     """Whether a task is done in a session, in which it began with a model. Raises ValueError, LookupError."""
+    truth = session
     if task.kind == UNTIL:
-        return _judge_state(session, task)
-    if answer is None or answer == ():
-        return Verdict(False, tr(_NOTHING[task.kind]))
-    truth = copy_of(session, beginning, task.after)
-    if isinstance(answer, tuple):
-        return _judge_selection(truth, task, answer)
-    if isinstance(answer, str):
-        return _judge_choice(truth, task, answer)
-    return _judge_number(truth, task, answer)
+        if task.after:
+            truth = copy_of(session, document(session.model), task.after)
+        failed = next((text for text in task.asked if not holds(truth, text)), None)
+        wrong = "" if failed is None else _explained(task, truth) or _lacking(truth, failed)
+    elif answer is None or answer == ():
+        wrong = tr(_NOTHING[task.kind])
+    else:
+        truth = copy_of(session, beginning, task.after)
+        if isinstance(answer, tuple):
+            wrong = _wrong_selection(truth, task, answer)
+        elif isinstance(answer, str):
+            wrong = _wrong_choice(truth, task, answer)
+        else:
+            wrong = _wrong_number(truth, task, answer)
+    if wrong:
+        return Verdict(False, wrong)
+    scored = task.score if task.kind == UNTIL else ""
+    score = (float(read(truth, scored)), shown(truth, scored)) if scored else None
+    return Verdict(True, filled(task.right, truth), score)
 
 
 _NOTHING = {  # what is said while there is no answer
@@ -112,19 +123,10 @@ def holds(session: Session, condition: str, answer: float | None = None) -> bool
     return not list(check(session, condition))
 
 
-# --- the four kinds --------------------------------------------------------------------------------------
+# --- what is wrong with an answer; "" if it is right -----------------------------------------------------------
 
 
-def _judge_state(session: Session, task: Task) -> Verdict:
-    state = copy_of(session, document(session.model), task.after) if task.after else session
-    failed = next((text for text in task.asked if not holds(state, text)), None)
-    if failed is None:
-        score = (float(read(state, task.score)), shown(state, task.score)) if task.score else None
-        return Verdict(True, filled(task.right, state), score)
-    return Verdict(False, _explained(task, state) or _lacking(state, failed))
-
-
-def _judge_selection(truth: Session, task: Task, answer: tuple[str, ...]) -> Verdict:
+def _wrong_selection(truth: Session, task: Task, answer: tuple[str, ...]) -> str:
     right, values = _asked_for(truth, task.asked[0])
     chosen = [handle for handle in values if named(handle) in answer]
     wrong = next((handle for handle in chosen if handle not in right), None)
@@ -133,48 +135,44 @@ def _judge_selection(truth: Session, task: Task, answer: tuple[str, ...]) -> Ver
         said = tr(
             "{what} does not belong: {value}.", what=begun(truth.model.describe(wrong)), value=values[wrong]
         )
-        return Verdict(False, joined([_explained(task, truth), said]))
+        return joined([_explained(task, truth), said])
     if others or not chosen:
         kind = next(iter(values)).world.tables[next(iter(values)).table].name if values else ""
-        said = tr("Select only {kind}, not {names}.", kind=tr(kind), names=listed(sorted(others)))
-        return Verdict(False, said)
-    if missing := len(right) - len(chosen):
-        said = tr("Right so far, but not all: {count} more to find.", count=missing)
-        return Verdict(False, said)
-    return Verdict(True, filled(task.right, truth))
+        return tr("Select only {kind}, not {names}.", kind=tr(kind), names=listed(sorted(others)))
+    missing = len(right) - len(chosen)
+    return tr("Right so far, but not all: {count} more to find.", count=missing) if missing else ""
 
 
-def _judge_number(truth: Session, task: Task, answer: float) -> Verdict:
-    wanted = _shown_number(truth, task.asked[0])
-    apart = abs(answer - wanted)
-    if apart <= max(task.within * abs(wanted), LEAST):
-        return Verdict(True, filled(task.right, truth))
+def _wrong_number(truth: Session, task: Task, answer: float) -> str:
+    wanted, given = _shown_number(truth, task.asked[0]), written.given(answer)
+    if abs(answer - wanted) <= max(task.within * abs(wanted), LEAST):
+        return ""
     if said := _explained(task, truth, answer):
-        return Verdict(False, said)
+        return said
     if wanted and abs(answer + wanted) <= task.within * abs(wanted):
-        return Verdict(False, tr("The size is right, but not the sign."))
+        return tr("The size is right, but not the sign.")
     if answer * wanted < 0.0:
-        return Verdict(False, tr("Neither the sign nor the size is right yet."))
-    if wanted < 0.0 and answer < 0.0:
-        larger = tr("The sign is right, but the size of {answer} is too large.", answer=written.given(answer))
-        smaller = tr("The sign is right, but the size of {answer} is too small.", answer=written.given(answer))
-        return Verdict(False, larger if answer < wanted else smaller)
-    if abs(answer) > abs(wanted):
-        return Verdict(False, tr("{answer} is too large.", answer=written.given(answer)))
-    return Verdict(False, tr("{answer} is too small.", answer=written.given(answer)))
+        return tr("Neither the sign nor the size is right yet.")
+    is_large, is_negative = abs(answer) > abs(wanted), wanted < 0.0 and answer < 0.0
+    if is_negative and is_large:
+        return tr("The sign is right, but the size of {answer} is too large.", answer=given)
+    if is_negative:
+        return tr("The sign is right, but the size of {answer} is too small.", answer=given)
+    return (
+        tr("{answer} is too large.", answer=given) if is_large else tr("{answer} is too small.", answer=given)
+    )
 
 
-def _judge_choice(truth: Session, task: Task, answer: str) -> Verdict:
+def _wrong_choice(truth: Session, task: Task, answer: str) -> str:
     choice = next((choice for choice in task.choices if choice.text == answer), None)
     if choice is None:
         texts = ", ".join(choice.text for choice in task.choices)
         raise NotFound("there is no choice '{text}'; use one of {texts}.", text=answer, texts=texts)
     if choice.right if isinstance(choice.right, bool) else all(holds(truth, one) for one in choice.right):
-        return Verdict(True, filled(task.right, truth))
-    said = filled(choice.say, truth) or tr(
+        return ""
+    return filled(choice.say, truth) or tr(
         "No: “{text}” is not what the calculation gives.", text=tr(choice.text)
     )
-    return Verdict(False, said)
 
 
 def _asked_for(truth: Session, asked: str) -> tuple[list[Handle], dict[Handle, str]]:

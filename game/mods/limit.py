@@ -16,10 +16,8 @@ from pinjoint.systems import is_ours
 
 T = TypeVar("T")
 
-LOOK, LOOK_AGAIN = (
-    0.02,
-    1e-4,
-)  # s between looks at what runs, and where it has run too long, but not in a mod now
+LOOK = 0.02  # s between looks at what runs
+LOOK_AGAIN = 1e-4  # s between them where it has run too long, but not in a mod now
 AGAIN = 0.05  # s after which code that caught the exception and goes on is interrupted once more
 
 

@@ -1,121 +1,124 @@
-"""Execution: the variants of a plan computed in this process, by workers on this machine, or by a Dask cluster."""
+"""Execution: the variants of a plan computed in this process, by workers on this machine, or by a Dask cluster.
+
+A process runs them one by one by one model, which is brought back after each.
+"""
 
 from __future__ import annotations
 
 import logging
 import os
-from collections import Counter
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from contextlib import contextmanager
-from dataclasses import dataclass, field
+from itertools import islice
 from typing import Any
 
-from pinjoint.components.language import ENGLISH, spoken
-from pinjoint.sweeps.batches import Batches
+from pinjoint.commands.reports.results import State, facts
+from pinjoint.components.language import ENGLISH, english, spoken
+from pinjoint.components.model import Model
+from pinjoint.components.snapshot import Snapshot
+from pinjoint.documents import models
+from pinjoint.paths import apply_override, locate, quoted, settable
 from pinjoint.sweeps.plan import Outcome, Plan, Record
-from pinjoint.sweeps.variant_runner import VariantRunner
-from pinjoint.sweeps.variation import INSTALL, SweepError
+from pinjoint.sweeps.variation import INSTALL, SweepError, as_text
+from pinjoint.systems.catalogue import all_systems
 from pinjoint.systems.program.parallel import VARIABLE, cores
+from pinjoint.systems.run.simulation import Simulation
+from pinjoint.systems.schedule import Schedule
 
 MOST_IN_A_TASK = 64  # variants; what a kill loses at most of each worker
 TASKS_PER_WORKER = 16  # so that no worker waits long for another's last task
 ANSWER_WITHIN = 10.0  # s
 LARGE = 30_000  # variants × rods from which workers are worth the seconds in which they start
 SAFE_PATH = "PYTHONSAFEPATH"  # of the environment
-LIGHT = 100  # rods up to which a variant takes as long as one of this many
+LIGHT = 40  # rods up to which a variant takes as long as one of this many
 
 
-@dataclass
-class Computed:
-    """Outcomes of some variants. faults: why some of them were not computed together though they should be able to.
+class VariantRunner:
+    """Runs variants of a plan by one model: opening one and loading its step program takes longer than most runs.
 
-    Such a fault costs time, not results: they are computed one by one. Counted are variants by what went wrong.
+    A variant is edited and run inside a transaction that is taken back: commands have exact inverses, and
+    all that time changes is in the snapshot, so that the next one begins with the same bits as the first.
     """
 
-    outcomes: list[Outcome]
-    faults: Mapping[str, int] = field(default_factory=dict)
-
-
-class Worker:
-    """Computes variants of a plan in this process: together where that is possible, else one by one.
-
-    Raises SweepError if this process has another version of Pinjoint, or other mods, than the plan is of.
-    """
-
-    def __init__(self, plan: Plan, threads: int = 1) -> None:
-        plan.software.require()
+    def __init__(self, plan: Plan) -> None:
         self._plan = plan
-        self._runner: VariantRunner | None = None
-        self._batches: Batches | None = None
-        self._fault = ""  # why nothing is computed together
+        self._model = models.parse(plan.document)
+        for override in plan.overrides:
+            apply_override(self._model, override)
+        self._targets = [locate(self._model, varied.path, settable)[0] for varied in plan.variations]
+        self._simulation = Simulation(self._model, Schedule(all_systems()))
+        self._beginning = Snapshot.take(self._model)
+
+    def records(self, number: int) -> list[Record]:
+        """A record of each state of a variant. Raises the errors of its overrides and of its run."""
+        with self._taken_back():
+            values = iter(self._plan.values(number))
+            for varied, target in zip(self._plan.variations, self._targets, strict=True):
+                given = list(islice(values, len(varied.columns)))
+                with quoted(f"{varied.path}={', '.join(map(as_text, given))}"):
+                    target.give_each(given if len(given) > 1 else given * len(target.handles))
+            run = self._plan.analysis.run(self._simulation, self._plan.name, read=self._measured)
+        about = run["status"], english(run["message"])
+        return [(*about, *state.values()) for state in run["states"]]
+
+    def _measured(self, model: Model, *given: Any) -> State:
+        """What is kept of a state."""
+        found = facts(model, *given)
+        measures = {measure.column: measure.of(model, found) for measure in self._plan.measures}
+        return {"time": found["time"], "load_factor": found["load_factor"], **measures}
+
+    @contextmanager
+    def _taken_back(self) -> Iterator[None]:
+        """Changes of the model inside the `with` are taken back at its end."""
         try:
-            self._batches = Batches(VariantRunner(plan), plan, threads)
-        except Exception as error:
-            self._fault = _told(error)
+            with self._model.transaction("variant"):
+                yield
+                raise _TakenBack
+        except _TakenBack:
+            self._beginning.restore(self._model)
+            self._simulation.forget()
 
-    @property
-    def at_a_time(self) -> int:
-        """Number of variants that are computed together; 1: none."""
-        return self._batches.size if self._batches is not None else 1
 
-    def compute(self, numbers: Sequence[int]) -> Computed:
-        """Compute some variants; one that cannot be computed is a record that says why, in English, as files are."""
+class _TakenBack(Exception):
+    pass
+
+
+def compute(plan: Plan, numbers: Iterable[int]) -> Iterator[Outcome]:
+    """Compute some variants of a plan, here and one by one, all by one model.
+
+    One that cannot be computed is a record that says why, in English, as files are. Raises SweepError if this process has
+    another version of Pinjoint, or other mods, than the plan is of.
+    """
+    plan.software.require()
+    runner: VariantRunner | None = None
+    for number in numbers:
         with spoken(ENGLISH):
-            return self._compute(numbers)
-
-    def _compute(self, numbers: Sequence[int]) -> Computed:
-        together: Mapping[int, list[Record]] = {}
-        faults = Counter({self._fault: len(numbers)} if self._fault else {})
-        if len(numbers) > 1:
             try:
-                together = self.together(numbers)
-            except Exception as error:
-                faults[_told(error)] += len(numbers)
-        return Computed([(n, together[n]) if n in together else self._alone(n) for n in numbers], faults)
-
-    def together(self, numbers: Sequence[int]) -> dict[int, list[Record]]:
-        """Records of those variants that can be computed together, by number."""
-        return self._batches.records(numbers) if self._batches is not None else {}
-
-    def _alone(self, number: int) -> Outcome:
-        try:
-            self._runner = self._runner or VariantRunner(self._plan)
-            return number, self._runner.records(number)
-        except Exception as error:  # one bad variant of thousands must not end the others
-            self._runner = None
-            return self._plan.failure(number, str(error) if isinstance(error, ValueError) else _told(error))
-
-
-def _told(error: Exception) -> str:
-    return f"{type(error).__name__}: {error}"
-
-
-def compute(plan: Plan, numbers: Sequence[int]) -> Computed:
-    """Compute some variants of a plan, here and by this thread; see Worker.compute."""
-    return Worker(plan).compute(numbers)
-
-
-def suitable_workers(plan: Plan, variants: int, together: int) -> int:
-    """All cores that this process may use where there is much to do one by one, by a rule; else 1."""
-    if together > 1 or variants * max(len(plan.document.get("rods", ())), LIGHT) < LARGE:
-        return 1
-    return cores()
+                runner = runner or VariantRunner(plan)
+                outcome = number, runner.records(number)
+            except Exception as error:  # one bad variant of thousands must not end the others
+                runner = None
+                told = str(error) if isinstance(error, ValueError) else f"{type(error).__name__}: {error}"
+                outcome = plan.failure(number, told)
+        yield outcome
 
 
 def compute_all(
     plan: Plan, numbers: Sequence[int], workers: int | None, scheduler: str | None
-) -> Iterator[Computed]:
+) -> Iterator[list[Outcome]]:
     """Compute these variants, some at a time, in whatever order they get ready.
 
-    workers: 1 computes in this process; more start that many on this machine; None: as many as suit.
+    workers: 1 computes in this process; more start that many on this machine; None: all cores that this process may use
+    where there is much to do, by a rule, else 1.
     scheduler: the address of that of a running Dask cluster, which computes instead. Raises SweepError.
     """
-    here = Worker(plan, cores())
     if workers is None:
-        workers = suitable_workers(plan, len(numbers), here.at_a_time)
+        much = len(numbers) * max(len(plan.document.get("rods", ())), LIGHT) >= LARGE
+        workers = cores() if much else 1
     if scheduler is None and workers == 1:
-        for task in _tasks(numbers, 1, here.at_a_time):
-            yield here.compute(task)
+        computed = compute(plan, numbers)
+        for task in _tasks(numbers, 1):
+            yield list(islice(computed, len(task)))
         return
     try:
         import distributed
@@ -128,7 +131,7 @@ def compute_all(
     with (
         _local_client(distributed, workers) if scheduler is None else _client_of(distributed, scheduler)
     ) as client:
-        yield from _distributed(distributed, client, plan, numbers, here.at_a_time)
+        yield from _distributed(distributed, client, plan, numbers)
 
 
 @contextmanager
@@ -171,16 +174,14 @@ def _client_of(distributed: Any, scheduler: str) -> Any:
     return client
 
 
-def _distributed(
-    distributed: Any, client: Any, plan: Plan, numbers: Sequence[int], together: int
-) -> Iterator[Computed]:
+def _distributed(distributed: Any, client: Any, plan: Plan, numbers: Sequence[int]) -> Iterator[list[Outcome]]:
     shared = client.submit(_same, plan, pure=False)  # unlike scattered data, survives the death of its workers
 
     def submit(task: Sequence[int]) -> Any:
-        return client.submit(compute, shared, task, pure=False)
+        return client.submit(_computed, shared, task, pure=False)
 
     workers = max(len(client.scheduler_info()["workers"]), 1)
-    tasks = {submit(task): task for task in _tasks(numbers, workers, together)}
+    tasks = {submit(task): task for task in _tasks(numbers, workers)}
     suspects: list[int] = []
     for future in distributed.as_completed(tasks):
         task = tasks.pop(future)
@@ -192,13 +193,13 @@ def _distributed(
     for number in sorted(suspects):  # one at a time, so that only what kills a worker is blamed for it
         found = _result(distributed, submit([number]))
         why = "Every worker that computed this variant ended early; perhaps memory ran out."
-        yield found or Computed([plan.failure(number, why)])
+        yield found or [plan.failure(number, why)]
 
 
-def _result(distributed: Any, future: Any) -> Computed | None:
+def _result(distributed: Any, future: Any) -> list[Outcome] | None:
     """The result of a task; None if its workers died."""
     try:
-        found: Computed = future.result()
+        found: list[Outcome] = future.result()
     except distributed.KilledWorker:
         return None
     except Exception as error:
@@ -215,9 +216,10 @@ def _same(plan: Plan) -> Plan:
     return plan
 
 
-def _tasks(numbers: Sequence[int], workers: int, together: int) -> list[Sequence[int]]:
-    """together: how many variants are best computed at a time."""
+def _computed(plan: Plan, numbers: Sequence[int]) -> list[Outcome]:
+    return list(compute(plan, numbers))
+
+
+def _tasks(numbers: Sequence[int], workers: int) -> list[Sequence[int]]:
     size = min(max(len(numbers) // (workers * TASKS_PER_WORKER), 1), MOST_IN_A_TASK)
-    if together > 1:
-        size = min(max(len(numbers) // workers, 1), together)
     return [numbers[first : first + size] for first in range(0, len(numbers), size)]

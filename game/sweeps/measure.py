@@ -29,16 +29,26 @@ _FORM = marked("write it like rods.CD.axial_force, rods.*.strain, particles.C.di
 
 @dataclass(frozen=True)
 class Measure:
-    """One number of a state: the column it goes to, where it is found, what to call it, its unit."""
+    """One number of a state: the column it goes to, where it is found, what to call it, its unit.
+
+    keys: in the facts of a state; element: the name of that in whose row it is, "" if it is not of an element.
+    """
 
     column: str
-    keys: tuple[str | int, ...]
+    keys: tuple[str, ...]
+    element: str
+    axis: int | None
     title: str
     unit: str
 
-    def of(self, state: State) -> Any:
-        """Its value in a state."""
-        return reduce(getitem, self.keys, state)  # type: ignore[arg-type]
+    def of(self, model: Model, found: State) -> Any:
+        """Its value in the facts of a state of a model."""
+        value: Any = reduce(getitem, self.keys, found)
+        if not self.element:
+            return value
+        row = model.tables[self.keys[0]][self.element].row
+        number = value.item(row) if self.axis is None else value.item(row, self.axis)
+        return None if number != number else number
 
     @property
     def label(self) -> str:
@@ -62,13 +72,15 @@ def _read(model: Model, path: str) -> list[Measure]:
     if path in _ANYWAY:
         return []
     if path in _OF_THE_RUN:
-        return [Measure(path, (path,), path, "")]
+        return [Measure(path, (path,), "", None, path, "")]
     if section not in _SECTIONS:
         names = ", ".join(_OF_THE_RUN)
         raise SweepError("--measure {path}: {form}, or one of {names}.", path=path, form=tr(_FORM), names=names)
     try:
         if section == "energy":
-            return [Measure(path, ("energy", energy_named(rest)), f"{rest.replace('_', ' ')} energy", "J")]
+            return [
+                Measure(path, ("energy", energy_named(rest)), "", None, f"{rest.replace('_', ' ')} energy", "J")
+            ]
         target, rest = locate(model, path, partial(_reported, model))
         if rest:
             raise PathError("'{rest}' does not belong to the quantity; {form}.", rest=rest, form=tr(_FORM))
@@ -78,7 +90,9 @@ def _read(model: Model, path: str) -> list[Measure]:
     return [
         Measure(
             column=f"{section}.{element}.{target.key}" + (f".{axis}" if axis else ""),
-            keys=(section, element, target.field.name, *([target.field.axes.index(axis)] if axis else [])),
+            keys=(section, target.field.name),
+            element=element,
+            axis=target.field.axes.index(axis) if axis else None,
             title=tr(
                 "{quantity} of {element}", quantity=joined([tr(target.field.title), axis]), element=element
             ),

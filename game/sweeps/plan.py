@@ -30,7 +30,6 @@ from pinjoint.sweeps.variation import (
     Value,
     Values,
     Variation,
-    as_text,
     read_variations,
 )
 
@@ -136,11 +135,6 @@ class Plan:
             elif generator is not None:
                 taken += variation.draw(generator)
         return tuple(taken)
-
-    def overrides_of(self, number: int) -> tuple[str, ...]:
-        """A variant as `pinjoint run MODEL --set …` has it."""
-        values = map(as_text, self.values(number))
-        return (*self.overrides, *(f"{path}={value}" for path, value in zip(self.varied, values, strict=True)))
 
     def failure(self, number: int, reason: str) -> Outcome:
         """The record of a variant that could not be computed."""

@@ -31,15 +31,10 @@ class Results:
     `variant` counts from 0; then what was varied, by path; `status`, `message`, `time` (s) and `load_factor`
     as `pinjoint run` reports them; then the measures, by path, in the units of model files. A variant that
     could not be computed has the status "failed", the reason as its message, and no measures (None).
-
-    faults: how many variants were computed one by one because computing them together failed, by what went wrong.
     """
 
-    def __init__(
-        self, plan: Plan, finished: Mapping[int, list[Any]], faults: Mapping[str, int] | None = None
-    ) -> None:
+    def __init__(self, plan: Plan, finished: Mapping[int, list[Any]]) -> None:
         self.plan = plan
-        self.faults = dict(faults or {})
         names = ("variant", *plan.varied, *RECORDED, *(measure.column for measure in plan.measures))
         columns: list[list[Any]] = [[] for _ in names]  # no rows beside them: a million variants take 1 GB
         for number in range(plan.size):

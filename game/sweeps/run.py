@@ -5,7 +5,6 @@ from __future__ import annotations
 import hashlib
 import os
 import time
-from collections import Counter
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from pathlib import Path
 from typing import Any, BinaryIO, TextIO
@@ -64,13 +63,11 @@ def sweep(
     failed = sum(map(_is_failure, journal.finished.values()))
     missing = [number for number in range(plan.size) if number not in journal.finished]
     progress(len(journal.finished), plan.size, failed)
-    faults: Counter[str] = Counter()
     for part in compute_all(plan, missing, workers, scheduler) if missing else ():
-        journal.add(part.outcomes)
-        faults.update(part.faults)
-        failed += sum(_is_failure(records) for _, records in part.outcomes)
+        journal.add(part)
+        failed += sum(_is_failure(records) for _, records in part)
         progress(len(journal.finished), plan.size, failed)
-    results = Results(plan, journal.finished, faults)
+    results = Results(plan, journal.finished)
     if path is not None:
         results.write(path)
         journal.remove()

@@ -47,8 +47,12 @@ class Values:
 
 @dataclass(frozen=True)
 class Random:
-    """Facts, each drawn anew for every sample from the same distribution."""
+    """Facts, each drawn anew for every sample from the same distribution.
 
+    path: of all of them. columns: of each.
+    """
+
+    path: str
     columns: tuple[str, ...]
     distribution: str
     parameters: tuple[float, float]
@@ -204,7 +208,8 @@ def _random(target: Target, text: str) -> Random:
             raise PathError("the standard deviation must be at least 0, and the mean of a lognormal above 0.")
     # Strengths and stiffnesses of different rods are independent: each has its own draw.
     elements = target.table.names if target.element == EVERY else [target.element]
-    return Random(tuple(map(target.path, elements)), kind, parameters, _label(target, elements[0]))
+    columns = tuple(map(target.path, elements))
+    return Random(target.path(target.element), columns, kind, parameters, _label(target, elements[0]))
 
 
 def _finite(text: str) -> float:

@@ -44,11 +44,8 @@ class Hover(System):
         shown = view.canvas, pointer, view.menu, view.sliders
         if self._looked == (model.context, model.revision, view.camera, *shown):
             return
-        self._mark(model, view, pointer)
-        self._looked = (model.context, model.revision, replace(view.camera), *shown)
-
-    def _mark(self, model: Model, view: View, pointer: Vector | None) -> None:
         hit = None
         if pointer is not None and view.menu is None and view.camera.viewport.contains(pointer):
             hit = pick(model, view, pointer) or self._beside(model, view, pointer)
         model.tag_only([] if hit is None else [hit], Hovered)
+        self._looked = (model.context, model.revision, replace(view.camera), *shown)

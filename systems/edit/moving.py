@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
+from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -10,6 +11,7 @@ from numpy.typing import ArrayLike, NDArray
 from pinjoint.components.field import Vector
 from pinjoint.components.handle import Handle
 from pinjoint.components.model import Model
+from pinjoint.components.table import Table
 from pinjoint.components.view import View
 from pinjoint.systems.edit.placing import resolution
 
@@ -32,12 +34,12 @@ class Movable:
         self._model = model
         self.particles = [model.particles[row] for row in moving_rows(model, model.rows_of(chosen)).tolist()]
         self.others = [handle for handle in chosen if handle.points]
-        kinds: dict[type[Handle], None] = dict.fromkeys(type(handle) for handle in self.others)
-        self._groups = [
-            ([handle for handle in self.others if type(handle) is kind], point)
-            for kind in kinds
-            for point in kind.points
+        self._groups: list[tuple[Table[Any], Sequence[Handle], str]] = [
+            (model.particles, self.particles, "position")
         ]
+        for kind in dict.fromkeys(type(handle) for handle in self.others):
+            those = [handle for handle in self.others if type(handle) is kind]
+            self._groups += [(model.tables[kind.table], those, point) for point in kind.points]
 
     def __len__(self) -> int:
         return len(self.particles) + len(self.others)
@@ -45,17 +47,14 @@ class Movable:
     @property
     def positions(self) -> Points:
         """Original positions of the particles and then the points (m), shape (n, 2)."""
-        columns = [self._model.particles.position[rows_of(self._model, self.particles)]]
-        for handles, point in self._groups:
-            columns.append(self._model.tables[handles[0].table].column(point)[rows_of(self._model, handles)])
-        return np.concatenate(columns)
+        return np.concatenate(
+            [table.column(point)[rows_of(self._model, handles)] for table, handles, point in self._groups]
+        )
 
     def index(self, handle: Handle) -> int:
         """The row of an element (of its first point) in `positions`; 0 for elements that move with others."""
-        if handle in self.particles:
-            return self.particles.index(handle)
-        row = len(self.particles)
-        for handles, _ in self._groups:
+        row = 0
+        for _, handles, _ in self._groups:
             if handle in handles:
                 return row + handles.index(handle)
             row += len(handles)
@@ -68,9 +67,8 @@ class Movable:
         """
         wanted = np.asarray(positions, dtype=np.float64)
         with self._model.transaction("move"):
-            self._model.assign(self.particles, "position", wanted[: len(self.particles)])
-            row = len(self.particles)
-            for handles, point in self._groups:
+            row = 0
+            for _, handles, point in self._groups:
                 self._model.assign(handles, point, wanted[row : row + len(handles)])
                 row += len(handles)
 

@@ -10,7 +10,6 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from pinjoint.components.clock import is_error_controlled
 from pinjoint.components.field import Vector
 from pinjoint.components.language import marked
 from pinjoint.components.model import Model
@@ -115,7 +114,11 @@ def hand_on(model: Model, view: View, particle: Particle, pace: Callable[[], flo
     more than the usual force of the model when the pointer is COMFORTABLE points away, so that a stiff
     truss bends instead of being torn apart. The damper is critical for the particle by itself.
     """
-    step = 0.0 if is_error_controlled(model.clock) else model.clock.step_size  # 0 where no run could begin, too
+    clock = model.clock
+    by_error = (
+        clock.step_limit > 0.0 or clock.step_error > 0.0
+    )  # its steps are chosen so: to them any stiffness is good
+    step = 0.0 if by_error else clock.step_size  # 0 where no run could begin, too
     fastest = 1.0 / (STEPS_PER_RADIAN * step) if step > 0.0 else math.inf
     if (model.rods.between == particle.row).any():
         reach = COMFORTABLE * view.pixel_ratio / view.camera.scale / model.settings.displacement_scale

@@ -92,38 +92,25 @@ def share_at(rod: Rod, point: Vector) -> float:
 
 def toggle_hinge(model: Model, rod: Rod, end: int) -> str:
     """Hinge an end of a rod, or make it rigid; returns what it is now. A bar that did not bend gets the usual section."""
-    rigid = is_rigid(rod, end)
-    hinged = [not is_rigid(rod, other) for other in (0, 1)]
-    hinged[end] = rigid
-    title = (
-        tr("hinge of {rod}", rod=model.describe(rod))
-        if rigid
-        else tr("rigid joint of {rod}", rod=model.describe(rod))
-    )
-    with model.transaction(title):
-        _let_bend(model, [rod] if not rigid else [])
-        model.assign([rod], "hinged", [hinged])
-    particle = rod.ends[end].name
-    if rigid:
+    name, particle = model.describe(rod), rod.ends[end].name
+    if is_rigid(rod, end):
+        set_rigid(model, [(rod, end)], False, tr("hinge of {rod}", rod=name))
         return tr("hinged at {particle}", particle=particle)
+    set_rigid(model, [(rod, end)], True, tr("rigid joint of {rod}", rod=name))
     return tr("rigidly joined at {particle}", particle=particle)
 
 
 def toggle_joint(model: Model, particle: Particle) -> str:
     """Hinge all rods' ends at a particle, or make them rigid if they are hinged; returns what they are now."""
-    ends = np.argwhere(model.rods.between == particle.row).tolist()
-    if not ends:
+    rows = np.argwhere(model.rods.between == particle.row).tolist()
+    if not rows:
         raise Refusal("No rod ends at {particle}; choose an end of a rod to hinge it.", particle=particle.name)
-    rigid = any(is_rigid(model.rods[row], end) for row, end in ends)
-    name = model.describe(particle)
-    title = (
-        tr("hinges at {particle}", particle=name) if rigid else tr("rigid joint at {particle}", particle=name)
-    )
-    with model.transaction(title):
-        for row, end in ends:
-            if is_rigid(model.rods[row], end) == rigid:
-                toggle_hinge(model, model.rods[row], end)
-    return tr("all rods hinged to it") if rigid else tr("all rods rigidly joined")
+    ends, name = [(model.rods[row], end) for row, end in rows], model.describe(particle)
+    if any(is_rigid(*end) for end in ends):
+        set_rigid(model, ends, False, tr("hinges at {particle}", particle=name))
+        return tr("all rods hinged to it")
+    set_rigid(model, ends, True, tr("rigid joint at {particle}", particle=name))
+    return tr("all rods rigidly joined")
 
 
 def is_rigid(rod: Rod, end: int) -> bool:
@@ -131,18 +118,16 @@ def is_rigid(rod: Rod, end: int) -> bool:
     return rod.bending_stiffness > 0.0 and not rod.hinged[end]
 
 
-def join_rigidly(model: Model, rods: Sequence[Rod], rigid: bool) -> None:
-    """Make both ends of rods rigid, or hinge them."""
-    with model.transaction(tr("rigid joints") if rigid else tr("hinges")):
-        _let_bend(model, rods if rigid else [])
-        model.assign(list(rods), "hinged", [(not rigid, not rigid)] * len(rods))
-
-
-def _let_bend(model: Model, rods: Sequence[Rod]) -> None:
-    """Give rods that do not bend what new members are made of."""
-    pinned = [rod for rod in rods if rod.bending_stiffness == 0.0]
-    for name, value in _like_members(model).items() if pinned else ():
-        model.assign(pinned, name, np.repeat(value, len(pinned)))
+def set_rigid(model: Model, ends: Iterable[tuple[Rod, int]], rigid: bool, title: str) -> None:
+    """Make ends of rods rigid, or hinge them, as one edit; rods that did not bend are made of what new ones are."""
+    hinged: dict[Rod, list[bool]] = {}
+    for rod, end in ends:
+        hinged.setdefault(rod, [not is_rigid(rod, other) for other in (0, 1)])[end] = not rigid
+    with model.transaction(title):
+        pinned = [rod for rod in hinged if rigid and rod.bending_stiffness == 0.0]
+        for name, value in _like_members(model).items() if pinned else ():
+            model.assign(pinned, name, np.repeat(value, len(pinned)))
+        model.assign(list(hinged), "hinged", list(hinged.values()))
 
 
 def delete(model: Model, handles: Iterable[Handle]) -> None:

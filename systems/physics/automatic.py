@@ -9,9 +9,10 @@ import numpy as np
 from pinjoint.components.load import loads_end
 from pinjoint.components.model import Model
 from pinjoint.components.numeric_range import incomputable
+from pinjoint.components.rod import bends
 from pinjoint.systems.physics.bending import deformations, free_coordinates
 from pinjoint.systems.physics.pace import loaded_mode
-from pinjoint.systems.physics.spectrum import Array, coarse_rates
+from pinjoint.systems.physics.spectrum import Array, FrameOperator, RodOperator
 
 SMALL = 200  # rods up to which the modes of a model are found in no time, and steps cost next to nothing
 AFFORDABLE = 5000  # rods up to which error control keeps up with a person's eye
@@ -28,11 +29,9 @@ def choose(model: Model) -> str:
     """
     if model.rods.count > AFFORDABLE or model.settings.time_step is not None:
         return "velocity_verlet"
-    if incomputable(model):  # no run can begin, but undo and properties ask as well
-        return suited_to(0.0)
     if model.rods.count > SMALL:
-        return suited_to(_stiffness(model))
-    return suited_to(float(stiffnesses(model, np.array([model.environment.drag]))[0]))
+        return suited_to(0.0 if incomputable(model) else _stiffness(model))
+    return suited_to(_stiffness_of_all_modes(model))
 
 
 def suited_to(stiffness: float) -> str:
@@ -41,12 +40,12 @@ def suited_to(stiffness: float) -> str:
 
 
 def _stiffness(model: Model) -> float:
-    """As `stiffnesses`, of a model that is too large for all its modes; by the one that the loads excite."""
+    """As _stiffness_of_all_modes, of a model that is too large for all its modes; by the one that the loads excite."""
     rods, particles = model.rods, model.particles
     if not free_coordinates(model).any():
         return 0.0
-    squared, damped = coarse_rates(model)
-    fastest = max(math.sqrt(squared[0]), damped[0] + model.environment.drag)
+    fastest = math.sqrt(_operator(model).gershgorin())
+    fastest = max(fastest, _damping_operator(model).gershgorin() + model.environment.drag)
     mode = loaded_mode(model)
     if mode is None:  # a mechanism
         pull = float(np.hypot(*(particles.constant_force * particles.mobility).T).max())
@@ -60,50 +59,73 @@ def _stiffness(model: Model) -> float:
     return float(fastest * max(times))
 
 
-def stiffnesses(model: Model, drag: Array) -> Array:
-    """Slowest time scale × fastest rate of each of the equal disjoint blocks that a model consists of.
-
-    In the original geometry; 0 if nothing is stiff. The blocks are constrained alike. drag: the environment's
-    (1/s), one for each block.
-    """
-    rods, blocks = model.rods, len(drag)
-    if rods.count == 0 or not free_coordinates(model).any():
-        return np.zeros(blocks)
-    eigenvalues = np.asarray(np.linalg.eigvalsh(_scaled_stiffness(model, blocks)), dtype=np.float64)
-    highest = np.maximum(eigenvalues[:, -1], 0.0)
-    fastest = np.maximum(np.sqrt(highest), coarse_rates(model, blocks)[1] + drag)
-    with np.errstate(divide="ignore", invalid="ignore"):
-        found: Array = np.where(highest > 0.0, fastest * _slowest(model, eigenvalues, drag), 0.0)
-    return found
-
-
-def _slowest(model: Model, eigenvalues: Array, drag: Array) -> Array:
-    """The slowest of the periods and creep times of modes, swinging of mechanisms, and the loading (s)."""
-    rods, blocks = model.rods, len(drag)
-    has_own = eigenvalues > _RIGID * eigenvalues[:, -1:]
-    lowest = np.where(has_own, eigenvalues, math.inf).min(axis=1)
-    pull = np.hypot(*(model.particles.constant_force * model.particles.mobility).T).reshape(blocks, -1)
-    swinging = pull.max(axis=1) / rods.rest_length.reshape(blocks, -1).max(axis=1)
-    lowest = np.where(has_own.all(axis=1) | (swinging == 0.0), lowest, np.minimum(lowest, swinging))
-    creep = (rods.damping * rods.rest_length / rods.stiffness).reshape(blocks, -1).max(axis=1)
-    end = loads_end(model)
-    times = [2.0 * math.pi / np.sqrt(lowest), creep, drag / lowest]
-    slowest: Array = np.maximum.reduce([*times, np.full(blocks, end if end < math.inf else 0.0)])
-    return slowest
+def _stiffness_of_all_modes(model: Model) -> float:
+    """Slowest time scale × fastest rate, in the original geometry; 0 if nothing is stiff."""
+    if model.rods.count == 0 or not free_coordinates(model).any():
+        return 0.0
+    with np.errstate(all="ignore"):  # of such numbers no run can begin, but undo and properties ask as well
+        matrix = _of_frame(model) if bends(model) else _scaled_stiffness(model)
+        if not np.isfinite(matrix).all():
+            return 0.0
+    eigenvalues = np.asarray(np.linalg.eigvalsh(matrix), dtype=np.float64)
+    highest = max(float(eigenvalues[-1]), 0.0)
+    if highest == 0.0:
+        return 0.0
+    fastest = max(math.sqrt(highest), _damping_operator(model).gershgorin() + model.environment.drag)
+    return fastest * _slowest(model, eigenvalues)
 
 
-def _scaled_stiffness(model: Model, blocks: int) -> Array:
-    """M^-½ K M^-½ of the free coordinates of each block in the original geometry (1/s²)."""
+def _operator(model: Model) -> RodOperator:
+    """The operator of the stiffness of rods without forces."""
+    rods = model.rods
+    along = rods.stiffness / rods.rest_length
+    return FrameOperator(model, along, rods.end_stiffness) if bends(model) else RodOperator(model, along)
+
+
+def _damping_operator(model: Model) -> RodOperator:
+    rods = model.rods
+    return (
+        FrameOperator(model, rods.damping, rods.end_damping)
+        if bends(model)
+        else RodOperator(model, rods.damping)
+    )
+
+
+def _of_frame(model: Model) -> Array:
+    """_scaled_stiffness of a model that bends, rotations count by their inertias."""
     entries, rows, columns, stiffness, _ = deformations(model)
-    free, of_block = free_coordinates(model), model.rods.count // blocks
-    width, kinds = free.size // blocks, len(stiffness) // model.rods.count
-    mobility = np.column_stack([model.particles.mobility, model.particles.turning])[:, : free.shape[1]]
-    kind, rod = np.divmod(rows, model.rods.count)
-    block, row = np.divmod(rod, of_block)
-    scaled = np.zeros((blocks, kinds * of_block, width))
-    scaled[block, kind * of_block + row, columns % width] = entries
-    scaled *= np.sqrt(mobility).reshape(blocks, 1, width)
-    scaled = np.ascontiguousarray(scaled[:, :, free.ravel()[:width]])
-    stiffness = stiffness.reshape(kinds, blocks, of_block).swapaxes(0, 1).reshape(blocks, -1, 1)
-    matrices: Array = scaled.transpose(0, 2, 1) @ (scaled * stiffness)
-    return matrices
+    free = free_coordinates(model)
+    mobility = np.column_stack([model.particles.mobility, model.particles.turning])
+    scaled = np.zeros((len(stiffness), free.size))
+    scaled[rows, columns] = entries
+    scaled = (scaled * np.sqrt(mobility).ravel())[:, free.ravel()]
+    matrix: Array = scaled.T @ (scaled * stiffness[:, None])
+    return matrix
+
+
+def _slowest(model: Model, eigenvalues: Array) -> float:
+    """The slowest of the periods and creep times of modes, swinging of mechanisms, and the loading (s)."""
+    rods, drag = model.rods, model.environment.drag
+    own = eigenvalues[eigenvalues > _RIGID * eigenvalues[-1]]
+    pull = float(np.hypot(*(model.particles.constant_force * model.particles.mobility).T).max())
+    swinging = pull / float(rods.rest_length.max())
+    lowest = float(own.min())
+    if len(own) < len(eigenvalues) and swinging > 0.0:
+        lowest = min(lowest, swinging)
+    creep = float((rods.damping * rods.rest_length / rods.stiffness).max())
+    end = loads_end(model)
+    return max(2.0 * math.pi / math.sqrt(lowest), creep, drag / lowest, end if end < math.inf else 0.0)
+
+
+def _scaled_stiffness(model: Model) -> Array:
+    """M^-½ K M^-½ of the free directions in the original geometry (1/s²)."""
+    particles, rods = model.particles, model.rods
+    axis = rods.difference / np.where(rods.original_length > 0.0, rods.original_length, 1.0)[:, None]
+    rows, ends = np.arange(rods.count), rods.between.astype(np.intp)
+    compatibility = np.zeros((rods.count, particles.count, 2))
+    compatibility[rows, ends[:, 1]] = axis
+    compatibility[rows, ends[:, 0]] = -axis
+    mobility = particles.mobility.ravel()
+    scaled = (compatibility.reshape(rods.count, -1) * np.sqrt(mobility))[:, mobility > 0.0]
+    matrix: Array = scaled.T @ (scaled * (rods.stiffness / rods.rest_length)[:, None])
+    return matrix

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
@@ -28,21 +29,18 @@ class Spectrum:
 class RodOperator:
     """Products of M^-½ K M^-½ (or C for K) with vectors of shape (n, 2), K = Σ B_rᵀ k_r B_r over the rods.
 
-    along: stiffness along each rod's present axis. tension: its axial force (kN) where it is in tension, which makes it
-    stiff across the axis, by N/L. width: entries of a row.
+    along: stiffness along each rod's present axis; across: stiffness across it (N/L of rods in tension).
     """
 
-    width = 2
-
-    def __init__(self, model: Model, along: Array, tension: Array | None = None) -> None:
+    def __init__(self, model: Model, along: Array, across: Array | None = None) -> None:
         particles, rods = model.particles, model.rods
         ends = rods.between.astype(np.intp)
         self._first, self._second = np.ascontiguousarray(ends[:, 0]), np.ascontiguousarray(ends[:, 1])
         present = rods.difference + (particles.displacement[self._second] - particles.displacement[self._first])
         length = np.hypot(present[:, 0], present[:, 1])
         self._axis = present / np.where(length > 0.0, length, 1.0)[:, None]
-        self._along, self._across = along, None if tension is None else tension / rods.rest_length
-        self._excess = along if self._across is None else along - self._across  # (k a aᵀ + t (1 − a aᵀ)) v
+        self._along, self._across = along, across
+        self._excess = along if across is None else along - across  # (k a aᵀ + t (1 − a aᵀ)) v
         self._root = np.sqrt(particles.mobility)
         self.rows = particles.count
 
@@ -59,33 +57,31 @@ class RodOperator:
             product[:, d] -= np.bincount(self._first, force, self.rows)
         return self._root * product
 
-    def gershgorin(self, blocks: int = 1) -> Array:
-        """Upper bounds of the largest eigenvalues of so many equal blocks of rows: largest absolute row sums."""
+    def gershgorin(self) -> float:
+        """An upper bound of the largest eigenvalue: the largest absolute row sum."""
         stiffness = np.maximum(self._along, self._across if self._across is not None else 0.0)
         worst = self._root.max(axis=1)
         reach = stiffness * (worst[self._first] + worst[self._second])
         sums = np.bincount(self._first, reach, self.rows) + np.bincount(self._second, reach, self.rows)
-        bounds: Array = (worst * sums).reshape(blocks, -1).max(axis=1, initial=0.0)
-        return bounds
+        return float((worst * sums).max(initial=0.0))
 
 
 class FrameOperator(RodOperator):
     """The same with the rotations of models that bend: vectors of shape (n, 3), the third entry for the rotation.
 
     The stiffness of a rod's axis follows the bow of its ends (their slopes to the chord): it acts along
-    n·Δu + L₀ (Bφ)·φ, φ being the change of slopes; that of dampers, which know no tension, does not. ends: stiffness of
-    slopes (ss, se, ee); with tension also N L₀ B.
+    n·Δu + L₀ (Bφ)·φ, φ being the change of slopes. ends: stiffness of slopes (ss, se, ee); with axial forces (kN) of rods
+    in tension also N L₀ B. bows: whether `along` follows the bow, which dampers do not.
     """
-
-    width = 3
 
     def __init__(self, model: Model, along: Array, ends: Array, tension: Array | None = None) -> None:
         rods, particles = model.rods, model.particles
-        super().__init__(model, along, tension)
+        bows = tension is not None
+        super().__init__(model, along, tension / rods.rest_length if tension is not None else None)
         length = np.hypot(*(rods.difference + self._change(particles.displacement)).T)
         self._inverse = 1.0 / np.where(length > 0.0, length, 1.0)
         rest, bowing = rods.rest_length, rods.bowing
-        bent = slopes(model) if tension is not None else np.zeros((rods.count, 2))
+        bent = slopes(model) if bows else np.zeros((rods.count, 2))
         bow = np.stack([(bowing[:, :2] * bent).sum(axis=1), (bowing[:, 1:] * bent).sum(axis=1)], axis=1)
         self._bow = rest[:, None] * bow
         thrust = tension * rest if tension is not None else np.zeros(rods.count)
@@ -120,8 +116,8 @@ class FrameOperator(RodOperator):
         product[:, 2] *= self._spin
         return product
 
-    def gershgorin(self, blocks: int = 1) -> Array:
-        """Upper bounds of the largest eigenvalues of so many equal blocks of rows: largest sums of norms."""
+    def gershgorin(self) -> float:
+        """An upper bound of the largest eigenvalue: the largest sum of norms in a row."""
         worst, first, second = self._root.max(axis=1), self._first, self._second
         reach = worst[first] + worst[second]
         lean = reach * self._inverse
@@ -135,111 +131,64 @@ class FrameOperator(RodOperator):
         force += self._across * reach if self._across is not None else 0.0
         shifts = np.bincount(first, force, self.rows) + np.bincount(second, force, self.rows)
         turns = np.bincount(first, of_start, self.rows) + np.bincount(second, of_end, self.rows)
-        sums = np.maximum(worst * shifts, self._spin * turns)
-        bounds: Array = sums.reshape(blocks, -1).max(axis=1, initial=0.0)
-        return bounds
+        return float(np.maximum(worst * shifts, self._spin * turns).max(initial=0.0))
 
 
-def _stiffness(model: Model, share: Array, tension: Array | None = None) -> RodOperator:
-    """The operator of the stiffness of rods. share: of each rod, 1 or 0. tension: their axial forces, 0 where they push."""
-    rods = model.rods
-    along = share * rods.stiffness / rods.rest_length
-    if bends(model):
-        return FrameOperator(model, along, share[:, None] * rods.end_stiffness, tension)
-    return RodOperator(model, along, tension)
+def largest_eigenvalue(operator: Callable[[Array], Array], rows: int, bound: float, width: int = 2) -> float:
+    """An upper bound of the largest eigenvalue of a symmetric operator by Lanczos' method: Ritz value plus residual.
 
-
-def _damping(model: Model, share: Array) -> RodOperator:
-    """The operator of the dampers of rods."""
-    rods = model.rods
-    along = share * rods.damping
-    return (
-        FrameOperator(model, along, share[:, None] * rods.end_damping)
-        if bends(model)
-        else RodOperator(model, along)
-    )
-
-
-def coarse_rates(model: Model, blocks: int = 1) -> tuple[Array, Array]:
-    """Bounds of the largest eigenvalues ω² (1/s²) of the stiffness, without axial forces, and 2ζω (1/s) of the dampers.
-
-    Of each of so many equal disjoint blocks; those of `spectra` are closer, and take longer.
+    width: entries of a row. bound: what the result does not exceed. The start vector is fixed, sums are in a fixed order, so
+    that the result (and with it the step size) is the same on every run. Its entries, k²φ mod 1, differ differently
+    from row to row: it must not be blind to a direction, as kφ is to that of (1, −1).
     """
-    all_of_them = np.ones(model.rods.count)
-    return _stiffness(model, all_of_them).gershgorin(blocks), _damping(model, all_of_them).gershgorin(blocks)
-
-
-def _largest_eigenvalues(operator: RodOperator, blocks: int) -> Array:
-    """Upper bounds of the largest eigenvalues of so many equal blocks of a symmetric operator by Lanczos' method.
-
-    The result is the Ritz value plus its residual. The start vector is fixed, sums are in a fixed order, so that the
-    result (and with it the step size) is the same on every run, and for a block alone. Its entries, k²φ mod 1, differ
-    differently from row to row: it must not be blind to a direction, as kφ is to that of (1, −1).
-    """
-    bounds, width, rows = operator.gershgorin(blocks), operator.width, operator.rows // blocks
-    start = np.modf(np.arange(1, width * rows + 1) ** 2 * 0.6180339887498949)[0] - 0.5
-    vector = np.tile(start / math.sqrt(float((start * start).sum())), (blocks, 1))
-    basis: list[Array] = []
-    diagonal: list[Array] = []
-    off_diagonal: list[Array] = []
-    sizes = np.zeros(blocks, dtype=np.int64)
-    running = np.ones(blocks, dtype=bool)
-    for _ in range(min(LANCZOS_STEPS, width * rows)):
-        basis.append(vector)
-        product = operator(vector.reshape(-1, width)).reshape(blocks, -1)
-        diagonal.append((product * vector).sum(axis=1))
-        for known in basis * 2:  # once leaves some of them where little else is left; twice is enough
-            product -= (product * known).sum(axis=1)[:, None] * known
-        norm = np.sqrt((product * product).sum(axis=1))
-        off_diagonal.append(norm)
-        sizes += running
-        running &= norm > 1e-13 * bounds
-        if not running.any():
+    if width * rows <= LANCZOS_STEPS:  # the method would go all the way
+        matrix = [operator(unit.reshape(-1, width)).ravel() for unit in np.eye(width * rows)]
+        return min(max(float(np.linalg.eigvalsh(matrix)[-1]), 0.0), bound)
+    vector = np.modf(np.arange(1, width * rows + 1) ** 2 * 0.6180339887498949)[0] - 0.5
+    vector /= math.sqrt(float((vector * vector).sum()))
+    most = min(LANCZOS_STEPS, width * rows)
+    basis = np.empty((most, width * rows))
+    diagonal: list[float] = []
+    off_diagonal: list[float] = []
+    for size in range(1, most + 1):
+        basis[size - 1] = vector
+        product = operator(vector.reshape(-1, width)).ravel()
+        diagonal.append(float((product * vector).sum()))
+        for _ in range(2):  # once leaves some of them where little else is left; twice is enough
+            known = np.einsum("kn,n->k", basis[:size], product)
+            product -= np.einsum("kn,k->n", basis[:size], known)
+        off_diagonal.append(math.sqrt(float((product * product).sum())))
+        if off_diagonal[-1] <= 1e-13 * bound:
             break
-        vector = product / np.where(running, norm, math.inf)[:, None]
-    found = np.empty(blocks)
-    for size in np.unique(sizes).tolist():
-        at = sizes == size
-        found[at] = _ritz_bounds(np.array(diagonal[:size])[:, at].T, np.array(off_diagonal[:size])[:, at].T)
-    return np.minimum(found, bounds)
+        vector = product / off_diagonal[-1]
+    beside = off_diagonal[:-1]
+    values, vectors = np.linalg.eigh(np.diag(diagonal) + np.diag(beside, -1))  # it reads the lower half
+    return min(float(values[-1] + abs(off_diagonal[-1] * vectors[-1, -1])), bound)
 
 
-def _ritz_bounds(diagonal: Array, off_diagonal: Array) -> Array:
-    """Largest Ritz values plus their residuals of tridiagonal matrices, given by rows."""
-    size = diagonal.shape[1]
-    tridiagonal = np.zeros((len(diagonal), size, size))
-    here = np.arange(size)
-    tridiagonal[:, here, here] = diagonal
-    tridiagonal[:, here[1:], here[:-1]] = tridiagonal[:, here[:-1], here[1:]] = off_diagonal[:, :-1]
-    values, vectors = np.linalg.eigh(tridiagonal)
-    bounds: Array = values[:, -1] + np.abs(off_diagonal[:, -1] * vectors[:, -1, -1])
-    return bounds
-
-
-def spectrum(model: Model, axial_force: Array, rods: NDArray[np.bool_] | None = None) -> Spectrum:
+def spectrum(model: Model, axial_force: Array, counts: NDArray[np.bool_] | None = None) -> Spectrum:
     """The highest frequency in the present state under these axial forces (kN, shape (rods,)).
 
-    rods: which of them count; none given: all.
+    counts: which rods do; None: all.
     """
-    frequency, decay = spectra(model, axial_force, np.array([model.environment.drag]), rods)
-    return Spectrum(float(frequency[0]), float(decay[0]))
-
-
-def spectra(
-    model: Model, axial_force: Array, drag: Array, counts: NDArray[np.bool_] | None = None
-) -> tuple[Array, Array]:
-    """Frequency and decay, as in Spectrum, of each of the equal disjoint blocks that a model consists of.
-
-    drag: the environment's (1/s), one for each block. counts: which rods do; None: all.
-    """
-    rods, blocks = model.rods, len(drag)
-    decay = 0.5 * drag
-    particles = model.particles
+    rods, particles = model.rods, model.particles
+    decay = 0.5 * model.environment.drag
     if rods.count == 0 or not ((particles.mobility > 0.0).any() or particles.turning.any()):
-        return np.zeros(blocks), decay
+        return Spectrum(0.0, decay)
     share = np.ones(rods.count) if counts is None else counts.astype(np.float64)
-    stiffness = _stiffness(model, share, share * np.maximum(axial_force, 0.0))
-    frequency = np.sqrt(_largest_eigenvalues(stiffness, blocks))
-    if (rods.damping > 0.0).any() or (bends(model) and rods.end_damping.any()):
-        decay = decay + 0.5 * _largest_eigenvalues(_damping(model, share), blocks)
-    return frequency, decay
+    tension = share * np.maximum(axial_force, 0.0)
+    along, damping = share * rods.stiffness / rods.rest_length, share * rods.damping
+    damped = bool((rods.damping > 0.0).any())
+    stiffness: RodOperator
+    dampers: RodOperator | None
+    if bends(model):
+        ends, of_ends = share[:, None] * rods.end_stiffness, share[:, None] * rods.end_damping
+        width, stiffness = 3, FrameOperator(model, along, ends, tension)
+        dampers = FrameOperator(model, damping, of_ends) if damped or of_ends.any() else None
+    else:
+        width, stiffness = 2, RodOperator(model, along, tension / rods.rest_length)
+        dampers = RodOperator(model, damping) if damped else None
+    if dampers is not None:
+        decay += 0.5 * largest_eigenvalue(dampers, dampers.rows, dampers.gershgorin(), width)
+    highest = largest_eigenvalue(stiffness, stiffness.rows, stiffness.gershgorin(), width)
+    return Spectrum(math.sqrt(highest), decay)

@@ -159,7 +159,7 @@ class GeneratedModule:
         called = (kernel for kernel in self._source_and_kernels[1].values() if callable(kernel))
         return [kernel for kernel in called if not str(kernel.__module__).startswith(Choice.proved)]
 
-    @property
+    @cached_property
     def functions(self) -> dict[str, Kernel]:
         """What Python may call."""
         made = vars(self.module).items()

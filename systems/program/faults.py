@@ -38,16 +38,6 @@ def blame_mod(error: ProgramError) -> bool:
     return True
 
 
-def _dtype_of(b: Bound, parameter: str, model: Model) -> Any:
-    """The type of the numbers that a kernel gets for a parameter; None for those that Pinjoint provides."""
-    if parameter in PROVIDED:
-        return None
-    if parameter in b.arrays:
-        return b.arrays[parameter].dtype
-    table, _, column = parameter.partition("_")
-    return model.tables[table].fields[column].storage
-
-
 def check_plain_forms(bound: Iterable[Bound]) -> None:
     """Raise ProgramError for the first kernel of others that has no source, where nothing may be compiled."""
     if Choice.compile is not Compile.NEVER:
@@ -151,8 +141,11 @@ def _result_type(b: Bound, model: Model) -> Any:
     from pinjoint.systems.machine_code import machine_code
 
     def type_of(parameter: str) -> Any:
-        dtype = _dtype_of(b, parameter, model)
-        made: Any = types.float64 if dtype is None else from_dtype(dtype)
+        made: Any = types.float64  # of what Pinjoint provides
+        if parameter not in PROVIDED:
+            table, _, column = parameter.partition("_")
+            own = b.arrays.get(parameter)
+            made = from_dtype(model.tables[table].fields[column].storage if own is None else own.dtype)
         for width in reversed(shape_given(b, parameter, model)):
             made = types.UniTuple(made, width)  # type: ignore[no-untyped-call]
         return made

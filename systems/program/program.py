@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import inspect
 import math
 import time
 import weakref
@@ -132,6 +131,8 @@ class Program:
         self.follows_state = not self._writer.working and all(b.follows_state for b in self._writer.bound)
         self.failure: ProgramError | None = None
         self._state_revision = -1
+        written = [path for b in self._writer.commits for path in b.system.writes]
+        self._changes = _by_table_and_role(model, (*self.motion, *written))
         self.bind()
         present = weakref.ref(self)  # the module lives longer
         self.module.warm_up = lambda: program._call_all() if (program := present()) is not None else None
@@ -195,7 +196,8 @@ class Program:
         model = self.model
         extra: dict[str, Any] = {}
         for system in self.systems:
-            extra.update(bind(system, model).stored_arrays)
+            if type(system).arrays is not StepSystem.arrays:
+                extra.update(bind(system, model).stored_arrays)
         written = {w.replace(".", "_", 1): w for b in self._writer.commits for w in b.system.writes}
         extra |= {name: self._storage(path) for name, path in written.items()}
         self._near = NearPairs(model, [b.cutoff for b in self._writer.pairs]) if self._writer.pairs else None
@@ -215,7 +217,6 @@ class Program:
             extra[name] if name in extra else self._column(name.replace("_", ".", 1))
             for name in self._writer.columns
         ]
-        self._changes = _by_table_and_role(model, (*self.motion, *written.values()))
         self._bind_clock()
         self.changes_end = math.inf if self.lasting else loads_end(model)
         self._breaks = np.array([*load_breaks(model), math.inf])
@@ -372,7 +373,8 @@ class Program:
     def _after(self, first: str, entry: str, **given: Any) -> tuple[Any, ...]:
         """The arguments of a compiled function, bound by name, between its parameter `first` and the columns."""
         known = self._arrays | given
-        names = list(inspect.signature(self.module.functions[entry]).parameters)
+        code = self.module.functions[entry].py_func.__code__
+        names = code.co_varnames[: code.co_argcount]
         return tuple(known[name] for name in names[names.index(first) + 1 : -len(self._columns)])
 
     def _bind_arguments(self) -> None:

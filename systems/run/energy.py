@@ -2,9 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from dataclasses import asdict, dataclass
-from typing import Any
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
 
 from pinjoint.components.field import Column
 from pinjoint.components.model import Model
@@ -12,9 +11,7 @@ from pinjoint.systems.entries import Measure
 
 ENERGIES = (Measure.KINETIC, Measure.ELASTIC, Measure.POTENTIAL)  # the measures that enter the account
 DISSIPATED = ("dissipated_damping", "dissipated_plastic", "dissipated_impact")
-ENTRIES = ("initial_energy", "work", "potential_reference")  # of the clock; as `opened` returns them
-
-Clock = Callable[[str], Any]  # a value of a clock by name, or an array of those of several
+ENTRIES = ("initial_energy", "work", "potential_reference")  # of the clock
 
 
 @dataclass(frozen=True)
@@ -37,24 +34,7 @@ class Energy:
 
     def as_dict(self) -> dict[str, float]:
         """All entries by name, the imbalance included."""
-        return asdict(self) | {"imbalance": self.imbalance}
-
-
-def opened(measures: Any, clock: Clock) -> tuple[Any, Any, Any]:
-    """The ENTRIES with which a run's account begins: the energy that the model has then is the initial one.
-
-    measures: as of Program, along the first axis.
-    """
-    kinetic, elastic, potential = (measures[entry] for entry in ENERGIES)
-    damping, plastic, impact = map(clock, DISSIPATED)
-    return kinetic + elastic + (damping + plastic + impact) - clock("work"), clock("work"), potential
-
-
-def energy_of(measures: Any, clock: Clock, entries: tuple[Any, Any, Any]) -> Energy:
-    """The account in the state that was measured, given ENTRIES."""
-    kinetic, elastic, potential = (measures[entry] for entry in ENERGIES)
-    initial, work, reference = entries
-    return Energy(initial, work + potential - reference, kinetic, elastic, *map(clock, DISSIPATED))
+        return vars(self) | {"imbalance": self.imbalance}
 
 
 class Account:
@@ -66,7 +46,6 @@ class Account:
 
     def __init__(self, model: Model, measure: Callable[[], Column]) -> None:
         self._model = model
-        self._clock: Clock = lambda name: getattr(model.clock, name)
         self._measure = measure
         self.before_edit: Column | None = None
 
@@ -83,18 +62,23 @@ class Account:
     def energy(self, *, edited: bool) -> Energy:
         """The account now. edited: the model was edited since `close`."""
         measures = self._measure().tolist()
-        initial, work, reference = self._edited(measures) if edited else tuple(map(self._clock, ENTRIES))
-        return energy_of(measures, self._clock, (initial, work, reference))
+        kinetic, elastic, potential = (measures[entry] for entry in ENERGIES)
+        initial, work, reference = self._edited(measures) if edited else self._of_clock(ENTRIES)
+        return Energy(initial, work + potential - reference, kinetic, elastic, *self._of_clock(DISSIPATED))
+
+    def _of_clock(self, names: Sequence[str]) -> list[float]:
+        return [getattr(self._model.clock, name) for name in names]
 
     def _edited(self, measures: list[float]) -> tuple[float, float, float]:
         """ENTRIES with the edits since the account was closed.
 
         What an edit adds to the energy counts as work; the energy that a run begins with is its initial one.
         """
-        if self.before_edit is None:
-            return opened(measures, self._clock)
         clock = self._model.clock
         kinetic, elastic, potential = (measures[entry] for entry in ENERGIES)
+        if self.before_edit is None:
+            initial = kinetic + elastic + sum(self._of_clock(DISSIPATED)) - clock.work
+            return initial, clock.work, potential
         kinetic_before, elastic_before, potential_before = self.before_edit[list(ENERGIES)].tolist()
         work = potential_before - clock.potential_reference
         work += kinetic + elastic - kinetic_before - elastic_before

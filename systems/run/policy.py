@@ -1,25 +1,18 @@
-"""Policies of a run: the size of steps, when they and islands are reviewed, when a time is reached.
-
-Pure functions of what a state allows: single runs (simulation.py) and the batches of sweeps go by them alike.
-"""
+"""Policies of a run: the size of steps, when islands are reviewed, and what a person is told of a run."""
 
 from __future__ import annotations
 
 import math
 from collections.abc import Callable
 from dataclasses import dataclass
-from typing import Any
-
-import numpy as np
 
 from pinjoint.components import written
-from pinjoint.components.field import Column
 from pinjoint.components.language import plural, tr
+from pinjoint.components.model import Model
 from pinjoint.systems.base import Integrator, StopReason
-from pinjoint.systems.entries import SMALLEST_ENERGY, Measure
+from pinjoint.systems.entries import SMALLEST_ENERGY
 from pinjoint.systems.physics.automatic import SMALL
 
-GOING_ON = (StopReason.DONE, StopReason.REVIEW)  # stop reasons after which a run simply goes on
 FAILURES = (StopReason.DIVERGED, StopReason.UNRESOLVED, StopReason.FAILED)
 ENDING = (StopReason.EVENT, *FAILURES)  # reasons that end a step early
 
@@ -36,9 +29,6 @@ TOLD_SHARE = 0.1  # of all energy ever supplied; smaller: warns of lattices by a
 
 # Columns of the clock; 0 where error control begins anew.
 ERROR_CONTROL = ("step_error", "largest_displacement", "largest_speed", "largest_rotation", "largest_spin")
-
-# Steps between reviews of islands; fewer: asleep sooner, but a review costs as much as ten steps.
-SLEEP_INTERVAL = 1024
 
 
 # --- step sizes ------------------------------------------------------------------------------------------
@@ -129,45 +119,19 @@ def rounded_down(size: float) -> float:
     return math.floor(size * 10.0**digits) / 10.0**digits
 
 
-def begin_steps(clock: Callable[[str], Column], rows: Any, size: Any) -> None:
-    """From now on steps have this size (s), counted from the present time.
-
-    clock: gives a column of clocks to write to. rows: of the clocks that are meant.
-    """
-    clock("origin")[rows] = clock("time")[rows]
-    clock("origin_steps")[rows] = clock("steps")[rows]
-    clock("step_size")[rows] = size
+def begin_steps(model: Model, size: float) -> None:
+    """From now on steps have this size (s), counted from the present time."""
+    clock = model.clock
+    for name, value in ("origin", clock.time), ("origin_steps", clock.steps), ("step_size", size):
+        model.writable(f"clock.{name}")[0] = value
 
 
-# --- reviews, ends ---------------------------------------------------------------------------------------
-
-
-def steps_to_sleep_review(steps: Any) -> Any:
-    """After how many steps islands are reviewed again, when so many were taken; a number or an array."""
-    return SLEEP_INTERVAL - steps % SLEEP_INTERVAL
-
-
-def is_sleep_review(steps: Any) -> Any:
-    """True where islands are reviewed after so many steps."""
-    return steps % SLEEP_INTERVAL == 0
-
-
-def is_before(time: Any, target: float) -> Any:
-    """True where a time (s) is not yet the target (s), by more than round-off."""
-    return target - time > 4.0 * math.ulp(target)
-
-
-def energy_is_off(imbalance: Any, scale: Any) -> Any:
-    """True where steps lost or created so much energy (J) that a person is told; numbers or arrays.
-
-    imbalance, scale: largest_imbalance and energy_scale of the clock.
-    """
-    return abs(imbalance) > TOLD_SHARE * scale + SMALLEST_ENERGY
+# --- what is told -----------------------------------------------------------------------------------------
 
 
 def energy_warning(imbalance: float, scale: float) -> str:
     """The sentence that steps lost (positive) or created this energy (J); "" if it is a small part of all supplied."""
-    if not energy_is_off(imbalance, scale):
+    if not abs(imbalance) > TOLD_SHARE * scale + SMALLEST_ENERGY:
         return ""
     share = abs(imbalance) / max(scale, SMALLEST_ENERGY)
     if share >= 10.0:
@@ -215,16 +179,6 @@ def contact_warning(steps: int, most: float) -> str:
         steps,
         share=written.share(most),
     )
-
-
-def residual(measures: Column) -> Column:
-    """Largest unbalanced force on a free particle over the largest force of all, dampers apart.
-
-    measures: as of Program, along the first axis.
-    """
-    unbalanced, largest = measures[Measure.RESIDUAL], measures[Measure.LARGEST_FORCE]
-    found: Column = np.divide(unbalanced, largest, out=np.zeros(largest.shape), where=largest > 0.0)
-    return found
 
 
 def at_rest_since(time: float) -> str:

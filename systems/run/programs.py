@@ -45,13 +45,16 @@ class Programs:
         self.bindings = 0
         self.compile_seconds = 0.0
         self._made: dict[Key, Dynamics] = {}
+        self._plan: list[StepSystem] | None = None
         self._integrator: Integrator | None = None
         self._bound: Dynamics | None = None
 
     @property
     def plan(self) -> list[StepSystem]:
         """The step systems, integrators apart, that act in the scene and that the model needs, in order."""
-        return self._schedule.step_plan(self.scene, self._model)
+        if self._plan is None:
+            self._plan = self._schedule.step_plan(self.scene, self._model)
+        return self._plan
 
     def planned(self) -> Plan:
         """All systems that run in the scene with the model, the integrator among them, and why the others do not."""
@@ -69,12 +72,12 @@ class Programs:
     @contextmanager
     def in_scene(self, scene: str) -> Iterator[None]:
         """Questions inside the `with` are answered as if the systems of this scene acted."""
-        integrator, before = self._integrator, self.scene
-        self._integrator, self.scene = None, scene
+        before = self._plan, self._integrator, self.scene
+        self._plan, self._integrator, self.scene = None, None, scene
         try:
             yield
         finally:
-            self._integrator, self.scene = integrator, before
+            self._plan, self._integrator, self.scene = before
 
     def differ_in(self, scene: str) -> bool:
         """True if other systems, or another integrator, act in this scene."""
@@ -159,7 +162,7 @@ class Programs:
             except ProgramError as error:
                 if not blame_mod(error) and not self.blame_by_leaving_out(self._makes_program, str(error)):
                     raise
-                self._integrator = None  # the integrator may be that mod's
+                self.void()  # the integrator may be that mod's
         return self._bound
 
     def blame_by_leaving_out(self, works: Callable[[], bool], problem: str) -> bool:
@@ -196,11 +199,11 @@ class Programs:
 
     def unbind(self) -> None:
         """Release what is bound, since the plan may have changed."""
-        self._bound = None
+        self._plan = self._bound = None
 
     def void(self) -> None:
         """Release what is bound and the chosen integrator, since the document changed."""
-        self._integrator = self._bound = None
+        self._plan = self._integrator = self._bound = None
 
     def _bound_to(self, plan: list[StepSystem]) -> Dynamics:
         key = self._key(plan)

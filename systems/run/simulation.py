@@ -23,6 +23,7 @@ from pinjoint.systems.collision.driven.stepper import DrivenCollisions
 from pinjoint.systems.collision.free.flight import Flight
 from pinjoint.systems.collision.impacts import Impacts
 from pinjoint.systems.collision.overlaps import PARTING, part_overlaps, work_ahead
+from pinjoint.systems.entries import Measure
 from pinjoint.systems.physics.rest import may_rest, rests_unseen
 from pinjoint.systems.program.compiler import Choice, Unfinished
 from pinjoint.systems.program.program import OBSERVED
@@ -34,9 +35,7 @@ from pinjoint.systems.run.policy import (
     begin_steps,
     contact_warning,
     energy_warning,
-    is_sleep_review,
     overlap_warning,
-    residual,
 )
 from pinjoint.systems.run.program_steps import ProgramSteps
 from pinjoint.systems.run.programs import Dynamics, Programs
@@ -118,7 +117,7 @@ class Simulation:
         )
         self._present: tuple[int, Snapshot] | None = None  # the state at this revision
         self.armed = False
-        self.armed_revision = -1
+        self.armed_revision = self._sound_at = -1
         model.before_change = self.before_change
         observed = tuple(f"{table}.{name}" for table, names in OBSERVED.items() for name in names)
         model.derive(Derivation(observed, self._sources(), lambda world: self.observe()))
@@ -126,7 +125,7 @@ class Simulation:
 
     def _sources(self) -> tuple[str, ...]:
         """The columns that the derived ones follow from."""
-        tables = ["particles", "rods", "loads", "environment", "settings", "clock"]
+        tables = ["clock", "particles", "rods", "loads", "environment", "settings"]
         tables += [kind.table for kind in EXTENSIONS.kinds.values() if kind.table in self.model.tables]
         return tuple(
             f"{name}.{field.name}"
@@ -189,8 +188,9 @@ class Simulation:
     def _arm(self) -> None:
         """Get ready to run after edits: account for them, choose the step size, keep a safe state."""
         if not self.armed:
-            problem = incomputable(self.model)
+            problem = incomputable(self.model, self._sound_at)
             if not problem:
+                self._sound_at = self.model.revision
                 collides = any(system.impulsive for system in self.plan)
                 parted = self._parted() if collides else ""
                 self.program.commit()  # rods that edits left beyond a strength yield
@@ -347,7 +347,7 @@ class Simulation:
         if reason not in FAILURES:  # else the state in which events happened was given up
             self._announce_events()
         self._arm()
-        islands_due = is_sleep_review(self.model.clock.steps) and not self.halted
+        islands_due = self._sleep.is_due and not self.halted
         if islands_due and self._sleep.may_happen(self.program) and self._sleep.review(self.program):
             self.step_size.limit_anew()
         return taken >= max(ahead, 1) or reason is not StopReason.DONE
@@ -464,7 +464,7 @@ class Simulation:
         """Let time pass without steps."""
         before, clock = self.present(), self.model.clock
         self.model.writable("clock.time")[0] = target
-        begin_steps(lambda name: self.model.writable(f"clock.{name}"), 0, clock.step_size)
+        begin_steps(self.model, clock.step_size)
         self._depart(before, begun=0)
 
     def _depart(self, before: Snapshot, begun: int) -> None:
@@ -577,7 +577,9 @@ class Simulation:
     @property
     def residual(self) -> float:
         """Largest unbalanced force on a free particle over the largest force of all, dampers apart."""
-        return float(residual(self._measured()))
+        measures = self._measured()
+        unbalanced, largest = measures[[Measure.RESIDUAL, Measure.LARGEST_FORCE]].tolist()
+        return unbalanced / largest if largest > 0.0 else 0.0
 
 
 def _why_not_at_rest(program: Dynamics, has_rods: bool, energy: Energy, limit: float) -> str:

@@ -22,8 +22,10 @@ from pinjoint.systems.physics.rest import Array, Mask, RestMeasure
 from pinjoint.systems.program.parallel import make_program
 from pinjoint.systems.program.program import Program
 from pinjoint.systems.program.reordered import ReorderedProgram
-from pinjoint.systems.run.policy import steps_to_sleep_review
 from pinjoint.systems.run.programs import Dynamics
+
+# Steps between reviews of islands; fewer: asleep sooner, but a review costs as much as ten steps.
+INTERVAL = 1024
 
 
 class Sleep:
@@ -64,7 +66,12 @@ class Sleep:
         """Number of steps until the islands are reviewed again."""
         if not self.may_happen(program):
             return sys.maxsize
-        return int(steps_to_sleep_review(self.model.clock.steps))
+        return INTERVAL - self.model.clock.steps % INTERVAL
+
+    @property
+    def is_due(self) -> bool:
+        """True after so many steps that the islands are reviewed."""
+        return self.model.clock.steps % INTERVAL == 0
 
     def _look_up(self) -> None:
         """Find the islands anew if supports or rods have changed."""

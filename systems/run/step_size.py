@@ -76,7 +76,7 @@ class StepSize:
     def begin(self, size: float) -> None:
         """From now on steps have this size (s); the guard against divergence compares with this moment."""
         model, program = self._model, self._programs.dynamics
-        begin_steps(lambda name: model.writable(f"clock.{name}"), 0, size)
+        begin_steps(model, size)
         program.observe()
         model.writable("clock.guard_energy")[0] = program.conserved_energy()
 

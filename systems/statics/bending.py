@@ -7,7 +7,7 @@ Hinged ends are columns of zeros. Lengths in m, forces in kN; arrays have one ro
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, fields, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -55,16 +55,9 @@ class Bending:
     @classmethod
     def of(cls, model: Model, *, bows: bool) -> Bending:
         """That of a model; in first-order theory rods do not bow."""
-        rods = model.rods
-        return cls(
-            rest_length=rods.rest_length.copy(),
-            end_stiffness=rods.end_stiffness.copy(),
-            bowing=rods.bowing.copy() if bows else np.zeros_like(rods.bowing),
-            turning_shares=rods.turning_shares.copy(),
-            initial_slopes=rods.initial_slopes.copy(),
-            load_shares=rods.load_shares.copy(),
-            distributed_force=rods.distributed_force.copy(),
-        )
+        columns = {field.name: model.rods.column(field.name).copy() for field in fields(cls)}
+        columns["bowing"] *= bows
+        return cls(**columns)
 
     @property
     def rigid(self) -> NDArray[np.bool_]:

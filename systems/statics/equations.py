@@ -24,7 +24,6 @@ from pinjoint.components.table import flags
 from pinjoint.systems.islands import lowest_joined
 from pinjoint.systems.statics.assembly import DENSE, Assembly, Matrix, sparse_order, spread_by_ends
 from pinjoint.systems.statics.bending import Bending, Bent
-from pinjoint.systems.statics.response import Branches, Response
 
 if TYPE_CHECKING:  # only large structures need it
     from scipy.sparse import csc_matrix
@@ -59,6 +58,61 @@ def upright(motion: Array) -> Array:
     part = np.abs(motion) * np.array([1.0, 1.0, 0.0 if shifts else 1.0])[: motion.shape[1]]
     turned: Array = motion if motion.ravel()[part.argmax()] > 0.0 else -motion
     return turned
+
+
+@dataclass(frozen=True)
+class Response:
+    """The state of the rods at given displacements, by return mapping from a given plastic strain; (rods,).
+
+    elastic_force: the trial force, before yielding. plastic_strain: after yielding. axis: unit vectors from
+    first to second end, (rods, 2). flowing: rods that yield now. slack: one-sided rods without force.
+    round_off: what rounding alone makes of elastic_force (kN). elongation: of the axis, which may bow. bent: how
+    members bend; None where none do. share: of the distributed forces that acts.
+    """
+
+    elongation: Array
+    strain: Array
+    length: Array
+    axis: Array
+    elastic_force: Array
+    axial_force: Array
+    plastic_strain: Array
+    flowing: Flags
+    slack: Flags
+    round_off: Array
+    bent: Bent | None = None
+    share: float = 0.0
+
+    @property
+    def soft(self) -> Flags:
+        """Rods whose force does not change when their length does a little."""
+        return self.flowing | self.slack
+
+    @property
+    def reach(self) -> Array:
+        """What motions are measured by (m): the length, of slack cables that at which they tighten.
+
+        A slack cable may shrink to a point and turn over without anything changing.
+        """
+        tightens: Array = np.where(self.slack, self.length - self.elongation, 0.0)
+        return np.maximum(self.length, tightens)
+
+
+@dataclass(frozen=True)
+class Branches:
+    """The linear piece of its law that each rod is on; shape (rods,).
+
+    force: elastic of slack rods, else axial (kN). low, high: the forces at which the piece ends. outward: the
+    sense of elongation, 1 or −1, in which a rod at an end of its piece leaves it; 0 elsewhere. verge:
+    one-sided rods that are about to tighten or slacken. slack: the other one-sided rods without force.
+    """
+
+    force: Array
+    low: Array
+    high: Array
+    outward: Array
+    slack: Flags
+    verge: Flags
 
 
 @dataclass(frozen=True)
@@ -320,7 +374,8 @@ class Structure:
         stretch, axis, length = self._stretch(change)
         elongation = stretch + self.misfit
         if self.bending is not None:
-            slopes = self._slopes(displacement)
+            turned = self.turns(displacement) - self.chords(displacement)[:, None]
+            slopes = np.where(self.bending.rigid, turned, 0.0)
             elongation = elongation + self.bending.bow(slopes)[1]
         strain = elongation / self.rest_length
         elastic = self.stiffness * (strain - plastic_strain)
@@ -359,12 +414,6 @@ class Structure:
         if self.bending is None:
             return chord
         return with_full_turns(chord, self.bending.turning_shares, self.turns(displacement))
-
-    def _slopes(self, displacement: Array) -> Array:
-        """Slopes of the rigid ends to the chord, (rods, 2)."""
-        assert self.bending is not None
-        turned = self.turns(displacement) - self.chords(displacement)[:, None]
-        return np.where(self.bending.rigid, turned, 0.0)
 
     def _round_off_of_forces(self, displacement: Array, plastic_strain: Array, bent: Bent | None) -> Array:
         """By the sizes of what elastic strains are sums of, which may cancel: displacements, misfits, plastic strains."""
@@ -414,16 +463,10 @@ class Structure:
         pull = (self.stiffness / self.rest_length * stretched)[:, None] * response.axis
         if self.bending is None:
             return self.scatter(pull)
-        return self.held_kinks(self.slope_rates(field, response), pull)
+        return self.held(self.bending.moments(self.slope_rates(field, response)), pull)
 
-    def held_kinks(self, slopes: Array, pull: Array | None = None) -> Array:
-        """Forces (n, 3) that hold the particles against rods with small slopes (rods, 2) at their ends, and axial forces."""
-        assert self.bending is not None
-        moment = self.bending.moments(slopes)
-        return self.held(np.zeros_like(self.difference) if pull is None else pull, moment)
-
-    def held(self, pull: Array, moment: Array) -> Array:
-        """The same against rods with these axial forces, as vectors (rods, 2), and moments on their ends (rods, 2)."""
+    def held(self, moment: Array, pull: Array | float = 0.0) -> Array:
+        """The same against rods with moments on their ends (rods, 2), and axial forces as vectors (rods, 2)."""
         response = self.unmoved
         shear = moment.sum(axis=1) / np.where(response.length > 0.0, response.length, np.inf)
         return self._sheared(response, pull, moment, shear)
@@ -433,9 +476,9 @@ class Structure:
         if self.bending is None or response.bent is None:
             return np.zeros(self.unknown.shape)
         moment, shear = self.bending.carried(response.bent, response.axis, response.length, not self.linear)
-        return -self._sheared(response, np.zeros_like(response.axis), moment, shear)
+        return -self._sheared(response, 0.0, moment, shear)
 
-    def _sheared(self, response: Response, pull: Array, moment: Array, shear: Array) -> Array:
+    def _sheared(self, response: Response, pull: Array | float, moment: Array, shear: Array) -> Array:
         left = np.column_stack([-response.axis[:, 1], response.axis[:, 0]])
         return self.scatter(pull - shear[:, None] * left, moment)
 
@@ -526,6 +569,20 @@ class Structure:
             by_ends = np.concatenate([by_ends, by_slopes[rigid]])
             ends = np.concatenate([ends, np.repeat(self.ends, rigid.sum(axis=1), axis=0)])
         return spread_by_ends(by_ends, ends, len(self.position))[:, self.index].tocsc()
+
+    @cached_property
+    def reaches(self) -> Array:
+        """What deformations are multiplied by, so that they are lengths: 1, slopes by the rest length."""
+        ones = np.ones(len(self.ends))
+        if self.bending is None:
+            return ones
+        return np.concatenate([ones, np.repeat(self.rest_length, self.bending.rigid.sum(axis=1))])
+
+    @property
+    def scaled_compatibility(self) -> Array:
+        """The compatibility matrix at the original positions in full, of lengths only: rotations are × their measure."""
+        matrix: Array = self.compatibility(self.unmoved).toarray() * self.reaches[:, None] / self.measure
+        return matrix
 
     def elongations(self, response: Response, rows: Rows) -> Array:
         """The elongations of some rods from the unknowns, in full, (k, N)."""

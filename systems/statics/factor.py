@@ -15,8 +15,7 @@ import numpy as np
 
 from pinjoint.components.model import Model
 from pinjoint.systems.statics.assembly import SYMMETRIC, Matrix
-from pinjoint.systems.statics.equations import ROUND_OFF, Array, Flags, Structure
-from pinjoint.systems.statics.response import Response
+from pinjoint.systems.statics.equations import ROUND_OFF, Array, Flags, Response, Structure
 
 if TYPE_CHECKING:  # only large structures need it
     from scipy.sparse import csc_matrix

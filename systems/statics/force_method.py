@@ -267,7 +267,7 @@ class _Released:
         """The state under a load (n, …), a share of what else acts, and moments on the ends of rods (rods, 2)."""
         structure, rods, model = self._theory.structure, self._theory.structure.grown(share), self._model
         if moment.any():
-            load = load - structure.held(np.zeros_like(structure.difference), moment)
+            load = load - structure.held(moment)
         place = structure.field(model.particles.displacement, model.particles.rotation)
         supports, strain = share * np.where(structure.fixed, place, 0.0), share * model.rods.plastic_strain
         moved, response = self._theory.equilibrium(load, supports, strain, share, rods)

@@ -13,9 +13,8 @@ from pinjoint.components.derived import diagrams
 from pinjoint.components.language import marked
 from pinjoint.components.model import Model
 from pinjoint.components.rod import bends
-from pinjoint.systems.statics.equations import Array, Flags, Rows, Structure
+from pinjoint.systems.statics.equations import Array, Flags, Response, Rows, Structure
 from pinjoint.systems.statics.events import Event
-from pinjoint.systems.statics.response import Response
 
 STABLE, NEUTRAL, UNSTABLE = EQUILIBRIA = (
     marked("equilibrium"),

@@ -10,17 +10,16 @@ import numpy as np
 
 from pinjoint.components.language import tr
 from pinjoint.components.model import Model
-from pinjoint.systems.statics.equations import ROUND_OFF, Array, Structure, largest, normalised
+from pinjoint.systems.statics.equations import ROUND_OFF, Array, Response, Structure, largest, normalised
 from pinjoint.systems.statics.events import NoEquilibrium
 from pinjoint.systems.statics.explain import cables_named, describe_motion
 from pinjoint.systems.statics.external import external_forces, loose_bodies, loose_event
 from pinjoint.systems.statics.factor import SOFT, pseudo_random, regular, soft_count, soft_modes, unresisted
-from pinjoint.systems.statics.response import Response
 from pinjoint.systems.statics.state import STABLE, Start, StaticState, state_of
 
 _REFINEMENTS = 4  # of a linear solution
 _REFINEMENTS_OF_BENDING = 40  # at most; few unless hundreds of rods divide a long member
-FULL = 600  # unknowns up to which singular values are computed
+FULL = 600  # unknowns up to which all modes and singular values are computed
 MOST_MODES = 20  # mechanisms or states of self-stress of larger structures
 
 
@@ -172,7 +171,7 @@ def mechanisms(model: Model) -> Array:
     """Motions (k, n, 2 or 3) that deform no rod, the largest of each 1; of large structures at most 20."""
     structure = Structure.of(model, "linear").with_translations()
     if structure.size <= FULL:
-        modes = _null_space(_scaled(structure)) / structure.measure[:, None]
+        modes = _null_space(structure.scaled_compatibility) / structure.measure[:, None]
     else:
         structure = _rigid(structure)
         matrix = structure.initial_tangent
@@ -189,7 +188,7 @@ def self_stress(model: Model) -> Array:
     structure = Structure.of(model, "linear").with_translations()
     compatibility = structure.compatibility(structure.unmoved)
     if structure.size <= FULL:
-        states = _null_space(_scaled(structure).T) * _reaches(structure)[:, None]
+        states = _null_space(structure.scaled_compatibility.T) * structure.reaches[:, None]
     else:  # any forces, less those that balance their unbalanced part
         count = min(MOST_MODES, structure.deformations - _rank(structure))
         states = pseudo_random(structure.deformations, count)
@@ -207,10 +206,8 @@ def _rank(structure: Structure) -> int:
     if structure.size > FULL:
         structure = _rigid(structure)
         return structure.size - soft_count(structure.initial_tangent, structure.weight)
-    from scipy.linalg import svd
-
-    matrix = _scaled(structure)
-    return _count(svd(matrix, compute_uv=False), matrix)
+    matrix = structure.scaled_compatibility
+    return int(np.linalg.matrix_rank(matrix, rtol=_tolerance(matrix)))
 
 
 def _rigid(structure: Structure) -> Structure:
@@ -224,35 +221,19 @@ def _rigid(structure: Structure) -> Structure:
     return replace(structure, bending=replace(structure.bending, end_stiffness=stiff))
 
 
-def _scaled(structure: Structure) -> Array:
-    """The compatibility matrix in full, of lengths only: slopes × rest lengths, from rotations × a mean length."""
-    matrix: Array = structure.compatibility(structure.unmoved).toarray()
-    if structure.bending is None:
-        return matrix
-    return matrix * _reaches(structure)[:, None] / structure.measure
-
-
-def _reaches(structure: Structure) -> Array:
-    """What deformations are multiplied by, so that they are lengths: 1, slopes by the rest length."""
-    ones = np.ones(len(structure.ends))
-    if structure.bending is None:
-        return ones
-    return np.concatenate([ones, np.repeat(structure.rest_length, structure.bending.rigid.sum(axis=1))])
-
-
-def _count(singular: Array, matrix: Array) -> int:
-    """The number of singular values above round-off."""
-    return int((singular > 8.0 * max(matrix.shape) * ROUND_OFF * singular.max(initial=0.0)).sum())
+def _tolerance(matrix: Array) -> float:
+    """Of the largest singular value: smaller ones are round-off."""
+    least: float = 8.0 * max(matrix.shape) * ROUND_OFF
+    return least
 
 
 def _null_space(matrix: Array) -> Array:
     """Orthonormal basis (columns, k) of the null space of a matrix."""
     if 0 in matrix.shape:
         return np.eye(matrix.shape[1])
-    from scipy.linalg import svd
+    from scipy.linalg import null_space
 
-    _, singular, ways = svd(matrix)
-    space: Array = ways[_count(singular, matrix) :].T
+    space: Array = null_space(matrix, _tolerance(matrix))
     return space
 
 
@@ -284,11 +265,12 @@ def influence_line(model: Model, quantity: str, row: int, axis: int = 0) -> Arra
         pull[row] = structure.stiffness[row] / structure.rest_length[row] * structure.unmoved.axis[row]
         return theory.deflection(structure.scatter(pull))
     if quantity in ("shear", "bending_moment"):
+        assert structure.bending is not None
         kinks = np.zeros(structure.ends.shape)
         kinks[row] = (
             1.0 / structure.original_length[row] if quantity == "shear" else np.eye(2)[axis] * [-1.0, 1.0]
         )
-        return theory.deflection(structure.held_kinks(kinks))
+        return theory.deflection(structure.held(structure.bending.moments(kinks)))
     unit[row, axis] = 1.0
     if quantity in ("displacement", "rotation"):
         return theory.deflection(unit)

@@ -97,7 +97,10 @@ def find_unknown(model: Model, name: str) -> Unknown:
         raise ForceMethodError(
             "'{name}' is a particle; say which of its supports, such as {name}.x or {name}.y.", name=name
         )
-    choices = [*model.rods.names, *(unknown.name for unknown in _of_supports(model) + _of_ends(model))]
+    particles = model.particles
+    fixed = np.column_stack([particles.fixed, particles.fixed_rotation & bends(model)])
+    supports = [Unknown(particles[row], axis) for row, axis in np.argwhere(fixed).tolist()]
+    choices = [*model.rods.names, *(unknown.name for unknown in (*supports, *_of_ends(model)))]
     raise ForceMethodError(missing(marked("rods and supports"), name, choices))
 
 
@@ -152,13 +155,6 @@ def is_turned(model: Model, particle: int) -> bool:
     return bool(((model.rods.between == particle) & (model.rods.turning_shares > 0.0)).any())
 
 
-def _of_supports(model: Model) -> list[Unknown]:
-    """All reactions."""
-    particles = model.particles
-    fixed = np.column_stack([particles.fixed, particles.fixed_rotation & bends(model)])
-    return [Unknown(particles[row], axis) for row, axis in np.argwhere(fixed).tolist()]
-
-
 def _of_ends(model: Model) -> list[Unknown]:
     """All bending moments at rigid ends."""
     return [Unknown(model.rods[row], end) for row, end in np.argwhere(model.rods.turning_shares > 0.0).tolist()]
@@ -181,9 +177,8 @@ def _equilibrium(model: Model) -> tuple[Array, list[Unknown]]:
     held = Structure.of(model, "linear")
     free = replace(held, fixed=np.zeros_like(held.fixed), sparse=False).with_translations()
     rigid = np.zeros(free.ends.shape, dtype=bool) if free.bending is None else free.bending.rigid
-    lengths = np.concatenate([np.ones(len(rigid)), np.repeat(free.rest_length, rigid.sum(axis=1))])
     weights = np.concatenate([np.where(rigid.any(axis=1), _NEVER, 1.0), np.full(int(rigid.sum()), _FIRST)])
-    of_rods = free.compatibility(free.unmoved).toarray() * (lengths * weights)[:, None] / free.measure
+    of_rods = free.scaled_compatibility * weights[:, None]
     place = {int(coordinate): at for at, coordinate in enumerate(free.index.tolist())}
     supports = [at for at in np.argwhere(held.fixed).tolist() if at[0] * held.width + at[1] in place]
     of_supports = np.zeros((len(supports), free.size))

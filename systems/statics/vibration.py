@@ -10,14 +10,13 @@ from scipy.sparse import csc_matrix, diags
 from scipy.sparse.linalg import LinearOperator, eigsh
 
 from pinjoint.components.model import Model
-from pinjoint.systems.statics.equations import ROUND_OFF, Array, Structure, largest, normalised
+from pinjoint.systems.statics.equations import ROUND_OFF, Array, Response, Structure, largest, normalised
 from pinjoint.systems.statics.explain import divide_named
 from pinjoint.systems.statics.external import external_forces
 from pinjoint.systems.statics.factor import Factor, pseudo_random
-from pinjoint.systems.statics.response import Response
 from pinjoint.systems.statics.state import Start, StaticState
+from pinjoint.systems.statics.theory import FULL
 
-FULL = 600  # unknowns up to which all modes are computed
 LOWEST = 10  # modes of larger structures, unless more are asked for
 BALANCED = 1e-6  # of the largest force: residual of an equilibrium; a run ends at 1e-8
 DIVIDED = 4  # rods for each half wave of a member, with whose masses the lowest frequencies are within 5 %

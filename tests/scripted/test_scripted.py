@@ -179,25 +179,19 @@ def test_a_recording_replays_to_the_same_bits(tmp_path: Path) -> None:
     path = tmp_path / "recorded.jsonl"
     path.write_text(file.getvalue(), encoding="utf-8")
     assert all(json.loads(line) for line in file.getvalue().splitlines())
-
-    script = Script(path)
-    replayed = session_of(script)
-    play(script, replayed)
+    replayed = replayed_from(path)
     assert _bits(replayed) == _bits(session)
 
 
 def test_a_window_that_is_resized_replays_to_the_same_bits(tmp_path: Path) -> None:
-    session = Session.open("isostatic")
-    file = io.StringIO()
-    Recorder(session, file, "isostatic")
-    session.press("p", (100.0, 100.0))
-    session.resize(900, 500, 2.0)
-    session.press("home")
-    session.press("p", (700.0, 100.0))
-    path = tmp_path / "recorded.jsonl"
-    path.write_text(file.getvalue(), encoding="utf-8")
-    replayed = session_of(Script(path))
-    play(Script(path), replayed)
+    session, path = Session.open("isostatic"), tmp_path / "recorded.jsonl"
+    with path.open("w", encoding="utf-8") as file:
+        Recorder(session, file, "isostatic")
+        session.press("p", (100.0, 100.0))
+        session.resize(900, 500, 2.0)
+        session.press("home")
+        session.press("p", (700.0, 100.0))
+    replayed = replayed_from(path)
     assert replayed.view.camera == session.view.camera
     assert _bits(replayed) == _bits(session)
 
@@ -207,8 +201,7 @@ def test_a_recording_begins_with_the_view_that_it_is_played_in(name: str, tmp_pa
     session, path = Session.open(name), tmp_path / "recorded.jsonl"
     with path.open("w", encoding="utf-8") as file:
         Recorder(session, file, name)
-    replayed = session_of(Script(path))
-    play(Script(path), replayed)
+    replayed = replayed_from(path)
     assert replayed.view.camera == session.view.camera
 
 
@@ -219,8 +212,7 @@ def test_a_key_acts_where_the_pointer_was(tmp_path: Path) -> None:
         session.update_view()
         session.view.pointer = 100.0, 100.0
         session.press("l", session.pointer)
-    replayed = session_of(Script(path))
-    play(Script(path), replayed)
+    replayed = replayed_from(path)
     assert replayed.view.pointer == session.view.pointer
 
 
@@ -228,17 +220,20 @@ def test_what_was_pasted_from_another_program_is_in_the_recording(tmp_path: Path
     other = Session.open("pendulum")
     other.press("ctrl+a")
     other.press("ctrl+c")
-    session = Session.open("isostatic")
-    file = io.StringIO()
-    Recorder(session, file, "isostatic")
-    session.clipboard = other.clipboard
-    session.press("ctrl+v", (100.0, 100.0))
-    path = tmp_path / "recorded.jsonl"
-    path.write_text(file.getvalue(), encoding="utf-8")
-    replayed = session_of(Script(path))
-    play(Script(path), replayed)
+    session, path = Session.open("isostatic"), tmp_path / "recorded.jsonl"
+    with path.open("w", encoding="utf-8") as file:
+        Recorder(session, file, "isostatic")
+        session.clipboard = other.clipboard
+        session.press("ctrl+v", (100.0, 100.0))
+    replayed = replayed_from(path)
     assert replayed.particles.count == session.particles.count > 3
     assert _bits(replayed) == _bits(session)
+
+
+def replayed_from(path: Path) -> Session:
+    replayed = session_of(Script(path))
+    play(Script(path), replayed)
+    return replayed
 
 
 def _bits(session: Session) -> dict[str, bytes]:

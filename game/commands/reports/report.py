@@ -9,7 +9,7 @@ from dataclasses import asdict, dataclass
 from typing import TYPE_CHECKING, Any
 
 from pinjoint.commands.output import ResultError
-from pinjoint.commands.reports.results import Run, State, state
+from pinjoint.commands.reports.results import Read, Run, State, state
 from pinjoint.components.language import joined, marked, tr
 from pinjoint.components.mistake import Mistake
 from pinjoint.components.model import Model
@@ -51,21 +51,20 @@ class Analysis:
     limit: float = DEFAULT_LIMIT
     measures_error: bool = False
 
-    def run(self, simulation: Simulation, name: str, reported: list[State] | None = None) -> Run:
+    def run(
+        self, simulation: Simulation, name: str, reported: list[State] | None = None, read: Read = state
+    ) -> Run:
         """The result of the analysis, in which `name` is the model. reported: gets the states at `times`, one by one.
 
-        Raises Mistake, ResultError, FieldError, and ModError if a mod has failed or fails meanwhile.
+        read: makes a state. Raises Mistake, ResultError, FieldError, and ModError if a mod has failed or fails meanwhile.
         """
         check_mods()
         with heeding_mods(simulation):
-            return self._found(simulation, name, [] if reported is None else reported)
-
-    def _found(self, simulation: Simulation, name: str, reported: list[State]) -> Run:
-        if self.load_factors is not None:
-            return run_static(simulation, name, self.load_factors)
-        if self.times is not None:
-            return run_at(simulation, name, self.times, reported)
-        return run_until_rest(simulation, name, self.limit)
+            if self.load_factors is not None:
+                return run_static(simulation, name, self.load_factors, read)
+            if self.times is not None:
+                return run_at(simulation, name, self.times, [] if reported is None else reported, read)
+            return run_until_rest(simulation, name, self.limit, read)
 
     def run_in(self, session: Session, name: str) -> Run:
         """The same in a session, which adds remarks of theory on a run through time and its measured error."""
@@ -122,15 +121,15 @@ def _uncontrolled(simulation: Simulation) -> str:
     )
 
 
-def run_until_rest(simulation: Simulation, name: str, limit: float) -> Run:
+def run_until_rest(simulation: Simulation, name: str, limit: float, read: Read) -> Run:
     """Run until at rest, at most `limit` s of simulated time."""
     simulation.run_until_rest(simulation.model.clock.time + limit)
     ended = {StopReason.REST: marked("at rest"), StopReason.DIVERGED: marked("diverged")}
     status = ended.get(simulation.reason, marked("limit reached"))
-    return _run(simulation, name, status, [_state(simulation)])
+    return _run(simulation, name, status, [_state(simulation, read)])
 
 
-def run_at(simulation: Simulation, name: str, times: Sequence[float], states: list[State]) -> Run:
+def run_at(simulation: Simulation, name: str, times: Sequence[float], states: list[State], read: Read) -> Run:
     """Run through the given times (s, ascending) and report the state at exactly each of them.
 
     states: gets them one by one, for whoever interrupts the run. Raises Mistake for times before that of the model.
@@ -143,13 +142,13 @@ def run_at(simulation: Simulation, name: str, times: Sequence[float], states: li
         )
     for target in times:
         simulation.run_to(target)
-        states.append(_state(simulation))
+        states.append(_state(simulation, read))
         if simulation.reason is StopReason.DIVERGED:
             return _run(simulation, name, "diverged", states)
     return _run(simulation, name, "time reached", states)
 
 
-def run_static(simulation: Simulation, name: str, factors: Sequence[float]) -> Run:
+def run_static(simulation: Simulation, name: str, factors: Sequence[float], read: Read) -> Run:
     """Settle at each load factor in turn, with the yielding of those before."""
     from pinjoint.systems.statics.settle import settle
 
@@ -157,7 +156,7 @@ def run_static(simulation: Simulation, name: str, factors: Sequence[float]) -> R
     started = time.perf_counter()
     settlement = settle(simulation.model, factors)
     seconds = time.perf_counter() - started
-    states = [static_state(simulation.model, found) for found in settlement.states]
+    states = [static_state(simulation.model, found, read) for found in settlement.states]
     status, note = without_mods(settlement.status, left_out)
     return _run(simulation, name, status, states, moves=False) | {
         "message": joined([settlement.message, note]),
@@ -167,19 +166,19 @@ def run_static(simulation: Simulation, name: str, factors: Sequence[float]) -> R
     }
 
 
-def static_state(model: Model, found: StaticState) -> State:
+def static_state(model: Model, found: StaticState, read: Read = state) -> State:
     """An equilibrium as a state; its work is the energy stored and dissipated on the path of equilibria."""
     energy = dict.fromkeys(ENERGIES, 0.0) | {
         "elastic": found.elastic_energy,
         "dissipated_plastic": found.dissipated_plastic,
         "work": found.elastic_energy + found.dissipated_plastic,
     }
-    return state(model, energy, found.load_factor, found.residual, found.columns)
+    return read(model, energy, found.load_factor, found.residual, found.columns)
 
 
-def _state(simulation: Simulation) -> State:
+def _state(simulation: Simulation, read: Read = state) -> State:
     try:
-        return state(simulation.model, simulation.energy.as_dict(), None, simulation.residual)
+        return read(simulation.model, simulation.energy.as_dict(), None, simulation.residual)
     except ResultError as error:
         raise ResultError(simulation.message or str(error)) from None
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from typing import Any
 
 import numpy as np
@@ -19,6 +19,7 @@ from pinjoint.paths import ENERGIES
 
 State = dict[str, Any]
 Run = Mapping[str, Any]
+Read = Callable[..., State]  # takes what `state` takes
 
 
 def _facts(kind: type[Handle], *names: str) -> tuple[Field[Any], ...]:
@@ -66,9 +67,8 @@ _IN_TABLES = {Particle.displacement.name: ("mm", 1000.0)}  # else units as in fi
 def reported(model: Model, group: str) -> tuple[Field[Any], ...]:
     """The fields of a table that results report: Pinjoint's own, then those of mods' components."""
     bent = bends(model) or model.rods.distributed_force.any()
-    of_mods = (
-        field for field in fields_of(_KINDS[group]) if field.component and field.dtype in (float, int, bool)
-    )
+    fields = model.tables[group].fields.values()
+    of_mods = (field for field in fields if field.component and field.dtype in (float, int, bool))
     return (*_OWN[group], *(_OF_BENDING[group] if bent else ()), *of_mods)
 
 
@@ -88,11 +88,28 @@ def state(
     force out of balance, relative to the largest force. columns: by "table.field", columns that are reported
     in place of the model's own. `position` is the original one. Raises ResultError.
     """
+    made = facts(model, energy, load_factor, residual, columns)
+    for group in _KINDS:
+        keys, rows = made[group], zip(*(column.tolist() for column in made[group].values()), strict=True)
+        made[group] = {
+            name: {key: None if value != value else value for key, value in zip(keys, row, strict=True)}
+            for name, row in zip(model.tables[group].names, rows, strict=True)
+        }
+    return made
+
+
+def facts(
+    model: Model,
+    energy: Mapping[str, float],
+    load_factor: float | None = None,
+    residual: float | None = None,
+    columns: Mapping[str, Column] | None = None,
+) -> State:
+    """As `state`, but of particles and of rods whole columns by name, in which NaN stands for no value."""
     made = {
         "time": model.clock.time,
         "load_factor": load_factor,
-        "particles": _elements(model, "particles", columns or {}),
-        "rods": _elements(model, "rods", columns or {}),
+        **{group: _columns(model, group, columns or {}) for group in _KINDS},
         "energy": {name: energy[name] for name in ENERGIES},
         "residual": residual,
         "collisions": model.clock.collisions,
@@ -100,25 +117,21 @@ def state(
     return made | {key: plain(made[key], key) for key in ("time", "load_factor", "energy", "residual")}
 
 
-def _elements(model: Model, name: str, given: Mapping[str, Column]) -> dict[str, dict[str, Any]]:
-    table = model.tables[name]
-    columns = []
-    for field in reported(model, name):
-        key = f"{name}.{field.name}"
-        column = given[key] if key in given else table.column(field.name)
-        absent = np.isnan(column) if field.nullable else False
-        for row in np.argwhere(~(np.isfinite(column) | absent))[:1, 0].tolist():
+def _columns(model: Model, group: str, given: Mapping[str, Column]) -> dict[str, Column]:
+    table, columns = model.tables[group], {}
+    for field in reported(model, group):
+        key = f"{group}.{field.name}"
+        columns[field.name] = column = given[key] if key in given else table.column(field.name)
+        finite = np.isfinite(column) | np.isnan(column) if field.nullable else np.isfinite(column)
+        if not finite.all():
+            row = int(np.argwhere(~finite)[0, 0])
             element, value = model.describe(table[row]), field.loaded(column, row)
             raise ResultError(
                 "{where} is {value}, not a finite number; report an earlier state.",
                 where=joined([element, field.named()], ": "),
                 value=str(value),
             )
-        values = column.tolist()
-        columns.append([None if v != v else v for v in values] if field.nullable else values)
-    keys = [field.name for field in reported(model, name)]
-    rows = zip(*columns, strict=True)
-    return {name: dict(zip(keys, row, strict=True)) for name, row in zip(table.names, rows, strict=True)}
+    return columns
 
 
 # --- as text -------------------------------------------------------------------------------------------

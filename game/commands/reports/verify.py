@@ -38,6 +38,9 @@ from pinjoint.systems.statics.vibration import vibrations
 VERIFIED, DIFFERS = marked("verified"), marked("differs from static theory")
 THEORY_ONLY, NOT_VERIFIED = marked("theory only"), marked("not verified")
 LEFT_OUT = marked("left out")  # of a simulation
+TAKES_LONG = marked(
+    "Not at rest after {steps} steps, so the simulation is left out here; --limit SECONDS lets it go on."
+)
 MOST_WORK = 200_000  # steps × elements of a simulation that nobody asked for: some seconds, interpreted
 PORTIONS = 10  # in which they are taken
 DEGREES = ("static", "internal", "external", "mechanisms")
@@ -81,7 +84,7 @@ def verify(session: Session, name: str, limit: float | None, *, simulate: bool =
         status = _run_to_rest(session, limit)
         found["simulation"] = {
             "status": status,
-            "message": session.message if status != LEFT_OUT else _taking_long(model.clock.steps),
+            "message": session.message if status != LEFT_OUT else tr(TAKES_LONG, steps=model.clock.steps),
             "time": model.clock.time,
             "steps": model.clock.steps,
             "integrator": session.simulation.integrator.key,
@@ -113,13 +116,6 @@ def _run_to_rest(session: Session, limit: float | None) -> str:
         if session.time >= DEFAULT_LIMIT:
             return session.run(until="rest", limit=0.0)
     return LEFT_OUT
-
-
-def _taking_long(steps: int) -> str:
-    return tr(
-        "Not at rest after {steps} steps, so the simulation is left out here; --limit SECONDS lets it go on.",
-        steps=steps,
-    )
 
 
 def _left_out(session: Session) -> Iterator[str]:
@@ -242,15 +238,14 @@ def influence(model: Model, names: Sequence[str]) -> Found:
                 moving=moving,
             ),
         )
-    return {"influence": {name: _influence(model, name) for name in names}}
-
-
-def _influence(model: Model, name: str) -> Found:
-    quantity, row, axis = _influenced(model, name)
-    field = influence_line(model, quantity, row, axis)[:, :2]
-    cleared = np.where(np.abs(field) > NOTHING * np.abs(field).max(), field, 0.0)
-    of = dict(zip(model.particles.names, cleared.tolist(), strict=True))
-    return {"quantity": quantity, "unit": f"{QUANTITIES[quantity][1]}/kN", "of": of}
+    found = {}
+    for name in names:
+        quantity, row, axis = _influenced(model, name)
+        field = influence_line(model, quantity, row, axis)[:, :2]
+        cleared = np.where(np.abs(field) > NOTHING * np.abs(field).max(), field, 0.0)
+        of = dict(zip(model.particles.names, cleared.tolist(), strict=True))
+        found[name] = {"quantity": quantity, "unit": f"{QUANTITIES[quantity][1]}/kN", "of": of}
+    return {"influence": found}
 
 
 def _influenced(model: Model, name: str) -> tuple[str, int, int]:

@@ -10,7 +10,7 @@ from pinjoint.components.language import marked
 from pinjoint.components.mistake import WrongValue
 from pinjoint.editor.context import Context
 from pinjoint.editor.scenes.form import FormScene
-from pinjoint.editor.sliders import add_slider_for
+from pinjoint.editor.sliders import add_slider
 from pinjoint.systems.edit import Refusal
 from pinjoint.systems.forms import typing
 from pinjoint.systems.input.actions import ACTIONS, FORMS, LOAD, PROPERTIES, SAVE, Perform, actions_of
@@ -79,7 +79,8 @@ def _slider_of_box(context: Context, pixel: Vector) -> None:
     box = scene.form.selected if isinstance(scene, FormScene) else None
     if box is None:
         raise Refusal("Click the box with the number first; then Ctrl+L makes a slider for it.")
-    add_slider_for(context, box)
+    _, field, axis = f"{box.target}.".split(".")[:3]
+    add_slider(context, box.elements, field, axis)
 
 
 action("scroll up", "wheel up", "scroll up")(_on_form(lambda s, context: s.scroll(context, -1)))

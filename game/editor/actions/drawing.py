@@ -16,7 +16,7 @@ from pinjoint.editor.gestures.drawing import HINGES, DrawForce, DrawMoment, Draw
 from pinjoint.systems.edit import Refusal
 from pinjoint.systems.edit.picking import End, pick_end, pick_particle, pick_rod
 from pinjoint.systems.edit.placing import place
-from pinjoint.systems.edit.rods import is_rigid, join_rigidly, share_at, toggle_hinge, toggle_joint
+from pinjoint.systems.edit.rods import is_rigid, set_rigid, share_at, toggle_hinge, toggle_joint
 from pinjoint.systems.edit.supports import next_support
 from pinjoint.systems.input.actions import PAUSE, actions_of
 
@@ -72,8 +72,9 @@ def _rigid(context: Context, pixel: Vector) -> None:
             else tr("New rods will be pinned at both ends.")
         )
         return
-    rigid = not all(is_rigid(rod, end) for rod in rods for end in (0, 1))
-    join_rigidly(context.model, rods, rigid)
+    ends = [(rod, end) for rod in rods for end in (0, 1)]
+    rigid = not all(is_rigid(*end) for end in ends)
+    set_rigid(context.model, ends, rigid, tr("rigid joints") if rigid else tr("hinges"))
     context.view.rigid = rigid
     named, section = all_of(context, rods), rods[0].section
     if not rigid:
@@ -173,9 +174,7 @@ action(
 @action("new grid", "g", "add a grid", (PAUSE,))
 def _new_grid(context: Context, pixel: Vector) -> None:
     with context.model.transaction(marked("new grid")):
-        for grid in context.model.grids:
-            if grid.shown:
-                grid.shown = False
+        context.model.assign(list(context.model.grids), "shown", False)
         context.model.create(Grid)
 
 
@@ -186,6 +185,4 @@ def _next_grid(context: Context, pixel: Vector) -> None:
     shown = [index for index, grid in enumerate(grids) if grid.shown]
     following = shown[-1] + 1 if shown else 0
     with context.model.transaction(marked("next grid")):
-        for index, grid in enumerate(grids):
-            if grid.shown != (index == following):
-                grid.shown = index == following
+        context.model.assign(grids, "shown", [index == following for index in range(len(grids))])

@@ -177,7 +177,7 @@ class DrawArrow(Drawing):
         self.elements: list[Any] = [*elements] or [origin]
         alone = len(self.elements) == 1
         named = self.elements[0].name if alone else heading(context.model, self.elements)
-        self.hint = tr(self.asks, element=named, particle=named, rods=named)
+        self.hint = tr(self.asks, particle=named, rods=named)
 
     def value(self, context: Context, pixel: Vector) -> Any:
         """What the arrow to a pixel stands for."""

@@ -13,7 +13,7 @@ from pinjoint.components.form import Form
 from pinjoint.components.handle import Handle
 from pinjoint.components.language import begun, joined, marked, tr
 from pinjoint.components.model import Model
-from pinjoint.components.view import LEAST_BESIDE, Readout, View, drawn_positions
+from pinjoint.components.view import LEAST_BESIDE, View, drawn_positions
 from pinjoint.editor.context import Context
 from pinjoint.editor.scenes.form import FormScene
 from pinjoint.systems.edit.picking import pick
@@ -162,7 +162,8 @@ class Properties(FormScene):
         if aside is None:
             return context.model, view
         beside = replace(view, aside=aside, keys=(), status=replace(view.status, hint=""))
-        beside.readouts = self._readouts(view, aside)
+        roomy = view.canvas.width - aside.width >= LEAST_BESIDE * view.pixel_ratio + aside.width
+        beside.readouts = view.readouts if roomy else ()
         beside.camera = self._camera_beside(context.model, beside)
         return context.model, beside
 
@@ -176,11 +177,6 @@ class Properties(FormScene):
                 beside.fit(model)
                 self._camera = beside.camera
         return replace(self._camera)
-
-    def _readouts(self, view: View, aside: Viewport) -> tuple[Readout, ...]:
-        """Those for which there is room beside the boxes."""
-        roomy = view.canvas.width - aside.width >= LEAST_BESIDE * view.pixel_ratio + aside.width
-        return view.readouts if roomy else ()
 
     def click_beside(self, context: Context, pixel: Vector) -> None:
         """A click on another element applies these boxes and shows those of that element."""

@@ -18,7 +18,7 @@ from pinjoint.systems.islands import islands
 from pinjoint.systems.machine_code import machine_code
 from pinjoint.systems.physics.kernels import judge
 from pinjoint.systems.physics.rest import RestMeasure
-from pinjoint.systems.run import policy
+from pinjoint.systems.run import sleep
 from tests.reference import bits
 from tests.reference.elements import Model
 from tests.reference.models import model, particle, rod
@@ -30,7 +30,7 @@ AGREE = 1e-7  # of the largest displacement: what freezing at a residual of 2e-9
 @pytest.fixture(autouse=True)
 def often(monkeypatch: pytest.MonkeyPatch) -> None:
     """Reviews after few steps, for small models."""
-    monkeypatch.setattr(policy, "SLEEP_INTERVAL", 64)
+    monkeypatch.setattr(sleep, "INTERVAL", 64)
 
 
 def vee(name: str, x: float, damping: float, force: tuple[float, float] = (10.0, -80.0)) -> Model:
@@ -107,7 +107,7 @@ def test_what_is_awake_keeps_its_bits_and_everything_its_digits() -> None:
 
 
 def test_errors_are_controlled_over_those_that_are_awake(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(policy, "SLEEP_INTERVAL", 8)  # steps are long
+    monkeypatch.setattr(sleep, "INTERVAL", 8)  # steps are long
     on, off = (
         Session.open(archipelago(integrator="dop853", time_step=None, sleeping=s)) for s in (True, False)
     )
