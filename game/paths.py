@@ -296,14 +296,6 @@ def quantity(model: Model, path: str) -> Quantity:
     if target.field.shape and not target.axis:
         parts = _parts(target.key, target.field)
         raise PathError("{path}: write one of {parts}.", path=path, parts=parts)
-    return _of_element(path, target)
-
-
-def _numbers(table: Table[Any]) -> Mapping[str, Field[Any]]:
-    return {name: field for name, field in table.fields.items() if field.dtype in (float, int, bool)}
-
-
-def _of_element(path: str, target: Target) -> Quantity:
     handle, field = target.handles[0], target.field
     unit, factor = field.shown
     unit = field.unit_of(target.axis) if unit == field.unit else unit
@@ -317,3 +309,7 @@ def _of_element(path: str, target: Target) -> Quantity:
         return float(target.part(value)) * factor
 
     return Quantity(path, tr(title, **told), unit, read)
+
+
+def _numbers(table: Table[Any]) -> Mapping[str, Field[Any]]:
+    return {name: field for name, field in table.fields.items() if field.dtype in (float, int, bool)}

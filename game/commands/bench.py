@@ -90,12 +90,11 @@ def run(name: str, **options: Any) -> Tables:
 
 def as_text(tables: Tables) -> str:
     """All tables of a benchmark, aligned, to read."""
-    return "\n".join("\n".join([title, *_lines(rows), ""]) for title, rows in tables.items())
-
-
-def _lines(rows: Sequence[Mapping[str, Any]]) -> Iterator[str]:
-    cells = [[f"{v:.4g}" if isinstance(v, float) else str(v) for v in row.values()] for row in rows]
-    return aligned([list(rows[0]), *cells])
+    lines: list[str] = []
+    for title, rows in tables.items():
+        cells = [[f"{v:.4g}" if isinstance(v, float) else str(v) for v in row.values()] for row in rows]
+        lines += [title, *aligned([list(rows[0]), *cells]), ""]
+    return "\n".join(lines)
 
 
 def _finite(value: Any) -> Any:

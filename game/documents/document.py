@@ -88,7 +88,11 @@ class _Section:
 
 
 def _parsed(document: Any) -> Model:
-    document = _with_data_of_mods(_of_this_version(_by_elements(document)))
+    document = _of_this_version(_by_elements(document))
+    try:
+        document = upgraded(document)
+    except ValueError as error:
+        fail(f"$.{MODS}", str(error))
     _refuse_unknown(document, (*_HEADER, *SECTIONS, SLIDERS, FOREIGN, MODS), "$")
     model = Model()
     model.foreign_versions = dict(document.get(MODS, {}))
@@ -101,23 +105,10 @@ def _parsed(document: Any) -> Model:
         _read_added(model, document[FOREIGN])
     if SLIDERS in document:
         model.sliders = read_sliders(model, document[SLIDERS])
-    _read_departure(model)
-    return model
-
-
-def _read_departure(model: Model) -> None:
-    """Make what the clock holds of a step that is under way a departure; it needs all elements."""
-    saved = model.clock.departure
+    saved = model.clock.departure  # of a step that is under way; it needs all elements
     if saved is not None:
         model.writable("clock.departure")[0] = Snapshot.of_file(saved, model, "$.state.departure")
-
-
-def _with_data_of_mods(document: Mapping[str, Any]) -> Mapping[str, Any]:
-    """The document with the data of mods in their present versions."""
-    try:
-        return upgraded(document)
-    except ValueError as error:
-        fail(f"$.{MODS}", str(error))
+    return model
 
 
 def _read_added(model: Model, kinds: Any) -> None:
@@ -290,7 +281,9 @@ def _column(model: Model, section: _Section, field: Field[Any]) -> Column:
     if field.name == "name":
         return _names(section, field)
     if field.component:
-        section = _component_section(section, field.component)
+        parts = [element.get(FOREIGN, {}).get(field.component, {}) for element in section.elements]
+        path = f"{FOREIGN}.{field.component}"
+        section = _Section(path, section.kind, parts, set().union(*parts), whole=section)
     if field.key not in section.keys:
         return field.allocate(len(section.elements))
     if field.references is not None:
@@ -399,12 +392,6 @@ def _refuse_misspelt(name: str, known: Collection[str], where: str) -> None:
             name=cut(name),
             remedy=remedy(name, known),
         )
-
-
-def _component_section(section: _Section, component: str) -> _Section:
-    """What the elements of a section hold for one component."""
-    parts = [element.get(FOREIGN, {}).get(component, {}) for element in section.elements]
-    return _Section(f"{FOREIGN}.{component}", section.kind, parts, set().union(*parts), whole=section)
 
 
 def _keep_foreign(model: Model, section: _Section, handles: Sequence[Handle]) -> None:

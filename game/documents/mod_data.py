@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import copy
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Mapping
 from typing import Any
 
 from pinjoint.components.extensions import EXTENSIONS
@@ -53,14 +53,13 @@ def upgraded(document: Mapping[str, Any]) -> Mapping[str, Any]:
 
 def _mods_in(document: Mapping[str, Any]) -> set[str]:
     """Names of the mods whose data a document holds."""
-    return {str(name).partition(".")[0] for part in _data_in(document) for name in part}
-
-
-def _data_in(document: Mapping[str, Any]) -> Iterator[Mapping[Any, Any]]:
-    for section in (*document.values(), document):
-        for element in section if isinstance(section, list | tuple) else (section,):
-            if isinstance(element, Mapping) and isinstance(element.get(DATA), Mapping):
-                yield element[DATA]
+    return {
+        str(name).partition(".")[0]
+        for section in (*document.values(), document)
+        for element in (section if isinstance(section, list | tuple) else (section,))
+        if isinstance(element, Mapping) and isinstance(element.get(DATA), Mapping)
+        for name in element[DATA]
+    }
 
 
 def _check(stated: Any) -> None:

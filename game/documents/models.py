@@ -157,7 +157,11 @@ def _reason(error: Exception) -> str:
 
 def _decoded(raw: bytes, source: str) -> Any:
     """What JSON bytes say. Raises ModelError if they are not JSON or an object repeats a key."""
-    _check_encoding(raw, source)
+    # What editors and shells write besides UTF-8:
+    if raw.startswith((codecs.BOM_UTF16_LE, codecs.BOM_UTF16_BE)):
+        raise ModelError("{source} is written in UTF-16; save it in UTF-8.", source=source)
+    if not raw.strip():
+        raise ModelError("{source} is empty; save the model again.", source=source)
     raw = raw.removeprefix(codecs.BOM_UTF8)
     try:
         content = msgspec.json.decode(raw)
@@ -215,14 +219,6 @@ def _not_json(source: str, error: Exception) -> ModelError:
         source=source,
         error=error,
     )
-
-
-def _check_encoding(raw: bytes, source: str) -> None:
-    """Raise ModelError for what editors and shells write besides UTF-8, or if there is nothing."""
-    if raw.startswith((codecs.BOM_UTF16_LE, codecs.BOM_UTF16_BE)):
-        raise ModelError("{source} is written in UTF-16; save it in UTF-8.", source=source)
-    if not raw.strip():
-        raise ModelError("{source} is empty; save the model again.", source=source)
 
 
 def _refuse_repeated_keys(value: Any, path: str) -> None:

@@ -1,8 +1,13 @@
-"""Preferences: what a person chose for every session, kept in a settings file of their own."""
+"""Preferences: what a person chose for every session, kept in a settings file of their own.
+
+A damaged file loses nothing: what cannot be read counts as not chosen, and is put aside when something is written.
+"""
 
 from __future__ import annotations
 
+import json
 import os
+from contextlib import suppress
 from pathlib import Path
 from typing import Any
 
@@ -10,7 +15,7 @@ from platformdirs import user_config_path
 
 from pinjoint.components.language import LANGUAGES
 from pinjoint.components.view import CONVENTIONS, MAGNIFICATIONS, TEXTBOOK
-from pinjoint.documents import choices
+from pinjoint.documents import models
 from pinjoint.systems.render.theme import theme_names
 
 CONFIG_VARIABLE = "PINJOINT_CONFIG"  # names another folder than the system's own
@@ -27,25 +32,25 @@ def settings_path() -> Path:
 
 def preferred_theme() -> str:
     """The name of the theme that was chosen last; the default where that cannot be read or is gone."""
-    name = _read().get("theme")
+    name = read(settings_path()).get("theme")
     return name if isinstance(name, str) and name in theme_names() else DEFAULT_THEME
 
 
 def preferred_convention() -> str:
     """The convention of the force method; the textbook's where it cannot be read."""
-    name = _read().get("convention")
+    name = read(settings_path()).get("convention")
     return name if isinstance(name, str) and name in CONVENTIONS else TEXTBOOK
 
 
 def preferred_language() -> str:
     """The code of the language that was chosen last; "" where none was, or there is no such language."""
-    code = _read().get("language")
+    code = read(settings_path()).get("language")
     return code if isinstance(code, str) and code in LANGUAGES else ""
 
 
 def preferred_keys() -> list[tuple[str, str, str]]:
     """(scene, key, action) of every key that a person chose: {"keys": {"pause": {"w": "wind.toggle"}}}."""
-    by_scene = _read().get("keys")
+    by_scene = read(settings_path()).get("keys")
     if not isinstance(by_scene, dict):
         return []
     return [
@@ -59,13 +64,13 @@ def preferred_keys() -> list[tuple[str, str, str]]:
 
 def preferred_magnification() -> float:
     """The factor by which type and symbols are enlarged; 1 where it cannot be read."""
-    factor = _read().get("magnification")
+    factor = read(settings_path()).get("magnification")
     return float(factor) if factor in MAGNIFICATIONS else 1.0
 
 
 def preferred_place() -> tuple[int, int, int, int] | None:
     """Left, top, width and height of the window (points) when it was closed last; None where that cannot be read."""
-    place = _read().get("window")
+    place = read(settings_path()).get("window")
     if not isinstance(place, list) or len(place) != 4:
         return None
     if not all(type(number) is int and abs(number) <= FARTHEST for number in place):
@@ -75,12 +80,31 @@ def preferred_place() -> tuple[int, int, int, int] | None:
 
 
 def remember(entry: str, choice: str | float | list[int]) -> None:
-    """Keep a choice: "theme", "language", "convention" of the force method, "magnification" or the place of the "window".
+    """Keep a choice: "theme", "language", "convention" of the force method, "magnification" or the place of the "window"."""
+    keep(settings_path(), entry, choice)
 
-    Where nothing can be written, it is not kept; see `choices.keep`.
+
+# --- files of choices ------------------------------------------------------------------------------------
+
+
+def read(path: Path) -> dict[str, Any]:
+    """What a file says; nothing if it is damaged, or not there."""
+    try:
+        entries = json.loads(path.read_text(encoding="utf-8"))
+    except (OSError, ValueError, RecursionError):
+        return {}
+    return entries if isinstance(entries, dict) else {}
+
+
+def keep(path: Path, entry: str, choice: object) -> None:
+    """Write an entry of a file, the others as they are.
+
+    Where nothing can be written, it is not kept. A file that cannot be read, such as one with a slip in what was
+    written by hand, is put aside.
     """
-    choices.keep(settings_path(), entry, choice)
-
-
-def _read() -> dict[str, Any]:
-    return choices.read(settings_path())
+    entries = read(path)
+    with suppress(OSError):
+        path.parent.mkdir(parents=True, exist_ok=True)
+        if not entries and path.is_file() and path.stat().st_size > 0:
+            models.replace(path.with_stem(f"{path.stem}-unreadable"), path.read_bytes())
+        models.replace(path, json.dumps({**entries, entry: choice}, indent=1).encode() + b"\n")

@@ -7,9 +7,8 @@ from contextlib import contextmanager, suppress
 from pathlib import Path
 from typing import NamedTuple
 
-from pinjoint.documents import choices
+from pinjoint.documents import preferences
 from pinjoint.documents.library import data_folder
-from pinjoint.documents.preferences import settings_path
 from pinjoint.scripts.script import Script, ScriptError, lessons_with_tasks
 
 FILE = "lessons.json"
@@ -37,12 +36,12 @@ def not_kept() -> Iterator[None]:
 
 def path() -> Path:
     """The file; it need not exist yet."""
-    return settings_path().with_name(FILE)
+    return preferences.settings_path().with_name(FILE)
 
 
 def done(lesson: str) -> Done:
     """What was done of a lesson; nothing where that cannot be read."""
-    entry = choices.read(path()).get(lesson)
+    entry = preferences.read(path()).get(lesson)
     if not isinstance(entry, dict):
         return Done()
     tasks, best = entry.get("tasks"), entry.get("best")
@@ -57,7 +56,7 @@ def done(lesson: str) -> Done:
 def keep(lesson: str, task: int, score: float | None = None) -> None:
     """Note that a task was done, and its score if it is less than before.
 
-    Where nothing can be written, it is not kept; see `choices.keep`.
+    Where nothing can be written, it is not kept; see `preferences.keep`.
     """
     if not _KEPT[-1]:
         return
@@ -68,7 +67,7 @@ def keep(lesson: str, task: int, score: float | None = None) -> None:
     entry = {"tasks": sorted(before.tasks | {task})} | (
         {"best": {str(number): best[number] for number in sorted(best)}} if best else {}
     )
-    choices.keep(path(), lesson, entry)
+    preferences.keep(path(), lesson, entry)
 
 
 def shelf() -> list[Script]:

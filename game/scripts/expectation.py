@@ -80,7 +80,8 @@ def compared(got: Any, relation: str, value: str, slack: str | None) -> bool:
                 "it is {value}, which is not a number; compare it with =, or with ≈ for a part of a text.",
                 value=quoted(got),
             )
-        said, wanted_text = (_typed(text) for text in (str(got), value.strip("\"'")))
+        # As typed: neither capitals nor real minus signs matter.
+        said, wanted_text = (text.lower().replace("−", "-") for text in (str(got), value.strip("\"'")))
         if got is None:
             return wanted_text in _NOTHING
         return said == wanted_text if relation == "=" else isinstance(got, str) and wanted_text in said
@@ -103,11 +104,6 @@ def compared(got: Any, relation: str, value: str, slack: str | None) -> bool:
         return bool(_ORDERS[relation](got, wanted))
     tolerance = within if slack is not None or relation == "=" else 1e-9 * abs(wanted)
     return math.isfinite(got) and abs(got - wanted) <= tolerance
-
-
-def _typed(text: str) -> str:
-    """A text as it is typed, so that neither capitals nor real minus signs matter."""
-    return text.lower().replace("−", "-")
 
 
 def read(session: Shown, path: str) -> Any:
@@ -154,15 +150,11 @@ def each(session: Shown, path: str) -> list[tuple[Handle, float]]:
     return [(handle, float(value)) for handle, value in values if value is not None]
 
 
-def _largest(values: Sequence[float]) -> float:
-    return max(map(abs, values))
-
-
 OVER_ALL: dict[str, Callable[[Sequence[float]], float]] = {  # of what a path with * names
     "max": max,
     "min": min,
     "sum": math.fsum,
-    "largest": _largest,
+    "largest": lambda values: max(map(abs, values)),
 }
 
 

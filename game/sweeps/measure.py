@@ -3,17 +3,15 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable
 from dataclasses import dataclass
-from functools import partial, reduce
+from functools import reduce
 from operator import getitem
 from typing import Any
 
 from pinjoint.commands.reports.results import State, reported
-from pinjoint.components.field import Field
 from pinjoint.components.language import joined, marked, tr
 from pinjoint.components.model import Model
-from pinjoint.components.table import Table
 from pinjoint.paths import EVERY, PathError, energy_named, locate
 from pinjoint.sweeps.variation import SweepError
 
@@ -81,7 +79,11 @@ def _read(model: Model, path: str) -> list[Measure]:
             return [
                 Measure(path, ("energy", energy_named(rest)), "", None, f"{rest.replace('_', ' ')} energy", "J")
             ]
-        target, rest = locate(model, path, partial(_reported, model))
+        target, rest = locate(
+            model,
+            path,
+            lambda table: {f.name: f for f in reported(model, table.name)} if table.name in _TABLES else {},
+        )
         if rest:
             raise PathError("'{rest}' does not belong to the quantity; {form}.", rest=rest, form=tr(_FORM))
     except PathError as error:
@@ -101,7 +103,3 @@ def _read(model: Model, path: str) -> list[Measure]:
         for element in elements
         for axis in ([target.axis] if target.axis or not target.field.shape else target.field.axes)
     ]
-
-
-def _reported(model: Model, table: Table[Any]) -> Mapping[str, Field[Any]]:
-    return {field.name: field for field in reported(model, table.name)} if table.name in _TABLES else {}

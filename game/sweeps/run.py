@@ -110,7 +110,9 @@ class Journal:
             if not lines:
                 _append(file, title)
         for line in lines[1:]:
-            self.finished.update(_outcomes(line))
+            seal, _, content = line.partition(b" ")
+            if seal == _seal(content):  # else it is damaged, and its variants are computed anew
+                self.finished.update(msgspec.json.decode(content, type=list[Outcome]))
 
     def add(self, outcomes: Sequence[Outcome]) -> None:
         """Keep what some variants came to; it survives a kill from now on."""
@@ -124,12 +126,6 @@ class Journal:
         """The results are written; nothing is left to keep."""
         if self.path is not None:
             self.path.unlink(missing_ok=True)
-
-
-def _outcomes(line: bytes) -> list[Outcome]:
-    """What a line says; nothing if it is damaged, so that its variants are computed anew."""
-    seal, _, content = line.partition(b" ")
-    return msgspec.json.decode(content, type=list[Outcome]) if seal == _seal(content) else []
 
 
 def _seal(content: bytes) -> bytes:

@@ -67,24 +67,17 @@ class Random:
 Variation = Values | Random
 
 
-def _normal(generator: np.random.Generator, mean: float, deviation: float, count: int) -> Any:
-    return mean + deviation * generator.standard_normal(count)
-
-
 def _lognormal(generator: np.random.Generator, mean: float, deviation: float, count: int) -> Any:
     """Of this mean and standard deviation themselves, not of the logarithm's."""
     variance = math.log1p((deviation / mean) ** 2)
     return mean * np.exp(math.sqrt(variance) * generator.standard_normal(count) - 0.5 * variance)
 
 
-def _uniform(generator: np.random.Generator, low: float, high: float, count: int) -> Any:
-    return low + (high - low) * generator.random(count)
-
-
 DISTRIBUTIONS: Mapping[str, Callable[..., Any]] = {
-    "normal": _normal,  # (mean, standard deviation); a deviation may be given as 5% of the mean
-    "lognormal": _lognormal,  # the same
-    "uniform": _uniform,  # (lowest, highest)
+    # Of the mean and the standard deviation, which may be given as 5% of the mean.
+    "normal": lambda generator, mean, deviation, count: mean + deviation * generator.standard_normal(count),
+    "lognormal": _lognormal,
+    "uniform": lambda generator, low, high, count: low + (high - low) * generator.random(count),
 }
 
 

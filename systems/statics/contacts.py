@@ -200,7 +200,8 @@ class Sinking:
                     self._use(self.lengthened)
                 else:
                     worst = min(gap, worst)
-                    self._lengthen()
+                    pressing = -self.point.response.axial_force[self.rods.stop :]
+                    self._use(pressing / self.stiffness)  # longer by what their forces shorten them
                 penalty = 0.0
                 continue
             crept = self._creep(moves, penalty)
@@ -225,10 +226,6 @@ class Sinking:
         lengthened[new] = self.lengthened[old]
         self.pairs, self.way, self.axis, self.flat = near, way, axis, flat
         self._use(lengthened)
-
-    def _lengthen(self) -> None:
-        """Lengthen contacts by what their forces shorten them."""
-        self._use(-self.point.response.axial_force[self.rods.stop :] / self.stiffness)
 
     def _use(self, lengthened: Array) -> None:
         """Go on with contacts of this lengthening; they do not yield."""

@@ -252,9 +252,11 @@ class Path:
             return elastic
         if not self.exact_events:
             return self._soften_by_trial(response, branches, growth > 0.0, onward)
-        soft = self._soften_exactly(response, branches, elastic, guess)
-        if soft is not None:
-            return self._direction(response, branches, soft, onward)
+        limited, matrix, excess = self._limits(response, branches, elastic)
+        chosen = yielding_set(matrix, excess, guess[limited])
+        if chosen is not None:
+            limited[limited] = chosen
+            return self._direction(response, branches, limited, onward)
         return replace(self._direction(response, branches, growth > 0.0, onward), consistent=False)
 
     def _direction(
@@ -288,17 +290,6 @@ class Path:
         growth = rate * branches.outward
         wrong = (growth > 0.0) != (tangent.soft & ~branches.slack)
         return tangent.factor.exists and not (np.abs(growth[wrong]) > INDIFFERENT * largest(rate)).any()
-
-    def _soften_exactly(
-        self, response: Response, branches: Branches, elastic: Tangent, guess: Flags
-    ) -> Flags | None:
-        """The rods at the end of a piece that give way, by the complementarity problem; None without a solution."""
-        limited, matrix, growth = self._limits(response, branches, elastic)
-        chosen = yielding_set(matrix, growth, guess[limited])
-        if chosen is None:
-            return None
-        limited[limited] = chosen
-        return limited
 
     def _limits(self, response: Response, branches: Branches, elastic: Tangent) -> tuple[Flags, Array, Array]:
         """The rods at the end of a piece, and the matrix and growth of their complementarity problem.

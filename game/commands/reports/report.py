@@ -61,10 +61,45 @@ class Analysis:
         check_mods()
         with heeding_mods(simulation):
             if self.load_factors is not None:
-                return run_static(simulation, name, self.load_factors, read)
-            if self.times is not None:
-                return run_at(simulation, name, self.times, [] if reported is None else reported, read)
-            return run_until_rest(simulation, name, self.limit, read)
+                return self._settled(simulation, name, self.load_factors, read)
+            return self._through_time(simulation, name, [] if reported is None else reported, read)
+
+    def _through_time(self, simulation: Simulation, name: str, states: list[State], read: Read) -> Run:
+        if self.times is None:
+            simulation.run_until_rest(simulation.model.clock.time + self.limit)
+            states.append(_state(simulation, read))
+            ended = {StopReason.REST: marked("at rest"), StopReason.DIVERGED: marked("diverged")}
+            return _run(simulation, name, ended.get(simulation.reason, marked("limit reached")), states)
+        if self.times[0] < (present := simulation.model.clock.time):
+            raise Mistake(
+                "The model is at t = {present:.9g} s already, after {asked:.9g} s; ask for later times.",
+                present=present,
+                asked=self.times[0],
+            )
+        for target in self.times:
+            simulation.run_to(target)
+            states.append(_state(simulation, read))
+            if simulation.reason is StopReason.DIVERGED:
+                return _run(simulation, name, "diverged", states)
+        return _run(simulation, name, "time reached", states)
+
+    @staticmethod
+    def _settled(simulation: Simulation, name: str, factors: Sequence[float], read: Read) -> Run:
+        """The equilibrium at each load factor in turn, with the yielding of those before."""
+        from pinjoint.systems.statics.settle import settle
+
+        left_out = simulation.schedule.left_out_of_statics(simulation.model)
+        started = time.perf_counter()
+        settlement = settle(simulation.model, factors)
+        seconds = time.perf_counter() - started
+        states = [static_state(simulation.model, found, read) for found in settlement.states]
+        status, note = without_mods(settlement.status, left_out)
+        return _run(simulation, name, status, states, moves=False) | {
+            "message": joined([settlement.message, note]),
+            "left_out": left_out,
+            "wall_seconds": seconds,
+            "events": _records(simulation.model, settlement.events),
+        }
 
     def run_in(self, session: Session, name: str) -> Run:
         """The same in a session, which adds remarks of theory on a run through time and its measured error."""
@@ -119,51 +154,6 @@ def _uncontrolled(simulation: Simulation) -> str:
         " measured. Use --measure-error to measure it, or --integrator dop853 to keep it small.",
         count=AFFORDABLE,
     )
-
-
-def run_until_rest(simulation: Simulation, name: str, limit: float, read: Read) -> Run:
-    """Run until at rest, at most `limit` s of simulated time."""
-    simulation.run_until_rest(simulation.model.clock.time + limit)
-    ended = {StopReason.REST: marked("at rest"), StopReason.DIVERGED: marked("diverged")}
-    status = ended.get(simulation.reason, marked("limit reached"))
-    return _run(simulation, name, status, [_state(simulation, read)])
-
-
-def run_at(simulation: Simulation, name: str, times: Sequence[float], states: list[State], read: Read) -> Run:
-    """Run through the given times (s, ascending) and report the state at exactly each of them.
-
-    states: gets them one by one, for whoever interrupts the run. Raises Mistake for times before that of the model.
-    """
-    if times[0] < (present := simulation.model.clock.time):
-        raise Mistake(
-            "The model is at t = {present:.9g} s already, after {asked:.9g} s; ask for later times.",
-            present=present,
-            asked=times[0],
-        )
-    for target in times:
-        simulation.run_to(target)
-        states.append(_state(simulation, read))
-        if simulation.reason is StopReason.DIVERGED:
-            return _run(simulation, name, "diverged", states)
-    return _run(simulation, name, "time reached", states)
-
-
-def run_static(simulation: Simulation, name: str, factors: Sequence[float], read: Read) -> Run:
-    """Settle at each load factor in turn, with the yielding of those before."""
-    from pinjoint.systems.statics.settle import settle
-
-    left_out = simulation.schedule.left_out_of_statics(simulation.model)
-    started = time.perf_counter()
-    settlement = settle(simulation.model, factors)
-    seconds = time.perf_counter() - started
-    states = [static_state(simulation.model, found, read) for found in settlement.states]
-    status, note = without_mods(settlement.status, left_out)
-    return _run(simulation, name, status, states, moves=False) | {
-        "message": joined([settlement.message, note]),
-        "left_out": left_out,
-        "wall_seconds": seconds,
-        "events": _records(simulation.model, settlement.events),
-    }
 
 
 def static_state(model: Model, found: StaticState, read: Read = state) -> State:

@@ -138,7 +138,7 @@ def _by_element(comparison: Comparison | None) -> dict[str, dict[str, Any]]:
 
 
 def _found_by_theory(model: Model, name: str, theory: Theories) -> Found:
-    settlement, degrees = theory.settlement, indeterminacy(model)
+    settlement, degrees, count = theory.settlement, indeterminacy(model), counted(model)
     free = vibrations(model)
     loaded = vibrations(model, settlement.final).hertz.tolist() if theory.exact is not None else None
     rods, names = model.rods.names, model.particles.names
@@ -147,7 +147,10 @@ def _found_by_theory(model: Model, name: str, theory: Theories) -> Found:
         "status": NOT_VERIFIED,
         "message": "",
         "indeterminacy": {name: getattr(degrees, name) for name in DEGREES},
-        "count": _count(model),
+        "count": {
+            **{name: number for name, number in asdict(count).items() if number is not None},
+            "degree": count.degree,
+        },
         "cables": [name for name, cable in zip(rods, model.rods.tension_only, strict=True) if cable],
         "mechanisms": [
             {
@@ -283,7 +286,19 @@ def _influenced(model: Model, name: str) -> tuple[str, int, int]:
 
 def lines(found: Found) -> Iterator[str]:
     """What `verify` or `influence` found, as aligned tables to read."""
-    return _influence_lines(found["influence"]) if "influence" in found else _verify_lines(found)
+    if "influence" not in found:
+        yield from _verify_lines(found)
+        return
+    for name, line in found["influence"].items():
+        yield tr(
+            "{quantity} of {name} in {unit}, for a force of 1 kN at",
+            quantity=tr(_TITLES[line["quantity"]]),
+            name=name,
+            unit=line["unit"],
+        )
+        heads = tr("particle"), tr("along x"), tr("along y")
+        yield from aligned([heads, *((particle, *pair) for particle, pair in line["of"].items())])
+        yield ""
 
 
 def rows(found: Found) -> Iterator[output.Row]:
@@ -306,20 +321,6 @@ def _values(found: Found, quantity: str) -> Iterator[tuple[str, str, Found]]:
         yield from ((name, *item) for item in ([("", of)] if "exact" in of else of.items()))
 
 
-def _influence_lines(found: Found) -> Iterator[str]:
-    for name, line in found.items():
-        quantity = tr(_TITLES[line["quantity"]])
-        yield tr(
-            "{quantity} of {name} in {unit}, for a force of 1 kN at",
-            quantity=quantity,
-            name=name,
-            unit=line["unit"],
-        )
-        heads = tr("particle"), tr("along x"), tr("along y")
-        yield from aligned([heads, *((particle, *pair) for particle, pair in line["of"].items())])
-        yield ""
-
-
 def _degrees(found: Found) -> str:
     """The degrees of static and kinematic indeterminacy in words."""
     degrees = found["indeterminacy"]
@@ -339,13 +340,6 @@ def _degrees(found: Found) -> str:
         statical = tr("no self-stress") if moving else tr("statically determinate")
     cables = tr("all cables are counted as taut") if found["cables"] else ""
     return joined([statical, kinematic, cables], "; ")
-
-
-def _count(model: Model) -> Found:
-    """The numbers of the rule for counting by hand, with its degree."""
-    count = counted(model)
-    numbers = {name: number for name, number in asdict(count).items() if number is not None}
-    return {**numbers, "degree": count.degree}
 
 
 def _formula(found: Found) -> str:
