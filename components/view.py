@@ -15,11 +15,10 @@ from pinjoint.components.bent import AXIAL, middles
 from pinjoint.components.camera import LEAST_MARGIN, Camera, Rectangle, Viewport
 from pinjoint.components.card import Card
 from pinjoint.components.field import Vector
-from pinjoint.components.menu import Menu
 from pinjoint.components.model import Model
 from pinjoint.components.rod import bends
 from pinjoint.components.slider import ARROW, SUPPORT, Place, SliderStack, under
-from pinjoint.components.toolbar import Toolbar
+from pinjoint.components.toolbar import Menu, Toolbar
 
 CONVENTIONS = TEXTBOOK, THESIS = ("textbook", "thesis")  # of the force method
 

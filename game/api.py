@@ -94,7 +94,6 @@ from pinjoint.systems.physics.integrators import ThesisTaylor as ThesisTaylor
 from pinjoint.systems.physics.integrators import VelocityVerlet as VelocityVerlet
 from pinjoint.systems.physics.integrators import runge_kutta_constants as runge_kutta_constants
 from pinjoint.systems.physics.tableaus import Tableau as Tableau
-from pinjoint.systems.render.icons import Part as Part
 from pinjoint.systems.render.marks import Bars as Bars
 from pinjoint.systems.render.marks import Discs as Discs
 from pinjoint.systems.render.marks import Fills as Fills
@@ -107,6 +106,7 @@ from pinjoint.systems.render.marks import Strokes as Strokes
 from pinjoint.systems.render.marks import Text as Text
 from pinjoint.systems.render.marks import boxes as boxes
 from pinjoint.systems.render.sheet import Sheet as Sheet
+from pinjoint.systems.render.symbols import Part as Part
 from pinjoint.systems.render.theme import Colour as Colour
 from pinjoint.systems.render.theme import Theme as Theme
 from pinjoint.systems.render.theme import faded as faded

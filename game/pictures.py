@@ -92,7 +92,7 @@ def write(
 
 def _as_image(pictures: Sequence[Picture], size: Size, suffix: str, *, clear: bool) -> bytes:
     """Pictures as pixels."""
-    from pinjoint.systems.render.pygame_images import as_clear_png, as_image  # pygame takes a while to import
+    from pinjoint.systems.render.pygame_canvas import as_clear_png, as_image  # pygame takes a while to import
 
     return as_clear_png(pictures, size) if clear else as_image(pictures, size, suffix)
 
@@ -110,7 +110,7 @@ def frame(
 
     placed: where labels were in the last of several pictures, see compose().
     """
-    from pinjoint.systems.render.pygame_images import as_colours
+    from pinjoint.systems.render.pygame_canvas import as_colours
 
     session.update_view()
     status = replace(session.view.status, hint="")  # a picture takes no keys

@@ -13,7 +13,7 @@ from tempfile import TemporaryDirectory
 from platformdirs import user_data_path
 
 from pinjoint.components import suggestions
-from pinjoint.components.box import fits_file_names
+from pinjoint.components.form import fits_file_names
 from pinjoint.components.language import plural, tr
 from pinjoint.components.mistake import Explained
 from pinjoint.documents import models

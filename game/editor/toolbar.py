@@ -7,10 +7,9 @@ from collections.abc import Iterable, Sequence
 from pinjoint.components.extensions import EXTENSIONS
 from pinjoint.components.field import Vector
 from pinjoint.components.language import begun, marked, tr
-from pinjoint.components.menu import Menu
 from pinjoint.components.particle import Particle
 from pinjoint.components.rod import Rod, rigid_joints
-from pinjoint.components.toolbar import Tool, Toolbar
+from pinjoint.components.toolbar import Menu, Tool, Toolbar
 from pinjoint.editor.context import Context
 from pinjoint.editor.gestures.drawing import tool_in_hand
 from pinjoint.systems.edit.dividing import DIVISIONS
@@ -41,7 +40,7 @@ def toolbar_of(context: Context) -> Toolbar:
     groups = (
         tuple(filter(None, (tool(context, name) for name in group))) for group in actions_of_toolbar(context)
     )
-    return Toolbar(tuple(group for group in groups if group), tool(context, "more tools"))
+    return Toolbar(tuple(group for group in groups if group))
 
 
 def actions_of_toolbar(context: Context) -> list[list[str]]:

@@ -19,7 +19,7 @@ from pinjoint.systems.render.occupancy import STRONG
 from pinjoint.systems.render.sheet import Rows, Sheet
 from pinjoint.systems.render.structure import HALO_OPACITY
 from pinjoint.systems.render.theme import Colour, faded
-from pinjoint.systems.render.values import BACKING, beside
+from pinjoint.systems.render.values import BACKING, beside, half_sizes
 
 WIDTH = 4.0  # points, of the line that is drawn
 
@@ -72,7 +72,8 @@ def draw(sheet: Sheet) -> Iterator[Mark]:
     size, backing = sheet.font(12.0), faded(sheet.theme.background, BACKING)
     for row in np.union1d(selected, hovered).tolist():
         name = walls.names[row]
-        places = beside(sheet, name, ends[row, 0], ends[row, 1], (0.5, 0.3, 0.7), WIDTH)
+        half = half_sizes(sheet, [name])[0]
+        places = beside(half, ends[row, 0], ends[row, 1], WIDTH * sheet.unit, (0.5, 0.3, 0.7))
         label = Label(name, places, size, sheet.theme.text, 1e11, "semibold", backing, of=("walls", row))
         sheet.labels.append(label)
 

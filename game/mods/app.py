@@ -27,8 +27,8 @@ from pinjoint.mods.mod import INCLUDED, Mod, ModError
 from pinjoint.systems.base import Integrator, System
 from pinjoint.systems.input.actions import ACTIONS, LIVE, Action, Binding, Perform, key_named
 from pinjoint.systems.physics.integrators import INTEGRATORS
-from pinjoint.systems.render.icons import Part, check_icon
 from pinjoint.systems.render.sheet import Layer
+from pinjoint.systems.render.symbols import Part, check_icon
 
 
 class App:
@@ -95,7 +95,7 @@ class App:
     def tool(self, kind: type[Handle], *, key: str, title: str = "", icon: Sequence[Part] = ()) -> None:
         """Let a person draw elements of a kind with two points, from one to the other, by a key and a button.
 
-        The action is "<mod>.<noun>". icon: lines and areas, as in systems/render/icons.py; none, no button.
+        The action is "<mod>.<noun>". icon: lines and areas, as in systems/render/symbols.py; none, no button.
         """
         if len(kind.points) != 2:
             raise ModError(

@@ -7,9 +7,8 @@ from collections.abc import Sequence
 from decimal import Decimal, DecimalException
 from typing import Any
 
-from pinjoint.components.box import Box, number_and_unit
 from pinjoint.components.field import LENGTHS, Field, FieldError
-from pinjoint.components.form import Form
+from pinjoint.components.form import Box, Form, number_and_unit
 from pinjoint.components.handle import Handle
 from pinjoint.components.language import tr
 from pinjoint.components.load import HISTORIES
@@ -63,7 +62,7 @@ def apply(form: Form, model: Model, *, typing: bool = False) -> list[str]:
     typing: also the box that is still typed into. What one box refuses because of another is tried again each time.
     """
     refused = []
-    with model.transaction(tr("properties of {element}", element=form.heading.text)):
+    with model.transaction(tr("properties of {element}", element=form.heading)):
         for box in form.boxes:
             if not box.changed or (box is form.selected and box.words != YES_NO and not typing):
                 continue

@@ -12,9 +12,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pinjoint.components.bent import is_frame
-from pinjoint.components.box import NAME, NUMBER, TEXT, WORD, Box
 from pinjoint.components.field import SAVED, Field
-from pinjoint.components.form import Form
+from pinjoint.components.form import NAME, NUMBER, TEXT, WORD, Box, Form
 from pinjoint.components.handle import Handle
 from pinjoint.components.language import joined, marked, plural, tr
 from pinjoint.components.load import HISTORIES, Load
@@ -98,7 +97,9 @@ def subjects(model: Model, selected: Sequence[Handle]) -> list[Subject]:
         found = [_subject(model, heading(model, []), [model.environment])]
         found += [_subject(model, model.describe(grid), [grid]) for grid in model.grids if grid.shown]
     found += [part for subject in found for part in _parts(model, subject)]
-    found += [_subject(model, model.describe(load), [load]) for load in _loads_on(model, selected)]
+    if len(selected) == 1 and isinstance(selected[0], Particle):
+        loads = [load for load in model.loads if load.on == selected[0].row]
+        found += [_subject(model, model.describe(load), [load]) for load in loads]
     for section, kind, of_rods in ((tr("All particles"), Particle, False), (tr("All rods"), Rod, True)):
         if not selected or kind in kinds:
             fields = model.tables[Settings.table].fields_in(*SAVED)
@@ -130,12 +131,6 @@ def _turn(model: Model, subject: Subject) -> bool:
     return kind is Particle and bool((rigid_joints(model) | given)[rows].any())
 
 
-def _loads_on(model: Model, selected: Sequence[Handle]) -> list[Load]:
-    if len(selected) != 1 or not isinstance(selected[0], Particle):
-        return []
-    return [load for load in model.loads if load.on == selected[0].row]
-
-
 def _subject(model: Model, section: str, elements: Sequence[Handle]) -> Subject:
     kind = type(elements[0])
     fields = model.tables[kind.table].fields_in(*SAVED)
@@ -154,38 +149,32 @@ def _subject(model: Model, section: str, elements: Sequence[Handle]) -> Subject:
 # --- boxes -------------------------------------------------------------------------------------------
 
 
-def fill(form: Form, model: Model, selected: Sequence[Handle]) -> None:
-    """Create the boxes: in each section alphabetical by title as it is shown, vectors as two, x and y."""
-    form.delete(list(form.boxes))
-    for boxes in _sections(model, selected):
-        form.create(Box, len(boxes), **{key: [box[key] for box in boxes] for key in boxes[0]})
+def boxes_of(model: Model, selected: Sequence[Handle]) -> list[Box]:
+    """Their boxes: in each section alphabetical by title in English, so that Tab goes on alike; vectors as two, x and y."""
+    found: list[Box] = []
+    for subject in subjects(model, selected):
+        boxes = (box for field in subject.fields for box in _boxes(model, subject, field))
+        found += sorted(boxes, key=lambda box: box.title.casefold())
+    return found
 
 
 def refresh(form: Form, model: Model, selected: Sequence[Handle]) -> None:
     """Let the boxes say what the model has now, except what is typed into them and what was refused."""
-    wanted = [box for boxes in _sections(model, selected) for box in boxes]
-    if [box["target"] for box in wanted] != [box.target for box in form.boxes]:  # such as of another history
-        target = form.selected.target if form.selected is not None else ""
-        fill(form, model, selected)
-        if target:
-            select(form, next((box for box in form.boxes if box.target == target), None))
+    wanted, before = boxes_of(model, selected), form.selected
+    if [box.target for box in wanted] != [box.target for box in form.boxes]:  # such as of another history
+        form.boxes = wanted
+        if before is not None:
+            select(form, next((box for box in wanted if box.target == before.target), None))
         return
     for box, now in zip(form.boxes, wanted, strict=True):
-        kept = box is form.selected or box.problem
-        box.opened, box.note, box.section = now["opened"], now["note"], now["section"]
-        if not kept:
-            box.text = now["text"]
+        box.opened, box.note, box.section = now.opened, now.note, now.section
+        if box is not form.selected and not box.problem:
+            box.text = now.text
             box.caret = len(box.text)
 
 
-def _sections(model: Model, selected: Sequence[Handle]) -> Iterator[list[dict[str, Any]]]:
-    for subject in subjects(model, selected):
-        boxes = [box for field in subject.fields for box in _boxes(model, subject, field)]
-        yield sorted(boxes, key=lambda box: box["title"].casefold())  # in English, so that Tab goes on alike
-
-
-def _boxes(model: Model, subject: Subject, field: Field[Any]) -> Iterator[dict[str, Any]]:
-    """The Fields of the boxes for one Field of the elements."""
+def _boxes(model: Model, subject: Subject, field: Field[Any]) -> Iterator[Box]:
+    """The boxes for one Field of the elements."""
     if field.dtype is object:
         yield from _history_boxes(model, subject, field)
         return
@@ -196,40 +185,46 @@ def _boxes(model: Model, subject: Subject, field: Field[Any]) -> Iterator[dict[s
         yield _box(subject, field, axis, content, accepts, words)
 
 
-def _history_boxes(model: Model, subject: Subject, field: Field[Any]) -> Iterator[dict[str, Any]]:
+def _history_boxes(model: Model, subject: Subject, field: Field[Any]) -> Iterator[Box]:
     """The kind of a load's history, and each of its numbers."""
     history = model.loads.history[subject.rows[0]]
-    yield _box(subject, field, KIND, (history[KIND], ""), WORD, tuple(HISTORIES)) | {"title": field.title}
+    yield replace(_box(subject, field, KIND, (history[KIND], ""), WORD, tuple(HISTORIES)), title=field.title)
     for name, value in history.items():
         if isinstance(value, float):
-            yield _box(subject, field, name, (written_number(value, 1.0), ""), NUMBER, None)
+            yield _box(subject, field, name, (written_number(value, 1.0), ""), NUMBER)
 
 
 def _box(
-    subject: Subject, field: Field[Any], part: str, content: Content, accepts: str, words: Sequence[str] | None
-) -> dict[str, Any]:
+    subject: Subject,
+    field: Field[Any],
+    part: str,
+    content: Content,
+    accepts: str,
+    words: tuple[str, ...] = (),
+) -> Box:
     text, note = content
-    return {
-        "section": subject.section,
-        "title": f"{field.title} {part}".rstrip(),
-        "unit": field.shown[0],
-        "explanation": field.doc,
-        "target": f"{subject.elements[0].table}.{field.name}{'.' * bool(part)}{part}",
-        "elements": subject.elements,
-        "accepts": accepts,
-        "words": words,
-        "text": text,
-        "opened": text,
-        "note": note,
-    }
+    return Box(
+        title=f"{field.title} {part}".rstrip(),
+        target=f"{subject.elements[0].table}.{field.name}{'.' * bool(part)}{part}",
+        text=text,
+        opened=text,
+        section=subject.section,
+        unit=field.shown[0],
+        explanation=field.doc,
+        elements=subject.elements,
+        accepts=accepts,
+        words=words,
+        note=note,
+        caret=len(text),
+    )
 
 
-def _words(field: Field[Any]) -> tuple[str, ...] | None:
+def _words(field: Field[Any]) -> tuple[str, ...]:
     if field.dtype is bool:
         return YES_NO
     if field.choices is not None:
         return (*([field.absent] if field.nullable else []), *field.choices)
-    return (field.absent,) if field.nullable else None
+    return (field.absent,) if field.nullable else ()
 
 
 # --- what they contain -------------------------------------------------------------------------------

@@ -4,14 +4,14 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator, Sequence
-from typing import Any, NamedTuple
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from pinjoint.components import written
 from pinjoint.components.field import CM, Field, Role
-from pinjoint.components.form import Form, Reading
+from pinjoint.components.form import Reading
 from pinjoint.components.handle import Handle
 from pinjoint.components.language import marked, tr, tr_in
 from pinjoint.components.load import CONSTANT, Load, factor_at
@@ -25,28 +25,7 @@ MRAD = "mrad", 1000.0  # rotations of structures are small
 SHORT = 4  # characters of names by which the ends of a rod are called
 
 
-class Result(NamedTuple):
-    """The Fields of a reading, see components/form.py."""
-
-    section: str
-    title: str
-    text: str
-    explanation: str
-
-
-def fill(form: Form, model: Model, selected: Sequence[Handle], *, known: bool) -> None:
-    """Let a form show the results of some elements. known: forces are; else their readings stand there empty."""
-    found = [*results(model, selected, known=known)]
-    columns = [list(column) for column in zip(*found, strict=True)]
-    if [reading.title for reading in form.readings] == (columns[1] if found else []):
-        form.assign(list(form.readings), "text", columns[2] if found else [])
-        return
-    form.delete(list(form.readings))
-    if found:
-        form.create(Reading, len(found), **dict(zip(Result._fields, columns, strict=True)))
-
-
-def results(model: Model, selected: Sequence[Handle], *, known: bool = True) -> Iterator[Result]:
+def results(model: Model, selected: Sequence[Handle], *, known: bool = True) -> Iterator[Reading]:
     """What one element does now, or the extremes of several of a kind.
 
     Which there are depends on the model only, not on what is known, since boxes stand below them.
@@ -89,7 +68,7 @@ def told(model: Model, handle: Handle, *, forces_known: bool) -> list[tuple[str,
 # --- rods ---------------------------------------------------------------------------------------------
 
 
-def _of_rods(columns: _Columns, rows: NDArray[np.intp]) -> Iterator[Result]:
+def _of_rods(columns: _Columns, rows: NDArray[np.intp]) -> Iterator[Reading]:
     rods, names = columns.model.rods, columns.model.rods.column("name")
     force = columns("rods.axial_force")
     if len(rows) == 1:
@@ -118,7 +97,7 @@ def _of_rods(columns: _Columns, rows: NDArray[np.intp]) -> Iterator[Result]:
             stress = 1e-3 * force / np.where(np.isnan(rods.area), np.inf, rods.area)
             told = marked("Axial force divided by the area of the cross-section; positive in tension.")
             title = tr("axial stress") if rods.bending_stiffness[row] else tr("stress")
-            yield Result(SECTION, title, _number(stress[row], stress, "MPa"), told)
+            yield Reading(SECTION, title, _number(stress[row], stress, "MPa"), told)
         yield _result(tr("length"), _number(length[row], length, CM[0]), Rod.length)
         yield from _at_ends(columns, row)
         if rods.plastic_strain[row]:
@@ -126,7 +105,7 @@ def _of_rods(columns: _Columns, rows: NDArray[np.intp]) -> Iterator[Result]:
             yield _result(tr("plastic strain"), _number(plastic[row], plastic, "‰"), Rod.plastic_strain)
 
 
-def _largest_moment(columns: _Columns, row: int) -> Result:
+def _largest_moment(columns: _Columns, row: int) -> Reading:
     """The largest moment along a rod and where it is."""
     moments = columns("rods.largest_moment")
     value, distance = moments[row]
@@ -136,7 +115,7 @@ def _largest_moment(columns: _Columns, row: int) -> Result:
     return _result(tr("largest moment"), text, Rod.largest_moment)
 
 
-def _at_ends(columns: _Columns, row: np.intp) -> Iterator[Result]:
+def _at_ends(columns: _Columns, row: np.intp) -> Iterator[Reading]:
     """Forces, moment and rotation at both ends of a rod that bends, or bears a force along it."""
     rods = columns.model.rods
     bends = rods.bending_stiffness[row] > 0.0
@@ -156,7 +135,7 @@ def _at_ends(columns: _Columns, row: np.intp) -> Iterator[Result]:
         yield _vector(title, values[row], values, unit, field, axes=ends)
 
 
-def _utilisation(columns: _Columns, rows: NDArray[np.intp]) -> Iterator[Result]:
+def _utilisation(columns: _Columns, rows: NDArray[np.intp]) -> Iterator[Reading]:
     """The share of its strength that a rod bears, where it has one; of several the largest."""
     rods = columns.model.rods
     if not np.isfinite(np.minimum(rods.tension_limit, rods.compression_limit)[rows]).any():
@@ -171,13 +150,13 @@ def _utilisation(columns: _Columns, rows: NDArray[np.intp]) -> Iterator[Result]:
         title = tr("largest axial utilisation") if several else tr("axial utilisation")
     else:
         title = tr("largest utilisation") if several else tr("utilisation")
-    yield Result(SECTION, title, text, marked("Axial force divided by the strength in its direction."))
+    yield Reading(SECTION, title, text, marked("Axial force divided by the strength in its direction."))
 
 
 # --- particles ----------------------------------------------------------------------------------------
 
 
-def _of_particles(columns: _Columns, rows: NDArray[np.intp]) -> Iterator[Result]:
+def _of_particles(columns: _Columns, rows: NDArray[np.intp]) -> Iterator[Reading]:
     particles = columns.model.particles
     moved, reactions = CM[1] * particles.displacement, columns("particles.reaction")
     if len(rows) == 1:
@@ -210,7 +189,7 @@ def _of_particles(columns: _Columns, rows: NDArray[np.intp]) -> Iterator[Result]
 # --- loads, and elements of mods -----------------------------------------------------------------------
 
 
-def _of_loads(model: Model, particle: int) -> Iterator[Result]:
+def _of_loads(model: Model, particle: int) -> Iterator[Reading]:
     """What the loads on a particle are now, of those that vary beside their force at factor 1."""
     for row in np.flatnonzero(model.loads.on == particle).tolist():
         load = model.loads[row]
@@ -223,7 +202,7 @@ def _of_loads(model: Model, particle: int) -> Iterator[Result]:
         yield _result(model.describe(load), text, Load.force)
 
 
-def _of_others(model: Model, handle: Handle) -> Iterator[Result]:
+def _of_others(model: Model, handle: Handle) -> Iterator[Reading]:
     """The numbers that a person gave an element of a mod's kind."""
     table = model.tables[handle.table]
     for field in table.fields_in(Role.DOCUMENT):
@@ -238,8 +217,8 @@ def _of_others(model: Model, handle: Handle) -> Iterator[Result]:
 # --- as text ------------------------------------------------------------------------------------------
 
 
-def _result(title: str, text: str, field: Field[Any]) -> Result:
-    return Result(SECTION, title, text, field.doc)
+def _result(title: str, text: str, field: Field[Any]) -> Reading:
+    return Reading(SECTION, title, text, field.doc)
 
 
 def _vector(
@@ -250,7 +229,7 @@ def _vector(
     field: Field[Any],
     shown: Sequence[bool] = (True, True),
     axes: Sequence[str] = "xy",
-) -> Result:
+) -> Reading:
     """The components that are to be shown."""
     parts = [
         f"{axis} {_number(value, column)}"

@@ -5,11 +5,9 @@ from __future__ import annotations
 import re
 from collections.abc import Sequence
 
-from pinjoint.components.box import FILE_NAME, NAME, NUMBER, TEXT, Box, fits_file_names
 from pinjoint.components.field import LENGTHS
-from pinjoint.components.form import Form
+from pinjoint.components.form import FILE_NAME, NAME, NUMBER, TEXT, Box, Form, fits_file_names
 from pinjoint.components.language import joined, marked, tr
-from pinjoint.components.tags import Selected
 from pinjoint.components.wording import cut
 
 YES_NO = (marked("no"), marked("yes"))
@@ -29,15 +27,12 @@ _IN_NUMBERS = {",": ".", "−": "-", "/": "-"}
 
 def select(form: Form, box: Box | None) -> None:
     """Select a box, all its text marked; None: select none."""
-    before = form.selected
-    if before is not None:
-        form.untag(before, Selected)
-        before.marked = False
+    if form.selected is not None:
+        form.selected.marked = False
+    form.selected = box
     if box is not None:
         box.held = box.text
-        box.caret = len(box.text)
-        box.marked = True
-        form.tag(box, Selected)
+        mark_all(form)
 
 
 def restore(form: Form) -> str:
@@ -46,7 +41,7 @@ def restore(form: Form) -> str:
     if box is None:
         return ""
     typed = box.text
-    _set(form, box, box.held, len(box.held))
+    put(form, box, box.held)
     select(form, None)
     if typed in ("", box.held):
         return ""
@@ -73,10 +68,9 @@ def accept(form: Form) -> bool:
 
 def move_on(form: Form, by: int) -> None:
     """Select the next (1) or previous (-1) box, around the ends."""
-    boxes, here = list(form.boxes), form.selected
-    if boxes:
-        start = (-1 if by > 0 else 0) if here is None else here.row
-        select(form, boxes[(start + by) % len(boxes)])
+    if form.boxes:
+        start = (-1 if by > 0 else 0) if form.selected is None else form.boxes.index(form.selected)
+        select(form, form.boxes[(start + by) % len(form.boxes)])
 
 
 # --- typing ------------------------------------------------------------------------------------------
@@ -93,7 +87,7 @@ def write(form: Form, text: str) -> str:
     for character in text:
         entered = _entered(box, character)
         if entered is not None and len(entered[0]) <= MOST_CHARACTERS:
-            _set(form, box, *entered)
+            put(form, box, *entered)
         elif not character.isspace():
             refused += character
     if not refused or box.accepts != NUMBER:
@@ -106,9 +100,7 @@ def write(form: Form, text: str) -> str:
         )
     else:
         told = tr("Type a number, such as 2.5 or 1e3, without “{refused}”.", refused=cut(refused))
-    return joined(
-        [told, *(tr("“{word}” is possible, too.", word=box.said_word(word)) for word in box.words or ())]
-    )
+    return joined([told, *(tr("“{word}” is possible, too.", word=box.said_word(word)) for word in box.words)])
 
 
 def erase(form: Form, *, after: bool = False) -> None:
@@ -117,12 +109,12 @@ def erase(form: Form, *, after: bool = False) -> None:
     if box is None:
         return
     text, caret = box.text, box.caret
-    if box.marked or text in (box.words or ()):
-        _set(form, box, "", 0)
+    if box.marked or text in box.words:
+        put(form, box, "", 0)
     elif after:
-        _set(form, box, text[:caret] + text[caret + 1 :], caret)
+        put(form, box, text[:caret] + text[caret + 1 :], caret)
     elif caret:
-        _set(form, box, text[: caret - 1] + text[caret:], caret - 1)
+        put(form, box, text[: caret - 1] + text[caret:], caret - 1)
 
 
 def place_caret(form: Form, caret: int) -> None:
@@ -152,21 +144,17 @@ def mark_all(form: Form) -> None:
 
 def turn_word(form: Form, box: Box, by: int = 1) -> None:
     """Put the next (or previous) of its words into a box."""
-    words: Sequence[str] = box.words
+    words = box.words
     at = words.index(box.text) if box.text in words else -1 if by > 0 else 0
     word = words[(at + by) % len(words)]
-    _set(form, box, word, len(word))
+    put(form, box, word)
     box.marked = True
 
 
-def put(form: Form, box: Box, text: str) -> None:
-    """Replace all text of a box."""
-    _set(form, box, text, len(text))
-
-
-def _set(form: Form, box: Box, text: str, caret: int) -> None:
+def put(form: Form, box: Box, text: str, caret: int | None = None) -> None:
+    """Replace all text of a box; caret: behind how many characters it stands, if not at the end."""
     box.text = text
-    box.caret = caret
+    box.caret = len(text) if caret is None else caret
     box.marked = False
     box.problem = form.check(box)
 
@@ -176,7 +164,7 @@ def _set(form: Form, box: Box, text: str, caret: int) -> None:
 
 def _entered(box: Box, character: str) -> tuple[str, int] | None:
     """Text and caret after a character was typed; None if the box does not accept it."""
-    words: Sequence[str] = box.words or ()
+    words = box.words
     whole = box.marked or (box.text in words and box.accepts != NAME)
     held = box.said_text if box.accepts == NAME else box.text  # numbers are held with a point
     before, after = ("", "") if whole else (held[: box.caret], held[box.caret :])

@@ -22,10 +22,11 @@ from pinjoint.systems.render.supports import NO_SUPPORT, crowding
 from pinjoint.systems.render.symbols import SUPPORT_DEPTH
 from pinjoint.systems.render.theme import Colour
 from pinjoint.systems.render.values import (
+    BY_ARROW,
     FEW_VALUES,
     FIRST,
-    GAP,
     SMALLEST,
+    by_arrows,
     half_sizes,
     most_important,
     said,
@@ -247,12 +248,13 @@ def _draw_forces(
     tail, outer = _arrow_places(sheet, rows, direction, length, sides, taken[rows, axis])
     taken[rows, axis] = outer
     along, parts = DIRECTIONS[direction], (_FIELDS[name], 2 * rows + axis)
-    middle, of = tail + along * length[:, None] / 2, [("particles", row) for row in rows.tolist()]
+    tip, of = tail + along * length[:, None], [("particles", row) for row in rows.tolist()]
     of = whose(sheet.model, rows) if name == "load" else of
-    sheet.explain(name, tail, tail + along * length[:, None])
+    sheet.explain(name, tail, tip)
     draw_arrows(sheet, of, tail, along, length, getattr(sheet.theme, name), parts)
-    sheet.occupancy.block_squares(middle, np.minimum(0.2 * length, 3.0 * sheet.unit))
-    _write_forces(sheet, name, of, parts, value, middle, length, DIRECTIONS[outer], outer == direction)
+    sheet.occupancy.block_squares(0.5 * (tail + tip), np.minimum(0.2 * length, 3.0 * sheet.unit))
+    pulls = (outer == direction)[:, None]  # the head is at the outer end
+    _write_forces(sheet, name, of, parts, value, np.where(pulls, tail, tip), np.where(pulls, tip, tail))
 
 
 def _thinned(sheet: Sheet, rows: Rows, force: Values, index: Rows, axis: Rows) -> tuple[Rows, Rows]:
@@ -309,47 +311,22 @@ def _write_forces(
     of: list[Owner],
     parts: Owners,
     value: Values,
-    middle: Points,
-    length: Values,
-    outward: Points,
-    pulls: NDArray[np.bool_],
+    start: Points,
+    end: Points,
 ) -> None:
-    """The size of the force at each arrow, of which `parts` are the keys; pulls: whether its head is at its outer end."""
+    """The size of the force at each arrow, of which `parts` are the keys, between points of which `end` is outside."""
     field, which = parts
     few = len(value) <= FEW_VALUES
-    shown, worth = most_important(sheet, field, which, value, np.flatnonzero(sheet.sees(middle)))
-    sizes = np.abs(value[shown]).tolist()
-    texts = [said(sheet, size, "kN" if few else "") for size in sizes]
-    font, out = sheet.font(12.0 if few else 11.0), outward[shown]
-    half = half_sizes(sheet, texts, font)
-    places = _places_by_arrows(middle[shown], length[shown], out, pulls[shown], half, sheet.unit)
-    anchors = (middle[shown] + out * length[shown, None] / 2)[:, None]
+    seen = np.flatnonzero(sheet.sees(0.5 * (start + end)))
+    shown, worth = most_important(sheet, field, which, value, seen)
+    texts = [said(sheet, size, "kN" if few else "") for size in np.abs(value[shown]).tolist()]
+    font = sheet.font(12.0 if few else 11.0)
+    half, start, end = half_sizes(sheet, texts, font), start[shown], end[shown]
+    places = by_arrows(half, start, end, BY_ARROW * sheet.unit)
+    out = (end - start) / np.hypot(*(end - start).T)[:, None]
     colour, ranks = getattr(sheet.theme, name), (FIRST - worth).tolist()
     for k, index in enumerate(shown.tolist()):
-        key, leads = (field, int(which[index])), (anchors[k], out[k])
+        key, leads = (field, int(which[index])), (end[k, None], out[k])
         write(
             sheet, texts[k], places[k], colour, key, of[index], rank=ranks[k], own=key, leads=leads, size=font
         )
-
-
-def _places_by_arrows(
-    middle: Points, length: Values, outward: Points, pulls: NDArray[np.bool_], half: Points, u: float
-) -> Points:
-    """Where the value of each arrow may stand, (n, k, 2): beyond its outer end, beside its head, it, that end.
-
-    pulls: whether the head is at the outer end.
-    """
-    level = outward[:, 0] != 0.0
-    deep, width = np.where(level, half.T, half.T[::-1])
-    outer, nothing, wing = length / 2, np.zeros(len(middle)), head_length(length, u) / 2
-    beyond, beside = outer + deep + GAP * u, wing + width + GAP * u
-    along, across = [beyond], [nothing]
-    for place in ((outer - 2.0 * wing) * np.where(pulls, 1.0, -1.0), nothing, deep - outer, outer, beyond):
-        along += [place, place]
-        across += [beside, -beside]
-    along += [nothing, nothing]
-    across += [beside + width, -beside - width]
-    x, y = np.stack(along, axis=1), np.stack(across, axis=1)
-    dx, dy = outward.T[:, :, None]
-    places: Points = middle[:, None, :] + np.stack([dx * x + dy * y, dy * x + dx * y], axis=2)
-    return places

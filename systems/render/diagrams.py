@@ -66,8 +66,7 @@ _SHORTEST, _SHORTEST_WITH_VALUE = (
     24.0,
 )  # points, of rods with a diagram; values of others would only hide them
 _MANY = 300  # rods, above which diagrams of those that bend are outlines
-_PIECES = ((24, 24), (120, 12), (_MANY, 8), (np.inf, 4))  # of a diagram, by how many rods have one at most
-_PIECE = 5.0  # points, or longer
+_PIECES, _PIECE = 1_440, 5.0  # of all diagrams of rods that bend, at most; points, or longer
 _ROOM, _SHARE = 1.25, 0.3  # of the room of force diagrams; of the largest shear, the least that fills it with N
 _HATCH = 7.0  # points between lines across
 _NOTHING = 1e-3  # of the largest value: what is not told
@@ -246,7 +245,8 @@ def _curves(sheet: Sheet, rows: Rows, quantity: str, room: float) -> _Diagram | 
     fitting = max(largest, room * _crowding(sheet, every, quantity, side))
     scale = room * model.settings.diagram_scale / steady(sheet, (f"diagrams.{quantity}", 0), fitting)
     base, polynomials, side = _baseline(sheet, rows), every[rows], side[rows]
-    shares = np.linspace(0.0, 1.0, _pieces(sheet, rows) + 1)
+    most = np.clip(_PIECES // len(rows), 4, 24)  # more where rods are few and long
+    shares = np.linspace(0.0, 1.0, int(np.clip(sheet.rod_length / (_PIECE * sheet.unit), 2, most)) + 1)
     points, normals = _stations(base, shares, side)
     heights = scale * values(polynomials, shares)
     found = _Diagram(quantity, rows, base, polynomials, scale, largest, side, points, normals, heights)
@@ -267,12 +267,6 @@ def _crowding(sheet: Sheet, every: Values, quantity: str, side: Values) -> float
     above = normals * values(every, shares)[..., None]
     free = np.maximum(np.where(above < 0.0, points - low, high - points), _LEAST * sheet.unit)
     return float(np.nan_to_num(np.abs(above) / free).max(initial=0.0))
-
-
-def _pieces(sheet: Sheet, rows: Rows) -> int:
-    """Into how many pieces diagrams are cut, more where rods are few and long."""
-    most = next(pieces for count, pieces in _PIECES if len(rows) <= count)
-    return int(np.clip(sheet.rod_length / (_PIECE * sheet.unit), 2, most))
 
 
 def _baseline(sheet: Sheet, rows: Rows) -> Axes:

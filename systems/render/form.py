@@ -11,10 +11,9 @@ from typing import NamedTuple
 
 import numpy as np
 
-from pinjoint.components.box import Box
 from pinjoint.components.camera import Rectangle, Viewport
 from pinjoint.components.field import Vector
-from pinjoint.components.form import Form, Reading, Tile
+from pinjoint.components.form import Box, Form, Reading, Tile
 from pinjoint.components.language import begun, marked, tr
 from pinjoint.components.view import BETWEEN, Hit, View
 from pinjoint.systems.render.buttons import button, closing
@@ -137,7 +136,7 @@ class _Writer:
         ]  # they stay while boxes are scrolled
         if len(readings) * _READING * u > _MOST_READINGS * (v.height - 100.0 * u):
             self.lines, readings = readings + self.lines, []
-        message = Text(self.form.heading.message, 12.0, theme.problem, lines=ALL, apart=16.0)
+        message = Text(self.form.message, 12.0, theme.problem, lines=ALL, apart=16.0)
         said = Column([message] * bool(message.text), around=(0.0, 3.0, 3.0), high=22.0 if self.files else 8.0)
         head = Column(
             (*self._header(), *(self._row(line, 0.0) for line in readings), said), around=(0.0, 12.0, 0.0)
@@ -148,7 +147,7 @@ class _Writer:
         picture = self._picture_height(bottom - top)
         rows = [self._row(line, picture) for line in self.lines]
         beside = (v.right - left - width) / u - 3.0
-        scroll = Scroll(rows, first=self.form.heading.first, bar=theme.muted, beside=beside)
+        scroll = Scroll(rows, first=self.form.first, bar=theme.muted, beside=beside)
         paper.put(scroll, Rectangle(left, top, width, max(bottom - top, 0.0)))
         hovered = [hit.item for hit in paper.hits if paper.is_under_pointer(hit)]
         paper.put(
@@ -160,7 +159,7 @@ class _Writer:
 
     def _header(self) -> list[Part]:
         """The heading, the button that leaves the form, and the box for a name beside or below it."""
-        theme, u, heading = self.theme, self.u, begun(tr(self.form.heading.text))
+        theme, u, heading = self.theme, self.u, begun(tr(self.form.heading))
         title = Text(heading, (19.0, 16.0, 14.0), theme.text, "semibold", grow=1.0)
         close = closing(None, theme, 24.0, "close")
         if self.files is None:
@@ -178,7 +177,8 @@ class _Writer:
 
     def _footer(self, hint: str, hovered: object) -> Column:
         """The explanation of what is pointed at, chosen or selected, and the next possible steps."""
-        texts = [tr(item.explanation) for item in (*self.form.tiles, *self.form.boxes)]
+        items: list[Tile | Box] = [*self.form.tiles, *self.form.boxes]
+        texts = [tr(item.explanation) for item in items]
         needed = (
             Text(text, _TOLD, self.theme.text, lines=ALL, apart=_APART).height(self.u, self.width)
             for text in texts
@@ -301,19 +301,13 @@ def _box_lines(form: Form, width: float, u: float) -> Iterator[_Line]:
     """Boxes by sections: the two components of a vector share a row, and so do single boxes, if their titles fit."""
     half = (width - _GAP * u) / 2
     for section, those in groupby(form.boxes, lambda box: box.section):
-        own = section == form.heading.text
+        own = section == form.heading
         title = PROPERTIES if own and len(form.readings) else "" if own else section
-        for (vector, short), some in groupby(those, lambda box: (_partner(box), is_short(box, half, u))):
+        for (vector, short), some in groupby(those, lambda box: (box.vector, is_short(box, half, u))):
             columns = 2 if short and half >= (_NARROWEST if vector else _NARROW) * u else 1
             for row in in_rows(list(some), columns):
                 yield _Line(title, row, columns)
                 title = ""
-
-
-def _partner(box: Box) -> str:
-    """The key that boxes of one row share: the vector that they belong to, or that they are single."""
-    table, name, *axis = box.target.split(".")
-    return f"{table}.{name}" if axis else ""
 
 
 def _tile_lines(form: Form, width: float) -> Iterator[_Line]:

@@ -6,8 +6,8 @@ from functools import partial
 
 import numpy as np
 
-from pinjoint.components.box import NAME, NUMBER, WORD, Box, number_and_unit
 from pinjoint.components.camera import Rectangle
+from pinjoint.components.form import NAME, NUMBER, WORD, Box, number_and_unit
 from pinjoint.components.language import tr, tr_in
 from pinjoint.systems.render.layout import ALL, Column, Drawn, Gap, Plate, Row, Text
 from pinjoint.systems.render.marks import Fills, Mark, Panel
@@ -44,7 +44,7 @@ def bare_box(box: Box, width: float, theme: Theme, u: float, *, selected: bool, 
 
 def is_short(box: Box, width: float, u: float) -> bool:
     """True if the title of a box stands whole above it in so many pixels, with what is noted of its value."""
-    unit = "" if box.text and box.text not in (box.words or ()) else box.unit
+    unit = "" if box.text and box.text not in box.words else box.unit
     beside = max(_short(box.note), unit, key=len)
     said = f"{box.said_title} {beside}".rstrip()
     return text_width(said, font_size(TITLE, u)) + 8.0 * u * bool(beside) <= width
@@ -96,7 +96,7 @@ def _room(box: Box, width: float, u: float) -> float:
 
 def _has_room_for_unit(box: Box, width: float, u: float) -> bool:
     """True if the unit stands behind the number, not above the box."""
-    if not box.text or not box.unit or box.text in (box.words or ()) or number_and_unit(box.text)[1]:
+    if not box.text or not box.unit or box.text in box.words or number_and_unit(box.text)[1]:
         return False
     return _taken(box, u, box.unit) <= _room(box, width, u)
 

@@ -13,7 +13,6 @@ from pinjoint.components.language import listed, tr
 from pinjoint.components.mistake import WrongValue
 from pinjoint.components.wording import printable
 from pinjoint.systems.render.clip import bounds, clip_segments
-from pinjoint.systems.render.icons import icons
 from pinjoint.systems.render.marks import (
     Bars,
     Discs,
@@ -28,7 +27,15 @@ from pinjoint.systems.render.marks import (
     Text,
     owners,
 )
-from pinjoint.systems.render.symbols import LARGEST_STAMP, SUPPORT_DEPTH, SYMBOLS, circle, turned_parts
+from pinjoint.systems.render.symbols import (
+    LARGEST_STAMP,
+    SUPPORT_DEPTH,
+    SYMBOLS,
+    arc,
+    circle,
+    icons,
+    turned_parts,
+)
 from pinjoint.systems.render.theme import Colour
 from pinjoint.systems.render.typography import WEIGHTS
 
@@ -69,7 +76,7 @@ def framed(mark: Mark, viewport: Viewport, unit: float) -> Iterator[Mark]:
         case Stamps():
             yield from _stamps(mark, viewport)
         case Discs():
-            yield from _discs(mark, viewport, unit)
+            yield from cut_discs(mark, viewport, unit)
         case Rectangles():
             yield replace(mark, boxes=_boxes(mark.boxes, low, high))
         case Panel():
@@ -198,18 +205,25 @@ def _stamps(mark: Stamps, viewport: Viewport) -> Iterator[Mark]:
         yield from _fills(mark.at[:, None] + corners, colour, viewport, mark.of)
 
 
-def _discs(mark: Discs, viewport: Viewport, unit: float) -> Iterator[Mark]:
-    """Discs near the viewport; large ones as polygons."""
-    at, radius = _within(mark.at), np.minimum(mark.radius, _FAR)
-    large = radius > LARGEST_STAMP * unit
-    small = ~large & _near(at, LARGEST_STAMP * unit, viewport)
+def cut_discs(mark: Discs, viewport: Viewport, unit: float) -> Iterator[Mark]:
+    """Discs near the viewport; large ones as polygons, of whose rims that part which may be seen."""
+    large = mark.radius > LARGEST_STAMP * unit
+    small = ~large & _near(mark.at, LARGEST_STAMP * unit, viewport)
     rim = min(mark.rim, LARGEST_STAMP * unit)
-    yield replace(mark, at=at[small], radius=radius[small], rim=rim, of=owners(mark.of, small))
+    if small.any():
+        yield replace(mark, at=mark.at[small], radius=mark.radius[small], rim=rim, of=owners(mark.of, small))
+    low, high = bounds(viewport)
     for index in np.flatnonzero(large).tolist():
-        place, reach, of = at[index], float(radius[index]), owners(mark.of, slice(index, index + 1))
-        yield from _fills((place + circle(reach))[None], mark.ink, viewport, of)
-        if 0.0 < mark.rim < reach:
-            yield from _fills((place + circle(reach - mark.rim))[None], mark.hollow, viewport, of)
+        place, radius, of = mark.at[index], float(mark.radius[index]), owners(mark.of, slice(index, index + 1))
+        inner = radius - rim / 2
+        inside = _within(place) + circle(min(inner, _FAR))
+        yield from _fills(inside[None], mark.hollow if rim else mark.ink, viewport, of)
+        line = arc(place, inner, (low + high) / 2, float(np.hypot(*(high - low))))
+        if rim and len(line):
+            step = line[1:] - line[:-1]
+            overlap = 0.5 * step / np.hypot(*step.T)[:, None]  # pixel, so that joints close
+            start, end, _ = clip_segments(line[:-1] - overlap, line[1:] + overlap, low - rim, high + rim)
+            yield Strokes(start, end, rim, mark.ink, of and (of[0], np.repeat(of[1], len(start))))
 
 
 def _boxes(boxes: Any, low: Points, high: Points) -> Any:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 
 import numpy as np
 from numpy.typing import NDArray
@@ -19,13 +20,17 @@ from pinjoint.systems.render.members import draw_arcs, gaps, write_moment
 from pinjoint.systems.render.occupancy import STRONG
 from pinjoint.systems.render.sheet import Sheet
 from pinjoint.systems.render.theme import Colour
-from pinjoint.systems.render.values import SMALLEST, beside, half_sizes, off, write
+from pinjoint.systems.render.values import SMALLEST, beside, by_arrows, half_sizes, off, write
 
 MOST = 150  # rods that are taken apart: of more, arrows would hide one another
 SHORTEST = 74.0  # points: shorter rods stay whole, since there is no room for arrows
 _CLEAR = math.cos(math.radians(24.0))  # of the angle between an arrow and the rods that leaves both readable
 _ASIDE = 10.0  # points by which an arrow stands beside a rod where all is taken
-_PIECES, _ARC = 16, 9.0  # of a bent rod; points, radius of the arrow of a moment at its end
+_PIECES, _ARC, _APART = (
+    16,
+    9.0,
+    4.0,
+)  # of a bent rod; points: radius of the arrow of a moment at its end, to a value
 _SMALLEST_SHARE = 1e-3  # of the largest force: a smaller one of inertia is told, not drawn
 
 
@@ -42,7 +47,8 @@ def draw_free_bodies(sheet: Sheet) -> None:
         return
     if not long.all():
         sheet.notes.append(tr("zoom in to see short rods as free bodies, too"))
-    largest = _largest(sheet, force)
+    acting = sheet.model.particles.applied_force, sheet.model.particles.reaction, force
+    largest = max(SMALLEST, *(float(np.abs(values).max(initial=0.0)) for values in acting))
     _draw_rods(sheet, known, long, largest)
     inertia = np.hypot(*known.left_over.T) > _SMALLEST_SHARE * largest
     inertia |= np.abs(known.left_over_moment) > _SMALLEST_SHARE * np.abs(known.on_ends[..., 2]).max(initial=0.0)
@@ -50,12 +56,6 @@ def draw_free_bodies(sheet: Sheet) -> None:
         others = [f for f in on_joint(sheet.model, row, known) if f.kind != "rod"]
         others = [f for f in others if f.kind != "inertia" or inertia[row]]
         _draw_others(sheet, row, others, largest)
-
-
-def _largest(sheet: Sheet, force: NDArray[np.float64]) -> float:
-    particles = sheet.model.particles
-    acting = [particles.applied_force, particles.reaction, force]
-    return max(SMALLEST, *(float(np.abs(values).max(initial=0.0)) for values in acting))
 
 
 def _draw_rods(sheet: Sheet, known: Apart, long: NDArray[np.bool_], largest: float) -> None:
@@ -71,8 +71,7 @@ def _draw_rods(sheet: Sheet, known: Apart, long: NDArray[np.bool_], largest: flo
     _draw_bending(sheet, known, bearing, (start, end), along, largest)
     for index in np.flatnonzero(long & ~bearing).tolist():
         row, own = int(rods[index]), (start[index], end[index])
-        places, text_colour = beside(sheet, "0 kN", *own), sheet.theme.zero
-        _write(sheet, "0 kN", places, text_colour, ("rods.end0", row), ("rods", row), own)
+        _write(sheet, "0 kN", beside, sheet.theme.zero, ("rods.end0", row), ("rods", row), own)
     for pulled, name in ((True, "tension"), (False, "compression")):
         bears = long & ((force[rods] > SMALLEST) if pulled else (force[rods] < -SMALLEST))
         which = np.flatnonzero(bears)
@@ -92,7 +91,7 @@ def _draw_rods(sheet: Sheet, known: Apart, long: NDArray[np.bool_], largest: flo
             for row, *line in zip(rods[which].tolist(), rim, rod_end[which], strict=True):
                 text, key = written.force(abs(float(force[row]))), (f"rods.end{side}", row)
                 own = line[0], line[1]
-                _write(sheet, text, beside(sheet, text, *own), colour, key, ("rods", row), own)
+                _write(sheet, text, beside, colour, key, ("rods", row), own)
 
 
 def _draw_bodies(sheet: Sheet, start: Points, end: Points, gap: NDArray[np.float64]) -> None:
@@ -140,8 +139,7 @@ def _draw_bending(
             tips = rod_ends[side][which] + size[:, None] * way
             for k, (index, row) in enumerate(zip(which.tolist(), rows.tolist(), strict=True)):
                 own, text = (rod_ends[side][index], tips[k]), written.force(abs(float(shear[index])))
-                places = _by_arrow(sheet, text, *own, way[k])
-                _write(sheet, text, places, colour, ("rods.shear", 2 * row + side), ("rods", row), own)
+                _write(sheet, text, by_arrows, colour, ("rods.shear", 2 * row + side), ("rods", row), own)
             sheet.legend.append("shear")
         moment = force[:, 2]
         which = np.flatnonzero(bearing & (np.abs(moment) > SMALLEST))
@@ -156,7 +154,7 @@ def _draw_bending(
                 rod_ends[side][index],
             )
             ways = np.array([[0.0, -1.0], [0.0, 1.0], across[index], -across[index]])
-            places = off(at, ways, (_ARC + 4.0) * u, half_sizes(sheet, [text]))
+            places = off(at, ways, (_ARC + _APART) * u, half_sizes(sheet, [text]))
             first, last = at + _ARC * u * ways[:2]
             key_of_value = "rods.bending_moment", 2 * row + side
             _write(sheet, text, places, colour, key_of_value, ("rods", row), (first, last))
@@ -191,9 +189,8 @@ def _draw_others(sheet: Sheet, row: int, forces: list[Force], largest: float) ->
         part = f"particles.{force.name}", np.array([row])
         draw_arrows(sheet, [of], tail[None], out[None], np.array([length]), colour, part)
         sheet.legend.append(force.kind)
-        text, far = written.force(size), rim + length * side
-        places = _by_arrow(sheet, text, rim, far, side)
-        _write(sheet, text, places, colour, (f"particles.{force.name}", row), of, (rim, far))
+        key = f"particles.{force.name}"
+        _write(sheet, written.force(size), by_arrows, colour, (key, row), of, (rim, rim + length * side))
 
 
 def _directions_of_rods(sheet: Sheet, row: int) -> list[Points]:
@@ -206,22 +203,21 @@ def _directions_of_rods(sheet: Sheet, row: int) -> list[Points]:
     return found
 
 
-def _by_arrow(sheet: Sheet, text: str, start: Points, end: Points, way: Points) -> Points:
-    """Where the value of an arrow may stand: beyond an end of it that lies that way, or beside it."""
-    beyond = off(end, way, 4.0 * sheet.unit, half_sizes(sheet, [text]))
-    return np.concatenate([beyond, beside(sheet, text, start, end)])
-
-
 def _write(
     sheet: Sheet,
     text: str,
-    places: Points,
+    places: Points | Callable[[Points, Points, Points, float], Points],
     colour: Colour,
     key: Key,
     of: Owner,
     own: tuple[Points, Points],
 ) -> None:
-    """A value at one of the places in sight that are nearer to its own arrows, a line from and to, than to other rods."""
+    """A value at one of the places in sight that are nearer to its own arrows, a line from and to, than to other rods.
+
+    places: or what finds them from half the size of the value, the line and the gap.
+    """
+    if callable(places):
+        places = places(half_sizes(sheet, [text])[0], *own, _APART * sheet.unit)
     at = places[sheet.sees(places)]
     others = sheet.rods != (of[1] if of[0] == "rods" else -1)
     away = distance_to_segments(at[:, None], sheet.start[others], sheet.end[others]).min(axis=1, initial=np.inf)

@@ -46,12 +46,6 @@ def terms() -> list[Term]:
     return [Term(**entry) for entry in held]
 
 
-def _glossary() -> list[Term]:
-    """All terms in the present language, in its alphabetical order."""
-    said = [Term(*map(tr, entry)) for entry in terms()]
-    return sorted(said, key=lambda entry: unicodedata.normalize("NFKD", entry.term.casefold()))
-
-
 def help_pages(keys: Lines, viewport: Viewport, unit: float, theme: Theme) -> list[list[Column]]:
     """The pages in the present language that a viewport needs, each in columns; those of the glossary are the last."""
     return _pages(keys, viewport, unit, theme, language())
@@ -59,13 +53,16 @@ def help_pages(keys: Lines, viewport: Viewport, unit: float, theme: Theme) -> li
 
 @lru_cache(maxsize=4)
 def _pages(keys: Lines, viewport: Viewport, u: float, theme: Theme, _: str) -> list[list[Column]]:
-    known = [(f"{term} ({also})" if also else term, meaning) for term, meaning, also in _glossary()]
-    terms = [("", tr("Glossary")), *known]
+    glossary = sorted(
+        (Term(*map(tr, entry)) for entry in terms()),
+        key=lambda entry: unicodedata.normalize("NFKD", entry.term.casefold()),
+    )  # in the alphabetical order of the present language
+    known = [(f"{term} ({also})" if also else term, meaning) for term, meaning, also in glossary]
     joined = _joined(keys)
     widest = max(Text(names, _SIZE, theme.text, "semibold").width(u) for names, _ in joined) / u
     return [
         page
-        for lines, first in ((joined, widest + 12.0), (terms, _TERM))
+        for lines, first in ((joined, widest + 12.0), ([("", tr("Glossary")), *known], _TERM))
         for page in _paged(lines, first, viewport, u, theme)
     ]
 
@@ -83,14 +80,12 @@ def _paged(
         if is_key:
             groups[-1] += [_line(key, meaning, first, theme) for key, meaning in those]
         else:
-            groups += [[_purpose(title, theme)] for _, title in those]
+            for _, purpose in those:
+                title = Text(purpose, _SIZE, theme.text, "semibold", apart=_APART)
+                groups.append([Column((title, Row((rule(theme.line, 2.0),))))])
     high = v.height - (_HEAD + _SIDE) * u
     columns = [Column(parts, wide=width / u) for parts in in_columns(groups, Gap(), u, high, width, heads=True)]
     return in_rows(columns, max(int((room + _GAP * u) / (width + _GAP * u)), 1))
-
-
-def _purpose(title: str, theme: Theme) -> Column:
-    return Column((Text(title, _SIZE, theme.text, "semibold", apart=_APART), Row((rule(theme.line, 2.0),))))
 
 
 def _line(key: str, meaning: str, first: float, theme: Theme) -> Row:

@@ -11,8 +11,8 @@ import math
 import numpy as np
 
 from pinjoint.systems.kernels import compiled
-from pinjoint.systems.render.coverage import BLOCK
 
+BLOCK = 32  # pixels side by side that are blended at once if any is covered
 _EVEN = np.uint32(0x00FF00FF)  # every second channel of a pixel
 _ODD = np.uint32(0xFF00FF00)
 _HALVES = np.uint32(0x00800080)  # 0.5 in both of them, for rounding
@@ -43,7 +43,7 @@ def cover_strokes(cover, touched, clip, start, end, width):
 
     touched (uint8, rows × blocks of columns): set where they do.
 
-    The compiled form of coverage.stroke_coverage: where strokes cross, the one that covers most counts. Along a
+    The compiled form of raster.stroke_coverage: where strokes cross, the one that covers most counts. Along a
     stroke, where it begins and how much of a column it crosses are whole numbers of 1 / 2¹⁶.
     """
     left, top, right, bottom = clip

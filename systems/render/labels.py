@@ -20,7 +20,7 @@ from pinjoint.systems.render.typography import line_height, text_width
 
 _LED = 1000  # from which on numbers of places mean those with a line
 LEADER_OPACITY, _DOT = 0.75, 1.75  # of these lines, and points, radius of the dot at their end
-_STAGES = 0, 2, 8, 1000  # of each label that many places are tried before any more of others
+_STAGES = 0, 3, 1000
 _COVERED = {"cover": (STRONG,), "spare": (FAINT, STRONG), "avoid": (0,)}  # by each attempt, at most
 
 

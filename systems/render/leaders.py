@@ -19,7 +19,6 @@ _MOST = 16  # lines, since more would confuse
 _TURNS = np.array([0, *(way * k for k in range(1, 8) for way in (1, -1)), 8]) * np.pi / 8.0  # from the best way
 _LENGTHS = (14.0, 26.0, 40.0, 58.0, 80.0)  # points
 _STEP, _HALF = 4.0, 1.5  # points between the places where a line is tested; half the room it needs there
-_FEW = 4  # places of a line that are tested first
 _CLEAR, _OFF_DIAGRAMS = 3.0, 1.0  # points between a value and all else
 
 
@@ -102,26 +101,17 @@ def _clear_boxes(boxes: Boxes, labels: int, occupancy: Occupancy) -> NDArray[np.
 
 
 def _are_clear(start: Points, end: Points, own: Codes, kin: Codes, occupancy: Occupancy) -> NDArray[np.intp]:
-    """Those of the lines from `start` to `end` that meet nothing. A few points of each rule most of them out."""
-    unit, left = occupancy.parts.unit, np.arange(len(start))
-    length = np.hypot(*(end - start).T)
-    for step in (np.inf, _STEP * unit):
-        count = np.maximum(np.ceil(length[left] / step).astype(np.intp) + 1, _FEW)
-        line = np.repeat(left, count)
-        share = (ranges(np.zeros_like(count), count) / np.repeat(count, count))[:, None]
-        points = end[line] + share * (start[line] - end[line])
-        rows, columns = occupancy.cell_of(points).T
-        owner = occupancy.owner[rows, columns]
-        strange = (owner != NOBODY) & (owner != own[line]) & (owner != kin[line])
-        stopped = np.zeros(len(start), dtype=bool)
-        stopped[line[strange | occupancy.taken[rows, columns]]] = True
-        left = left[~stopped[left]]
-    some = np.flatnonzero(~stopped[line])
-    points, line = points[some], line[some]
+    """Those of the lines from `start` to `end` that meet nothing."""
+    unit = occupancy.parts.unit
+    count = np.ceil(np.hypot(*(end - start).T) / (_STEP * unit)).astype(np.intp) + 1
+    line = np.repeat(np.arange(len(start)), count)
+    share = (ranges(np.zeros_like(count), count) / np.repeat(count, count))[:, None]
+    points = end[line] + share * (start[line] - end[line])
+    rows, columns = occupancy.cell_of(points).T
     limits = np.array([_HALF, -1.0, _HALF])[:, None] * unit * np.ones(len(line))
     boxes = Boxes(points, np.full(points.shape, _HALF * unit), line)
-    stopped[line[~occupancy.parts.are_clear(boxes, own, kin, limits)]] = True
-    return left[~stopped[left]]
+    clear = ~occupancy.taken[rows, columns] & occupancy.parts.are_clear(boxes, own, kin, limits)
+    return np.setdiff1d(np.arange(len(start)), line[~clear])
 
 
 def _take(middle: Points, half: Points, start: Points, end: Points, occupancy: Occupancy) -> bool:

@@ -37,8 +37,9 @@ def compose_lesson(card: Card, view: View, theme: Theme) -> Picture:
     paper.marks.append(
         boxes(theme.line, (v.left, v.top, v.width, thin) if v.left == 0 else (v.left, v.top, thin, v.height))
     )
+    in_rows = card.buttons[:1], card.buttons[1:3], card.buttons[3:]  # the main one alone
     rows = [
-        Row([_button(one, theme) for one in row], 6.0, even=True, high=24.0, grow=1.0) for row in _in_rows(card)
+        Row([_button(one, theme) for one in row], 6.0, even=True, high=24.0, grow=1.0) for row in in_rows if row
     ]
     buttons = Column(rows, 6.0, wide=_BESIDE if strip else 0.0, high=30.0 * len(rows) + 12.0)
     title = Text(card.title, 15.0, theme.text, "semibold", grow=1.0)
@@ -58,11 +59,6 @@ def compose_lesson(card: Card, view: View, theme: Theme) -> Picture:
             break
     paper.put(Plate(whole, action="", wheel=("lesson up", "lesson down")), v)
     return Picture(v, theme.panel, paper.marks, hits=paper.hits)
-
-
-def _in_rows(card: Card) -> list[tuple[CardButton, ...]]:
-    """The main button alone in its row, the others in rows of two."""
-    return [row for row in (card.buttons[:1], card.buttons[1:3], card.buttons[3:]) if row]
 
 
 def _button(one: CardButton, theme: Theme) -> Plate:

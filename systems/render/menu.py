@@ -13,7 +13,7 @@ from pinjoint.systems.render.layout import Column, Drawn, Gap, Paper, Part, Plat
 from pinjoint.systems.render.marks import Mark, Panel, Strokes
 from pinjoint.systems.render.theme import Colour, Theme, faded
 
-_SIZES = (12.5, 21.0), (11.5, 19.0), (10.0, 16.0), (9.0, 13.0)  # points: type, and from entry to entry
+_SIZES = (12.5, 21.0), (10.0, 16.0)  # points: type, and from entry to entry
 _LEAST = 200.0  # points across a column where not all have room
 _EDGE = 4.0  # points above, below, and to the edges of the window
 
@@ -49,7 +49,11 @@ def put_menu(paper: Paper, view: View, theme: Theme) -> None:
     placed.put(whole, Rectangle(left, top, wide, high))
     paper.hits += [Hit(*window.box, "close menu", again=True), *placed.hits]
     now = _pointed_at(view, placed.hits, paper.pointer)
-    lit = [_light(hit, theme.text, u) for hit in placed.hits if hit.item == now]
+    lit = [
+        Panel(hit.left + 3 * u, hit.top, hit.width - 6 * u, hit.height, 4.0 * u, faded(theme.text, opacity))
+        for hit in placed.hits
+        if hit.item == now and (opacity := 0.09 if hit.enabled else 0.04)
+    ]
     paper.marks += [*placed.marks[:1], *lit, *placed.marks[1:]]
 
 
@@ -105,12 +109,6 @@ def _entry(tool: Tool, number: int, at: Vector, theme: Theme, points: float, row
     sign = Drawn(lambda at, u: _tick(at, u, ink) if tool.pressed else [], 16.0)
     inside = Row((tool_row(tool, theme, sign, points, 20.0),), around=(10.0, 0.0, 0.0), high=row)
     return Plate(inside, action=tool.action, enabled=tool.enabled, item=number, at=at)
-
-
-def _light(place: Hit, ink: Colour, u: float) -> Panel:
-    """The plate of the entry that a press would choose."""
-    fill = faded(ink, 0.09 if place.enabled else 0.04)
-    return Panel(place.left + 3 * u, place.top, place.width - 6 * u, place.height, 4.0 * u, fill)
 
 
 def _tick(at: Rectangle, u: float, ink: Colour) -> list[Mark]:

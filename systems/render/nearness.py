@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from dataclasses import dataclass, fields, replace
 from typing import Any
 
@@ -129,24 +128,25 @@ class Parts:
 
     def gather(self, points: Points) -> None:
         """Find the parts near points (n, 2), about which alone one can ask. To be called when all parts are there."""
-        low, high = bounds(self.viewport)
-        squares = _Squares(low, high, _SIDE * self.unit)
-        wanted = squares.around(points, math.ceil(_REACH / _SIDE))
+        reach = _REACH * self.unit
+        low, high = points.min(axis=0) - reach, points.max(axis=0) + reach
         found = []
         for bands in self._kept:
-            finite: Truths = np.isfinite((bands.start + bands.end + bands.rise).sum(axis=1))
-            bands = bands if finite.all() else bands.some(finite)
-            middle = 0.5 * (bands.start + bands.end)
-            long = np.abs(bands.end - bands.start).max(axis=1, initial=0.0) + bands.half > _SIDE * self.unit
-            found.append(bands.some(wanted[squares.of(middle)] | long))
+            finite = np.isfinite((bands.start + bands.end + bands.rise).sum(axis=1))
+            half, ends = (
+                bands.half[:, None],
+                (bands.start, bands.end, bands.start + bands.rise, bands.end + bands.rise),
+            )
+            near = (np.minimum.reduce(ends) - half <= high) & (np.maximum.reduce(ends) + half >= low)
+            found.append(bands.some(finite & near.all(axis=1)))
+        self._squares = _Squares(*bounds(self.viewport), _SIDE * self.unit)
         if found:
             columns = ([getattr(bands, column.name) for bands in found] for column in fields(_Bands))
             seen = _Bands(*map(np.concatenate, columns))
             self._seen = seen.some(np.argsort(seen.of, kind="stable"))
             self._pieces = _cut(self._seen, _SIDE * self.unit)
             self._outlines = _cut(replace(self._seen, half=np.zeros(len(self._seen.of))), np.inf)
-            squares.fill(self._pieces)
-        self._squares = squares
+            self._squares.fill(self._pieces)
 
     def _own_distances(self, boxes: Boxes, own: Codes) -> tuple[Numbers, Numbers]:
         """From each box to the line of its own element, and to any of its parts, at most; infinite without one."""
@@ -241,25 +241,6 @@ class _Squares:
     def _cells(self, points: Points) -> Indices:
         """Column and row of the squares that hold points (n, 2)."""
         return within((points - self.low) / self.side, 0.0, self.size - 1).astype(np.intp)
-
-    def of(self, points: Points) -> Indices:
-        """The squares that hold points (n, 2)."""
-        column, row = self._cells(points).T
-        found: Indices = row * self.size[0] + column
-        return found
-
-    def around(self, points: Points, reach: int) -> Truths:
-        """Which squares are no more than `reach` squares away from points (n, 2)."""
-        column, row = self._cells(points).T
-        found = np.zeros((self.size[1], self.size[0]), dtype=bool)
-        found[row, column] = True
-        for _ in range(2):  # along one axis, then along the other
-            there = found.copy()
-            for away in range(1, reach + 1):
-                found[away:] |= there[:-away]
-                found[:-away] |= there[away:]
-            found = found.T
-        return found.ravel()
 
     def _rows(self, low: Points, high: Points) -> tuple[Indices, Indices, Indices]:
         """Of upright boxes, for each row of squares that they touch: which box, and the first and last square."""

@@ -14,7 +14,7 @@ from pinjoint.components.language import begun, marked, plural, tr
 from pinjoint.components.round_numbers import round_down
 from pinjoint.components.view import BETWEEN
 from pinjoint.systems.render import marks
-from pinjoint.systems.render.layout import Drawn, Paper, Part, Plate, Row, Text, icon
+from pinjoint.systems.render.layout import ALL, Column, Drawn, Gap, Paper, Part, Plate, Row, Text, icon
 from pinjoint.systems.render.marks import Mark, Panel, Stamps, Strokes, boxes
 from pinjoint.systems.render.sheet import Sheet
 from pinjoint.systems.render.structure import HALO_OPACITY
@@ -23,9 +23,8 @@ from pinjoint.systems.render.theme import Colour, Theme, faded
 from pinjoint.systems.render.typography import font_size, line_height, shortened, text_width, wrapped
 from pinjoint.systems.render.utilisation import scale_bar
 
-_EDGE = 14.0  # points between overlays and the edges of the viewport
+EDGE = 14.0  # points between overlays and the edges of the viewport
 _HEADING = 20.0  # points, size of its type
-_SMALL = 300.0  # points; lower viewports leave out optional overlays
 _FEW_LINES, _AROUND_NOTICE = 3, 52.0  # of a notice: lines; points at the sides of its text, its sign among them
 _NOISE = 1e-6  # pixels; smaller displacements count as none
 BAR = 28.0  # points, height of the status bar
@@ -37,10 +36,28 @@ _SCALE = ("scale", 0)  # the key by which its place is kept
 def draw_overlays(sheet: Sheet) -> tuple[list[Mark], tuple[float, float]]:
     """Marks in fixed places, kept free of labels; and the height taken at the top and the bottom."""
     status, bottom = _status_bar(sheet)
-    heading, heading_end = _heading(sheet)
-    legend, top = _legend(sheet, heading_end)
-    caption, top = _caption(sheet, heading_end[1], top)
-    return status + heading + legend + caption, (top, bottom)
+    v, u = sheet.viewport, sheet.unit
+    text, heading = _heading(sheet.view.heading, sheet.theme), Paper(u)
+    room = v.width - 2 * EDGE * u
+    right, top = float(v.left), float(v.top)
+    if sheet.view.heading:
+        lines = text.height(u, room)
+        heading.put(text, Rectangle(v.left + EDGE * u, v.top + 9.0 * u, room, lines))
+        right, top = v.left + EDGE * u + min(text.width(u), room), v.top + (EDGE - 4.0) * u + lines
+    _block(sheet, heading)
+    legend, below = _legend(sheet, right, top)
+    caption, below = _caption(sheet, top, below)
+    return status + heading.marks + legend + caption, (below, bottom)
+
+
+def _block(sheet: Sheet, paper: Paper) -> None:
+    """Keep labels off the texts and plates on a paper."""
+    for mark in paper.marks:
+        if isinstance(mark, Panel):
+            sheet.occupancy.block(mark.left, mark.top, mark.width, mark.height)
+        elif isinstance(mark, marks.Text):
+            width = text_width(mark.text, mark.size, mark.weight)
+            sheet.occupancy.block(mark.x, mark.y - mark.size / 2, width, mark.size)
 
 
 # --- the status bar --------------------------------------------------------------------------------
@@ -63,63 +80,44 @@ def _status_bar(sheet: Sheet) -> tuple[list[Mark], float]:
     paper, steps, parts = Paper(u, marks=[*bar]), status.hint.split(BETWEEN), list[Part]()
     if status.state:
         state = Text(begun(tr(status.state)), 12.0, theme.text, "semibold")
-        parts.append(Row((icon("disc", 3.5, _state_colour(sheet), 7.0), state), 6.0))
+        moods = {"running": theme.running, "paused": theme.halted, "halted": theme.halted}
+        mood = moods.get(status.state.partition(" ")[0], theme.resting)
+        parts.append(Row((icon("disc", 3.5, theme.problem if status.problem else mood, 7.0), state), 6.0))
         time = "" if status.time is None else f"t = {written.time(status.time)}"
         for said in filter(None, (time, written.pace(status.speed))):
             text = Text(said, 12.0, theme.text)
             behind = 6.0 * u + text_width(steps[0], sheet.font(12.0))
-            whole = Row([*parts, text], 18.0, (_EDGE, 0.0, 0.0)).width(u) + behind
+            whole = Row([*parts, text], 18.0, (EDGE, 0.0, 0.0)).width(u) + behind
             parts += [text] if whole <= v.width else []
-    room = v.width - Row(parts, 18.0, (_EDGE, 0.0, 0.0)).width(u) - 24.0 * u
+    room = v.width - Row(parts, 18.0, (EDGE, 0.0, 0.0)).width(u) - 24.0 * u
     while len(steps) > 1 and text_width(BETWEEN.join(steps), sheet.font(12.0)) > room:
         steps.pop()
     hint = Text(BETWEEN.join(steps), 12.0, theme.muted, anchor="right", grow=1.0)
     paper.put(
-        Row([*parts, hint], 18.0, (_EDGE, 0.0, 0.0)),
+        Row([*parts, hint], 18.0, (EDGE, 0.0, 0.0)),
         Rectangle(v.left, top + thin, v.width, v.bottom - top - thin),
     )
     return paper.marks, float(top)
 
 
-def _state_colour(sheet: Sheet) -> Colour:
-    theme, status = sheet.theme, sheet.view.status
-    if status.problem:
-        return theme.problem
-    return {"running": theme.running, "paused": theme.halted, "halted": theme.halted}.get(
-        status.state.partition(" ")[0], theme.resting
-    )
-
-
 # --- heading and problem ---------------------------------------------------------------------------
+
+
+def _heading(said: str, theme: Theme) -> Text:
+    """The heading (the mode, or the next task), top left."""
+    return Text(said, _HEADING, theme.text, "semibold", lines=ALL)
 
 
 def heading_height(text: str, width: float, unit: float, theme: Theme, explained: Sequence[str] = ()) -> float:
     """Pixels that a heading takes at the top of a viewport, with a legend that explains these names."""
-    size, widest = font_size(_HEADING, unit), width - 2 * _EDGE * unit
-    lines = wrapped(text, widest, size, "semibold")
-    height = len(lines) * line_height(size) + (_EDGE + 4.0) * unit
+    heading, room = _heading(text, theme), width - 2 * EDGE * unit
+    height = heading.height(unit, room) + (EDGE + 4.0) * unit
     if not explained:
         return height
-    right = _EDGE * unit + max(text_width(line, size, "semibold") for line in lines)
+    right = EDGE * unit + min(heading.width(unit), room)
     plates, beside = _arranged(meanings_of(explained), theme, width, right, unit)
     rows = len(plates) * _ROW * unit
     return max(height, rows + 2 * _ABOVE * unit - 4.0 * unit) if beside else height + rows
-
-
-def _heading(sheet: Sheet) -> tuple[list[Mark], tuple[float, float]]:
-    """The heading (the mode, or the next task) top left; and its right and lower end."""
-    v, u, size = sheet.viewport, sheet.unit, sheet.font(_HEADING)
-    left, top = v.left + _EDGE * u, v.top + _EDGE * u
-    if not sheet.view.heading:
-        return [], (v.left, v.top)
-    lines = wrapped(sheet.view.heading, v.width - 2 * _EDGE * u, size, "semibold")
-    made: list[Mark] = []
-    for number, line in enumerate(lines):
-        y = top + 9.0 * u + number * line_height(size)
-        sheet.occupancy.block(left, y - size / 2, text_width(line, size, "semibold"), size)
-        made.append(marks.Text(line, left, y, size, sheet.theme.text, "semibold"))
-    right = left + max(text_width(line, size, "semibold") for line in lines)
-    return made, (right, top + len(lines) * line_height(size) - 4.0 * u)
 
 
 def _caption(sheet: Sheet, heading_end: float, top: float) -> tuple[list[Mark], float]:
@@ -127,34 +125,38 @@ def _caption(sheet: Sheet, heading_end: float, top: float) -> tuple[list[Mark], 
 
     They stand below the legend, which ends at `top`; a title alone beside it where it has room there.
     """
-    v, u, theme, size = sheet.viewport, sheet.unit, sheet.theme, sheet.font(13.0)
-    shape = (sheet.view.shape.title,) if sheet.view.shape is not None else ()
-    made: list[Mark] = []
-    if sheet.view.caption:
-        thin = max(round(u), 1)
-        made.append(boxes(theme.line, (v.left, v.top, v.width, thin), (v.left, v.top, thin, v.height)))
-    elif not shape:
+    v, u, theme = sheet.viewport, sheet.unit, sheet.theme
+    paper, shape, thin = Paper(u), sheet.view.shape, max(round(u), 1)
+    looks = [(line, "regular", theme.muted) for line in sheet.view.caption]
+    if looks:
+        paper.marks.append(boxes(theme.line, (v.left, v.top, v.width, thin), (v.left, v.top, thin, v.height)))
+        looks[0] = looks[0][0], "semibold", theme.text
+    if shape is not None:
+        looks.append((shape.title, "semibold", theme.sketch))
+    if not looks:
         return [], top
-    left, room = v.left + _EDGE * u, v.width - 2 * _EDGE * u
-    paper = faded(theme.background, 0.85)  # keeps lines of a grid out of the text
-    number, upper = 0, top
-    if not sheet.view.caption:
-        alone = [text for line in shape for text in wrapped(line, room, size, "semibold")]
-        width = max(text_width(text, size, "semibold") for text in alone) + 8.0 * u
-        if not sheet.occupancy.is_taken(left, heading_end + 8.0 * u, width, len(alone) * line_height(size)):
-            upper = heading_end
-    for line in (*sheet.view.caption, *shape):
-        weight, colour = ("semibold", theme.text) if number == 0 else ("regular", theme.muted)
-        if line in shape:
-            weight, colour = "semibold", theme.sketch
-        for text in wrapped(line, room, size, weight):
-            y = upper + 8.0 * u + (number + 0.5) * line_height(size)
-            width = text_width(text, size, weight)
-            sheet.occupancy.block(left, y - size / 2, width, size)
-            made.append(Panel(left - 4.0 * u, y - 0.7 * size, width + 8.0 * u, 1.4 * size, 3.0 * u, paper))
-            made.append(marks.Text(text, left, y, size, colour, weight))
-            number += 1
-    return made, max(top, upper + 8.0 * u + number * line_height(size))
+    room, behind = (
+        v.width - 2 * EDGE * u,
+        faded(theme.background, 0.85),
+    )  # keeps lines of a grid out of the text
+    lines = [
+        Row(
+            (
+                Plate(Row((Text(line, 13.0, colour, weight),), around=(4.0, 0.0, 0.0)), behind, radius=3.0),
+                Gap(grow=1.0),
+            )
+        )
+        for said, weight, colour in looks
+        for line in wrapped(said, room, sheet.font(13.0), weight)
+    ]
+    column = Column(lines)
+    high, wide = column.height(u, room), column.width(u)
+    left, upper = v.left + EDGE * u, top
+    if not sheet.view.caption and not sheet.occupancy.is_taken(left, heading_end + 8.0 * u, wide, high):
+        upper = heading_end
+    paper.put(column, Rectangle(left - 4.0 * u, upper + 8.0 * u, room + 8.0 * u, high))
+    _block(sheet, paper)
+    return paper.marks, max(top, upper + 8.0 * u + high)
 
 
 def draw_notice(sheet: Sheet, ends: tuple[float, float]) -> list[Mark]:
@@ -167,7 +169,7 @@ def draw_notice(sheet: Sheet, ends: tuple[float, float]) -> list[Mark]:
     ink, paper = (theme.problem, theme.problem_panel) if status.problem else (theme.text, theme.panel)
     sign = Drawn(partial(_exclaimed, "!" if status.problem else "i", ink, paper), 18.0, 18.2)
     for v in (sheet.view.room, sheet.viewport):  # beside the panels, unless it is long
-        room = min(v.width - 2 * _EDGE * u, 640.0 * u)
+        room = min(v.width - 2 * EDGE * u, 640.0 * u)
         most = max(int((min(bottom, v.bottom) - top - 60.0 * u) / line_height(sheet.font(13.0))), 1)
         text = Text(said, 13.0, ink, lines=most, grow=1.0)
         if text.height(u, room - _AROUND_NOTICE * u) <= _FEW_LINES * line_height(sheet.font(13.0)):
@@ -264,27 +266,24 @@ def meanings_of(legend: Sequence[str]) -> dict[str, str]:
     return found
 
 
-def _legend(sheet: Sheet, heading_end: tuple[float, float]) -> tuple[list[Mark], float]:
+def _legend(sheet: Sheet, right: float, heading_end: float) -> tuple[list[Mark], float]:
     """The colours that occur and what they mean, in rows top right; and the lower end of all at the top.
 
-    They stand beside the heading if one or two rows have room there, else below it.
+    They stand beside the heading, which ends at `right`, if one or two rows have room there, else below it.
     """
     v, u, theme = sheet.viewport, sheet.unit, sheet.theme
     meanings = meanings_of(sheet.legend) if sheet.view.legend else {}
     if not meanings or v.width < 240.0 * u:
-        return [], heading_end[1]
-    plates, beside = _arranged(meanings, theme, v.width, heading_end[0] - v.left, u)
-    if not beside and v.height < _SMALL * u and not sheet.view.explains_all:
-        return [], heading_end[1]
-    top = v.top + _ABOVE * u if beside else heading_end[1] + 8.0 * u
+        return [], heading_end
+    plates, beside = _arranged(meanings, theme, v.width, right - v.left, u)
+    top = v.top + _ABOVE * u if beside else heading_end + 8.0 * u
     paper = Paper(u)
     for plate in plates:
         width = plate.width(u)
-        place = Rectangle(v.right - _ABOVE * u - width, top, width, 24.0 * u)
-        sheet.occupancy.block(*place.box)
-        paper.put(plate, place)
+        paper.put(plate, Rectangle(v.right - _ABOVE * u - width, top, width, 24.0 * u))
         top += _ROW * u
-    return paper.marks, max(top - 4.0 * u, heading_end[1])
+    _block(sheet, paper)
+    return paper.marks, max(top - 4.0 * u, heading_end)
 
 
 def _arranged(
@@ -373,7 +372,7 @@ def place_scale(sheet: Sheet, room: tuple[float, float]) -> Scale | None:
         ruler = length + 8.0 * u if length else 0.0
         text = "   ".join(_said(metres, sheet.values.total(), said))
         width = text_width(text, size)
-        if not text or width > v.width - ruler - 2 * _EDGE * u:
+        if not text or width > v.width - ruler - 2 * EDGE * u:
             continue
         scale = Scale(*_freest(sheet, ruler + width + 12.0 * u, room), metres, length, width, said)
         box = scale.left, scale.top, ruler + width + 12.0 * u, _STRIP * u
@@ -397,9 +396,11 @@ def draw_scale(sheet: Sheet, scale: Scale | None) -> list[Mark]:
     text = shortened("   ".join(said), scale.room, size)
     x, y = round(scale.left + 6.0 * u), round(scale.top + 6.0 * u)
     width = ruler + text_width(text, size) + 12.0 * u
+    length, thin, tick = round(scale.ruler), max(round(1.5 * u), 1), round(7.0 * u)
+    lines = (x, y + tick, length, thin), (x, y, thin, tick), (x + length - thin, y, thin, tick)
     return [
         Panel(scale.left, scale.top, width, _STRIP * u, 4.0 * u, faded(sheet.theme.background, 0.8)),
-        *([_ruler(sheet, x, y, round(scale.ruler))] if scale.ruler else []),
+        *([boxes(sheet.theme.muted, *lines)] if scale.ruler else []),
         marks.Text(text, x + ruler, y + 4.0 * u, size, sheet.theme.muted),
     ]
 
@@ -431,12 +432,6 @@ def _freest(sheet: Sheet, width: float, room: tuple[float, float]) -> tuple[floa
 def _hidden(sheet: Sheet, at: tuple[float, float], width: float, height: float) -> tuple[bool, int]:
     """Whether a box lies on something else, and how much it hides."""
     return sheet.occupancy.is_taken(*at, width, height), sheet.occupancy.crossed(*at, width, height)
-
-
-def _ruler(sheet: Sheet, x: int, y: int, length: int) -> Mark:
-    thin, tick = max(round(1.5 * sheet.unit), 1), round(7.0 * sheet.unit)
-    ends = (x, y, thin, tick), (x + length - thin, y, thin, tick)
-    return boxes(sheet.theme.muted, (x, y + tick, length, thin), *ends)
 
 
 def _displacements(sheet: Sheet) -> list[str]:

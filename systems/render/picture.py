@@ -1,15 +1,21 @@
-"""Picture: composes the marks of a model, form or toolbar in painter's order."""
+"""Picture: composes the marks of a model, form or toolbar in painter's order; and what lies at a pixel of it."""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
+
+import numpy as np
+from numpy.typing import NDArray
 
 from pinjoint.components.extensions import EXTENSIONS
 from pinjoint.components.field import Vector
 from pinjoint.components.form import Form
 from pinjoint.components.model import Model
+from pinjoint.components.particle import Particle
+from pinjoint.components.rod import Rod
 from pinjoint.components.toolbar import Toolbar
 from pinjoint.components.view import Hit, View
+from pinjoint.systems.broad_phase import distance_to_segments
 from pinjoint.systems.render.arrows import draw_loads, draw_particle_diagrams, draw_velocities
 from pinjoint.systems.render.cuts import draw_cuts
 from pinjoint.systems.render.diagrams import draw_diagrams
@@ -19,13 +25,13 @@ from pinjoint.systems.render.free_bodies import draw_free_bodies
 from pinjoint.systems.render.labels import Placed, place_labels
 from pinjoint.systems.render.layout import Paper
 from pinjoint.systems.render.lesson_card import compose_lesson
-from pinjoint.systems.render.marks import Picture
+from pinjoint.systems.render.marks import Fills, Mark, Owners, Picture, Points, Stamps, Strokes
 from pinjoint.systems.render.members import draw_distributed_forces, draw_hinges, draw_moments
 from pinjoint.systems.render.overlays import BAR, draw_notice, draw_overlays, draw_scale, place_scale
 from pinjoint.systems.render.page import draw_page
 from pinjoint.systems.render.pointed import draw_pointed
 from pinjoint.systems.render.readouts import put_readouts
-from pinjoint.systems.render.sheet import Sheet, measure
+from pinjoint.systems.render.sheet import DIRECTIONS, MANY, Sheet, measure
 from pinjoint.systems.render.sliders import SLIDER, put_sliders
 from pinjoint.systems.render.structure import (
     draw_ghost,
@@ -37,11 +43,14 @@ from pinjoint.systems.render.structure import (
     label_names,
 )
 from pinjoint.systems.render.supports import draw_supports, support_sides
-from pinjoint.systems.render.theme import Theme
+from pinjoint.systems.render.theme import Theme, load_theme
 from pinjoint.systems.render.toolbar import compose_toolbar
 from pinjoint.systems.render.tools import draw_flashes, draw_preview
 from pinjoint.systems.render.utilisation import shade_rods
 
+REACH = 6.0  # points from the lines of an arrow
+
+_Lines = tuple[Points, Points, float, Owners]  # from, to, reach in pixels beside them, and whose each is
 Stage = tuple[Model | Form | Toolbar, View]  # what is shown, and how
 
 
@@ -129,12 +138,17 @@ def _draw_structure(sheet: Sheet) -> None:
     draw_particles(sheet)
     draw_hinges(sheet)
     sheet.marks += sheet.above
+    draw_cuts(sheet)
+    draw_shape(sheet)
+    _draw_arrows(sheet, sides)
+
+
+def _draw_arrows(sheet: Sheet, sides: NDArray[np.int64]) -> None:
+    """Loads, velocities and reactions, beside supports on these sides of particles."""
     draw_distributed_forces(sheet)
     draw_loads(sheet)
     draw_velocities(sheet)
     draw_moments(sheet)
-    draw_cuts(sheet)
-    draw_shape(sheet)
     draw_particle_diagrams(sheet, sides)
 
 
@@ -174,3 +188,50 @@ def _composed(sheet: Sheet) -> Picture:
     sheet.placed |= sheet.scales
     marks = [*sheet.marks, *labels, *over]
     return Picture(sheet.viewport, theme.background, marks, tuple(sheet.legend), paper.hits)
+
+
+# --- whose the arrows are ----------------------------------------------------------------------------
+
+
+def symbol_at(model: Model, view: View, pixel: Vector) -> Particle | Rod | None:
+    """The particle or rod whose arrow or support lies under a pixel, of a load the particle that bears it.
+
+    None in large models, and while something is drawn, when a click means a place.
+    """
+    elsewhere = view.covers(pixel) or not view.camera.viewport.contains(pixel)
+    if elsewhere or view.tool or view.preview is not None or model.particles.count > MANY:
+        return None
+    sheet = measure(model, view, load_theme(view.theme))
+    best, found = np.inf, None
+    for start, end, reach, of in (lines for mark in _symbols(sheet) for lines in _lines_of(mark, sheet.unit)):
+        away = distance_to_segments(np.array(pixel), start, end)
+        if len(away) and (nearest := int(np.argmin(away))) >= 0 and away[nearest] <= min(reach, best):
+            best, found = float(away[nearest]), (of[0], int(of[1][nearest]))
+    if found is None:
+        return None
+    table, row = found if found[0] != "loads" else ("particles", int(model.loads.on[found[1]]))
+    return model.rods[row] if table == "rods" else model.particles[row]
+
+
+def _symbols(sheet: Sheet) -> list[Mark]:
+    """The marks of supports and arrows as the picture has them."""
+    if sheet.view.free_bodies and sheet.view.forces_known:
+        draw_free_bodies(sheet)
+        draw_distributed_forces(sheet)
+    else:
+        sides = support_sides(sheet)
+        draw_supports(sheet, sides)
+        _draw_arrows(sheet, sides)
+    return sheet.marks
+
+
+def _lines_of(mark: Mark, unit: float) -> Iterator[_Lines]:
+    """The lines along which a mark of elements lies."""
+    match mark:
+        case Strokes(start, end, _, _, (str(), _) as of):
+            yield start, end, REACH * unit, of
+        case Fills(corners, _, (str(), _) as of):
+            for k in range(corners.shape[1]):
+                yield corners[:, k - 1], corners[:, k], REACH * unit, of
+        case Stamps(_, at, size, turns=turns, of=(str(), _) as of):
+            yield at, at + size * DIRECTIONS[turns], size / 2, of

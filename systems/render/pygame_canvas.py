@@ -1,10 +1,10 @@
-"""Canvas: draws pictures on a pygame surface."""
+"""Canvas: draws pictures on a pygame surface, in windows and, without a display, for files."""
 
 from __future__ import annotations
 
 import io
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from functools import partial
 from importlib.resources import files
 from typing import Any
@@ -14,19 +14,29 @@ import pygame
 import pygame.gfxdraw
 from numpy.typing import NDArray
 
+from pinjoint.components.camera import Viewport
 from pinjoint.components.wording import UNPRINTABLE
 from pinjoint.systems.program.compiler import Choice, Compile
-from pinjoint.systems.render.coverage import stroke_coverage, stroke_pixels_estimate
 from pinjoint.systems.render.marks import Bars, Discs, Fills, Panel, Picture, Rectangles, Stamps, Strokes, Text
-from pinjoint.systems.render.raster import Clip, Pixels, Raster
+from pinjoint.systems.render.raster import (
+    Clip,
+    Pixels,
+    Raster,
+    load_raster,
+    stroke_coverage,
+    stroke_pixels_estimate,
+)
 from pinjoint.systems.render.symbols import RIM, turned_parts
 from pinjoint.systems.render.theme import Colour
 from pinjoint.systems.render.typography import WEIGHTS, capital_height
 
+Size = tuple[int, int]
+Colours = NDArray[np.uint8]
+
+_WHITE, _BLACK = (255, 255, 255, 255), (0, 0, 0, 255)
 _FINE = 8  # symbols and corners are drawn this much larger, then reduced
 _PHASES = 4  # positions of a symbol within a pixel, each way
 _MOST_CACHED = 4000  # rendered texts, symbols and panels
-_SKETCHED = 1_500  # elements of a kind
 _LONGEST = 4000  # characters that are drawn of a text: more than any window is wide
 _MANY = 300  # bars, discs; and 50 pixels of strokes for each: from there on the compiled kernels pay
 
@@ -34,14 +44,12 @@ _MANY = 300  # bars, discs; and 50 pixels of strokes for each: from there on the
 class Canvas:
     """Draws pictures; keeps the texts, symbols and panels it has rendered.
 
-    raster: returns the compiled drawing of large pictures, or None while it is being compiled; until then a
-        sketch with some of the elements is drawn. Without it, or where nothing is compiled, all elements are drawn
-        slowly.
+    raster: returns the compiled drawing of large pictures, or None while it is being compiled; until then, and where
+        nothing is compiled, they take some ten times as long.
     """
 
-    def __init__(self, raster: Callable[[], Raster | None] | None = None) -> None:
-        self.sketch = False  # the last picture is a sketch
-        self._raster = raster if Choice.compile is not Compile.NEVER else None
+    def __init__(self, raster: Callable[[], Raster | None] = lambda: None) -> None:
+        self._raster = raster if Choice.compile is not Compile.NEVER else lambda: None
         if not pygame.font.get_init():
             pygame.font.init()
         self._cache: dict[Any, Any] = {}
@@ -56,7 +64,6 @@ class Canvas:
         v = picture.viewport
         before = surface.get_clip()
         surface.set_clip(pygame.Rect(*v.box).clip(before))
-        self.sketch = False
         if picture.background is not None:
             surface.fill(picture.background)
         for mark in picture.marks:
@@ -88,38 +95,21 @@ class Canvas:
             found = self._cache[key] = self._former.pop(key, None) or make()
         return found
 
-    @property
-    def draws_all(self) -> bool:
-        """False while large pictures can only be sketched."""
-        return self._raster is None or self._large() is not None
-
-    def _large(self) -> Raster | None:
-        return self._raster() if self._raster is not None else None
-
-    def _some(self, count: int) -> slice:
-        """All of `count` elements, or the sample that a sketch shows."""
-        if self._raster is None or count <= _MANY:
-            return slice(None)
-        self.sketch = True
-        return slice(None, None, count // _SKETCHED + 1)
-
     # --- lines and areas -----------------------------------------------------------------------------
 
     def _strokes(self, surface: pygame.Surface, mark: Strokes) -> None:
         many = len(mark.start) > _MANY
         many = many or stroke_pixels_estimate(mark.start, mark.end, mark.width) > 50 * _MANY
-        if many and (raster := self._large()):
+        if many and (raster := self._raster()):
             raster.strokes(_pixels(surface), _clip(surface), mark, _pixel(surface, mark.colour))
         else:
-            some = self._some(len(mark.start))
-            x, y, amount = stroke_coverage(mark.start[some], mark.end[some], mark.width)
-            _blend(surface, x, y, amount, mark.colour)
+            _blend(surface, *stroke_coverage(mark.start, mark.end, mark.width), mark.colour)
 
     def _bars(self, surface: pygame.Surface, mark: Bars) -> None:
-        if len(mark.start) > _MANY and (raster := self._large()):
+        if len(mark.start) > _MANY and (raster := self._raster()):
             raster.bars(_pixels(surface), _clip(surface), mark, _pixel(surface, mark.colour))
         else:
-            _fill(surface, mark.corners[self._some(len(mark.start))], mark.colour)
+            _fill(surface, mark.corners, mark.colour)
 
     def _panel(self, surface: pygame.Surface, mark: Panel) -> None:
         left, top = round(mark.left), round(mark.top)
@@ -142,14 +132,13 @@ class Canvas:
         surface.fblits(pairs)
 
     def _discs(self, surface: pygame.Surface, mark: Discs) -> None:
-        if len(mark.at) > _MANY and (raster := self._large()):
+        if len(mark.at) > _MANY and (raster := self._raster()):
             colours = _pixel(surface, mark.ink), _pixel(surface, mark.hollow)
             raster.discs(_pixels(surface), _clip(surface), mark, *colours)
         else:
-            some = self._some(len(mark.at))
-            fine = np.round(4.0 * mark.radius[some])
+            fine = np.round(4.0 * mark.radius)
             for quarters in np.unique(fine).tolist():
-                size, at = quarters / 4.0, mark.at[some][fine == quarters]
+                size, at = quarters / 4.0, mark.at[fine == quarters]
                 symbol, unit = ("ring", mark.rim / RIM) if mark.rim else ("disc", 1.0)
                 self._stamps(surface, Stamps(symbol, at, size, unit, mark.ink, mark.hollow))
 
@@ -240,15 +229,12 @@ def _rounded(size: tuple[int, int], mark: Panel) -> pygame.Surface:
     least = 2 * math.ceil(mark.radius) + 5  # the column and row in the middle are part of no corner
     small = _small_rounded((min(size[0], least), min(size[1], least)), mark)
     whole = pygame.Surface(size, pygame.SRCALPHA)
-    columns, rows = (_stretched(length, min(length, least)) for length in size)
+    columns, rows = (  # of the small one, the middle ones repeated
+        np.maximum(np.minimum(np.arange(n), short // 2), np.arange(n) - (n - short))
+        for n, short in zip(size, small.get_size(), strict=True)
+    )
     _pixels(whole)[:, : size[0]] = _pixels(small)[rows][:, columns]
     return whole
-
-
-def _stretched(length: int, short: int) -> NDArray[np.intp]:
-    """For each of `length` places its place in `short`, the middle one repeated."""
-    place = np.arange(length)
-    return np.maximum(np.minimum(place, short // 2), place - (length - short))
 
 
 def _small_rounded(size: tuple[int, int], mark: Panel) -> pygame.Surface:
@@ -265,3 +251,46 @@ def _small_rounded(size: tuple[int, int], mark: Panel) -> pygame.Surface:
         radius = max(radius - fine, 0)
     pygame.draw.rect(large, mark.fill, box, border_radius=radius)
     return pygame.transform.smoothscale(large, size)
+
+
+# --- files, without a display ---------------------------------------------------------------------------
+
+
+def as_image(pictures: Sequence[Picture], size: Size, suffix: str) -> bytes:
+    """Pictures, each in its viewport of an image of that size in pixels, as the contents of a file of that suffix."""
+    return encoded(_drawn(pictures, size), suffix)
+
+
+def as_clear_png(pictures: Sequence[Picture], size: Size) -> bytes:
+    """The same without a background, as colours with opacities.
+
+    A pixel of a colour c and an opacity a shows a c over black and a c + 255 (1 − a) over white.
+    """
+    frame = Viewport(0, 0, *size)
+    over_black, over_white = (
+        as_colours([Picture(frame, ground), *pictures], size).astype(np.int64) for ground in (_BLACK, _WHITE)
+    )
+    opacity = np.clip(255 - ((over_white - over_black).sum(axis=2) + 1) // 3, 0, 255)
+    scale = np.maximum(opacity, 1)[:, :, None]
+    colour = np.minimum((255 * over_black + scale // 2) // scale, 255)
+    pixels = np.dstack([colour, opacity]).astype(np.uint8)
+    return encoded(pygame.image.frombuffer(pixels.tobytes(), size, "RGBA"), ".png")
+
+
+def as_colours(pictures: Sequence[Picture], size: Size) -> Colours:
+    """Pictures as colours, shape (height, width, 3)."""
+    return np.ascontiguousarray(pygame.surfarray.array3d(_drawn(pictures, size)).transpose(1, 0, 2))
+
+
+def encoded(surface: pygame.Surface, suffix: str) -> bytes:
+    """A surface as the contents of a file of that suffix."""
+    made = io.BytesIO()
+    pygame.image.save(surface, made, suffix)
+    return made.getvalue()
+
+
+def _drawn(pictures: Sequence[Picture], size: Size) -> pygame.Surface:
+    surface, canvas = pygame.Surface(size, depth=32), Canvas(load_raster)
+    for picture in pictures:
+        canvas.draw(surface, picture)
+    return surface

@@ -33,13 +33,12 @@ class PygameRender(System):
     reads = ("document", "state", "view")
     writes = ("surface",)
 
-    def __init__(self, surface: pygame.Surface, raster: Callable[[], Raster | None] | None = None) -> None:
+    def __init__(self, surface: pygame.Surface, raster: Callable[[], Raster | None] = lambda: None) -> None:
         self.surface = surface
         self.drawn = False
         self._canvas = Canvas(raster)
         self.shown: Any = None
         self._placed: dict[str, Placed] = {}
-        self._sketch = False  # the last picture was a sketch, before the drawing of large ones was compiled
 
     def draw_on(self, surface: pygame.Surface, frame: Any) -> None:
         """Draw on another surface, on which nothing is yet."""
@@ -49,18 +48,15 @@ class PygameRender(System):
     def process(self, frame: Any) -> None:
         """Draw every stage of the scene, unless the picture would be the same as the last."""
         stages = frame.session.stages
-        looks = tuple(view.looks for _, view in stages)
-        shown = (id(self.surface), language(), looks, _revisions(stages))
-        self.drawn = shown != self.shown or (self._sketch and self._canvas.draws_all)
+        shown = id(self.surface), _looks(stages)
+        self.drawn = shown != self.shown
         if self.drawn:
             self.shown = None  # until all of it is drawn
             theme = load_theme(frame.session.view.theme)
-            self._sketch = False
             self._placed = {_looked_at(*stage): self._placed.get(_looked_at(*stage), {}) for stage in stages}
             for picture in compose_all(stages, theme, lambda *stage: self._placed[_looked_at(*stage)]):
                 self._canvas.draw(self.surface, picture)
-                self._sketch |= self._canvas.sketch
-            self.shown = (id(self.surface), language(), looks, _revisions(stages))
+            self.shown = id(self.surface), _looks(stages)  # drawing may compute forces
 
 
 def draw_unseen(frame: Any, size: tuple[int, int]) -> None:
@@ -75,8 +71,14 @@ def _unseen() -> PygameRender:
 
 def _looked_at(shown: Model | Form | Toolbar, view: View) -> str:
     """The model and the view of a stage: while they are the same, labels keep their places."""
-    return f"{'' if isinstance(shown, Toolbar) else shown.context} {view.camera}"
+    return f"{shown.context if isinstance(shown, Model) else ''} {view.camera}"
 
 
-def _revisions(stages: Sequence[tuple[Model | Form | Toolbar, View]]) -> tuple[tuple[str, int], ...]:
-    return tuple((shown.context, shown.revision) for shown, _ in stages if not isinstance(shown, Toolbar))
+def _looks(stages: Sequence[tuple[Model | Form | Toolbar, View]]) -> tuple[object, ...]:
+    """All that the pictures of some stages follow from."""
+    shown = (
+        s.looks if isinstance(s, Form) else (s.context, s.revision)
+        for s, _ in stages
+        if not isinstance(s, Toolbar)
+    )
+    return language(), tuple(view.looks for _, view in stages), tuple(shown)

@@ -31,6 +31,10 @@ MANY = 2000  # rods, above which details of single elements are left out
 # Directions by quarter turns clockwise, in pixels: right, down, left, up.
 DIRECTIONS = np.array([[1.0, 0.0], [0.0, 1.0], [-1.0, 0.0], [0.0, -1.0]])
 
+_SMALLEST = (
+    0.6,
+    5.0,
+)  # points, radius: of particles where more would hide short rods, and that can be seen and hit
 _JOINT = 0.7  # radius of small rigid joints, of the usual one
 
 
@@ -175,7 +179,7 @@ def measure(model: Model, view: View, theme: Theme, placed: Placed | None = None
     if frame:
         lines = curved_lines(model, FLAT / camera.scale, rods)
     curved = _visible(lines, rods, view, (low - margin, high + margin)) if lines is not None else None
-    smallest = _smallest_radius(start, end, unit)
+    smallest = float(np.clip(0.18 * typical_length(start, end), *np.array(_SMALLEST) * unit))
     radii: NDArray[np.float64] = np.maximum(model.particles.radius * camera.scale, smallest)
     if frame:
         radii[rigid_joints(model) & (radii == smallest)] = _JOINT * smallest
@@ -204,11 +208,6 @@ def typical_length(start: Points, end: Points) -> float:
     """Median length in pixels of segments, of many that of a sample; infinite if there are none."""
     sample = slice(None, None, len(start) // MANY + 1)
     return float(np.median(np.hypot(*(end[sample] - start[sample]).T))) if len(start) else np.inf
-
-
-def _smallest_radius(start: Points, end: Points, unit: float) -> float:
-    """5 points, so that a particle can be seen and hit; less where it would hide short rods."""
-    return float(np.clip(0.18 * typical_length(start, end), 0.6 * unit, 5.0 * unit))
 
 
 Layer = Callable[[Sheet], Iterable[Mark]]  # draws marks with every picture of a model

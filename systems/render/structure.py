@@ -13,11 +13,12 @@ from pinjoint.components.round_numbers import round_up
 from pinjoint.components.tags import Hovered, Selected
 from pinjoint.components.view import Shape
 from pinjoint.systems.render.clip import bounds, clip_segments
+from pinjoint.systems.render.framing import cut_discs
 from pinjoint.systems.render.labels import Label, half_size
-from pinjoint.systems.render.marks import Discs, Fills, Points, Rectangles, Strokes
+from pinjoint.systems.render.marks import Discs, Points, Rectangles, Strokes
 from pinjoint.systems.render.occupancy import FAINT, STRONG
 from pinjoint.systems.render.sheet import DIRECTIONS, FEW, MANY, Rows, Sheet
-from pinjoint.systems.render.symbols import LARGEST_STAMP, RIM, arcs, circle, dashed
+from pinjoint.systems.render.symbols import RIM, dashed
 from pinjoint.systems.render.theme import Colour, faded
 from pinjoint.systems.render.values import BACKING, reach
 
@@ -34,7 +35,6 @@ _SHADED = 2.0  # width of rods whose colour shows a quantity, of the usual one
 _THINNEST, _THICKEST, _DEPTHS = 0.5, 1.3, 8.0  # widths of rods by their bending stiffness, in steps of 1/8
 _DOT = 4.0  # points, radius of the dot of a rigid joint
 _HALO = 0.12  # of the length of rods, by which halos stand out, within limits
-_LARGEST_FILLED = 10_000.0  # pixels, well within the 16 bits of filled polygons
 
 
 def draw_grid(sheet: Sheet) -> None:
@@ -201,36 +201,9 @@ def draw_particles(sheet: Sheet) -> None:
 
 
 def _draw_circles(sheet: Sheet, rows: Rows, ink: Colour, hollow: Colour, rim: float, extra: float) -> None:
-    """Circles of the particles' radius and `extra` pixels; very large ones as lines and areas."""
-    radii, at = sheet.radii[rows] + extra, sheet.centres[rows]
-    large = radii > LARGEST_STAMP * sheet.unit
-    if large.any():
-        for radius in np.unique(radii[large]).tolist():
-            alike = radii == radius
-            _draw_large_circles(sheet, rows[alike], at[alike], radius, ink, hollow, rim)
-        rows, at, radii = rows[~large], at[~large], radii[~large]
-    if len(at):
-        sheet.marks.append(Discs(at, radii, ink, hollow, rim, ("particles", rows)))
-
-
-def _draw_large_circles(
-    sheet: Sheet, rows: Rows, at: Points, radius: float, ink: Colour, hollow: Colour, rim: float
-) -> None:
-    """Circles as polygons; of those so large that the whole viewport may lie inside, the arcs that may be seen."""
-    low, high = bounds(sheet.viewport)
-    if radius < _LARGEST_FILLED:
-        corners = at[:, None] + circle(radius - rim / 2)
-        sheet.marks.append(Fills(corners, hollow if rim else ink, ("particles", rows)))
-        first, last = corners.reshape(-1, 2), np.roll(corners, -1, axis=1).reshape(-1, 2)
-    else:
-        points, passing = arcs(at, radius - rim / 2, (low + high) / 2, float(np.hypot(*(high - low))))
-        rows = rows[passing]
-        first, last = points[:, :-1].reshape(-1, 2), points[:, 1:].reshape(-1, 2)
-    if rim:
-        overlap = 0.5 * (last - first) / np.hypot(*(last - first).T)[:, None]  # pixel, so that joints close
-        start, end, seen = clip_segments(first - overlap, last + overlap, low - rim, high + rim)
-        of = np.repeat(rows, len(first) // max(len(rows), 1))[seen]
-        sheet.marks.append(Strokes(start, end, rim, ink, ("particles", of)))
+    """Circles of the particles' radius and `extra` pixels, as far as they are seen."""
+    discs = Discs(sheet.centres[rows], sheet.radii[rows] + extra, ink, hollow, rim, ("particles", rows))
+    sheet.marks += cut_discs(discs, sheet.viewport, sheet.unit)
 
 
 def draw_shape(sheet: Sheet) -> None:

@@ -1,22 +1,30 @@
 """Symbols: the shapes that are stamped on a picture, as polygons about their own origin.
 
-Every symbol points to the right, y down; supports and arrows are turned by quarter turns.
+Every symbol points to the right, y down; supports and arrows are turned by quarter turns. Icons of the toolbar are read
+from assets/icons, by the names of their actions, in a square of 20 by 20. Every part is a kind and its numbers: "line" x, y,
+x, y, …; "area" x, y, x, y, …; "arc" x, y, radius, from, to (degrees, clockwise from the right); "disc" x, y, radius.
 """
 
 from __future__ import annotations
 
+import json
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from functools import cache
+from importlib.resources import files
 
 import numpy as np
 from numpy.typing import NDArray
 
-from pinjoint.systems.render.icons import STROKE, icon
+from pinjoint.components.extensions import EXTENSIONS
+from pinjoint.components.mistake import WrongValue
 from pinjoint.systems.render.marks import Points, Stamps
 
+Part = tuple[str, tuple[float, ...]]
 Parts = list[tuple[str, Points]]  # ("ink" or "hollow", corners (k, 2)), in painter's order
 
+STROKE = 1.8  # the width of lines of icons
+_NUMBERS = {"disc": 3, "arc": 5}  # of one part; lines and areas have two for each of their points
 SUPPORT_DEPTH = 25.0  # points from the particle's rim to the far side of the ground
 RIM = 1.75  # points
 LARGEST_STAMP = 64.0  # points, greatest radius of a circle drawn as a stamp
@@ -25,21 +33,47 @@ _GROUND = 13.0  # points, half the length of the ground under it
 _SQUARE = 9.5  # points, half the side of a square around a joint that cannot turn
 
 
-def symbol_parts(symbol: str, size: float, unit: float) -> Parts:
-    """The polygons of a symbol in pixels, for a size in pixels and pixels per point.
+def turned_parts(stamp: Stamps) -> Parts:
+    """The polygons of a stamp about its place in pixels, by its quarter turns clockwise.
 
     The size of an icon is how many pixels the unit of its square takes.
     """
-    if symbol in SYMBOLS:
-        return SYMBOLS[symbol](size, unit)
-    return [("ink", polygon * size) for polygon in _icon(symbol)]
-
-
-def turned_parts(stamp: Stamps) -> Parts:
-    """The polygons of a stamp about its place, by its quarter turns clockwise."""
     across, down = ((1, 0), (0, 1), (-1, 0), (0, -1))[stamp.turns % 4]
     turn = np.array([[across, down], [-down, across]], dtype=np.float64)
-    return [(role, corners @ turn) for role, corners in symbol_parts(stamp.symbol, stamp.size, stamp.unit)]
+    if stamp.symbol in SYMBOLS:
+        parts = SYMBOLS[stamp.symbol](stamp.size, stamp.unit)
+    else:
+        parts = [("ink", polygon * stamp.size) for polygon in _icon(stamp.symbol)]
+    return [(role, corners @ turn) for role, corners in parts]
+
+
+def check_icon(parts: Sequence[Part]) -> None:
+    """Raise ValueError if a part of an icon is none that can be drawn."""
+    for kind, numbers in parts:
+        few = {"line": 4, "area": 6}.get(kind, 0)
+        fits = (
+            len(numbers) == _NUMBERS[kind]
+            if kind in _NUMBERS
+            else few <= len(numbers) and len(numbers) % 2 == 0
+        )
+        if kind not in (*_NUMBERS, "line", "area") or not fits or not all(map(math.isfinite, numbers)):
+            raise WrongValue(
+                "{part!r} is not a part of an icon; write ('line', (-5, 0, 5, 0)), 'area' with three points or"
+                " more, ('arc', (x, y, radius, from, to)) or ('disc', (x, y, radius)).",
+                part=(kind, numbers),
+            )
+
+
+def icon(name: str) -> tuple[Part, ...]:
+    """The parts of an icon. Raises KeyError."""
+    return EXTENSIONS.icons[name] if name in EXTENSIONS.icons else icons()[name]
+
+
+@cache
+def icons() -> dict[str, tuple[Part, ...]]:
+    """The parts of the icons that the program brings, by name."""
+    drawn = json.loads((files("pinjoint.assets") / "icons" / "toolbar.json").read_text(encoding="utf-8"))
+    return {name: tuple((kind, tuple(at)) for kind, *at in parts) for name, parts in drawn.items()}
 
 
 @cache
@@ -75,36 +109,25 @@ def circle(radius: float) -> Points:
     return radius * np.stack([np.cos(angle), np.sin(angle)], axis=1)
 
 
-def arcs(centres: Points, radius: float, middle: Points, reach: float) -> tuple[Points, NDArray[np.bool_]]:
-    """The parts of large circles about centres (n, 2) that come near a point, as lines, shape (k, corners, 2).
-    And which circles do, (n,).
+def arc(centre: Points, radius: float, middle: Points, reach: float) -> Points:
+    """The part of a large circle that is within `reach` of the point `middle`, both (2,), as a line (k, 2); else (0, 2).
 
-    All that is within `reach` of the point `middle` (2,) belongs to them. They are built from there, so that no digits
-    cancel however large the circles are.
+    It is built from that point, so that no digits cancel however large the circle is.
     """
-    away = middle - centres
-    distance = np.hypot(*away.T)
-    passing = np.abs(distance - radius) <= reach
-    away, distance = away[passing], distance[passing]
-    out = away / np.where(distance > 0.0, distance, 1.0)[:, None]
-    out[distance == 0.0] = (1.0, 0.0)
+    away = middle - centre
+    distance = float(np.hypot(*away))
+    if abs(distance - radius) > reach:
+        return np.empty((0, 2))
+    out = away / distance if distance > 0.0 else np.array([1.0, 0.0])
     half = math.pi if 2.0 * reach >= radius else 1.1 * math.asin(2.0 * reach / radius)
-    corners = max(12, math.ceil(half / math.pi * 16.0 * math.sqrt(radius)))
-    angle = np.linspace(-half, half, corners)[:, None]
+    angle = np.linspace(-half, half, max(12, math.ceil(half / math.pi * 16.0 * math.sqrt(radius))))[:, None]
     along, down = radius * np.sin(angle), 2.0 * radius * np.sin(0.5 * angle) ** 2
-    nearest = middle - out * (distance - radius)[:, None]
-    side = np.stack([-out[:, 1], out[:, 0]], axis=1)
-    found: Points = nearest[:, None] + side[:, None] * along - out[:, None] * down
-    return found, passing
+    found: Points = middle - (distance - radius + down) * out + along * [-out[1], out[0]]
+    return found
 
 
 def _bar(left: float, top: float, right: float, bottom: float) -> Points:
     return np.array([[left, top], [right, top], [right, bottom], [left, bottom]])
-
-
-def _ring(radius: float, unit: float) -> Parts:
-    """An open circle whose rim lies inside the radius."""
-    return [("ink", circle(radius)), ("hollow", circle(max(radius - RIM * unit, 0.0)))]
 
 
 def _arrow(length: float, unit: float) -> Parts:
@@ -130,11 +153,6 @@ def _roller(size: float, unit: float) -> Parts:
     """Support in one direction: a triangle, a gap and the line that it slides along."""
     line = _bar(_HEIGHT + 3.0, -_GROUND, _HEIGHT + 4.75, _GROUND)
     return [*_triangle(unit), ("ink", line * unit)]
-
-
-def _pinned(size: float, unit: float) -> Parts:
-    """Support in both directions: a triangle on a filled plate with hatched ground."""
-    return [*_triangle(unit), *_ground(_HEIGHT - 0.5, unit)]
 
 
 def _ground(at: float, unit: float) -> Parts:
@@ -164,11 +182,11 @@ def _unturned(size: float, unit: float) -> Parts:
 
 
 SYMBOLS: dict[str, Callable[[float, float], Parts]] = {
-    "ring": _ring,
+    "ring": lambda radius, unit: [("ink", circle(radius)), ("hollow", circle(max(radius - RIM * unit, 0.0)))],
     "disc": lambda radius, unit: [("ink", circle(radius))],
     "arrow": _arrow,
     "roller": _roller,
-    "pinned": _pinned,
+    "pinned": lambda size, unit: [*_triangle(unit), *_ground(_HEIGHT - 0.5, unit)],
     "clamped": lambda size, unit: _ground(0.0, unit),
     "guided": _guided,
     "unturned": _unturned,

@@ -21,7 +21,7 @@ from pinjoint.systems.render.sheet import measure
 from pinjoint.systems.render.structure import draw_particles, draw_rods
 from pinjoint.systems.render.supports import draw_supports, support_sides
 from pinjoint.systems.render.symbols import turned_parts
-from pinjoint.systems.render.theme import Colour, Theme, faded
+from pinjoint.systems.render.theme import Theme, faded
 
 _SMALLER, _USUAL = 0.6, 84.0  # symbols, compared with those in a model; in less high ones (points) smaller yet
 _EDGE = 4.0  # points that stay free within the card
@@ -91,7 +91,11 @@ def _finite(points: Points) -> Points:
 
 
 def _marks(model: Model, camera: Camera, unit: float, theme: Theme) -> tuple[Mark, ...]:
-    shown = replace(theme, hollow=_tinted(theme))
+    red, green, blue = (
+        round((1.0 - _TINT) * paper + _TINT * ink)
+        for paper, ink in zip(theme.hollow[:3], theme.focus[:3], strict=True)
+    )
+    shown = replace(theme, hollow=(red, green, blue, 255))  # so that discs are seen as bodies
     smaller = _SMALLER * min(camera.viewport.height / (_USUAL * unit), 1.0)
     view = View(camera=replace(camera), pixel_ratio=smaller * unit, all_diagrams=True, quantity=MOMENT)
     sheet = measure(model, view, shown)
@@ -113,12 +117,3 @@ def _marks(model: Model, camera: Camera, unit: float, theme: Theme) -> tuple[Mar
     draw_loads(sheet)
     draw_velocities(sheet)
     return tuple(sheet.marks)
-
-
-def _tinted(theme: Theme) -> Colour:
-    """The paper of discs, so that they are seen as bodies."""
-    red, green, blue = (
-        round((1.0 - _TINT) * paper + _TINT * ink)
-        for paper, ink in zip(theme.hollow[:3], theme.focus[:3], strict=True)
-    )
-    return red, green, blue, 255

@@ -36,11 +36,11 @@ def _put_strip(paper: Paper, toolbar: Toolbar, view: View, theme: Theme) -> None
     """The bar with a hairline at its right edge, and its buttons, the last group at the bottom."""
     s, thin = view.strip, max(round(paper.unit), 1)
     paper.marks += [boxes(theme.panel, s.box), boxes(theme.line, (s.right - thin, s.top, thin, s.height))]
-    columns, groups, high = toolbar.shown(view.camera.viewport, paper.unit)
+    columns, high = toolbar.columns(view.camera.viewport, paper.unit)
     parts: list[Part] = []
-    for number, group in enumerate(groups):
+    for number, group in enumerate(toolbar.groups):
         if number:
-            parts.append(Gap(high=GAP, grow=float(number == len(groups) - 1)))
+            parts.append(Gap(high=GAP, grow=float(number == len(toolbar.groups) - 1)))
         parts += [
             Row([_button(tool, theme) for tool in row], high=high) for row in in_rows(list(group), columns)
         ]
@@ -73,7 +73,7 @@ def _free_place(
     places = np.array([nearest, *((x, y) for x in lefts for y in tops)])
     places = places[np.argsort(np.hypot(*(places - nearest).T), kind="stable")]
     size = np.array([width, height])
-    for box in np.array([_box(mark) for picture in below for mark in picture.marks if _says(mark)]):
+    for box in np.array([box for picture in below for mark in picture.marks if (box := _box(mark))]):
         apart = (places <= box[:2] - size - gap) | (places >= box[2:] + gap)
         if len(places := places[apart.any(axis=1)]) == 0:
             return nearest
@@ -81,16 +81,12 @@ def _free_place(
     return left, upper
 
 
-def _says(mark: Mark) -> bool:
-    """Whether a mark is a text, or a panel on which something stands."""
-    return isinstance(mark, Written) or (isinstance(mark, Panel) and mark.outline is not None)
-
-
-def _box(mark: Mark) -> tuple[float, float, float, float]:
-    """Left, top, right and bottom of a text or panel."""
-    if isinstance(mark, Panel):
+def _box(mark: Mark) -> tuple[float, float, float, float] | None:
+    """Left, top, right and bottom of a text, or of a panel on which something stands."""
+    if isinstance(mark, Panel) and mark.outline is not None:
         return mark.left, mark.top, mark.left + mark.width, mark.top + mark.height
-    assert isinstance(mark, Written)
+    if not isinstance(mark, Written):
+        return None
     width = text_width(mark.text, mark.size, mark.weight)
     left = mark.x - {"left": 0.0, "centre": 0.5, "right": 1.0}[mark.anchor] * width
     return left, mark.y - 0.6 * mark.size, left + width, mark.y + 0.6 * mark.size

@@ -16,7 +16,7 @@ from pinjoint.systems.render.theme import Colour, faded
 
 SMALLEST = 1e-4  # kN or kN·m; smaller forces and moments are drawn as none
 FEW_VALUES = 24  # values up to which each carries its unit and keeps clear of rods
-GAP = 1.0  # points between a rod or an arrow and a value beside it
+GAP, BY_ARROW = 1.0, 5.5  # points between a rod, or an arrow in a diagram, and a value beside it
 BACKING = 0.86  # opacity behind a value
 FIRST = -1e9  # rank of values of arrows, which are few and say little without them: before those of rods
 _KEPT = 1.5  # factor by which a new value must be larger to replace one of the last picture
@@ -60,18 +60,20 @@ def in_rows(at: Points, way: Points, across: Sequence[Values], along: Points, sl
 
 
 def beside(
-    sheet: Sheet,
-    text: str,
-    start: Points,
-    end: Points,
-    shares: Sequence[float] = (0.5, 0.75, 0.3, 1.0),
-    gap: float = 4.0,
+    half: Points, start: Points, end: Points, gap: float, shares: Sequence[float] = (0.5, 0.75, 0.3, 1.0)
 ) -> Points:
-    """Where a value may stand beside a line, so many points off, at shares of it: right as drawn, then left, (n, 2)."""
+    """Where values may stand beside lines (…, 2), so far off, at shares of them: right as drawn, then left, (…, k, 2)."""
     way = end - start
-    right = np.array([-way[1], way[0]]) / max(float(np.hypot(*way)), 1e-9)
-    sides, along = np.tile([right, -right], (len(shares), 1)), np.repeat(shares, 2)[:, None]
-    return off(start + along * way, sides, gap * sheet.unit, half_sizes(sheet, [text])[0])
+    right = np.stack([-way[..., 1], way[..., 0]], axis=-1) / np.maximum(np.hypot(*way.T).T, 1e-9)[..., None]
+    at = start[..., None, :] + np.repeat(shares, 2)[:, None] * way[..., None, :]
+    return off(at, np.stack([right, -right] * len(shares), axis=-2), gap, half[..., None, :])
+
+
+def by_arrows(half: Points, start: Points, end: Points, gap: float) -> Points:
+    """Where the values of arrows may stand: beyond their outer `end`, or beside them, (…, k, 2)."""
+    way = end - start
+    out = way / np.maximum(np.hypot(*way.T).T, 1e-9)[..., None]
+    return np.concatenate([off(end, out, gap, half)[..., None, :], beside(half, start, end, gap)], axis=-2)
 
 
 def most_important(

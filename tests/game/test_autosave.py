@@ -399,7 +399,7 @@ def test_what_was_left_behind_is_discarded_when_asked_twice(data: Path) -> None:
     for _ in range(2):
         session.press("down" if scene.form.chosen is None else "right")
     session.press("return")
-    assert "deleted for ever" in scene.form.heading.message
+    assert "deleted for ever" in scene.form.message
     assert left.exists()
     session.press("return")
     assert not left.exists()

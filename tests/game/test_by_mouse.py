@@ -6,8 +6,8 @@ from pathlib import Path
 import pytest
 
 from pinjoint import Session
-from pinjoint.components.menu import Menu
 from pinjoint.components.tags import DiagramShown
+from pinjoint.components.toolbar import Menu
 from pinjoint.components.view import Hit
 from pinjoint.documents import library, models
 from pinjoint.editor.scenes.form import FormScene

@@ -44,7 +44,7 @@ def scene_of(session: Session) -> FileScene:
 
 
 def message_of(session: Session) -> str:
-    return scene_of(session).form.heading.message
+    return scene_of(session).form.message
 
 
 def saved_as(session: Session, name: str) -> None:
@@ -493,7 +493,7 @@ def test_arrows_reach_every_picture_and_show_it(session: Session, size: tuple[in
     session.view.camera.viewport = Viewport(0, 0, *size)
     session.press("d")
     form = scene_of(session).form
-    form.delete([tile for tile in form.tiles if tile.rest])  # nothing is folded
+    form.tiles = [tile for tile in form.tiles if not tile.rest]  # nothing is folded
     for tile in form.tiles:
         session.press("right")
         assert form.chosen is tile

@@ -15,9 +15,9 @@ import pytest
 
 from pinjoint import Session
 from pinjoint.app import FIRST_SIZE
-from pinjoint.components.box import Box
 from pinjoint.components.camera import Viewport
 from pinjoint.components.field import Vector
+from pinjoint.components.form import Box
 from pinjoint.documents import models
 from pinjoint.documents.library import DATA_VARIABLE
 from pinjoint.documents.preferences import CONFIG_VARIABLE

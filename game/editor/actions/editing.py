@@ -33,7 +33,7 @@ from pinjoint.systems.input.actions import (
     SIMULATION,
     actions_of,
 )
-from pinjoint.systems.render.symbol_at import symbol_at
+from pinjoint.systems.render.picture import symbol_at
 
 action = actions_of("Select and edit")
 

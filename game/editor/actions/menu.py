@@ -8,7 +8,6 @@ from operator import attrgetter
 
 from pinjoint.components.field import Vector
 from pinjoint.components.language import marked, tr
-from pinjoint.components.menu import Menu
 from pinjoint.components.particle import Particle
 from pinjoint.components.rod import Rod
 from pinjoint.editor.actions.editing import all_of
@@ -20,7 +19,7 @@ from pinjoint.systems.edit.picking import pick_rod
 from pinjoint.systems.edit.placing import snapped
 from pinjoint.systems.edit.rods import share_at, weigh_along
 from pinjoint.systems.edit.supports import SUPPORTS, Held, held, support
-from pinjoint.systems.input.actions import ACTIONS, IN_PICTURES, MENU, PAUSE, actions_of
+from pinjoint.systems.input.actions import ACTIONS, MENU, PAUSE, actions_of
 from pinjoint.systems.render.menu import entry_beside, pointed_at
 from pinjoint.systems.render.theme import load_theme
 
@@ -49,14 +48,6 @@ action("choose entry", "click", "choose the entry; outside, close the menu")(ACT
 action("close menu", "escape", "close the menu", in_menu=False)(
     lambda context, pixel: setattr(context.view, "menu", None)
 )
-
-
-@action("more tools", "", "show more tools", IN_PICTURES)
-def _more_tools(context: Context, pixel: Vector) -> None:
-    """The tools for which the toolbar has no room."""
-    view = context.view
-    groups = view.toolbar.folded(view.camera.viewport, view.pixel_ratio)
-    context.view.menu = Menu("", groups, pixel, pointed=pixel) if groups else None
 
 
 @offer("environment", "", "open the properties of the environment")

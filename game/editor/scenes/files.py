@@ -3,13 +3,11 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Sequence
 from contextlib import suppress
 from pathlib import Path
-from typing import Any, NamedTuple
+from typing import Any
 
-from pinjoint.components.box import FILE_NAME, Box
-from pinjoint.components.form import Form, Tile
+from pinjoint.components.form import FILE_NAME, Box, Form, Tile
 from pinjoint.components.language import joined, marked, tr
 from pinjoint.documents import library, models
 from pinjoint.documents.previews import LARGEST_SOLVED, has_moved, preview, solved
@@ -35,15 +33,11 @@ class FileScene(FormScene):
         super().exit(context)
         self._unread, self._unsolved = [], []
 
-    def new_form(self, heading: str, name: str, offers: Sequence[Offer], accept: str) -> Form:
-        """A form with a box for the name, a button, and a tile for each offer, its picture to be read later."""
-        form = Form(heading, accept=accept)
-        form.create(Box, 1, title=tr("name"), target="name", accepts=FILE_NAME, text=name, opened=name)
-        if offers:
-            columns = map(list, zip(*offers, strict=True))
-            form.create(Tile, len(offers), **dict(zip(Offer._fields, columns, strict=True)))
-        self._unread, self._unsolved = [tile for tile in form.tiles if not tile.symbol], []
-        return form
+    def new_form(self, heading: str, name: str, tiles: list[Tile], accept: str) -> Form:
+        """A form with a box for the name, a button, and tiles whose pictures are to be read later."""
+        self._unread, self._unsolved = [tile for tile in tiles if not tile.symbol], []
+        box = Box(tr("name"), "name", name, opened=name, accepts=FILE_NAME)
+        return Form(heading, accept=accept, boxes=[box], tiles=tiles)
 
     @property
     def box(self) -> Box:
@@ -52,7 +46,7 @@ class FileScene(FormScene):
 
     def say(self, message: str) -> None:
         """Show a problem or a question in the heading."""
-        self.form.heading.message = message
+        self.form.message = message
 
     # --- typing and choosing -----------------------------------------------------------------------
 
@@ -63,7 +57,7 @@ class FileScene(FormScene):
 
     def changed(self, context: Context) -> None:
         self.say("")
-        self.form.choose(None)
+        self.form.chosen = None
 
     def move(self, context: Context, direction: str) -> None:
         """Arrows choose a tile; left and right move the caret until one is chosen."""
@@ -72,7 +66,7 @@ class FileScene(FormScene):
             return
         tile = self._neighbour(context, direction)
         if tile is not None:
-            self.form.choose(tile)
+            self.form.chosen = tile
             self.reveal(context, tile)
 
     def _neighbour(self, context: Context, direction: str) -> Tile | None:
@@ -140,23 +134,10 @@ class Pictures(System):
             scene.read_pictures(frame.session)
 
 
-class Offer(NamedTuple):
-    """The Fields of a tile, see components/form.py."""
-
-    section: str
-    title: str
-    caption: str
-    file: str
-    source: Any
-    explanation: str = ""
-    symbol: str = ""
-    rest: bool = False
-
-
-def saved_models() -> list[Offer]:
+def saved_models() -> list[Tile]:
     """The person's own models, the newest first."""
     return [
-        Offer(tr(SAVED), name, library.written_age(p), name, p)
+        Tile(tr(SAVED), name, library.written_age(p), name, p)
         for p in library.saved()
         if (name := models.name_of(p))
     ]
@@ -165,7 +146,7 @@ def saved_models() -> list[Offer]:
 def _solve(tile: Tile) -> None:
     """Let a picture show forces, if it is of a small structure that never moved."""
     with suppress(OSError, models.ModelError):
-        found = solved(tile.source) if tile.exists and tile.picture.rods.count <= LARGEST_SOLVED else None
+        found = solved(tile.source) if tile.picture.rods.count <= LARGEST_SOLVED else None
         if found is not None:
             tile.picture = found
 
@@ -201,7 +182,7 @@ class Save(FileScene):
 
     def choose(self, context: Context, tile: Tile) -> None:
         """Take the name of a tile, to use it again or change it a little."""
-        self.form.choose(None)
+        self.form.chosen = None
         typing.select(self.form, self.box)
         typing.put(self.form, self.box, tile.file)
         self.changed(context)

@@ -6,10 +6,9 @@ from collections.abc import Sequence
 from dataclasses import replace
 from typing import ClassVar
 
-from pinjoint.components.box import NAME, NUMBER, WORD, Box
 from pinjoint.components.camera import Camera, Viewport
 from pinjoint.components.field import Vector
-from pinjoint.components.form import Form, Tile
+from pinjoint.components.form import NAME, NUMBER, WORD, Box, Form, Tile
 from pinjoint.components.language import decimals, english, joined, marked, tr
 from pinjoint.components.suggestions import missing
 from pinjoint.editor.context import Context, Scene
@@ -31,7 +30,7 @@ class FormScene(Scene):
     @property
     def message(self) -> str:
         """The message of the heading, and why the text of a box is refused."""
-        return joined([self.form.heading.message, *(box.problem for box in self.form.boxes)])
+        return joined([self.form.message, *(box.problem for box in self.form.boxes)])
 
     def enter(self, context: Context) -> None:
         self.form = self.make_form(context)
@@ -97,7 +96,7 @@ class FormScene(Scene):
                 typed = True
         if typed:
             self.changed(context)
-        self.form.heading.first = before.heading.first
+        self.form.first = before.first
 
     # --- pictures ----------------------------------------------------------------------------------
 
@@ -117,14 +116,14 @@ class FormScene(Scene):
 
     def type(self, context: Context, text: str) -> None:
         refused = typing.write(self.form, text)
-        self.form.heading.message = ""
+        self.form.message = ""
         self._reveal_selected(context)
         self.changed(context)
-        self.form.heading.message = refused or self.form.heading.message
+        self.form.message = refused or self.form.message
 
     def erase(self, context: Context, *, after: bool = False) -> None:
         """Backspace, or Delete."""
-        self.form.heading.message = ""
+        self.form.message = ""
         typing.erase(self.form, after=after)
         self._reveal_selected(context)
         self.changed(context)
@@ -136,7 +135,7 @@ class FormScene(Scene):
         else:
             given_up = typing.restore(self.form)
             self.changed(context)
-            self.form.heading.message = given_up
+            self.form.message = given_up
 
     def next_box(self, context: Context, by: int) -> None:
         """Tab: select the next box, or the previous one."""
@@ -187,9 +186,8 @@ class FormScene(Scene):
 
     def scroll(self, context: Context, rows: int) -> None:
         """Scroll by a number of rows."""
-        heading = self.form.heading
-        heading.first = max(self.layout(context).paper.scrolled[0] + rows, 0)
-        heading.first = self.layout(context).paper.scrolled[0]
+        self.form.first = max(self.layout(context).paper.scrolled[0] + rows, 0)
+        self.form.first = self.layout(context).paper.scrolled[0]
 
     def page(self, context: Context, by: int) -> None:
         """Scroll by all visible rows but one."""
@@ -197,13 +195,13 @@ class FormScene(Scene):
 
     def reveal(self, context: Context, item: Box | Tile) -> None:
         """Scroll until a box or tile is visible."""
-        layout, heading = self.layout(context), self.form.heading
+        layout, form = self.layout(context), self.form
         if layout.place_of(item) is not None:
             return
         row = next(number for number, row in enumerate(layout.rows) if item in row)
-        heading.first = min(layout.paper.scrolled[0], row)
-        while heading.first < row and self.layout(context).place_of(item) is None:
-            heading.first += 1
+        form.first = min(layout.paper.scrolled[0], row)
+        while form.first < row and self.layout(context).place_of(item) is None:
+            form.first += 1
 
     def _reveal_selected(self, context: Context) -> None:
         """Scroll to the selected box."""

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import Any
 
 from pinjoint.components.form import Form, Tile
@@ -11,7 +12,7 @@ from pinjoint.documents import library, models
 from pinjoint.documents.autosave import recovered_name
 from pinjoint.documents.open_documents import ModelFile
 from pinjoint.editor.context import Context
-from pinjoint.editor.scenes.files import FileScene, Offer, saved_models
+from pinjoint.editor.scenes.files import FileScene, saved_models
 from pinjoint.lessons import progress
 from pinjoint.lessons.progress import count_of, is_done, shelf
 from pinjoint.scripts.script import Script, lessons
@@ -47,13 +48,13 @@ class Load(FileScene):
 
     def make_form(self, context: Context) -> Form:
         self._asked = False
-        new = Offer(tr(LESSONS), tr(NEW), tr("draw your own"), "", None, tr("An empty plane to draw on."), "+")
+        new = Tile(tr(LESSONS), tr(NEW), tr("draw your own"), "", None, tr("An empty plane to draw on."), "+")
         learn = _tasks()
         held = tr("{tasks} to do, {films} to watch", tasks=len(learn), films=len(lessons()))
-        rest = Offer(tr(LESSONS), tr("All lessons"), held, "", ALL, symbol="»", rest=True)
+        rest = Tile(tr(LESSONS), tr("All lessons"), held, "", ALL, symbol="»", rest=True)
         films = [Script(name) for name in lessons()]
         watch = [
-            Offer(tr(LESSONS), tr(s.title), tr("a lesson to watch"), s.name, s, tr(s.description), "▶")
+            Tile(tr(LESSONS), tr(s.title), tr("a lesson to watch"), s.name, s, tr(s.description), "▶")
             for s in films
         ]
         offers = [*_yours(context), *learn[:1], new, *learn[1:], *watch, rest, *_examples()]
@@ -68,7 +69,7 @@ class Load(FileScene):
     def choose(self, context: Context, tile: Tile) -> None:
         """Open the source of a tile; the tile "Discard", chosen twice, discards unsaved work."""
         if tile.source is ALL:
-            self.form.delete([tile])
+            self.form.tiles.remove(tile)
         elif tile.source is not DISCARD:
             self._open(context, tile.source)
         elif self._asked and context.autosave is not None:
@@ -76,7 +77,7 @@ class Load(FileScene):
             self.form = self.make_form(context)
         else:
             self._asked = True
-            self.form.choose(tile)
+            self.form.chosen = tile
             self.say(
                 tr(
                     "Unsaved work of earlier windows will be deleted for ever. Choose this again to delete it, or press Esc"
@@ -123,15 +124,11 @@ class Load(FileScene):
         super().changed(context)
         self._asked = False
         words = self.box.text.lower().split()
-        tiles = list(self.form.tiles)
-        told = [f"{tr(tile.title)} {tile.title} {tile.file}".lower() for tile in tiles]
-        hidden = [
-            bool(words) and (tile.rest or not all(word in text for word in words))
-            for tile, text in zip(tiles, told, strict=True)
-        ]
-        self.form.assign(tiles, "hidden", hidden)
-        self.form.heading.first = 0
-        if words and all(hidden):
+        for tile in self.form.tiles:
+            told = f"{tr(tile.title)} {tile.title} {tile.file}".lower()
+            tile.hidden = bool(words) and (tile.rest or not all(word in told for word in words))
+        self.form.first = 0
+        if words and all(tile.hidden for tile in self.form.tiles):
             self.say(tr("No model or lesson has this in its name. Delete characters with Backspace."))
 
     def hint(self, context: Context) -> str:
@@ -141,11 +138,11 @@ class Load(FileScene):
         return joined([tr("Click a picture"), more, steps], BETWEEN)
 
 
-def _yours(context: Context) -> list[Offer]:
+def _yours(context: Context) -> list[Tile]:
     """Unsaved work that windows left behind, and saved models, the newest first."""
     files = context.autosave.left() if context.autosave is not None else []
     offers = [
-        Offer(
+        Tile(
             tr(YOURS),
             recovered_name(path) or tr("Untitled"),
             joined([tr("not saved"), library.written_age(path)], ", "),
@@ -155,16 +152,16 @@ def _yours(context: Context) -> list[Offer]:
         for path in files
     ]
     if offers:
-        offers.append(Offer(tr(YOURS), tr("Discard"), tr("unsaved work"), "", DISCARD, symbol="×"))
-    offers += [offer._replace(section=tr(YOURS)) for offer in saved_models()]
+        offers.append(Tile(tr(YOURS), tr("Discard"), tr("unsaved work"), "", DISCARD, symbol="×"))
+    offers += [replace(offer, section=tr(YOURS)) for offer in saved_models()]
     count = sum(offer.source is not DISCARD for offer in offers)
-    everything = Offer(
+    everything = Tile(
         tr(YOURS), tr("All {count}", count=count), tr("your models"), "", ALL, symbol="»", rest=True
     )
     return [*offers, everything] if offers else []
 
 
-def _tasks() -> list[Offer]:
+def _tasks() -> list[Tile]:
     """The lessons with tasks, from the first that is not done on; then those that are done."""
     offers, scripts = [], shelf()
     for script in sorted(scripts, key=is_done):
@@ -176,17 +173,17 @@ def _tasks() -> list[Offer]:
             caption = tr("continue: {done} of {count} tasks done", done=done, count=count)
         title, about = tr(script.title), tr(script.description)
         offers.append(
-            Offer(tr(LESSONS), title, caption, script.name, script, about, "✓" if is_done(script) else "▶")
+            Tile(tr(LESSONS), title, caption, script.name, script, about, "✓" if is_done(script) else "▶")
         )
     if offers and not is_done(offers[0].source):
         first, title = offers[0].source, offers[0].title
         begun = first is not scripts[0] or progress.done(first.name).tasks
         title = tr("Continue: {lesson}", lesson=title) if begun else tr("Learn: {lesson}", lesson=title)
-        offers[0] = offers[0]._replace(title=title)
+        offers[0].title = title
     return offers
 
 
-def _examples() -> list[Offer]:
+def _examples() -> list[Tile]:
     """The bundled models by subject, of each the first and a tile that stands for the rest."""
     told = {name: models.header_of(name) for name in models.bundled()}
     names = sorted(told, key=lambda name: told[name].title)
@@ -194,9 +191,9 @@ def _examples() -> list[Offer]:
     offers = []
     for section in EXAMPLES:
         some = [name for name in names if _subject(told[name]) == section]
-        offers += [Offer(tr(section), tr(told[n].title or n), n, n, n, tr(told[n].description)) for n in some]
+        offers += [Tile(tr(section), tr(told[n].title or n), n, n, n, tr(told[n].description)) for n in some]
         offers.append(
-            Offer(tr(section), tr("All {count}", count=len(some)), tr(section), "", ALL, symbol="»", rest=True)
+            Tile(tr(section), tr("All {count}", count=len(some)), tr(section), "", ALL, symbol="»", rest=True)
         )
     return offers
 

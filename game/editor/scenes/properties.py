@@ -53,8 +53,8 @@ class Properties(FormScene):
     def make_form(self, context: Context) -> Form:
         model, selected = context.model, context.selected
         form = Form(properties.heading(model, selected), lambda box: answers.problem(model, box))
-        properties.fill(form, model, selected)
-        results.fill(form, model, selected, known=context.view.forces_known)
+        form.boxes = properties.boxes_of(model, selected)
+        form.readings = [*results.results(model, selected, known=context.view.forces_known)]
         self._read, self._made = (), model.newest(*MADE)
         return form
 
@@ -70,10 +70,10 @@ class Properties(FormScene):
     def _apply(self, context: Context, *, typing: bool = False) -> list[str]:
         """Give the model what is accepted; the boxes then say what it has. Returns the sentences about refused ones."""
         before = context.model.revision
-        with context.document.history.as_one(("properties", self.form.context)):
+        with context.document.history.as_one(("properties", id(self.form))):
             refused = answers.apply(self.form, context.model, typing=typing)
         if context.model.revision != before:
-            self.form.heading.text = properties.heading(context.model, context.selected)
+            self.form.heading = properties.heading(context.model, context.selected)
             properties.refresh(self.form, context.model, context.selected)
             self._read_results(context)
         return refused
@@ -147,10 +147,10 @@ class Properties(FormScene):
     def _read_results(self, context: Context) -> None:
         """Let the readings say what the elements do now."""
         model, known = context.model, context.view.forces_known
-        now = self.form.context, model.revision, known, self.form.heading.text
+        now = id(self.form), model.revision, known, self.form.heading
         if now != self._read:
             self._read = now
-            results.fill(self.form, model, context.selected, known=known)
+            self.form.readings = [*results.results(model, context.selected, known=known)]
         made = model.newest(*MADE)
         if made != self._made:  # as by a slider beside them
             self._made = made

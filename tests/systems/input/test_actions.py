@@ -238,7 +238,7 @@ def seen(session: Session) -> Any:
     shown += [session.clipboard, getattr(session.window, "asked", 0), session.notice]
     if isinstance(scene, FormScene):
         form = scene.form
-        shown += [form.selected, form.chosen, form.heading.first, form.heading.message]
+        shown += [form.selected, form.chosen, form.first, form.message]
         shown += [(box.text, box.caret, box.marked) for box in form.boxes]
     if isinstance(scene, ForceMethod) and scene.guide is not None:
         shown += [scene.guide.part, len(scene.guide.sets), scene.guide.refusal, scene.hint(session)]

@@ -9,8 +9,7 @@ from pinjoint.editor.frame import Frame
 from pinjoint.systems.edit.hover import Hover
 from pinjoint.systems.edit.picking import pick
 from pinjoint.systems.render.marks import Points, Stamps, Strokes
-from pinjoint.systems.render.picture import compose
-from pinjoint.systems.render.symbol_at import symbol_at
+from pinjoint.systems.render.picture import compose, symbol_at
 from pinjoint.systems.render.theme import load_theme
 
 LIGHT = load_theme("light")

@@ -11,9 +11,9 @@ from pinjoint.components.toolbar import Tool
 from pinjoint.components.view import Hit, drawn_positions
 from pinjoint.editor.toolbar import TOOLBAR, of_mods
 from pinjoint.systems.input.actions import ACTIONS
-from pinjoint.systems.render.icons import icon, icons
 from pinjoint.systems.render.marks import Panel, Stamps, Text
 from pinjoint.systems.render.picture import compose, compose_all
+from pinjoint.systems.render.symbols import icon, icons
 from pinjoint.systems.render.theme import load_theme
 from pinjoint.systems.render.typography import capital_height
 from tests.reference.boxes import overlap, text_box
@@ -55,7 +55,6 @@ def test_every_tool_is_an_action_with_a_key_and_an_icon() -> None:
         *offered,
         *of_mods(draw=False),
         "pause",
-        "more tools",
         *(f"diagram {quantity}" for quantity in QUANTITIES),
     }
 
@@ -98,17 +97,13 @@ def test_tab_and_small_windows_hide_it() -> None:
 
 
 @pytest.mark.parametrize("size", [(640, 360), (512, 384), (1000, 300), (640, 240)])
-def test_where_height_is_short_groups_are_folded_into_a_menu(size: tuple[int, int]) -> None:
+def test_where_height_is_short_it_has_more_columns(size: tuple[int, int]) -> None:
     session = opened(size=size)
     view, found = session.view, buttons(session)
-    everything = {tool.action for group in view.toolbar.groups for tool in group}
-    assert {"toggle run", "toggle help", "more tools"} <= set(found)
+    assert {*found} == {tool.action for group in view.toolbar.groups for tool in group}
     assert all(button.top + button.height <= size[1] for button in found.values())
     corners = [(button.left + 1.0, button.top + 1.0) for button in found.values()]
     assert len({*corners}) == len(found)
-    push(session, "more tools")
-    assert view.menu is not None
-    assert {*found, *(entry.action for entry in view.menu.entries)} == everything | {"more tools"}
     push(session, "save")
     assert session.scene == "save"
 
