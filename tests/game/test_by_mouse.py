@@ -223,7 +223,9 @@ def test_menus_open_inside_the_window_with_all_their_entries_to_be_read(
                     assert place.bottom <= size[1]
                     assert [other for other in places if other.contains(place.middle)] == [place]
                 assert len(places) == count or size[0] < 640 * ratio or size[1] < 480 * ratio
-                for _ in range(count if share == (0.5, 0.5) else 0):  # what is not in sight comes there by keys
+                if legend or share != (0.5, 0.5):  # the longest menus are those without a toolbar
+                    continue
+                for _ in range(count):  # what is not in sight comes there by keys
                     session.press("down")
                     assert menu(session).chosen in {entry.item for entry in entries(session)}
 
