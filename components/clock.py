@@ -165,10 +165,11 @@ class Clock(Handle):
         "m/s", doc="Largest Euclidean norm of all velocities, the scale of their error."
     )
     largest_rotation: Field[float] = state(
-        "rad", doc="Largest Euclidean norm of all rotations, the scale of their error."
+        "m",
+        doc="Largest Euclidean norm of all rotations, as ways by about the longest rod, the scale of their error.",
     )
     largest_spin: Field[float] = state(
-        "rad/s", doc="Largest Euclidean norm of all angular velocities, the scale of their error."
+        "m/s", doc="Largest Euclidean norm of all angular velocities, as speeds by about the longest rod."
     )
     origin: Field[float] = state("s", title="time origin", doc="Time at which the present step size began.")
     step_limit: Field[float] = state("s", doc="Largest step when the steps were last reviewed.")

@@ -420,11 +420,6 @@ def idle_moment(world: World) -> str:
     return ""
 
 
-def is_curved(world: World) -> bool:
-    """True if some rod that bends is warmer on one side."""
-    return bool(world.tables["rods"].initial_slopes.any())
-
-
 def bears_between(world: World) -> bool:
     """True if a distributed force acts on some rod that bends."""
     rods = world.tables["rods"]

@@ -67,6 +67,7 @@ class StopReason(IntEnum):
     DIVERGED = 3  # energy came from nowhere, or a number is not finite
     UNRESOLVED = 4  # no step, however small, has a finite result
     EVENT = 5  # the quantity of an Event changed sign
+    FAILED = 6  # a kernel raised an error
 
 
 class Mod(Protocol):
@@ -247,10 +248,10 @@ class Event(StepSystem):
 class Integrator(StepSystem):
     """Advances time. Its functions are source, pasted into the program: see systems/program/templates.
 
-    begins, ends: what becomes of a particle before and after the forces of a step, instead of a kernel.
+    begins, ends: what becomes of a particle before and after the forces of a step, if its steps are all alike.
     stable_step: the largest stable step (s) for the highest angular frequency ω (rad/s) and decay ζω
         (1/s) of a model, not both 0; infinite if unconditionally stable, 0 if stable at none.
-    order: of convergence. entry: the loop around the kernel. parts: templates that the kernel calls,
+    order: of convergence. parts: templates that its steps call,
         "module:function" or "module:function=name in the program". constants: numbers and arrays by name.
     controlled: it owns time and step size and locates events (see templates/runge_kutta.py); else its steps are all
         alike. Either ends a step, or a piece of one, where a load changes abruptly.
@@ -269,7 +270,6 @@ class Integrator(StepSystem):
         "clock.time",
     )
     order: ClassVar[int] = 0
-    entry: ClassVar[str] = "pinjoint.systems.program.templates.fixed_steps:advance"
     begins: ClassVar[str] = ""
     ends: ClassVar[str] = ""
     parts: ClassVar[tuple[str, ...]] = ()

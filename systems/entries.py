@@ -67,10 +67,8 @@ class Control(IntEnum):
     STEP_ERROR = 2  # of the last step; 1 is the tolerance
     LARGEST_DISPLACEMENT = 3  # Euclidean norm over all particles, so far (m)
     LARGEST_SPEED = 4  # the same of velocities (m/s)
-    LARGEST_ROTATION = (
-        5  # of rotations (rad), at least a share of what displacements amount to by the longest rod
-    )
-    LARGEST_SPIN = 6  # the same of angular velocities (rad/s)
+    LARGEST_ROTATION = 5  # of rotations, the third coordinates (m)
+    LARGEST_SPIN = 6  # of angular velocities (m/s)
 
 
 CONTROL = tuple(entry.name.lower() for entry in Control)
@@ -91,10 +89,9 @@ class Search(IntEnum):
     LENGTH = 6  # s; of the step that is searched
     LARGEST_DISPLACEMENT = 7  # as in Control, if the step is accepted
     LARGEST_SPEED = 8
-    LIMIT = 9  # s; the longest step allowed
-    LARGEST_ROTATION = 10
-    LARGEST_SPIN = 11
-    REACH = 12  # m; the longest rod, by which rotations compare with displacements
+    LARGEST_ROTATION = 9
+    LARGEST_SPIN = 10
+    LIMIT = 11  # s; the longest step allowed
 
 
 class Side(IntEnum):

@@ -5,6 +5,7 @@
 
 from __future__ import annotations
 
+import sys
 from enum import IntEnum, auto
 from typing import Any, NamedTuple
 
@@ -14,7 +15,7 @@ from numpy.typing import NDArray
 Floats = NDArray[np.float64]
 Integers = NDArray[np.int64]
 
-EPSILON = 2.220446049250313e-16
+EPSILON = sys.float_info.epsilon
 SPEED_NOISE = 16.0 * EPSILON  # round-off of a speed, as a share of the speeds that it is computed from
 NONE = -1  # no entry, no member
 MOST_CHANGES = 2**31 - 1  # mask: the part of a disc's number of changes that an impact in the queue keeps

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import math
+
 import numpy as np
 from numpy.typing import NDArray
 
@@ -45,6 +47,11 @@ def levers(model: Model) -> Array:
     for ends in rods.between.T:
         np.maximum.at(found, ends, 1.0 / rods.rest_length)
     return found
+
+
+def arm_of(model: Model) -> float:
+    """The length ℓ (m) by which rotations θ count as displacements ℓθ: a power of two, at most the longest rod."""
+    return math.ldexp(0.5, math.frexp(float(model.rods.rest_length.max()))[1])
 
 
 def free_coordinates(model: Model) -> NDArray[np.bool_]:

@@ -16,10 +16,8 @@ _RUNGE_KUTTA = "pinjoint.systems.program.templates.runge_kutta"
 _IMPLICIT = "pinjoint.systems.program.templates.implicit"
 _FIXED_STEPS = "pinjoint.systems.program.templates.fixed_steps"
 
-_CHECKS = (f"{_FIXED_STEPS}:is_check_due", f"{_FIXED_STEPS}:steps_to_check")
-_PLAIN = (*_CHECKS, f"{_FIXED_STEPS}:push")
-_SEARCHED = ("extrapolate", "accelerate", "error_of", "combine", "begin_search", "narrow", "aim", "follow")
-_CONTROLLED = (*_CHECKS, *(f"{_RUNGE_KUTTA}:{part}" for part in _SEARCHED))
+_SEARCHED = ("extrapolate", "accelerate", "error_of", "combine", "begin_search", "narrow", "follow")
+_CONTROLLED = tuple(f"{_RUNGE_KUTTA}:{part}" for part in _SEARCHED)
 _SOLVED = ("relax", "precondition", "multiply", "correct", "size_of", "implicit_stages=stages")
 
 
@@ -31,7 +29,6 @@ class VelocityVerlet(Integrator):
     """
 
     name = "physics.velocity_verlet"
-    parts = _PLAIN
     begins = f"{_FIXED_STEPS}:verlet_begins"
     ends = f"{_FIXED_STEPS}:verlet_ends"
     order: ClassVar[int] = 2
@@ -65,7 +62,6 @@ class ThesisTaylor(Integrator):
     """
 
     name = "physics.taylor2"
-    parts = _PLAIN
     push = 0.5
     begins = f"{_FIXED_STEPS}:taylor2_begins"
     ends = f"{_FIXED_STEPS}:taylor2_ends"
@@ -98,10 +94,12 @@ def runge_kutta_constants(tableau: Tableau, proportional: float = 0.0, lengthen:
         "PROPORTIONAL": proportional,
         "ROUND_OFF_X": 1e-15,  # of the largest displacement: errors below it are not chased
         "ROUND_OFF_V": 1e-13,  # the same per longest step, for velocities
+        "LEAST_TURN": 1e-3,  # share of what displacements amount to, below which no error of rotations counts
         "FIXED_TOLERANCE": 1e-10,  # of implicit stages where nothing else says how exact they must be
         "SMALLEST_SHARE": 1e-12,  # of the step to try, below which the run is given up
         "EVENT_FLOOR": 1e-11,  # share of a strength within which an event is located
         "EVENT_WIDTH": 1e-10,  # share of a step within which it is
+        "SLACK": 0.0,
     }
 
 
@@ -113,8 +111,6 @@ class RungeKutta4(Integrator):
     """
 
     name = "physics.rk4"
-    kernel = f"{_RUNGE_KUTTA}:controlled"
-    entry = f"{_RUNGE_KUTTA}:advance"
     parts = (*_CONTROLLED, f"{_RUNGE_KUTTA}:explicit_stages=stages", f"{_RUNGE_KUTTA}:attempt")
     order: ClassVar[int] = 4
     controlled = True

@@ -68,33 +68,19 @@ def slack_margin(branch, elongation, rods_rest_length, rods_plastic_strain, rods
 
 
 @compiled
-def bending(slope_start, slope_end, rods_end_stiffness):
-    """End moments of a rod K φ, K by its hinges."""
+def bending(slope_start, slope_end, rods_end_stiffness, rods_initial_slopes):
+    """End moments of a rod K (φ − φ⁰), K by its hinges, φ⁰ where it is warmer on one side."""
+    at_start, at_end = slope_start - rods_initial_slopes[0], slope_end - rods_initial_slopes[1]
     start, mixed, end = rods_end_stiffness
-    return start * slope_start + mixed * slope_end, mixed * slope_start + end * slope_end
+    return start * at_start + mixed * at_end, mixed * at_start + end * at_end
 
 
 @compiled
-def bending_energy(slope_start, slope_end, rods_end_stiffness):
-    """½ φᵀ K φ (kN·m)."""
-    start, mixed, end = rods_end_stiffness
-    return (
-        0.5 * (start * slope_start * slope_start + end * slope_end * slope_end)
-        + mixed * slope_start * slope_end
-    )
-
-
-@compiled
-def warped(slope_start, slope_end, rods_end_stiffness, rods_initial_slopes):
-    """K (φ − φ⁰) of a rod that is warmer on one side."""
-    return bending(slope_start - rods_initial_slopes[0], slope_end - rods_initial_slopes[1], rods_end_stiffness)
-
-
-@compiled
-def warped_energy(slope_start, slope_end, rods_end_stiffness, rods_initial_slopes):
+def bending_energy(slope_start, slope_end, rods_end_stiffness, rods_initial_slopes):
     """½ (φ − φ⁰)ᵀ K (φ − φ⁰) (kN·m)."""
-    start, end = slope_start - rods_initial_slopes[0], slope_end - rods_initial_slopes[1]
-    return bending_energy(start, end, rods_end_stiffness)
+    at_start, at_end = slope_start - rods_initial_slopes[0], slope_end - rods_initial_slopes[1]
+    start, mixed, end = rods_end_stiffness
+    return 0.5 * (start * at_start * at_start + end * at_end * at_end) + mixed * at_start * at_end
 
 
 @compiled

@@ -60,29 +60,17 @@ def loaded_mode(model: Model) -> tuple[float, float] | None:
     """
     if model.rods.count == 0 or not free_coordinates(model).any():
         return None
-    displacement = _static_displacement(model, _exciting_forces(model))
+    force = _forces(model)
+    if not force[free_coordinates(model).ravel()].any():  # some that excite all directions
+        force = np.ones_like(force) * np.where(np.arange(len(force)) % 2, -1.0, 0.3)
+    displacement = _static_displacement(model, force)
     if displacement is None:
         return None
-    if bends(model):
-        return _mode_of_frame(model, displacement)
-    rods = model.rods
-    ends, axis = _ends_and_axes(model)
-    elongation = ((displacement[ends[:, 1]] - displacement[ends[:, 0]]) * axis).sum(axis=1)
-    inertia = float((model.particles.mass[:, None] * displacement**2).sum()) / 1000.0
-    if inertia == 0.0:
-        return None
-    frequency = math.sqrt(float((rods.stiffness / rods.rest_length * elongation**2).sum()) / inertia)
-    damping = float((rods.damping * elongation**2).sum()) / inertia + model.environment.drag
-    return (frequency, damping) if frequency > 0.0 else None
-
-
-def _mode_of_frame(model: Model, displacement: Array) -> tuple[float, float] | None:
-    """loaded_mode of a model that bends. displacement: with rotations, (n, 3)."""
     entries, rows, columns, stiffness, damping = deformations(model)
     moved = np.bincount(rows, entries * displacement.ravel()[columns], len(stiffness))
     particles = model.particles
-    inertia = float((particles.mass[:, None] * displacement[:, :2] ** 2).sum())
-    inertia = (inertia + float((particles.inertia * displacement[:, 2] ** 2).sum())) / 1000.0
+    masses = np.column_stack([particles.mass, particles.mass, particles.inertia])[:, : displacement.shape[1]]
+    inertia = float((masses * displacement**2).sum()) / 1000.0
     if inertia == 0.0:
         return None
     frequency = math.sqrt(float((stiffness * moved**2).sum()) / inertia)
@@ -97,7 +85,8 @@ def expected_displacement(model: Model) -> Array | None:
     """
     particles, rods = model.particles, model.rods
     moved = np.where(particles.mobility > 0.0, 0.0, particles.displacement)
-    ends, axis = _ends_and_axes(model)
+    ends = rods.between.astype(np.intp)
+    axis = rods.difference / np.where(rods.original_length > 0.0, rods.original_length, 1.0)[:, None]
     elongation = rods.misfit + ((moved[ends[:, 1]] - moved[ends[:, 0]]) * axis).sum(axis=1)
     tension = (rods.stiffness / rods.rest_length * elongation)[:, None] * axis
     force = _forces(model).reshape(free_coordinates(model).shape)
@@ -105,14 +94,6 @@ def expected_displacement(model: Model) -> Array | None:
     np.add.at(force[:, :2], ends[:, 1], -tension)
     displacement = _static_displacement(model, force.ravel())
     return None if displacement is None else displacement[:, :2] + moved
-
-
-def _exciting_forces(model: Model) -> Array:
-    """The forces of the loads (2n,), of models that bend (3n,); without any, some that excite all directions."""
-    force = _forces(model)
-    if not force[free_coordinates(model).ravel()].any():
-        force = np.ones_like(force) * np.where(np.arange(len(force)) % 2, -1.0, 0.3)
-    return force
 
 
 def _static_displacement(model: Model, force: Array) -> Array | None:
@@ -142,13 +123,6 @@ def _forces(model: Model) -> Array:
         force[load.on] += load.force
         moment[load.on] += load.moment
     return (np.column_stack([force, moment]) if bends(model) else force).ravel()
-
-
-def _ends_and_axes(model: Model) -> tuple[NDArray[np.intp], Array]:
-    """Rows of the particles at the ends of each rod, and its unit vector in the original geometry; (rods, 2)."""
-    rods = model.rods
-    length = np.where(rods.original_length > 0.0, rods.original_length, 1.0)
-    return rods.between.astype(np.intp), rods.difference / length[:, None]
 
 
 def _solved_in_full(model: Model, free: NDArray[np.intp], force: Array) -> Array:

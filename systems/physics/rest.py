@@ -46,9 +46,7 @@ class RestMeasure:
         particles, rods = model.particles, model.rods
         pull, flexibility = np.abs(rods.axial_force), rods.rest_length / rods.stiffness
         moved = np.abs(particles.displacement).max(axis=1, initial=0.0)
-        if bends(model):
-            return cls._of_frame(model, unbalanced, turning)
-        return cls(
+        measure = cls(
             residual=(np.abs(unbalanced) * (particles.mobility > 0.0)).max(axis=1, initial=0.0),
             kinetic=0.5 * particles.mass * (particles.velocity**2).sum(axis=1),
             load=np.abs(particles.constant_force).max(axis=1, initial=0.0),
@@ -56,27 +54,23 @@ class RestMeasure:
             elastic=500.0 * pull**2 * flexibility,
             round_off=np.finfo(float).eps * moved[rods.between].max(axis=1, initial=0.0) / flexibility,
         )
+        return measure._with_turning(model, turning) if bends(model) else measure
 
-    @classmethod
-    def _of_frame(cls, model: Model, unbalanced: Array, turning: Array | float) -> RestMeasure:
+    def _with_turning(self, model: Model, turning: Array | float) -> RestMeasure:
         """The same of a model that bends; moments count as forces by the shortest rod at their particle."""
         particles, rods = model.particles, model.rods
-        lever = levers(model)
-        spin = np.where(particles.turning > 0.0, particles.angular_velocity, 0.0)
-        flexibility = rods.rest_length / rods.stiffness
-        moved = np.abs(particles.displacement).max(axis=1, initial=0.0)[rods.between].max(axis=1, initial=0.0)
+        lever, free = levers(model), particles.turning > 0.0
         rolled = np.abs(particles.rotation)[rods.between].max(axis=1, initial=0.0)
         firm = rods.end_stiffness.max(axis=1, initial=0.0) / rods.rest_length
-        residual = (np.abs(unbalanced) * (particles.mobility > 0.0)).max(axis=1, initial=0.0)
-        load = np.abs(particles.constant_force).max(axis=1, initial=0.0)
         bending = np.abs(rods.end_moment).max(axis=1, initial=0.0) / rods.rest_length
-        return cls(
-            residual=np.maximum(residual, np.abs(turning) * (particles.turning > 0.0) * lever),
-            kinetic=0.5 * (particles.mass * (particles.velocity**2).sum(axis=1) + particles.inertia * spin**2),
-            load=np.maximum(load, np.abs(particles.constant_moment) * lever),
-            pull=np.maximum(np.abs(rods.axial_force), bending),
-            elastic=500.0 * rods.axial_force**2 * flexibility + 1000.0 * bending_energy(model),
-            round_off=np.finfo(float).eps * (moved / flexibility + firm * rolled),
+        return RestMeasure(
+            residual=np.maximum(self.residual, np.abs(turning) * free * lever),
+            kinetic=self.kinetic
+            + 0.5 * particles.inertia * np.where(free, particles.angular_velocity, 0.0) ** 2,
+            load=np.maximum(self.load, np.abs(particles.constant_moment) * lever),
+            pull=np.maximum(self.pull, bending),
+            elastic=self.elastic + 1000.0 * bending_energy(model),
+            round_off=self.round_off + np.finfo(float).eps * firm * rolled,
         )
 
     @_BEYOND

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from pinjoint.components.language import marked
 from pinjoint.components.model import Model
-from pinjoint.components.rod import bends, has_cables, has_plastic_strain, is_curved
+from pinjoint.components.rod import bends, has_cables, has_plastic_strain
 from pinjoint.systems.base import Law
 
 
@@ -82,33 +82,21 @@ class AxialDampingOfCables(Law):
 
 
 class Bending(Law):
-    """Moments on the ends of rods that bend, by the slopes of these to the chord; N in the bowed axis adds to them."""
+    """Moments on the ends of rods that bend, by the slopes of these to the chord; N in the bowed axis adds to them.
+
+    Where rods are warmer on one side, slopes count from those without moments.
+    """
 
     name = "physics.bending"
-    unneeded = marked("no rod bends, or some are warmer on one side (physics.bending_of_warped)")
+    unneeded = marked("no rod bends")
     each = "ends"
     kernel = "pinjoint.systems.physics.kernels:bending"
     potential = "pinjoint.systems.physics.kernels:bending_energy"
-    reads = ("rods.end_stiffness",)
-    adds = ("rods.end_moment",)
-
-    def needs(self, model: Model) -> bool:
-        return bends(model) and not is_curved(model)
-
-
-class BendingOfWarped(Law):
-    """The same where rods are warmer on one side: slopes count from those without moments."""
-
-    name = "physics.bending_of_warped"
-    unneeded = marked("no rod that bends is warmer on one side")
-    each = "ends"
-    kernel = "pinjoint.systems.physics.kernels:warped"
-    potential = "pinjoint.systems.physics.kernels:warped_energy"
     reads = ("rods.end_stiffness", "rods.initial_slopes")
     adds = ("rods.end_moment",)
 
     def needs(self, model: Model) -> bool:
-        return bends(model) and is_curved(model)
+        return bends(model)
 
 
 class BendingDamping(Law):

@@ -40,13 +40,11 @@ PROVIDED_TO: Mapping[str, tuple[str, ...]] = {  # by what the kernel is called f
     "event of particles": (),
 }
 PROVIDED = {name for names in PROVIDED_TO.values() for name in names}
-TRIAL = {
-    "particles_displacement": "displacement",
-    "particles_velocity": "velocity",
-    "particles_rotation": "rotation",
-    "particles_angular_velocity": "angular_velocity",
-}
-TURNING = ("rotation", "angular_velocity")  # of these, what only models that bend have
+TRIAL = {"particles_displacement": "displacement", "particles_velocity": "velocity"}
+TURNING = {
+    "particles_rotation": "displacement",
+    "particles_angular_velocity": "velocity",
+}  # of models that bend
 
 KERNELS = ("kernel", "branch", "margin", "potential")  # of a system, as its attributes
 

@@ -10,14 +10,13 @@ from collections.abc import Iterable, Sequence
 from pinjoint.systems.entries import ACCOUNTS
 from pinjoint.systems.program.binding import Bound, StepRole
 from pinjoint.systems.program.loops import RodLoop
-from pinjoint.systems.program.names import PREDICTED, RESISTED, TRIAL_STATE
 from pinjoint.systems.program.pasting import indented
-from pinjoint.systems.program.writer import Writer, accounts_of
+from pinjoint.systems.program.writer import PREDICTED, RESISTED, TRIAL_STATE, Writer, accounts_of
 
 _RODS = "block_rods[block], block_rods[block + 1]"
 _PARTICLES = "first, last"
 _LIMITS = ("first = np.uint64(block_particles[block])", "last = np.uint64(block_particles[block + 1])")
-_COMPLETED = f"{TRIAL_STATE}, *foreseen"
+_COMPLETED = f"{TRIAL_STATE}, predicted"
 _MOVED = f"{_COMPLETED}, ending"
 _PARALLEL = """\
 from pinjoint.systems.kernels import prange, shared
@@ -66,30 +65,40 @@ class BlockWriter(Writer):
         ]
         return _of_block("resist", RESISTED, body) + _of_all("resist", RESISTED, ", power", _gains())
 
-    def _integrate(self) -> str:
+    def _of_steps(self) -> list[str]:
         """Steps in one part that cores share, which ends a step and begins the next; or in two, if accounts gain."""
-        if self.integrator.kernel:
-            return super()._integrate()
         ends, begins = (
             self._particles(where, _PARTICLES) for where in (self.integrator.ends, self.integrator.begins)
         )
-        between = ["if ending:", *indented(ends)] if ends and not self.powers else []
         losses = [*_losses(accounts_of(self.commits)), *self._pushes()]
         accept = _call("accept", "block", PREDICTED)
+        between = ["if ending:", *indented(ends)] if self._waits else []
         parts = [_shared("move", _MOVED, [*between, *begins, accept], ", account", losses)]
         if self.powers:
             resist = _call("resist", "block", RESISTED)
             parts.append(_shared("complete", _COMPLETED, [*ends, resist], ", power", _gains()))
-        return "".join([super()._integrate(), "\n\n\n", *parts]).rstrip()
+        return [*super()._of_steps(), *parts]
+
+    @property
+    def _waits(self) -> bool:
+        """Whether a step waits for the next one to be completed with it."""
+        return not self.powers and bool(self._particles(self.integrator.ends))
+
+    def _begin(self) -> list[str]:
+        return ["waiting = False", "dt = 0.0"]
 
     def _move(self) -> list[str]:
-        return [f"move({_MOVED.replace('ending', 'step > 1')}, account, *columns)"]
+        waiting = ["waiting = True"] if self._waits else []
+        return [f"move({_MOVED.replace('ending', 'waiting')}, account, *columns)", *waiting]
 
-    def _complete(self) -> list[str]:
-        return self._gains("complete", _COMPLETED)
+    def _accelerate(self) -> list[str]:
+        return self._gains("complete", _COMPLETED) if self.powers else self._complete("not whole")
 
-    def _finish(self) -> list[str]:
-        return [] if self.powers else self._particles(self.integrator.ends)
+    def _complete(self, condition: str) -> list[str]:
+        if not self._waits:
+            return []
+        known = " and ".join(["waiting", *([condition] if condition else [])])
+        return [f"if {known}:", *indented([*self._particles(self.integrator.ends), "waiting = False"])]
 
 
 def _call(name: str, block: str, given: str) -> str:

@@ -10,10 +10,8 @@ from pinjoint.systems.base import Integrator, StepSystem
 from pinjoint.systems.entries import Mark
 from pinjoint.systems.program.binding import Bound, StepRole, bind
 from pinjoint.systems.program.loops import RodLoop
-from pinjoint.systems.program.names import NO_POWER, POWER_RETURNED, TRIAL_STATE
-from pinjoint.systems.program.pasting import fragment, pasted
-from pinjoint.systems.program.templates import driven, events, forces, implicit, rods
-from pinjoint.systems.program.writer import Writer, sides_of
+from pinjoint.systems.program.templates import events, forces, implicit, rods, runge_kutta
+from pinjoint.systems.program.writer import NO_POWER, POWER_RETURNED, Writer, sides_of
 
 _AHEAD = 1e-3  # of a step, over which the slope of a margin is taken
 _STEADY = 1e-8  # a margin that changes less in a step is not watched
@@ -42,8 +40,7 @@ class ControlledWriter(Writer):
 
     @property
     def scratch(self) -> tuple[str, ...]:
-        blocks = ("work", "turns") if self.bends else ("work",)
-        return ("search", *blocks, "rod_work", "marks", "power", "gained", "stage_power")
+        return ("search", "work", "rod_work", "marks", "power", "gained", "stage_power")
 
     def _values(self) -> dict[str, Any]:
         located = bool(self.branches or self.events)
@@ -56,28 +53,18 @@ class ControlledWriter(Writer):
         parts += self._happened()
         return [*parts, self._tangent()] if self.integrator.rod_rows else parts
 
-    @property
-    def _limits(self) -> tuple[str, ...]:
-        return ("tolerance", "limit")
-
-    def _driven_steps(self) -> dict[str, Sequence[str]]:
+    def _steps(self) -> dict[str, list[str]]:
         return {
-            "evaluate": fragment(driven.evaluate_controlled, **self.second_block),
-            "take": fragment(driven.take_controlled),
-            "pushed": fragment(driven.pushed, **self.second_block),
+            "present": self.lines(forces.present),
+            "begin": [],
+            "step": self.lines(runge_kutta.step),
+            "finish": [],
         }
-
-    @property
-    def _evaluation(self) -> str:
-        return f"evaluate({TRIAL_STATE}, power, *columns)"
 
     def _remember(self) -> str:
         compute, lost = self._histories(self.commits)
         loop = RodLoop(self.shift, [*self.geometry(), *compute], scatter=[*lost.values()]).one_by_one()
-        return pasted(forces.remember, "compiled", history=self._with_losses(self.commits, loop))
-
-    def _commit(self) -> str:
-        return pasted(forces.commit, "entered", history="remember(time, dt, *placed, account, *columns)")
+        return self.function(forces.remember, "compiled", history=self._with_losses(self.commits, loop))
 
     def _evaluate(self) -> str:
         lines = [
@@ -87,7 +74,7 @@ class ControlledWriter(Writer):
             *POWER_RETURNED,
             *self._pushes(),
         ]
-        return pasted(forces.evaluate, "compiled", trial_forces=lines)
+        return self.function(forces.evaluate, "compiled", trial_forces=lines)
 
     # --- events -----------------------------------------------------------------------------------
 
@@ -105,17 +92,15 @@ class ControlledWriter(Writer):
             side = f"-1.0 if {sides_of(b)}[r] == Side.NEGATIVE else 1.0"
             slope = self._slope(of_row, f"branch * {quantity}", self._needed_force(b))
             lines[b.each] += self._look(template, place, side, slope)
-        return pasted(function, "compiled", **self._each_row(lines))
+        return self.function(function, "compiled", **self._each_row(lines))
 
-    @staticmethod
-    def _look(template: Callable[[], None], place: int, branch: str, slope: list[str]) -> list[str]:
+    def _look(self, template: Callable[[], None], place: int, branch: str, slope: list[str]) -> list[str]:
         law = str(len(Mark) * place)
-        return fragment(template, law=law, branch=branch, steady=str(_STEADY), margin_and_slope=slope)
+        return self.lines(template, law=law, branch=branch, steady=str(_STEADY), margin_and_slope=slope)
 
-    @staticmethod
-    def _slope(template: Callable[[], None], margin: str, axial_force: list[str]) -> list[str]:
+    def _slope(self, template: Callable[[], None], margin: str, axial_force: list[str]) -> list[str]:
         """Lines that give a margin and its rate. axial_force: lines by which it follows from the elongation."""
-        return fragment(template, margin=margin, axial_force=axial_force, ahead=str(_AHEAD))
+        return self.lines(template, margin=margin, axial_force=axial_force, ahead=str(_AHEAD))
 
     def _turned(self, place: int) -> str:
         margin = f"marks[r, {len(Mark) * (len(self.branches) + place)} + Mark.MARGIN]"
@@ -127,33 +112,30 @@ class ControlledWriter(Writer):
         particles = [
             line
             for b in self.of[StepRole.RESISTANCE]
-            for line in fragment(implicit.particle_tangent, force=self._apply(b, "i"))
+            for line in self.lines(implicit.particle_tangent, force=self._apply(b, "i"))
         ]
         particles += [
             line
             for b in self.of[StepRole.TURNING]
-            for line in fragment(implicit.turning_tangent, moment=self._apply(b, "i"))
+            for line in self.lines(implicit.turning_tangent, moment=self._apply(b, "i"))
         ]
         damping_force = [
             "damping_force = 0.0",
             *(f"damping_force += {self._apply(b, 'r')}" for b in self.of[StepRole.RATE]),
         ]
-        tangent = fragment(
+        tangent = self.lines(
             implicit.rod_tangent,
+            DAMPED=bool(self.of[StepRole.RATE]),
             rate=self.rate(),
             axial_force=self._axial_force(),
-            drawn=["drawn = stiffness"] if self.bends else [],
-            dampers=fragment(implicit.damper_tangent, damping_force=damping_force)
-            if self.of[StepRole.RATE]
-            else [],
-            bending=self._tangent_of_ends() if self.bends else [],
+            damping_force=damping_force,
+            bending=self._tangent_of_ends(),
         )
         loop = RodLoop(self.shift | self.drift, [*self.geometry(), *tangent])
-        inserts: dict[str, str | list[str]] = {"particles": particles, "rods": loop.one_by_one()}
-        return pasted(implicit.tangent, "compiled", "", **(inserts | self.second_block))
+        return self.function(implicit.tangent, "compiled", particles=particles, rods=loop.one_by_one())
 
     def _tangent_of_ends(self) -> list[str]:
-        return fragment(
+        return self.lines(
             rods.tangent_of_ends,
             by_slopes=self._tangent_by(self.of[StepRole.ENDS], "slope", "by_x"),
             by_rates=self._tangent_by(self.of[StepRole.RATE_OF_ENDS], "rate", "by_v"),
@@ -163,6 +145,6 @@ class ControlledWriter(Writer):
     def _tangent_by(self, laws: Sequence[Bound], kind: str, share: str) -> list[str]:
         """Lines that add how the moments of these laws follow the slopes, or their rates."""
         lines: list[str] = []
-        for line in fragment(rods.tangent_by, share=share, laws="laws") if laws else []:
+        for line in self.lines(rods.tangent_by, share=share, laws="laws") if laws else []:
             lines += self.end_laws(laws, "summed") if line == "laws" else [line.replace("slope", kind)]
         return lines

@@ -10,19 +10,15 @@ from collections.abc import Callable, Iterable, Mapping, Sequence
 from functools import cache
 from typing import Any
 
-Inserts = Mapping[str, str | Sequence[str]]  # what stands for insert(…): an expression, or lines
+# What stands for insert(…): an expression, or lines; or whether the lines below `if NAME:` are there, without it.
+Insert = str | Sequence[str] | bool
 
+_CHOICE = re.compile(r"( *)if (not )?(\w+):")
 _LINE = re.compile(r"( *)insert\((\w+)\)")
 _EXPRESSION = re.compile(r"insert\((\w+)\)")
 _ON_LINES = re.compile(r"\(\n((?:[^()]|\([^()]*\))*\*columns),?\s*\)")
 _WIDTH = 112
-_GROUPS = "|".join(
-    (
-        *("state", "forces", "scratch", "bounds", "limits", "kept", "observed"),
-        *("placed", "moving", "pulled", "resisted", "acting", "tried", "accelerating", "correcting", "sizing"),
-        *("strung", "diagonals", "inverses", "mobilities", "residuals", "vectors"),
-    )
-)
+_GROUPS = "state|forces|scratch|bounds|kept|observed"
 
 
 @cache
@@ -52,76 +48,58 @@ def _statements_of(function: Callable[..., Any]) -> Sequence[str]:
     return textwrap.dedent("\n".join(source.splitlines()[statements[0].lineno - 1 :])).splitlines()
 
 
-def pasted(function: Callable[..., Any], decorator: str, name: str = "", **inserts: str | Sequence[str]) -> str:
+def pasted(function: Callable[..., Any], decorator: str, name: str = "", **inserts: Insert) -> str:
     """A template with a decorator, under its own or another name."""
     head, body = _head_and_body_of(function)
     if name:
         head = head.replace(f"def {function.__name__}(", f"def {name}(", 1)
-    return "\n".join([f"@{decorator}", f"{head}:", *_filled(body, inserts)])
+    return "\n".join([f"@{decorator}", f"{head}:", *_filled(_chosen(body, inserts), inserts)])
 
 
-def fragment(function: Callable[..., Any], **inserts: str | Sequence[str]) -> list[str]:
+def fragment(function: Callable[..., Any], **inserts: Insert) -> list[str]:
     """The lines of a template without its head and its docstring."""
-    return _filled(_statements_of(function), inserts)
+    return _filled(_chosen(_statements_of(function), inserts), inserts)
 
 
-def projected(lines: Sequence[str], names: Mapping[str, str]) -> list[str]:
-    """What lines do with both components of vectors, done with the only one of others. names: how these are called."""
-    body = _Projection(names).of(ast.parse("\n".join(lines)).body)
-    return "\n".join(map(ast.unparse, body)).splitlines()
+def _chosen(lines: Sequence[str], inserts: Mapping[str, Insert]) -> list[str]:
+    """The lines with those of every choice that is known, in place of `if NAME:` and `else:`."""
+    kept: list[str] = []
+    at = 0
+    while at < len(lines):
+        choice = _CHOICE.fullmatch(lines[at])
+        made = inserts.get(choice[3]) if choice else None
+        at += 1
+        if choice is None or not isinstance(made, bool):
+            kept.append(lines[at - 1])
+            continue
+        made = not made if choice[2] else made
+        for wanted in (made, not made):
+            block, at = _block(lines, at, choice[1])
+            kept += _chosen(block, inserts) if wanted else []
+            if lines[at : at + 1] != [f"{choice[1]}else:"]:
+                break
+            at += 1
+    return kept
 
 
-class _Projection(ast.NodeTransformer):
-    """Leaves out what has to do with second components, [i, 1], and renames arrays."""
-
-    def __init__(self, names: Mapping[str, str]) -> None:
-        self._names = names
-        self._gone: set[str] = set()  # variables of second components
-
-    def of(self, statements: Iterable[ast.stmt]) -> list[ast.stmt]:
-        """The statements that are left."""
-        kept = (self._kept(statement) for statement in statements)
-        return [statement for statement in kept if statement is not None]
-
-    def _kept(self, statement: ast.stmt) -> ast.stmt | None:
-        if isinstance(statement, ast.For | ast.If | ast.FunctionDef):
-            statement.body = self.of(statement.body)
-            if not statement.body:
-                return None
-        elif any(self._is_second(node) for node in ast.walk(statement)):
-            if isinstance(statement, ast.Assign | ast.AugAssign):
-                targets = statement.targets if isinstance(statement, ast.Assign) else [statement.target]
-                self._gone |= {target.id for target in targets if isinstance(target, ast.Name)}
-            return None
-        visited: ast.stmt = self.visit(statement)
-        return visited
-
-    def _is_second(self, node: ast.AST) -> bool:
-        if isinstance(node, ast.Subscript) and isinstance(node.slice, ast.Tuple):
-            last = node.slice.elts[-1]
-            return isinstance(last, ast.Constant) and last.value == 1
-        return isinstance(node, ast.Name) and node.id in self._gone
-
-    def visit_Name(self, node: ast.Name) -> ast.AST:
-        """Rename an array."""
-        return ast.Name(self._names.get(node.id, node.id), node.ctx)
-
-    def visit_Call(self, node: ast.Call) -> ast.AST:
-        """A loop over two components is one over a single one."""
-        if ast.unparse(node) == "range(2)":
-            return ast.parse("range(1)", mode="eval").body
-        return self.generic_visit(node)
+def _block(lines: Sequence[str], at: int, before: str) -> tuple[list[str], int]:
+    """The lines from one on that are indented deeper than `before`, a level less deep, and the place after them."""
+    first = at
+    while at < len(lines) and lines[at].startswith(f"{before} "):
+        at += 1
+    return [line[4:] for line in lines[first:at]], at
 
 
-def _filled(lines: Iterable[str], inserts: Inserts) -> list[str]:
+def _filled(lines: Iterable[str], inserts: Mapping[str, Insert]) -> list[str]:
     filled: list[str] = []
     for line in lines:
         if "insert(" not in line:
             filled.append(line)
             continue
         whole = _LINE.fullmatch(line)
-        if whole and not isinstance(inserts[whole[2]], str):
-            filled += [whole[1] + inserted for inserted in inserts[whole[2]]]
+        made = inserts[whole[2]] if whole else ""
+        if whole and not isinstance(made, str | bool):
+            filled += [whole[1] + inserted for inserted in made]
         else:
             filled.append(_EXPRESSION.sub(lambda match: str(inserts[match[1]]), line))
     return filled

@@ -5,9 +5,9 @@ from __future__ import annotations
 import math
 import time
 import weakref
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from functools import cached_property
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -21,15 +21,15 @@ from pinjoint.systems.base import Event, Integrator, StepSystem, StopReason
 from pinjoint.systems.collision.columns import Grid
 from pinjoint.systems.collision.driven.columns import Phase, Real, Whole
 from pinjoint.systems.entries import ACCOUNT, ACCOUNTS, CONTROL, Mark, Measure, Search, Side
-from pinjoint.systems.physics.bending import levers
+from pinjoint.systems.physics.bending import arm_of, levers
 from pinjoint.systems.physics.kernels import conserved
-from pinjoint.systems.program.binding import Bound, ProgramError, bind, find
+from pinjoint.systems.program.binding import Bound, ProgramError, StepRole, bind, find
 from pinjoint.systems.program.block_writer import BlockWriter
 from pinjoint.systems.program.compiler import Between, GeneratedModule, generated
 from pinjoint.systems.program.controlled_writer import ControlledWriter
 from pinjoint.systems.program.faults import check_plain_forms, explain
 from pinjoint.systems.program.near_pairs import NearPairs
-from pinjoint.systems.program.writer import VERY_MANY, Writer, sides_of
+from pinjoint.systems.program.writer import PUSHED, STATE, VERY_MANY, Writer, sides_of
 
 _ORIGIN = ("origin", "step_limit")
 _COUNTS = ("steps", "origin_steps")
@@ -42,21 +42,22 @@ OBSERVED = {
 _OF_BENDING = "particles.applied_moment", "particles.reaction_moment", "rods.end_moment"
 _GIVEN = {
     "fixed": "particles.fixed",
-    "clamped": "particles.fixed_rotation",
     "tension": "rods.tension_limit",
     "compression": "rods.compression_limit",
 }
+_ACTING = (
+    ("particles.applied_force", "particles.applied_moment"),
+    ("particles.reaction", "particles.reaction_moment"),
+)
 COLUMNS_OBSERVED = {  # by the parameter of observe() that they are
     **{f"rods_{name}": f"rods.{name}" for name in ("axial_force", "length", "strain")},
     "applied": "particles.applied_force",
     "reaction": "particles.reaction",
-    "applied_moment": "particles.applied_moment",
-    "reaction_moment": "particles.reaction_moment",
     "rods_end_moment": "rods.end_moment",
     "yielding": "rods.yielding",
     **_GIVEN,
 }
-_TANGENTS = 8  # rows of rod_work in models that bend: see templates/turning.py
+_TANGENTS = 8  # rows of rod_work in models that bend: see rods.tangent_of_ends in templates
 _REASONS = tuple(StopReason)
 
 
@@ -82,6 +83,28 @@ def _between(systems: Iterable[StepSystem]) -> Between | None:
     """What acts between the steps of a program of these systems."""
     found: list[Any] = [find(system.between, system) for system in systems if system.between]
     return found[0] if found else None
+
+
+class Coordinates(NamedTuple):
+    """An array of coordinates, shape (n, 3), and the columns that its numbers belong to.
+
+    What moves is as it is; what turns is multiplied by `scale`, a power of two, so that no bits are lost.
+    """
+
+    whole: Column
+    moves: Column
+    turns: Column
+    scale: float
+
+    def load(self) -> None:
+        """Take the numbers from the columns."""
+        self.whole[:, :2] = self.moves
+        np.multiply(self.turns, self.scale, out=self.whole[:, 2])
+
+    def store(self) -> None:
+        """Bring the columns up to date."""
+        self.moves[...] = self.whole[:, :2]
+        np.divide(self.whole[:, 2], self.scale, out=self.turns)
 
 
 class Program:
@@ -130,7 +153,7 @@ class Program:
             self._take(0, math.inf, math.inf)
             self._observe()
             if self._writer.commits:  # with no rods: a commit changes history
-                state = [self._arrays[name][:0] for name in self._writer.state]
+                state = [self._arrays[name][:0] for name in STATE]
                 self.module.form.commit(0.0, 0.0, *state, np.zeros(len(ACCOUNT)), *self._of_no_rods())
         except Exception as error:  # numba raises many kinds
             raise self._explained(error) from error
@@ -184,15 +207,14 @@ class Program:
         self._near = NearPairs(model, [b.cutoff for b in self._writer.pairs]) if self._writer.pairs else None
         extra |= self._near.arrays if self._near is not None else {}
         if self.between is not None:
-            self._support = np.ascontiguousarray(self.between.support(model)[self._held_rows])
-            extra |= {"support": self._support, "unpushed": np.zeros_like(self._support)}
+            shape = self._rows("particles"), self._writer.coordinates
+            extra |= {name: np.zeros(shape) for name in PUSHED}
+            self._support = extra["support"][:, :2]
+            self._support[:] = self.between.support(model)[self._held_rows]
+        self._arm = arm_of(model) if self._writer.bends else 1.0
         if self._writer.bends:
             self._stop_turning()
-            turning = self._column("particles.turning")
-            extra |= {
-                "lever": np.ascontiguousarray(levers(self.model)[self._held_rows]),
-                "particles_turning": turning.reshape(-1, 1),
-            }
+            extra |= self._of_bending(extra)
         self._sides = [(b, self._sides_of(b)) for b in self._writer.events]
         extra |= {sides_of(b): sides for b, sides in self._sides}
         self._columns = [
@@ -203,10 +225,11 @@ class Program:
         self.changes_end = math.inf if self.lasting else loads_end(model)
         self._breaks = np.array([*load_breaks(model), math.inf])
         self._arrays = {name: np.zeros(shape) for name, shape in self.scratch.items()}
-        self._arrays |= {path.partition(".")[2]: self._storage(path) for path in MOTION}
-        if self._writer.bends:
-            self._arrays |= {path.partition(".")[2]: self._storage(path).reshape(-1, 1) for path in TURNING}
-            self._arrays["search"][Search.REACH] = self.model.rods.rest_length.max()
+        self._moved = self._joined(zip(MOTION, TURNING, strict=True), self._arm)
+        for coordinates in self._moved:
+            coordinates.load()
+        moved = [c.whole for c in self._moved] or map(self._storage, MOTION)
+        self._arrays |= zip(STATE, moved, strict=False)
         self._arrays |= {"control": self._control, "account": self._account, "measures": self.measures}
         self._bind_arguments()
         self._bind_observed()
@@ -214,6 +237,57 @@ class Program:
         controls = self.integrator.estimates_error and settings.time_step is None
         self.tolerance = settings.tolerance if controls else 0.0
         self._state_revision = -1
+
+    # --- rotations ---------------------------------------------------------------------------------
+
+    def _of_bending(self, given: Mapping[str, Any]) -> dict[str, Any]:
+        """Columns with the rotations as third coordinates, and what compares them with displacements."""
+        arm, column = self._arm, self._column
+        mass, lever = column("particles.mass"), levers(self.model)[self._held_rows]
+        loads = (b.prefix for b in self._writer.of[StepRole.LOAD])
+        return {
+            "per_arm": np.array([1.0 / arm]),
+            "lever": np.column_stack([np.ones((len(lever), 2)), arm * lever]),
+            "particles_mobility": np.column_stack(
+                [column("particles.mobility"), arm * arm * column("particles.turning")]
+            ),
+            "particles_masses": np.column_stack([mass, mass, column("particles.inertia") / (arm * arm)]),
+            "particles_constant_force": np.column_stack(
+                [column("particles.constant_force"), column("particles.constant_moment") / arm]
+            ),
+            **{
+                f"{load}_force": np.column_stack([given[f"{load}_force"], given[f"{load}_moment"] / arm])
+                for load in loads
+            },
+        }
+
+    def _joined(self, pairs: Iterable[tuple[str, str]], scale: float) -> list[Coordinates]:
+        """Arrays of coordinates for pairs of columns, "table.field", of what moves and what turns; none without bending."""
+        if not self._writer.bends:
+            return []
+        shape = self._rows("particles"), self._writer.coordinates
+        held = self._storage
+        return [Coordinates(np.zeros(shape), held(moves), held(turns), scale) for moves, turns in pairs]
+
+    def _ready(self) -> Any:
+        """The functions to call now, for which the program holds the state as the model has it.
+
+        Before they run for the first time in machine code they may all be called, for the sake of the compiler, so that
+        between two calls the state is with the model alone.
+        """
+        form = self.module.form
+        self._load()
+        return form
+
+    def _load(self) -> None:
+        """Before a call, bring what the program holds up to date with the model."""
+        for coordinates in self._moved:
+            coordinates.load()
+
+    def _store(self) -> None:
+        """After a call, bring the model's columns up to date."""
+        for coordinates in self._moved:
+            coordinates.store()
 
     # --- events ------------------------------------------------------------------------------------
 
@@ -255,12 +329,12 @@ class Program:
     @property
     def unbalanced(self) -> Column:
         """The sum of all forces on each particle but those of dampers and drag (kN), as last observed."""
-        return self._unbalanced
+        return self._unbalanced[:, :2]
 
     @property
     def unbalanced_moment(self) -> Column:
         """The same of moments on each particle (kN·m), shape (n,); none where nothing bends."""
-        moment: Column = self._unbalanced_moment[:, 0]
+        moment: Column = self._arm * self._unbalanced[:, 2:].sum(axis=1)
         return moment
 
     def _rows(self, table: str) -> int:
@@ -286,15 +360,13 @@ class Program:
     def scratch(self) -> dict[str, tuple[int, ...]]:
         """Shapes of the arrays that its functions write to and nobody reads afterwards, by name."""
         particles, rods = self._rows("particles"), self._rows("rods")
-        turns = self._writer.bends
+        coordinates, of_rods = self._writer.coordinates, self.integrator.rod_rows
         return {
-            **dict.fromkeys(("force", "resisting", "predicted"), (particles, 2)),
-            "direction": (rods, 3 if turns else 2),
-            **dict.fromkeys(("moment", "twisting", "predicted_spin"), (particles if turns else 0, 1)),
-            "turns": (self.integrator.particle_rows if turns else 0, particles, 1),
+            **dict.fromkeys(("force", "resisting", "predicted"), (particles, coordinates)),
+            "direction": (rods, coordinates),
             **dict.fromkeys(("power", "gained", "stage_power"), (len(ACCOUNTS),)),
-            "work": (self.integrator.particle_rows, particles, 2),
-            "rod_work": (_TANGENTS if turns and self.integrator.rod_rows else self.integrator.rod_rows, rods),
+            "work": (self.integrator.particle_rows, particles, coordinates),
+            "rod_work": (_TANGENTS if of_rods and self._writer.bends else of_rods, rods),
             "marks": (
                 max(rods, particles),
                 len(Mark) * len([*self._writer.branching, *self._writer.events]),
@@ -313,15 +385,9 @@ class Program:
         if self.between is None:
             self._arguments = (*self._after("loads_end", "advance"), *self._columns)
             return
-        kept = {
-            "force": self._arrays["force"],
-            "resisting": self._arrays["force"],
-            "power": self._arrays["power"],
-        }
         known = self._arrays | self.columns
-        kept |= {name: known[name] for name in self._writer.kept}
-        copies: dict[str, Any] = {f"kept_{name}": np.zeros_like(array) for name, array in kept.items()}
-        copies |= {f"own_{name}": np.zeros_like(kept["force"]) for name in ("acceleration", "support")}
+        copies: dict[str, Any] = {f"kept_{name}": np.zeros_like(known[name]) for name in self._writer.kept}
+        copies |= {f"own_{name}": np.zeros_like(known["force"]) for name in ("acceleration", "support")}
         copies["every"] = np.arange(self._rows("particles"))
         self._arguments = (*self._after("loads_end", "drive", **copies), *self._columns)
 
@@ -329,12 +395,14 @@ class Program:
         for path in _GIVEN.values():
             self.model.column(path)  # brings it up to date
         storage = {name: self._storage(path) for name, path in COLUMNS_OBSERVED.items()}
-        storage["applied_moment"] = storage["applied_moment"].reshape(-1, 1)
-        if not self._writer.bends:
+        self._acting = self._joined(_ACTING, 1.0 / self._arm)
+        if self._writer.bends:
+            storage |= zip(("applied", "reaction"), (c.whole for c in self._acting), strict=True)
+            storage["fixed"] = np.column_stack([storage["fixed"], self._column("particles.fixed_rotation")])
+        else:
             self._forget_moments()
-        names = ("force", "resisting", "direction", "power", "moment", "twisting")
-        apart = {name: np.zeros_like(self._arrays[name]) for name in names}
-        self._unbalanced, self._unbalanced_moment = apart["force"], apart["moment"]
+        apart = {name: np.zeros_like(self._arrays[name]) for name in (*STATE[2:], "power")}
+        self._unbalanced = apart["force"]
         yields = self.model.settings.plasticity
         self._observed = self._after("dt", "observe", yields=yields, **storage, **apart)
 
@@ -355,24 +423,20 @@ class Program:
     def advance(self, steps: int, until: float = math.inf, landing: float = math.inf) -> tuple[int, StopReason]:
         """Take up to `steps` steps; returns how many, and why it stopped.
 
-        An integrator that controls its steps takes none that would end after `until` (s), and one that would
-        pass `landing` (s) is cut to end there; for others the steps are clock.step_size long.
+        None ends after `until` (s), and one that would pass `landing` (s) is cut to end there.
         """
         try:
             return self._advance(steps, until, landing)
-        except ProgramError:
-            raise
         except Exception as error:
-            if all(b.is_ours for b in self._writer.kernels):
-                raise
             return self._failed(error)
 
     def _failed(self, error: Exception) -> tuple[int, StopReason]:
-        """End a step in which a kernel raised an error as one that led nowhere, so that its mod is looked for."""
+        """Note that a kernel of others raised an error, for which its mod is looked for; all other errors go on."""
+        if isinstance(error, ProgramError) or all(b.is_ours for b in self._writer.kernels):
+            raise error
         self.failure = self.failure or self._explained(error)
-        self._arrays["displacement"][...] = math.nan
         self._mark_changes()
-        return 0, StopReason.DIVERGED
+        return 0, StopReason.FAILED
 
     def _advance(self, steps: int, until: float, landing: float) -> tuple[int, StopReason]:
         if self.module.is_loaded:
@@ -389,39 +453,35 @@ class Program:
     def _take(self, steps: int, until: float, landing: float) -> tuple[int, StopReason]:
         """Take up to `steps` steps, in one call."""
         self._catch_up()
-        controlled, (time, size) = self.integrator.controlled, self._control[:2].tolist()
-        if until < math.inf and not controlled:
-            steps = min(steps, max(int((until - time) / size * (1.0 + 1e-12)), 0))
-            if steps == 0:
-                return 0, StopReason.DONE
         if self.between is not None:
             real = self._idle[0].real
             real[Real.UNTIL], real[Real.END] = until, landing
             return self._enter(self._idle, steps, alone=True)
         origin, limit = self._origin.tolist()
         total, since = self._counts.tolist()
-        chosen = (self.tolerance, limit or math.inf) if controlled else (size,)
-        bounds = (float(until), float(landing)) if controlled else ()
-        taken, reason = self.module.form.advance(
+        time = self._control.item(0)
+        form = self._ready()
+        taken, reason = form.advance(
             steps,
             self._is_fresh,
             total,
             total - since,
             origin,
-            *chosen,
+            self.tolerance,
+            limit or math.inf,
             self._breaks,
-            *bounds,
+            float(until),
+            float(landing),
             self.changes_end,
             *self._arguments,
         )
-        if taken and not controlled:
-            self._control[0] = origin + (total - since + taken) * size
         now = self._control.item(0)
         if taken or now > time:
             self._counts[0] = total + taken
-            if controlled and (self.tolerance or now == landing):
+            if self.tolerance or now == landing:
                 self._origin[0], self._counts[1] = now, total + taken
             self._mark_changes()
+        self._store()
         self._state_revision = self.model.newest(Role.STATE)
         return taken, _REASONS[reason]
 
@@ -439,12 +499,8 @@ class Program:
         driven.real[Real.PUSH] = self.integrator.push if self.integrator.mod is None else 0.0
         try:
             taken, reason = self._enter(arrays, wanted, alone=False)
-        except ProgramError:
-            raise
         except Exception as error:
-            if all(b.is_ours for b in self._writer.kernels):
-                raise
-            return self._failed(error)[1], True
+            taken, reason = self._failed(error)
         if not self.module.is_loaded:
             self.module.did(taken)
         waits = driven.whole[Whole.NEED] != 0
@@ -452,7 +508,7 @@ class Program:
 
     def _enter(self, arrays: Any, steps: int, *, alone: bool) -> tuple[int, StopReason]:
         """Enter the program with these arrays; returns how many steps it took, and why it stopped."""
-        form, driven = self.module.form, arrays[0]
+        form, driven = self._ready(), arrays[0]
         assert self.between is not None
         whole, (total, since) = driven.whole, self._counts.tolist()
         origin, limit = self._origin.tolist()
@@ -467,7 +523,8 @@ class Program:
             *self.between.functions(compiled=form.is_machine),
             *arrays,
             *self._motion,
-            *((self.tolerance, limit) if self.integrator.controlled else ()),
+            self.tolerance,
+            limit,
             self._breaks,
             self.changes_end,
             *self._arguments,
@@ -475,6 +532,7 @@ class Program:
         self._counts[:] = whole[Whole.TOTAL], whole[Whole.SINCE]
         self._origin[0] = driven.real[Real.ORIGIN]
         self._mark_changes()
+        self._store()
         self._state_revision = self.model.newest(Role.STATE) if whole[Whole.FRESH] else -1
         return int(whole[Whole.TOTAL]) - total, _REASONS[whole[Whole.REASON]]
 
@@ -517,25 +575,24 @@ class Program:
         if self._writer.commits:
             time = float(self._control[0])
             outside = self._after("dt", "commit", account=np.zeros(len(ACCOUNT)))
-            self.module.form.commit(time, 0.0, *outside, *self._columns)
+            self._ready().commit(time, 0.0, *outside, *self._columns)
             self._mark_changes()
+            self._store()
 
     def observe(self) -> None:
         """Bring the derived columns of rods and particles, and the measures, up to date, unless a kernel fails."""
         try:
             self._observe()
-        except ProgramError:
-            raise
         except Exception as error:  # the next step fails, too, and then the mod that did it is looked for
-            if all(b.is_ours for b in self._writer.kernels):
-                raise
-            self.failure = self._explained(error)
+            self._failed(error)
 
     def _observe(self) -> None:
         if self.between is not None and not self._is_fresh:  # the state was put back, or changed
             self._support[:] = self.between.support(self.model)[self._held_rows]
         time, size = self._control[:2].tolist()
-        self.module.form.observe(time, size, *self._observed, *self._columns)
+        self._ready().observe(time, size, *self._observed, *self._columns)
+        for coordinates in self._acting:
+            coordinates.store()
         for table, names in OBSERVED.items():
             self.model.tables[table].mark(names, Role.DERIVED)
 

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Mapping, Sequence
 from typing import Any
 
@@ -11,11 +10,11 @@ from numpy.typing import NDArray
 
 from pinjoint.components.field import Column, Role
 from pinjoint.components.model import Model
-from pinjoint.systems.base import Integrator, StepSystem, StopReason
+from pinjoint.systems.base import Integrator, StepSystem
 from pinjoint.systems.program.binding import bind, read_only
 from pinjoint.systems.program.blocks import Layout, Numbers
-from pinjoint.systems.program.names import PUSHED
 from pinjoint.systems.program.program import OBSERVED, Program
+from pinjoint.systems.program.writer import PUSHED
 
 
 class ReorderedProgram(Program):
@@ -49,7 +48,8 @@ class ReorderedProgram(Program):
         super().bind()
         written = [path for b in self._writer.commits for path in b.system.writes]
         self._of_state = [self._held[path] for path in (*self.motion, *written)]
-        self._derived = [self._held[f"{table}.{name}"] for table, names in OBSERVED.items() for name in names]
+        derived = (f"{table}.{name}" for table, names in OBSERVED.items() for name in names)
+        self._derived = [self._held[path] for path in derived if path in self._held]
         ordered = self.columns | self._of_layout()
         ordered |= self._of_systems(ordered)
         to_write = {*PUSHED, *(path.replace(".", "_", 1) for path in written)}
@@ -108,7 +108,6 @@ class ReorderedProgram(Program):
             f"{prefix}_on": on[order].astype(np.uint32),
             f"{prefix}_force": ordered[f"{prefix}_force"][order],
             f"{prefix}_first": ordered[f"{prefix}_first"][order],
-            **({name: ordered[name][order] for name in (f"{prefix}_moment",) if name in ordered}),
         }
 
     @property
@@ -130,8 +129,7 @@ class ReorderedProgram(Program):
     @property
     def unbalanced_moment(self) -> Column:
         everywhere = np.zeros(self.model.particles.count)
-        if self._writer.bends:
-            everywhere[self.layout.particles] = super().unbalanced_moment
+        everywhere[self.layout.particles] = super().unbalanced_moment
         return everywhere
 
     # --- the copies and the model's columns -----------------------------------------
@@ -141,37 +139,16 @@ class ReorderedProgram(Program):
         changed = self._held_revision != self.model.newest(Role.STATE)
         for own, rows, held in (*self._of_kernels, *(self._of_state if changed else ())):
             np.take(own, rows, axis=0, out=held)
+        super()._load()
 
     def _store(self) -> None:
         """Bring the model's columns of the state up to date with the copies."""
+        super()._store()
         for own, rows, held in self._of_state:
             own[rows] = held
         self._held_revision = self.model.newest(Role.STATE)
 
-    def advance(self, steps: int, until: float = math.inf, landing: float = math.inf) -> tuple[int, StopReason]:
-        """Take up to `steps` steps, as every program does."""
-        self._load()
-        taken, reason = super().advance(steps, until, landing)
-        if taken:
-            self._store()
-        return taken, reason
-
-    def drive(self, arrays: Any, steps: int, until: float) -> tuple[StopReason, bool]:
-        """Take steps among particles that may meet, as every program does."""
-        self._load()
-        result = super().drive(arrays, steps, until)
-        self._store()
-        return result
-
-    def commit(self) -> None:
-        """Bring history up to date in a state that no step has led to, outside the energy account."""
-        self._load()
-        super().commit()
-        self._store()
-
-    def observe(self) -> None:
-        """Bring the derived columns of rods and particles, and the measures, up to date."""
-        self._load()
-        super().observe()
+    def _observe(self) -> None:
+        super()._observe()
         for own, rows, held in self._derived:
             own[rows] = held

@@ -6,9 +6,9 @@ on the plan: which kernels are called for each particle and rod, with which colu
 
 from __future__ import annotations
 
+import sys
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from functools import cached_property
-from textwrap import dedent
 from typing import Any
 
 import numpy as np
@@ -16,9 +16,10 @@ import numpy as np
 from pinjoint.components.model import Model
 from pinjoint.components.rod import bears_between, bends, is_warm
 from pinjoint.systems import is_ours
-from pinjoint.systems.base import REVIEW_INTERVAL, Event, Integrator, StepSystem
+from pinjoint.systems.base import REVIEW_INTERVAL, Event, Integrator, StepSystem, StopReason
+from pinjoint.systems.collision.driven.columns import Order, Real, Whole
 from pinjoint.systems.collision.kernels.grid import are_listed
-from pinjoint.systems.entries import ACCOUNTS
+from pinjoint.systems.entries import ACCOUNTS, Account, Control, Mark, Measure, Search, Side
 from pinjoint.systems.interpreter import plain_function
 from pinjoint.systems.physics.automatic import SMALL
 from pinjoint.systems.physics.kernels import conserved, judge
@@ -36,42 +37,8 @@ from pinjoint.systems.program.binding import (
     written_row,
 )
 from pinjoint.systems.program.loops import RodLoop
-from pinjoint.systems.program.names import (
-    ALWAYS,
-    BENT_STATE,
-    BOTH_BLOCKS,
-    DRIFT,
-    DRIVEN_ENTRIES,
-    ENTRIES,
-    EVERY,
-    FIRST_BLOCK,
-    IN_BLOCK,
-    KEPT,
-    LARGEST,
-    LEAST,
-    LEAST_TURN,
-    NO_POWER,
-    NORMS,
-    NOW,
-    OBSERVED,
-    OF_BENDING,
-    OF_PAIR,
-    POWER_RETURNED,
-    PREDICTED,
-    PUSHED,
-    RESISTED,
-    SECOND_BLOCK,
-    SECOND_PARTS,
-    SHIFT,
-    SPUN,
-    STATE,
-    TRIAL_STATE,
-    TURNED,
-    TURNED_STATE,
-    TURNING_OBSERVED,
-)
 from pinjoint.systems.program.near_pairs import ARRAYS
-from pinjoint.systems.program.pasting import expanded, fragment, indented, pasted, projected, source_of
+from pinjoint.systems.program.pasting import Insert, expanded, fragment, indented, pasted, source_of
 from pinjoint.systems.program.templates import (
     driven,
     events,
@@ -80,10 +47,47 @@ from pinjoint.systems.program.templates import (
     observing,
     pairs,
     rods,
-    turning,
+    steps,
 )
 
-ROUND_OFF = 2.220446049250313e-16  # of forces, relative to stiffness × displacement
+# --- what programs call things ---------------------------------------------------------------------
+
+ALWAYS = (  # columns of every program
+    "particles_mobility",
+    "particles_mass",
+    "particles_constant_force",
+    "rods_between",
+    "rods_difference",
+    "rods_original_length",
+    "rods_rest_length",
+    "rods_stiffness",
+)
+OBSERVED = (
+    *("rods_axial_force", "rods_length", "rods_strain", "yielding"),  # written
+    *("fixed", "tension", "compression", "yields"),  # read
+)
+OF_BENDING = (  # columns of models that bend
+    *("particles_masses", "per_arm", "lever"),
+    *("rods_turning_shares", "rods_bowing", "rods_end_stiffness"),
+)
+PUSHED = ("support", "unpushed")  # arrays of programs whose particles may meet
+STATE = ("displacement", "velocity", "force", "resisting", "direction")
+EVERY = "displacement.shape[0]"  # particles
+
+# What functions take before the columns.
+TRIAL_STATE = "time, dt, *state"
+PREDICTED = "time, dt, displacement, predicted, *forces"
+RESISTED = "time, dt, displacement, velocity, resisting, direction"
+
+OF_PAIR = {  # what kernels of pairs are provided with
+    "apart": "(x, y)",
+    "drift": "(velocity[j, 0] - velocity[i, 0], velocity[j, 1] - velocity[i, 1])",
+}
+
+NO_POWER = tuple(f"power_{name} = 0.0" for name in ACCOUNTS)
+POWER_RETURNED = tuple(f"power[Account.{name.upper()}] = power_{name}" for name in ACCOUNTS)
+
+# -------------------------------------------------------------------------------------------------
 
 _AT_STRENGTH = 1.0 - 1e-9  # share of its strength from which on a rod is said to yield
 
@@ -152,9 +156,13 @@ class Writer:
         self.integrator = integrator
         traits = traits_of(model)
         self.warm, self.bends, self.loaded = (trait in traits for trait in TRAITS)
-        self.shift = SHIFT | TURNED if self.bends else SHIFT
-        self.drift = DRIFT | SPUN if self.bends else DRIFT
+        self.coordinates = 3 if self.bends else 2
         self.collides = any(system.impulsive for system in systems)
+        self.shift = {f"s{d}": f"displacement[b, {i}] - displacement[a, {i}]" for i, d in enumerate("xy")}
+        self.drift = {f"drift_{d}": f"velocity[b, {i}] - velocity[a, {i}]" for i, d in enumerate("xy")}
+        if self.bends:
+            self.shift |= {f"turn_{end}": f"displacement[{end}, 2] * per_arm[0]" for end in "ab"}
+            self.drift |= {f"spin_{end}": f"velocity[{end}, 2] * per_arm[0]" for end in "ab"}
         bound = (bind(system, model) for system in systems if system.kernel)
         self.bound = [b for b in bound if self.bends or b.each not in ("ends", "rotations")]
         check_names(self.bound)
@@ -164,7 +172,8 @@ class Writer:
         self.branching = [b.system for b in self.bound if getattr(b.system, "margin", "")]
         self.names: dict[str, Callable[..., Any]] = {b.call: b.function for b in self.bound}
         self.names |= {"conserved": conserved, "judge": judge}
-        kinds = (*ENTRIES, *(DRIVEN_ENTRIES if self.collides else ()))
+        kinds = [Account, Control, Mark, Measure, Search, Side, StopReason]
+        kinds += [Order, Real, Whole] if self.collides else []
         self.names |= {kind.__name__: kind for kind in kinds}
         self.pairs = [*self.of[StepRole.PAIR_FORCE], *self.of[StepRole.PAIR_RESISTANCE]]
         self.ends = [*self.of[StepRole.ENDS], *self.of[StepRole.RATE_OF_ENDS]]
@@ -203,15 +212,39 @@ class Writer:
         names = dict.fromkeys(self.columns)
         for b in bound:
             if b.role is StepRole.LOAD:
-                parts = ("on", "force", "values", "first", *(["moment"] if self.bends else []))
-                names.update(dict.fromkeys(f"{b.prefix}_{part}" for part in parts))
+                names.update(dict.fromkeys(f"{b.prefix}_{part}" for part in ("on", "force", "values", "first")))
             else:
-                known = PROVIDED | {p for p, name in TRIAL.items() if self.bends or name not in TURNING}
+                known = PROVIDED | {*TRIAL, *(TURNING if self.bends else ())}
                 taken = (p for p in b.parameters if p not in known)
                 names.update(dict.fromkeys(b.stored(p) if p in b.arrays else p for p in taken))
             if b.role is StepRole.EVENT:
                 names[sides_of(b)] = None
         self.columns = list(names)
+
+    # --- templates --------------------------------------------------------------------------------
+
+    @cached_property
+    def _inserts(self) -> dict[str, Insert]:
+        """What is known in every template: which lines it keeps, and what stands for some words."""
+        return {
+            "ALIKE": not self.integrator.controlled,
+            "BENDS": self.bends,
+            "FORESEES": bool(self.of[StepRole.LOAD]) and not self.integrator.controlled,
+            "LOADED": self.loaded,
+            "LOADS": bool(self.of[StepRole.LOAD]),
+            "MEETS": self.collides,
+            "POWERS": self.powers,
+            "WARM": self.warm,
+            "mass": "particles_masses[i, d]" if self.bends else "particles_mass[i]",
+        }
+
+    def function(self, template: Callable[..., Any], decorator: str, name: str = "", **inserts: Insert) -> str:
+        """A template as a function of the program, under its own or another name."""
+        return pasted(template, decorator, name, **(self._inserts | inserts))
+
+    def lines(self, template: Callable[..., Any], **inserts: Insert) -> list[str]:
+        """The lines of a template."""
+        return fragment(template, **(self._inserts | inserts))
 
     # --- expressions ------------------------------------------------------------------------------
 
@@ -219,10 +252,9 @@ class Writer:
         """How a kernel's parameter is written inside the loop over its rows, or over pairs of particles i and j."""
         if parameter in PROVIDED:
             return OF_PAIR.get(parameter, parameter)
+        if parameter in TURNING and self.bends:
+            return f"{TURNING[parameter]}[{index}, 2] * per_arm[0]"
         name, single = TRIAL.get(parameter, parameter), False
-        if name in TURNING and self.bends:
-            return f"{name}[{index}, 0]"
-        name = parameter if name in TURNING else name
         if parameter in b.arrays:
             name, shape = b.stored(parameter), b.arrays[parameter].shape[1:]
         else:
@@ -244,53 +276,41 @@ class Writer:
         parts = [
             self._head(),
             *([self._drive()] if self.collides else []),
-            self._pasted(f"{self.integrator.entry}=advance", "compiled" if self.collides else "entered"),
-            self._integrate(),
+            self.function(
+                steps.advance,
+                "compiled" if self.collides else "entered",
+                "",
+                force="unpushed" if self.collides else "force",
+                **self._steps(),
+            ),
+            *(self.function(part, "inlined") for part in (steps.aim, steps.is_check_due)),
             *(self._pasted(part, "inlined") for part in reversed(self.integrator.parts)),
-            *map(self._second_part, self._parts_of_both),
             *self._of_steps(),
-            pasted(forces.external, "compiled", particle_forces=self._particle_forces()),
+            self.function(forces.external, "compiled", particle_forces=self._particle_forces()),
             self._measure(),
             self._observe(),
-            *([self._commit()] if self.commits else []),
+            *([self.function(forces.commit, "entered")] if self.commits else []),
             "".join(f"{name} = {_literal(value)}\n" for name, value in self._values().items()),
         ]
         return expanded("\n\n\n".join(part.rstrip() for part in parts), self.groups)
 
     @property
-    def _parts_of_both(self) -> list[str]:
-        """Parts of the integrator that are written for both blocks of coordinates, if there are two."""
-        return [part for part in self.integrator.parts if self.bends and part.partition(":")[2] in SECOND_PARTS]
-
-    @property
     def groups(self) -> dict[str, Sequence[str]]:
         """The arguments that stand for one word in templates."""
         return {
-            "state": self.state,
-            "forces": self.state[4 if self.bends else 2 :],
-            **self.blocks,
+            "state": STATE,
+            "forces": STATE[2:],
             "scratch": self.scratch,
             "bounds": ("breaks", "until", "landing"),
-            "limits": self._limits,
-            "kept": (*KEPT, *(f"kept_{name}" for name in self.kept)),
-            "observed": (*OBSERVED, *(TURNING_OBSERVED if self.bends else ())),
+            "kept": (*(f"kept_{name}" for name in self.kept), "own_acceleration", "own_support", "every"),
+            "observed": (*OBSERVED, *(["rods_end_moment"] if self.bends else [])),
             "columns": self.columns,
         }
 
     @property
-    def state(self) -> tuple[str, ...]:
-        """The arrays of a state and its forces."""
-        return BENT_STATE if self.bends else STATE
-
-    @property
-    def blocks(self) -> Mapping[str, tuple[str, ...]]:
-        """Groups of arguments of one block of coordinates, or of both."""
-        return BOTH_BLOCKS if self.bends else FIRST_BLOCK
-
-    @property
     def scratch(self) -> tuple[str, ...]:
         """Arrays that steps write to and nobody reads afterwards."""
-        return (*self.blocks["foreseen"], "power", "gained")
+        return ("predicted", "power", "gained")
 
     @property
     def written(self) -> list[str]:
@@ -299,49 +319,35 @@ class Writer:
 
     @property
     def kept(self) -> list[str]:
-        """What steps change by row besides the state: columns that commits write, and the sides of events."""
-        return [*self.written, *map(sides_of, self.events), *(TURNED_STATE if self.bends else ())]
-
-    @property
-    def _limits(self) -> tuple[str, ...]:
-        """What `drive` takes that bounds its steps."""
-        return ()
+        """What steps change besides the state of the particles, the clock and the account, and the state where it turns."""
+        changed = "unpushed", "resisting", "power", *self.written, *map(sides_of, self.events)
+        return [*changed, *(STATE[:2] if self.bends else ())]
 
     def _drive(self) -> str:
         """The function by which steps are entered where particles may meet."""
-        return pasted(
+        return self.function(
             driven.drive,
             "entered",
             "",
-            keep=self._copies(driven.keep, "kept_{0}", "{0}"),
-            put_back=self._copies(driven.put_back, "{0}", "kept_{0}"),
-            **self._driven_steps(),
+            keep=self._copies("kept_{0}", "{0}"),
+            put_back=self._copies("{0}", "kept_{0}"),
+            present=self.lines(forces.present),
+            take=self.lines(driven.take),
         )
 
-    def _copies(self, template: Callable[[], None], to: str, of: str) -> list[str]:
-        loops = [
-            fragment(
-                driven.copy_turned if name in TURNED_STATE else driven.copy,
-                to=to.format(name),
-                of=of.format(name),
-            )
-            for name in self.kept
-        ]
-        return fragment(template, others=[line for loop in loops for line in loop])
-
-    def _driven_steps(self) -> dict[str, Sequence[str]]:
-        """How `drive` evaluates forces, takes steps, and what follows from other contact forces."""
-        resist = [f"resist({RESISTED}, power, *columns)"] if self.powers else []
-        resist = [line.replace("time, dt", NOW) for line in resist]
-        return {
-            "evaluate": fragment(driven.evaluate_fixed, resist=resist),
-            "take": fragment(driven.take_fixed),
-            "pushed": [],
-        }
+    def _copies(self, to: str, of: str) -> list[str]:
+        """Lines that keep what steps change, or put it back."""
+        lines = []
+        for name in self.kept:
+            whole = [f"r, {d}" for d in range(self.coordinates)]
+            places = whole if name in ("unpushed", "resisting") else whole[2:] if name in STATE else ["r"]
+            copies = (f"    {to.format(name)}[{place}] = {of.format(name)}[{place}]" for place in places)
+            lines += [f"for r in range({name}.shape[0]):", *copies]
+        return lines
 
     def _pushes(self) -> list[str]:
         """The lines by which contact forces are added to all others."""
-        return fragment(driven.push) if self.collides else []
+        return self.lines(driven.push) if self.collides else []
 
     def _head(self) -> str:
         kernels = "\n".join(f"    {name} = {_origin(function)}" for name, function in self.names.items())
@@ -350,15 +356,18 @@ class Writer:
     def _values(self) -> dict[str, Any]:
         """The constants of the module."""
         return {
+            "D": self.coordinates,
             "RATES": self.rates,
             "POWERS": self.powers,
             "LOADS": bool(self.of[StepRole.LOAD]),
             "STOPS": bool(self.events),
+            "EVENTS": False,
+            "EPSILON": sys.float_info.epsilon,  # round-off of forces, relative to stiffness × displacement
+            "SLACK": 1e-12,  # share of the time to go by which the end of a fixed step may be late
             "SHADOW": float(self.integrator.guard),
             "CHECK_INTERVAL": self.integrator.check_interval,
             "REVIEW_INTERVAL": REVIEW_INTERVAL,
             **self.integrator.constants,
-            **({"LEAST_TURN": LEAST_TURN} if self.bends else {}),
         }
 
     @property
@@ -370,24 +379,11 @@ class Writer:
     def _pasted(self, where: str, decorator: str) -> str:
         """A template of the integrator, "module:function" or with "=new name"."""
         where, _, name = where.partition("=")
-        return pasted(find(where, self.integrator), decorator, name, **self.second_block)
+        return self.function(find(where, self.integrator), decorator, name)
 
-    @cached_property
-    def second_block(self) -> dict[str, str | list[str]]:
-        """What templates insert where rotations are treated beside displacements; nothing without bending."""
-        names = [name for name in vars(turning) if name.endswith("_turns")]
-        lines = {name: fragment(getattr(turning, name)) if self.bends else [] for name in names}
-        return {**lines, **NORMS}
-
-    def _second_part(self, where: str) -> str:
-        """A function that treats coordinates one by one, for those of the second block."""
-        function = find(where, self.integrator)
-        text = pasted(function, "inlined", f"{function.__name__}_of_turns", **(self.second_block | LEAST))
-        head, body = text.split(":\n", 1)
-        lines = projected(dedent(body).splitlines(), {})
-        for first, second in LARGEST.items():
-            lines = [line.replace(first, second) for line in lines]
-        return "\n".join([f"{head}:", *indented(lines)])
+    def _each_coordinate(self, line: str) -> list[str]:
+        """A line for every coordinate {0} of a particle."""
+        return [line.format(d) for d in range(self.coordinates)]
 
     def _of_steps(self) -> list[str]:
         """Functions that the integrator's templates call."""
@@ -400,7 +396,7 @@ class Writer:
             self._forces("accept", self.commits),
             self._forces("forces", []),
             self._resist(),
-            pasted(forces.load_power, "compiled", loads=loads),
+            self.function(forces.load_power, "compiled", loads=loads),
             *self._happened(),
         ]
 
@@ -408,8 +404,7 @@ class Writer:
 
     def _particle_forces(self, powers: bool = False, span: str = EVERY) -> list[str]:
         """Forces on the particles from outside, and of the laws that resist their motion."""
-        body = ["force[i, 0] = particles_constant_force[i, 0]", "force[i, 1] = particles_constant_force[i, 1]"]
-        body += ["moment[i, 0] = particles_constant_moment[i]"] if self.bends else []
+        body = self._each_coordinate("force[i, {0}] = particles_constant_force[i, {0}]")
         for b in self.of[StepRole.PARTICLE_FORCE]:
             body += [f"fx, fy = {self._apply(b, 'i')}", "force[i, 0] += fx", "force[i, 1] += fy"]
             body += [_particle_power(b)] if powers else []
@@ -417,9 +412,7 @@ class Writer:
         lines = [f"for i in range({span}):", *indented(body)]
         for b in self.of[StepRole.LOAD]:
             push = [
-                f"force[i, 0] += factor * {b.prefix}_force[k, 0]",
-                f"force[i, 1] += factor * {b.prefix}_force[k, 1]",
-                *([f"moment[i, 0] += factor * {b.prefix}_moment[k]"] if self.bends else []),
+                *self._each_coordinate(f"force[i, {{0}}] += factor * {b.prefix}_force[k, {{0}}]"),
                 *([f"power_work += {self._load_power(b)}"] if powers else []),
             ]
             lines += self._each_load(b, *push, within="" if span == EVERY else f"block_{b.prefix}")
@@ -430,7 +423,7 @@ class Writer:
         laws: list[str] = []
         for b, own in lines:
             laws += [f"if squared < pair_reach[{2 + self.pairs.index(b)}]:", *indented(own)] if own else []
-        return fragment(pairs.each_pair, laws=laws) if laws else []
+        return self.lines(pairs.each_pair, laws=laws) if laws else []
 
     def _pair_forces(self, b: Bound, powers: bool) -> list[str]:
         """Lines that add the force of a law to those on both particles."""
@@ -444,14 +437,13 @@ class Writer:
 
     def _load_power(self, b: Bound) -> str:
         """What a load does per second at its factor."""
-        force = f"{b.prefix}_force[k, 0] * velocity[i, 0] + {b.prefix}_force[k, 1] * velocity[i, 1]"
-        turned = f" + {b.prefix}_moment[k] * angular_velocity[i, 0]" if self.bends else ""
-        return f"factor * ({force}{turned})"
+        parts = self._each_coordinate(f"{b.prefix}_force[k, {{0}}] * velocity[i, {{0}}]")
+        return f"factor * ({' + '.join(parts)})"
 
     @staticmethod
     def _each_load(b: Bound, *lines: str, within: str = "") -> list[str]:
         """Lines for every load `k` on a particle `i`, in a block of them or in all."""
-        acting = IN_BLOCK.format(within) if within else f"{b.prefix}_on.shape[0]"
+        acting = f"{within}[block], {within}[block + 1]" if within else f"{b.prefix}_on.shape[0]"
         return [
             f"for k in range({acting}):",
             f"    i = {b.prefix}_on[k]",
@@ -462,14 +454,13 @@ class Writer:
     def _particle_resistance(self, powers: bool = False) -> list[str]:
         if not self.rates:
             return []
-        body = ["resisting[i, 0] = 0.0", "resisting[i, 1] = 0.0"]
+        body = self._each_coordinate("resisting[i, {0}] = 0.0")
         for b in self.of[StepRole.RESISTANCE]:
             body += [f"fx, fy = {self._apply(b, 'i')}", "resisting[i, 0] += fx", "resisting[i, 1] += fy"]
             body += [_particle_power(b)] if powers else []
-        body += ["twisting[i, 0] = 0.0"] if self.bends else []
         for b in self.of[StepRole.TURNING]:
-            body += [f"turned = {self._apply(b, 'i')}", "twisting[i, 0] += turned"]
-            gain = f"power_{b.account} {_sign(b, '+', '-')}= turned * angular_velocity[i, 0]"
+            body += [f"turned = {self._apply(b, 'i')} * per_arm[0]", "resisting[i, 2] += turned"]
+            gain = f"power_{b.account} {_sign(b, '+', '-')}= turned * velocity[i, 2]"
             body += [gain] if powers else []
         return body
 
@@ -493,17 +484,11 @@ class Writer:
 
     def geometry(self) -> list[str]:
         """Lines that give elongation, length and direction of a rod, and the slopes of its ends."""
-        misfit = "rods_misfit[r]" if self.warm else "(original - rods_rest_length[r])"
-        lines = fragment(rods.geometry, misfit=misfit)
-        return lines + fragment(rods.bent) if self.bends else lines
+        return self.lines(rods.geometry)
 
     def rate(self, *, of_axis: bool = False) -> list[str]:
         """Lines that give how fast a rod grows longer, and how fast its slopes grow; of_axis: also of the bowed axis."""
-        lines = fragment(rods.rate)
-        if self.bends:
-            lines += fragment(rods.slope_rates)
-            lines += fragment(rods.rate_of_axis) if of_axis else []
-        return lines
+        return self.lines(rods.rate, OF_AXIS=of_axis)
 
     def end_laws(self, laws: Sequence[Bound], made: str, powers: bool = False) -> list[str]:
         """Lines that sum up the moments that laws give the ends of a rod; powers: and what each does per second."""
@@ -516,8 +501,7 @@ class Writer:
 
     def end_moments(self) -> list[str]:
         """Lines that give the moments on the ends of a rod, dampers apart, once its axial force is known."""
-        load = [*fragment(rods.between), *fragment(rods.of_load)] if self.loaded else []
-        return fragment(rods.end_moments, law=self.end_laws(self.of[StepRole.ENDS], "moment"), load=load)
+        return self.lines(rods.end_moments, law=self.end_laws(self.of[StepRole.ENDS], "moment"))
 
     def _axial_force(self, *, without: Sequence[Bound] = ()) -> list[str]:
         lines = ["axial_force = 0.0"]
@@ -536,7 +520,7 @@ class Writer:
 
     def _forces(self, name: str, commits: Sequence[Bound]) -> str:
         lines = self._with_losses(commits, self._rod_loop(self._rod_forces(commits)))
-        return pasted(getattr(forces, name), "compiled", rod_forces=[*lines, *self._pushes()])
+        return self.function(getattr(forces, name), "compiled", rod_forces=[*lines, *self._pushes()])
 
     @staticmethod
     def _with_losses(commits: Sequence[Bound], loop: Sequence[str]) -> list[str]:
@@ -554,7 +538,7 @@ class Writer:
         if self.bends:
             couple = " + couple" if self.loaded else ""
             compute += [*self.end_moments(), *_across_axis("pull", f"moment_start + moment_end{couple}")]
-            made, scatter = [*made, "moment_start", "moment_end"], [*scatter, *_turn("moment", "moment")]
+            made, scatter = [*made, "moment_start", "moment_end"], [*scatter, *_turn("force", "moment")]
         pull = RodLoop(
             self.shift,
             [*self.geometry(), *compute],
@@ -605,7 +589,7 @@ class Writer:
         if self.bends:
             compute += self.end_laws(self.of[StepRole.RATE_OF_ENDS], "twist", powers)
             compute += _across_axis("drag", "twist_start + twist_end")
-            made, scatter = [*made, "twist_start", "twist_end"], [*scatter, *_turn("twisting", "twist")]
+            made, scatter = [*made, "twist_start", "twist_end"], [*scatter, *_turn("resisting", "twist")]
             if powers:
                 compute += self.end_laws(self.working_ends, "worked", powers) if self.working_ends else []
                 for b in (*self.working_ends, *self.of[StepRole.RATE_OF_ENDS]):
@@ -614,7 +598,7 @@ class Writer:
         return RodLoop(self.drift, compute, [*made, *gains], [*gains.values(), *scatter])
 
     def _resist(self) -> str:
-        return pasted(forces.resist, "compiled", resistance=[*self._resistance(), *POWER_RETURNED])
+        return self.function(forces.resist, "compiled", resistance=[*self._resistance(), *POWER_RETURNED])
 
     def _resistance(self, span: str = EVERY) -> list[str]:
         body = [*NO_POWER]
@@ -640,45 +624,46 @@ class Writer:
 
     # --- steps ------------------------------------------------------------------------------------
 
-    def _integrate(self) -> str:
-        """The integrator's own function, or steps as it says that they begin and end for each particle.
+    def _steps(self) -> dict[str, list[str]]:
+        """What the loop over steps does with this integrator."""
+        return {
+            "present": self.lines(forces.present),
+            "begin": self._begin(),
+            "step": self.lines(
+                fixed_steps.step,
+                complete=self._complete("not whole"),
+                displacement=self._move(),
+                velocity=self._accelerate(),
+            ),
+            "finish": self._complete(""),
+        }
 
-        Inlined where it is called, once, the columns stay in registers.
-        """
-        if self.integrator.kernel:
-            return self._pasted(f"{self.integrator.kernel}=integrate", "inlined")
-        return pasted(
-            fixed_steps.integrate,
-            "inlined",
-            displacement=self._move(),
-            work=fragment(fixed_steps.work) if self.of[StepRole.LOAD] else [],
-            velocity=self._complete(),
-            rest=self._finish(),
-        )
+    def _begin(self) -> list[str]:
+        """The lines before the first step."""
+        return []
 
     def _move(self) -> list[str]:
-        """To the next displacement; its forces."""
+        """The lines that lead to the next displacement, and give its forces."""
         return [*self._particles(self.integrator.begins), f"accept({PREDICTED}, account, *columns)"]
 
-    def _complete(self) -> list[str]:
-        """To the next velocity; what resists it."""
+    def _accelerate(self) -> list[str]:
+        """The lines that lead to the next velocity, and give what resists it."""
         return [*self._particles(self.integrator.ends), *self._gains("resist", RESISTED)]
 
-    def _finish(self) -> list[str]:
-        """The lines after the last of many steps."""
+    def _complete(self, condition: str) -> list[str]:
+        """The lines that complete a step which waits for the next one, under a condition."""
         return []
 
     def _particles(self, where: str, span: str = EVERY) -> list[str]:
         """A loop in which the integrator moves every particle."""
-        lines = fragment(find(where, self.integrator), total_force=fragment(fixed_steps.total_force))
-        lines = lines + projected(lines, SECOND_BLOCK) if self.bends else lines
+        lines = self.lines(find(where, self.integrator), total_force=self.lines(fixed_steps.total_force))
         return [f"for i in range({span}):", *indented(lines)] if lines else []
 
     def _gains(self, resist: str, given: str) -> list[str]:
         """The lines by which each account gains in the step that ends here."""
         if not self.powers:
             return []
-        powers = fragment(fixed_steps.powers, accounts=str(len(ACCOUNTS)))
+        powers = self.lines(fixed_steps.powers, accounts=str(len(ACCOUNTS)))
         return [f"{resist}({given}, gained, *columns)", *powers]
 
     # --- events -----------------------------------------------------------------------------------
@@ -689,11 +674,11 @@ class Writer:
         for place, b in enumerate(self.events):
             lines[b.each] += [
                 *self._needed_force(b),
-                *fragment(
+                *self.lines(
                     events.turn, sides=sides_of(b), quantity=self._apply(b, "r"), turned=self._turned(place)
                 ),
             ]
-        return [pasted(events.happened, "compiled", **self._each_row(lines))] if self.events else []
+        return [self.function(events.happened, "compiled", **self._each_row(lines))] if self.events else []
 
     def _turned(self, place: int) -> str:
         """The condition that the quantity of an event, `gap` on the side that it was on, changed sign in the step."""
@@ -713,20 +698,15 @@ class Writer:
     # --- reading ----------------------------------------------------------------------------------
 
     def _measure(self) -> str:
-        stored = [*self.geometry(), *self._axial_force(without=self.working), *fragment(rods.stored)]
-        if self.bends:
-            stored += [*self.end_moments(), *fragment(rods.stored_by_ends)]
-            kept = [self.potentials[b.system.name] for b in self.ends if b.system.name in self.potentials]
-            stored += [f"elastic += 2.0 * {self._apply(b, 'r')}" for b in kept]
-            stored += ["potential += transverse * area"] if self.loaded else []
-        return pasted(
+        kept = [self.potentials[b.system.name] for b in self.ends if b.system.name in self.potentials]
+        energies = [f"elastic += 2.0 * {self._apply(b, 'r')}" for b in kept]
+        stored = self.lines(rods.stored, moments=self.end_moments(), energies=energies)
+        compute = [*self.geometry(), *self._axial_force(without=self.working), *stored]
+        return self.function(
             observing.measure,
             "compiled",
-            turning=fragment(turning.turning) if self.bends else [],
-            turned=fragment(turning.turned, round_off=str(ROUND_OFF)) if self.bends else [],
-            rods=RodLoop(self.shift, stored).one_by_one(),
+            rods=RodLoop(self.shift, compute).one_by_one(),
             pairs=self._each_pair((b, self._pair_energy(b)) for b in self.pairs),
-            round_off=str(ROUND_OFF),
         )
 
     def _pair_resistance(self, b: Bound) -> list[str]:
@@ -752,33 +732,20 @@ class Writer:
             lines += [f"fx, fy = {self._apply(b, 'i')}", "largest = max(largest, abs(fx), abs(fy))"]
         return lines
 
-    @property
-    def _evaluation(self) -> str:
-        """A call that gives the forces of a state that is observed."""
-        return f"forces({TRIAL_STATE}, *columns)"
-
     def _observe(self) -> str:
-        observed = fragment(rods.observed, at_strength=str(_AT_STRENGTH))
-        observed += [*self.end_moments(), *fragment(rods.observed_ends)] if self.bends else []
+        observed = self.lines(rods.observed, at_strength=str(_AT_STRENGTH), moments=self.end_moments())
         loop = RodLoop(self.shift, [*self.geometry(), *self._axial_force(), *observed])
-        pushed = fragment(observing.pushed) if self.collides else []
-        return pasted(
+        return self.function(
             observing.observe,
             "entered",
-            evaluation=self._evaluation,
             rods=loop.one_by_one(),
-            pushed=pushed,
-            clamps=fragment(turning.clamps) if self.bends else [],
         )
-
-    def _commit(self) -> str:
-        return pasted(forces.commit, "entered", history=f"accept({TRIAL_STATE}, account, *columns)")
 
 
 def read_sources(integrators: Iterable[Integrator]) -> None:
     """Find the sources of integrators ahead of need; those of one take some frames."""
     for one in integrators:
-        for part in (one.kernel, one.begins, one.ends, one.entry, *one.parts):
+        for part in (one.begins, one.ends, *one.parts):
             if isinstance(part, str) and part:
                 source_of(find(part.partition("=")[0], one))
 
@@ -818,7 +785,7 @@ def _across_axis(name: str, moments: str) -> list[str]:
 
 def _turn(target: str, name: str) -> list[str]:
     """Moments on the ends of a rod act on its particles the other way."""
-    return [f"{target}[a, 0] -= {name}_start", f"{target}[b, 0] -= {name}_end"]
+    return [f"{target}[a, 2] -= {name}_start * per_arm[0]", f"{target}[b, 2] -= {name}_end * per_arm[0]"]
 
 
 def _scatter(target: str, name: str) -> list[str]:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import replace
 from functools import partial
 
 import numpy as np
@@ -20,7 +20,7 @@ from pinjoint.systems.render.sheet import Sheet
 from pinjoint.systems.render.structure import HALO_OPACITY
 from pinjoint.systems.render.symbols import dashed
 from pinjoint.systems.render.theme import Colour, Theme, faded
-from pinjoint.systems.render.typography import font_size, line_height, shortened, text_width, wrapped
+from pinjoint.systems.render.typography import font_size, line_height, text_width, wrapped
 from pinjoint.systems.render.utilisation import scale_bar
 
 EDGE = 14.0  # points between overlays and the edges of the viewport
@@ -343,16 +343,9 @@ def _swatch(name: str, theme: Theme, place: Rectangle, u: float) -> list[Mark]:
 # --- scale -----------------------------------------------------------------------------------------
 
 
-@dataclass(frozen=True)
-class Scale:
-    """Where the scale stands, in pixels: a ruler of that length, which means so many metres (0: none), and a text."""
-
-    left: float
-    top: float
-    metres: float
-    ruler: float
-    room: float
-    notes: list[str]
+Scale = tuple[
+    Rectangle, float, list[str]
+]  # where it stands, the metres that its ruler means (0: none), and notes
 
 
 def place_scale(sheet: Sheet, room: tuple[float, float]) -> Scale | None:
@@ -360,56 +353,52 @@ def place_scale(sheet: Sheet, room: tuple[float, float]) -> Scale | None:
 
     There is room for how many values are hidden, before that is known; this is said alone, and over rods, in need.
     """
-    v, u, size = sheet.viewport, sheet.unit, sheet.font(11.0)
-    metres = round_down(min(120.0 * u, 0.25 * v.width) / sheet.view.camera.scale)
-    notes, length = _displacements(sheet) + sheet.notes, metres * sheet.view.camera.scale
-    choices = [
-        (metres, length, notes),
-        (0.0, 0.0, notes),
-        *([(0.0, 0.0, list[str]())] if sheet.values.total() else []),
-    ]
-    for metres, length, said in choices:
-        ruler = length + 8.0 * u if length else 0.0
-        text = "   ".join(_said(metres, sheet.values.total(), said))
-        width = text_width(text, size)
-        if not text or width > v.width - ruler - 2 * EDGE * u:
+    v, u, values = sheet.viewport, sheet.unit, sheet.values.total()
+    length = round_down(min(120.0 * u, 0.25 * v.width) / sheet.view.camera.scale)
+    notes = _displacements(sheet) + sheet.notes
+    for metres, said in ((length, notes), (0.0, notes), *([(0.0, list[str]())] if values else [])):
+        whole = _scale(sheet, metres, values, said)
+        if whole is None or (width := whole.width(u)) > v.width - 2 * EDGE * u:
             continue
-        scale = Scale(*_freest(sheet, ruler + width + 12.0 * u, room), metres, length, width, said)
-        box = scale.left, scale.top, ruler + width + 12.0 * u, _STRIP * u
-        in_need = not said and not sheet.occupancy.is_taken(*box)
-        if in_need or not sheet.occupancy.crossed(*box):
-            sheet.occupancy.block(*box)
-            return scale
+        place = Rectangle(*_freest(sheet, width, room), width, _STRIP * u)
+        in_need = not said and not sheet.occupancy.is_taken(*place.box)
+        if in_need or not sheet.occupancy.crossed(*place.box):
+            sheet.occupancy.block(*place.box)
+            return place, metres, said
     return None
 
 
 def draw_scale(sheet: Sheet, scale: Scale | None) -> list[Mark]:
     """A round length to scale, how many values are hidden, and by how much displacements and diagrams are scaled."""
-    hidden = sheet.values.total() - sum(1 for field, _ in sheet.placed if field in sheet.values)
-    said = _said(scale.metres, hidden, scale.notes) if scale else []
-    if scale is None or not said:
+    if scale is None:
         return []
-    u, size = sheet.unit, sheet.font(11.0)
-    ruler = scale.ruler + 8.0 * u if scale.ruler else 0.0
-    while len(said) > 1 and text_width("   ".join(said), size) > scale.room:
-        said.pop()
-    text = shortened("   ".join(said), scale.room, size)
-    x, y = round(scale.left + 6.0 * u), round(scale.top + 6.0 * u)
-    width = ruler + text_width(text, size) + 12.0 * u
-    length, thin, tick = round(scale.ruler), max(round(1.5 * u), 1), round(7.0 * u)
-    lines = (x, y + tick, length, thin), (x, y, thin, tick), (x + length - thin, y, thin, tick)
-    return [
-        Panel(scale.left, scale.top, width, _STRIP * u, 4.0 * u, faded(sheet.theme.background, 0.8)),
-        *([boxes(sheet.theme.muted, *lines)] if scale.ruler else []),
-        marks.Text(text, x + ruler, y + 4.0 * u, size, sheet.theme.muted),
-    ]
+    place, metres, notes = scale
+    hidden = sheet.values.total() - sum(1 for field, _ in sheet.placed if field in sheet.values)
+    whole, paper = _scale(sheet, metres, hidden, notes), Paper(sheet.unit)
+    if whole is not None:
+        paper.put(whole, replace(place, width=min(whole.width(sheet.unit), place.width)))
+    return paper.marks
 
 
-def _said(metres: float, hidden: int, notes: list[str]) -> list[str]:
-    """What is said beside the ruler, if so many values are hidden."""
+def _scale(sheet: Sheet, metres: float, hidden: int, notes: list[str]) -> Plate | None:
+    """The ruler and what is said beside it, if so many values are hidden."""
     values = plural("{count} value hidden: zoom in", "{count} values hidden: zoom in", hidden)
-    length = [written.length(metres)] if metres else []
-    return [*length, *([values] if hidden else []), *notes]
+    said = [*([written.length(metres)] if metres else []), *([values] if hidden else []), *notes]
+    if not said:
+        return None
+    theme = sheet.theme
+    ruler = Drawn(partial(_ruler, theme), metres * sheet.view.camera.scale / sheet.unit)
+    text = Text("   ".join(said), 11.0, theme.muted, grow=1.0)
+    row = Row((*([ruler] if metres else []), text), 8.0, (6.0, 0.0, 0.0), high=_STRIP)
+    return Plate(row, faded(theme.background, 0.8), radius=4.0)
+
+
+def _ruler(theme: Theme, at: Rectangle, u: float) -> list[Mark]:
+    """A line with a tick at both ends."""
+    x, y, length = round(at.left), round(at.top + 6.0 * u), round(at.width)
+    thin, tick = max(round(1.5 * u), 1), round(7.0 * u)
+    ends = (x, y, thin, tick), (x + length - thin, y, thin, tick)
+    return [boxes(theme.muted, (x, y + tick, length, thin), *ends)]
 
 
 def _freest(sheet: Sheet, width: float, room: tuple[float, float]) -> tuple[float, float]:

@@ -144,8 +144,6 @@ def _by_steps(simulation: Simulation, program: Program, target: float, size: flo
     clock = program.model.clock
     steps = math.ceil(2.0 * (target - clock.time) / size * (1.0 - 1e-9))
     simulation.step_size.begin((target - clock.time) / steps)
-    if program.integrator.controlled:
-        return _pieces(program, target)
     largest, piece = _Quantities.of(program).sizes, -(-steps // PIECES)
     while steps > 0:
         taken, _ = program.advance(min(piece, steps))

@@ -13,7 +13,8 @@ from pinjoint.systems.base import Integrator, StopReason
 from pinjoint.systems.entries import SMALLEST_ENERGY
 from pinjoint.systems.physics.automatic import SMALL
 
-ENDING = (StopReason.EVENT, StopReason.DIVERGED, StopReason.UNRESOLVED)  # reasons that end a step early
+FAILURES = (StopReason.DIVERGED, StopReason.UNRESOLVED, StopReason.FAILED)
+ENDING = (StopReason.EVENT, *FAILURES)  # reasons that end a step early
 
 SAFETY = 0.9  # share of the stable step that the automatic step takes in large models
 ACCURATE = 0.1  # share in small ones, whose steps cost next to nothing; error ∝ its square

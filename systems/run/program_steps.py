@@ -50,13 +50,6 @@ class ProgramSteps:
     def land(self, target: float) -> StopReason:
         """Take the last, short step, to exactly the time `target` (s)."""
         clock, reason = self._model.clock, StopReason.DONE
-        if self._programs.integrator.controlled:
-            while clock.time < target and reason not in ENDING:
-                _, reason = self.program.advance(REVIEW_INTERVAL, target, target)
-            return reason
-        size = clock.step_size
-        self._step_size.begin(target - clock.time)
-        _, reason = self.advance(1)
-        self._model.writable("clock.time")[0] = target
-        self._step_size.begin(size)
+        while clock.time < target and reason not in ENDING:
+            _, reason = self.program.advance(REVIEW_INTERVAL, target, target)
         return reason

@@ -9,7 +9,6 @@ from pinjoint.components.language import joined, tr
 from pinjoint.components.model import Model
 from pinjoint.components.rod import bears_between, is_warm
 from pinjoint.components.settings import AUTOMATIC
-from pinjoint.components.snapshot import Snapshot
 from pinjoint.systems.base import Integrator, Law, Phase, StepSystem
 from pinjoint.systems.collision.free.discs import Discs
 from pinjoint.systems.collision.free.flight import Flight
@@ -197,10 +196,6 @@ class Programs:
         except ProgramError:
             return False
         return True
-
-    def return_to(self, state: Snapshot) -> None:
-        """Put a state of the run back."""
-        state.restore(self._model)
 
     def unbind(self) -> None:
         """Release what is bound, since the plan may have changed."""

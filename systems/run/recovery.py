@@ -14,6 +14,7 @@ from pinjoint.components.snapshot import Snapshot
 from pinjoint.systems.base import REVIEW_INTERVAL, StopReason
 from pinjoint.systems.program.faults import blame_mod
 from pinjoint.systems.program.program import MOTION, TURNING, Program
+from pinjoint.systems.run.policy import FAILURES
 from pinjoint.systems.run.programs import Programs
 from pinjoint.systems.run.sleep import Sleep
 from pinjoint.systems.run.step_size import StepSize
@@ -47,36 +48,37 @@ class Recovery:
         before, self.safe, self._halvings = self.safe, state, 0
         return before is None or not all(same(before.columns[name], state.columns[name]) for name in MOVING)
 
-    def without_mod(self, *, unresolved: bool) -> bool:
+    def without_mod(self, reason: StopReason) -> bool:
         """Switch off the mod without which the steps lead on, and return to the good state; False if there is none.
 
-        A mod is to blame for no more than numbers that are not finite, and for steps that lead to none (unresolved): the
-        steps are tried again without one mod after the other. Whoever interrupts that finds the good state, too.
+        A mod is to blame for errors, for numbers that are not finite, and for steps that lead to none, but for no other
+        ones that diverged: the steps are tried again without one mod after the other. Whoever interrupts that finds the
+        good state, too.
         """
         assert self.safe is not None
         program, present = self._programs.compiled, Snapshot.take(self._model)
-        if not (unresolved or not _is_finite(program) or program.failure):
+        if reason is StopReason.DIVERGED and _is_finite(program):
             return False
         steps = self._model.clock.steps - int(self.safe.columns["clock.steps"][0]) + 1
         found = program.failure is not None and blame_mod(program.failure)
         try:
             found = found or self._programs.blame_by_leaving_out(partial(self._lead_on, steps), tr(NOT_FINITE))
         finally:
-            self._programs.return_to(self.safe)
+            self.safe.restore(self._model)
         if not found:
-            self._programs.return_to(present)
+            present.restore(self._model)
         return found
 
     def _lead_on(self, steps: int) -> bool:
         """Whether so many steps from the good state, as the plan now is, have finite results."""
         assert self.safe is not None
-        self._programs.return_to(self.safe)
+        self.safe.restore(self._model)
         program = self._programs.dynamics
         if not isinstance(program, Program):
             return True
         self._step_size.begin(self._step_size.first())
         _, reason = program.advance(steps)
-        return reason not in (StopReason.DIVERGED, StopReason.UNRESOLVED) and _is_finite(program)
+        return reason not in FAILURES and _is_finite(program)
 
     def with_shorter_steps(self) -> bool:
         """Return to the good state and halve an automatic step, which proved too long as the geometry changed.
@@ -88,7 +90,7 @@ class Recovery:
             return False
         assert self.safe is not None
         size = self._model.clock.step_size
-        self._programs.return_to(self.safe)
+        self.safe.restore(self._model)
         self._sleep.forget()
         self._step_size.begin(0.5 * size)
         self._halvings += 1
@@ -98,7 +100,7 @@ class Recovery:
         """Return to the good state for good; says what happened, by a message with {time}, and what helps."""
         failed, size = self._model.clock.time, self._model.clock.step_size
         assert self.safe is not None
-        self._programs.return_to(self.safe)
+        self.safe.restore(self._model)
         what = tr(message, time=written.time(failed), steps=REVIEW_INTERVAL)
         kept = tr("The last good state, at t = {time}, was kept.", time=written.time(self._model.clock.time))
         return joined([what, self._step_size.remedy(size), kept, self._acting_mods()])

@@ -30,6 +30,7 @@ from pinjoint.systems.program.program import OBSERVED
 from pinjoint.systems.run.checkpoint import Checkpoint
 from pinjoint.systems.run.energy import Account, Energy
 from pinjoint.systems.run.policy import (
+    FAILURES,
     at_rest_since,
     begin_steps,
     contact_warning,
@@ -342,9 +343,13 @@ class Simulation:
         if self.halted:
             return False
         taken, reason = self._stepper.advance(ahead, until)
-        self._heed_and_announce(reason)
-        if self._sleep.is_due and not self.halted:
-            self._review_sleep()
+        self._heed(reason)
+        if reason not in FAILURES:  # else the state in which events happened was given up
+            self._announce_events()
+        self._arm()
+        islands_due = self._sleep.is_due and not self.halted
+        if islands_due and self._sleep.may_happen(self.program) and self._sleep.review(self.program):
+            self.step_size.limit_anew()
         return taken >= max(ahead, 1) or reason is not StopReason.DONE
 
     def _heed(self, reason: StopReason) -> None:
@@ -357,13 +362,6 @@ class Simulation:
             self._review()
         elif self.reason is not StopReason.DONE:
             self._recover(reason)
-
-    def _heed_and_announce(self, reason: StopReason) -> None:
-        """React to the reason, and to events unless the state in which they happened was given up."""
-        self._heed(reason)
-        if reason not in (StopReason.DIVERGED, StopReason.UNRESOLVED):
-            self._announce_events()
-        self._arm()
 
     def _announce_events(self) -> None:
         """Call the handlers of the events that ended the step; handlers may edit the model."""
@@ -397,8 +395,8 @@ class Simulation:
 
     def _recover(self, reason: StopReason) -> None:
         """Return to the last good state and go on without a mod or with shorter steps, or give up."""
-        unresolved = reason is StopReason.UNRESOLVED
-        if self._recovery.without_mod(unresolved=unresolved):
+        unresolved = reason is not StopReason.DIVERGED
+        if self._recovery.without_mod(reason):
             self.before_change()  # what is lost with the mod counts as an edit
         elif unresolved or not self._recovery.with_shorter_steps():
             self.reason, self.message = (
@@ -407,11 +405,6 @@ class Simulation:
             )
             return
         self.reason = StopReason.DONE
-
-    def _review_sleep(self) -> None:
-        """Let islands at rest sleep."""
-        if self._sleep.may_happen(self.program) and self._sleep.review(self.program):
-            self.step_size.limit_anew()
 
     # --- moments within a step -----------------------------------------------------------------------
 
@@ -457,11 +450,11 @@ class Simulation:
         try:
             reason = self._stepper.land(target)
         except BaseException:  # interrupted, or a mod failed
-            self.programs.return_to(before)
+            before.restore(self.model)
             raise
         happened = reason is StopReason.EVENT and (self.integrator.controlled or self.programs.collides)
         if happened or self.model.clock.time != target:
-            self.programs.return_to(before)
+            before.restore(self.model)
             return False
         self._depart(before, begun=1)
         self.compute_seconds += time.perf_counter() - started
@@ -485,7 +478,7 @@ class Simulation:
         """Go back to the whole step that the present moment was reached from, if it lies within the next."""
         departure = self.model.clock.departure
         if departure is not None:
-            self.programs.return_to(departure)
+            departure.restore(self.model)
 
     def _whole(self, state: Snapshot) -> Snapshot:
         """The present state, or that after the last whole step, if the present moment lies within the next."""

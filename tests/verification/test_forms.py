@@ -1,14 +1,18 @@
 """Programs compute the same bits interpreted and compiled, and when the one follows the other, at any step."""
 
+import itertools
 import math
+from pathlib import Path
 
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from pinjoint import Session
+from pinjoint.systems import cache
 from pinjoint.systems.physics.integrators import INTEGRATORS
-from pinjoint.systems.program.compiler import Compile
+from pinjoint.systems.program import compiler
+from pinjoint.systems.program.compiler import Compile, GeneratedModule
 from tests.reference import bits
 from tests.reference.elements import Model
 from tests.reference.forms import all_modules, load_all, programs
@@ -100,3 +104,32 @@ def test_machine_code_may_take_over_from_frames_at_any_step(title: str) -> None:
     interpreted = state(document, STEPS, Compile.NEVER)
     for switch in (13, STEPS - 1):
         assert state(document, STEPS, Compile.ELSEWHERE, switch) == interpreted, switch
+
+
+@pytest.mark.parametrize(
+    ("title", "collisions"),
+    [("frame, velocity_verlet", False), ("portal, dop853", False), ("portal, dop853", True)],
+)
+def test_frames_may_be_compiled_between_the_portions_of_their_steps(
+    title: str, collisions: bool, monkeypatch: pytest.MonkeyPatch, tmp_path: Path
+) -> None:
+    """The compiler calls all functions once, in the midst of a call that takes many steps."""
+    portions, did = itertools.count(1), GeneratedModule.did
+
+    def compiles(module: GeneratedModule, work: int) -> None:
+        did(module, work)
+        if next(portions) == STEPS // 2:
+            module.load()
+
+    monkeypatch.setattr(compiler, "LONGEST_CALL", 0.0)
+    monkeypatch.setattr(cache, "folder", lambda: tmp_path)  # there is nothing that could be loaded instead
+    found = set()
+    for compiled in (False, True):
+        with programs(Compile.ELSEWHERE):
+            monkeypatch.setattr(GeneratedModule, "did", compiles if compiled else did)
+            session = Session.open(MEETING[title])
+            session.settings.collisions = collisions
+            session.run(steps=STEPS)
+            assert session.simulation.programs.compiled.module.is_loaded is compiled
+            found.add(bits.digest(session.model))
+    assert len(found) == 1

@@ -9,19 +9,18 @@ program. It runs only there.
     *scratch    predicted, power, gained; of an integrator that controls its steps
                 search, work, rod_work, marks, power, gained, stage_power
     *bounds     breaks, until, landing
-    *limits     tolerance, limit; where steps are controlled
     *kept       what driven.py puts back
     *observed   rods_axial_force, rods_length, rods_strain, yielding; fixed, tension, compression, yields
-    *placed, *moving, *pulled, *resisted, …
-                displacement, velocity, force, resisting, …; of models that bend each with the array of rotations after it:
-                rotation, angular_velocity, moment, twisting, … (`BOTH_BLOCKS` in names.py)
     insert(x)   the lines, or the expression, that the writer made for `x`
+    if BENDS:   lines that a program has only where members bend; so with LOADED (a distributed force acts on some), WARM
+                (rods may have another rest length than the original one), MEETS (particles may meet), ALIKE (all steps
+                are of one length), LOADS (some load varies), FORESEES (both), and what the writer says of one template
 
 In the head of a function, where Python allows one star only, the same words stand without it. Arrays are handed over
 one by one because a tuple of them costs twice as much a step in small models, and takes several times as long to
 compile.
 
-    displacement, velocity   of the particles (m, m/s), shape (particles, 2)
+    displacement, velocity   of the particles (m, m/s), shape (particles, D)
     force                    on each particle, without dampers and drag (kN)
     resisting                of dampers and drag (kN)
     direction                unit vector of each rod
@@ -30,19 +29,23 @@ compile.
     account, measures, control, search, marks
                              arrays with the entries of systems/entries.py
 
-Constants of every program: RATES (something depends on velocity), POWERS (some account gains by the step), LOADS
+D is 2, or 3 in models that bend. The third coordinate is a rotation θ as a way ℓθ (m): per_arm[0] = 1/ℓ turns it into an
+angle again, and a moment into the force that belongs to it; its mass is J/ℓ². ℓ is a power of two, about the longest rod
+(`arm_of` in systems/physics/bending.py), so that these products change no bits.
+
+Constants of every program: D; EPSILON; RATES (something depends on velocity), POWERS (some account gains by the step), LOADS
 (some load varies), STOPS (there are Events, at which runs stop), SHADOW (see judge() in systems/physics/kernels.py),
 CHECK_INTERVAL and REVIEW_INTERVAL (steps); of one that controls its steps also EVENTS (there are Events, or some law of
 rods has branches), COMMITS (something has a history) and those of its integrator.
 
     driven.py        steps among particles that may meet
-    fixed_steps.py   integrators whose steps are all alike, and when a state is checked
-    runge_kutta.py   integrators that control their steps: one loop for every tableau
+    steps.py         the loop over steps of every integrator, and when a state is checked
+    fixed_steps.py   one step of integrators whose steps are all alike
+    runge_kutta.py   one step of integrators that control their steps, by any tableau
     implicit.py      the stages of implicit ones
     forces.py        forces, history, and what they do per second
     pairs.py         pairs of particles that are near each other
     rods.py          what is computed of one rod
-    turning.py       rotations, the second block of coordinates, of models that bend
     events.py        where rods leave the branches of their laws
     observing.py     energies and derived columns of a state
 """

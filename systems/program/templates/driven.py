@@ -16,7 +16,7 @@ added last of all (`unpushed` is the sum without them), so that others can be tr
 def push():
     """Add the contact forces to all others."""
     for i in range(displacement.shape[0]):
-        for d in range(2):
+        for d in range(D):
             unpushed[i, d] = force[i, d]
             force[i, d] += support[i, d]
 
@@ -29,7 +29,8 @@ def drive(
     rows,
     place,
     speed,
-    limits,
+    tolerance,
+    limit,
     breaks,
     loads_end,
     control,
@@ -67,7 +68,7 @@ def drive(
             return
         if order == Order.EVALUATE.value:
             if whole[Whole.FRESH] == 0:
-                insert(evaluate)
+                insert(present)
                 whole[Whole.FRESH] = 1
             while breaks[coming] <= control[Control.TIME]:
                 coming += 1
@@ -93,8 +94,10 @@ def drive(
                 for i in range(displacement.shape[0]):
                     for d in range(2):
                         support[i, d] = pressing[i, d]
+                    for d in range(D):
                         force[i, d] = unpushed[i, d] + support[i, d]
-                insert(pushed)
+                if not ALIKE:
+                    accelerate(force, resisting, work[0], particles_mobility)
                 whole[Whole.PUSHED] = whole[Whole.CHOSEN] > 0
             insert(take)
             whole[Whole.FRESH] = 1
@@ -107,129 +110,11 @@ def drive(
         order = collide(driven, control, account, place, speed)
 
 
-def keep():
-    """Keep what a step changes besides the state of the particles, the clock and the account."""
-    for i in range(force.shape[0]):
-        for d in range(2):
-            kept_force[i, d] = unpushed[i, d]
-            kept_resisting[i, d] = resisting[i, d]
-    for k in range(power.shape[0]):
-        kept_power[k] = power[k]
-    insert(others)
+def take():
+    """Take whole steps, or one to Real.END: in parts, where the error asks for that, and counted once all the same.
 
-
-def put_back():
-    """Put back what was kept."""
-    for i in range(force.shape[0]):
-        for d in range(2):
-            unpushed[i, d] = kept_force[i, d]
-            resisting[i, d] = kept_resisting[i, d]
-    for k in range(power.shape[0]):
-        power[k] = kept_power[k]
-    insert(others)
-
-
-def copy():
-    for r in range(insert(of).shape[0]):
-        insert(to)[r] = insert(of)[r]
-
-
-def copy_turned():
-    for r in range(insert(of).shape[0]):
-        insert(to)[r, 0] = insert(of)[r, 0]
-
-
-# --- integrators with fixed steps --------------------------------------------------------------------
-
-
-def evaluate_fixed():
-    """The forces of the present state."""
-    forces(control[Control.TIME], control[Control.STEP_SIZE], *state, *columns)
-    insert(resist)
-
-
-def take_fixed():
-    """Take whole steps, or one that ends at Real.END, from which on steps are counted then.
-
-    How old the run is, by which it is checked, stays the same: impacts do not make it a new one. Contact forces end with
-    the step: those of a short one would count many times over in the energy that whole ones conserve.
+    How old a run of fixed steps is, by which it is checked, stays the same: impacts do not make it a new one.
     """
-    size = control[Control.STEP_SIZE]
-    total = whole[Whole.TOTAL]
-    if real[Real.END] < math.inf:
-        began = control[Control.TIME]
-        dt = real[Real.END] - began
-        age = min(total - whole[Whole.SINCE], CHECK_INTERVAL)
-        if is_check_due(total + 1, age + 1):
-            measure(*placed, *moving, *pulled, *resisted, measures, *columns)
-            account[Account.GUARD_ENERGY] = conserved(measures, account, dt, SHADOW)
-        taken, reason = advance(
-            1,
-            True,
-            total,
-            age,
-            began - age * dt,
-            dt,
-            breaks,
-            loads_end,
-            *state,
-            *scratch,
-            account,
-            measures,
-            *columns,
-        )
-        age = min(age + taken, CHECK_INTERVAL)
-        control[Control.TIME] = real[Real.END]
-        real[Real.ORIGIN] = real[Real.END] - age * size
-        whole[Whole.SINCE] = total + taken - age
-        measure(*placed, *moving, *unpressed, *resisted, measures, *columns)
-        account[Account.GUARD_ENERGY] = conserved(measures, account, size, SHADOW)
-    else:
-        steps = whole[Whole.WANTED] if alone else whole[Whole.STEPS]
-        since = total - whole[Whole.SINCE]
-        origin = real[Real.ORIGIN]
-        until = real[Real.UNTIL] if alone else real[Real.BY]
-        if until < math.inf:
-            steps = min(steps, max(int((until - control[Control.TIME]) / size * (1.0 + 1e-12)), 0))
-        taken, reason = advance(
-            steps,
-            whole[Whole.FRESH] == 1,
-            total,
-            since,
-            origin,
-            size,
-            breaks,
-            loads_end,
-            *state,
-            *scratch,
-            account,
-            measures,
-            *columns,
-        )
-        if taken > 0:
-            control[Control.TIME] = origin + (since + taken) * size
-    whole[Whole.TOTAL] = total + taken
-    whole[Whole.REASON] = reason
-
-
-# --- integrators that control their steps -------------------------------------------------------------
-
-
-def evaluate_controlled():
-    """The forces of the present state."""
-    evaluate(control[Control.TIME], control[Control.STEP_SIZE], *state, power, *columns)
-    accelerate(force, resisting, work[0], particles_mobility)
-    insert(begin_turns)
-
-
-def pushed():
-    """The accelerations by other contact forces, or in a state that was put back."""
-    accelerate(force, resisting, work[0], particles_mobility)
-    insert(begin_turns)
-
-
-def take_controlled():
-    """Take whole steps, or one to Real.END: in parts, where the error asks for that, and counted once all the same."""
     end = real[Real.END]
     until = real[Real.UNTIL] if alone else (real[Real.BY] if end == math.inf else end)
     wanted = whole[Whole.WANTED] if alone else (whole[Whole.STEPS] if end == math.inf else REVIEW_INTERVAL)
@@ -262,8 +147,9 @@ def take_controlled():
         whole[Whole.TOTAL] = total + taken
         now = control[Control.TIME]
         if (taken > 0 or now > began) and (tolerance > 0.0 or now == end):
-            real[Real.ORIGIN] = now
-            whole[Whole.SINCE] = total + taken
+            age = 0 if tolerance > 0.0 else min(total + taken - whole[Whole.SINCE], CHECK_INTERVAL)
+            real[Real.ORIGIN] = now - age * control[Control.STEP_SIZE]
+            whole[Whole.SINCE] = total + taken - age
         goes_on = ended == StopReason.DONE or ended == StopReason.REVIEW or ended == StopReason.REST
         if alone or end == math.inf or now >= end or not goes_on:
             break

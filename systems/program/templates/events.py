@@ -8,7 +8,7 @@ Integrators that control their steps end one there. For every such law, and ever
 # mypy: ignore-errors
 
 
-def mark(dt, placed, moving, marks, *columns):
+def mark(dt, displacement, velocity, marks, *columns):
     """Note for every rod which branch of its law it is on; returns how far the nearest is from leaving."""
     low = math.inf
     insert(rods)
@@ -16,7 +16,7 @@ def mark(dt, placed, moving, marks, *columns):
     return low
 
 
-def passed(dt, placed, moving, marks, first, *columns):
+def passed(dt, displacement, velocity, marks, first, *columns):
     """How far the nearest rod is from leaving its branch at the end of a step; negative: it has left.
 
     first: this is the first look at the step, which chooses the rods whose least margins are watched.
@@ -82,7 +82,7 @@ def of_particle():
     slope = (insert(margin) - gap) / (insert(ahead) * dt)
 
 
-def happened(placed, moving, scratch, *columns):
+def happened(displacement, velocity, scratch, *columns):
     """True if the quantity of an Event changed sign in the step that ends here, of which the sides take note.
 
     A controlled step ends within EVENT_FLOOR of the change: a quantity that close counts as changed if it came from afar.

@@ -4,29 +4,29 @@
 # mypy: ignore-errors
 
 
-def external(time, dt, placed, moving, pulled, resisted, *columns):
+def external(time, dt, displacement, velocity, force, resisting, *columns):
     """force ← constant forces, varying loads, laws of particles (kN); resisting ← laws that resist their motion."""
     insert(particle_forces)
 
 
 def forces(time, dt, state, *columns):
     """force ← all but dampers and drag (kN); resisting ← dampers and drag; direction ← of the rods."""
-    external(time, dt, *placed, *moving, *pulled, *resisted, *columns)
+    external(time, dt, displacement, velocity, force, resisting, *columns)
     insert(rod_forces)
 
 
 def accept(time, dt, state, account, *columns):
     """As forces(), at the end of a step: history is brought up to date first."""
-    external(time, dt, *placed, *moving, *pulled, *resisted, *columns)
+    external(time, dt, displacement, velocity, force, resisting, *columns)
     insert(rod_forces)
 
 
-def resist(time, dt, placed, moving, resisted, direction, power, *columns):
+def resist(time, dt, displacement, velocity, resisting, direction, power, *columns):
     """resisting ← dampers and drag at this velocity (kN); power ← what each account gains per second (kW)."""
     insert(resistance)
 
 
-def load_power(time, moving, *columns):
+def load_power(time, velocity, *columns):
     """What the varying loads do per second at a velocity (kW)."""
     power = 0.0
     insert(loads)
@@ -38,11 +38,34 @@ def evaluate(time, dt, state, power, *columns):
     insert(trial_forces)
 
 
-def remember(time, dt, placed, account, *columns):
+def remember(time, dt, displacement, account, *columns):
     """Bring the history of all rods up to date at the end of a step."""
     insert(history)
 
 
 def commit(time, dt, state, account, *columns):
     """Bring history up to date in a state that no step has led to."""
-    insert(history)
+    if ALIKE:
+        accept(time, dt, *state, account, *columns)
+    else:
+        remember(time, dt, displacement, account, *columns)
+
+
+def present():
+    """The forces of the present state, and what follows from them."""
+    if ALIKE:
+        forces(control[Control.TIME], control[Control.STEP_SIZE], *state, *columns)
+        if POWERS:
+            resist(
+                control[Control.TIME],
+                control[Control.STEP_SIZE],
+                displacement,
+                velocity,
+                resisting,
+                direction,
+                power,
+                *columns,
+            )
+    else:
+        evaluate(control[Control.TIME], control[Control.STEP_SIZE], *state, power, *columns)
+        accelerate(force, resisting, work[0], particles_mobility)

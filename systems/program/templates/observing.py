@@ -4,7 +4,7 @@
 # mypy: ignore-errors
 
 
-def measure(placed, moving, pulled, resisted, measures, *columns):
+def measure(displacement, velocity, force, resisting, measures, *columns):
     """Energies, residual and scales of an accepted state, for judge(); what is asleep is included."""
     kinetic = 0.0
     power_norm = 0.0
@@ -13,24 +13,35 @@ def measure(placed, moving, pulled, resisted, measures, *columns):
     residual = 0.0
     largest = 0.0
     moved = 0.0
+    if BENDS:
+        rolled = 0.0
+        firmest = 0.0
     for i in range(displacement.shape[0]):
-        for d in range(2):
-            kinetic += particles_mass[i] * velocity[i, d] * velocity[i, d]
+        for d in range(D):
+            kinetic += insert(mass) * velocity[i, d] * velocity[i, d]
             potential += particles_constant_force[i, d] * displacement[i, d]
             total = force[i, d] + resisting[i, d] if RATES else force[i, d]
             power_norm += total * particles_mobility[i, d] * total
+            pull = abs(force[i, d])
+            load = abs(particles_constant_force[i, d])
+            if BENDS:
+                pull *= lever[i, d]
+                load *= lever[i, d]
             if particles_mobility[i, d] > 0.0:
                 power += total * velocity[i, d]
-                residual = max(residual, abs(force[i, d]))
-            largest = max(largest, abs(particles_constant_force[i, d]))
+                residual = max(residual, pull)
+            largest = max(largest, load)
+        for d in range(2):
             moved = max(moved, abs(displacement[i, d]))
-    insert(turning)
+        if BENDS:
+            rolled = max(rolled, abs(displacement[i, 2] * per_arm[0]))
     elastic = 0.0
     stiffest = 0.0
     insert(rods)
     insert(pairs)
-    round_off = insert(round_off) * stiffest * moved
-    insert(turned)
+    round_off = EPSILON * stiffest * moved
+    if BENDS:
+        round_off += EPSILON * firmest * rolled
     measures[Measure.KINETIC] = measures[Measure.ASLEEP_KINETIC] + 0.5 * kinetic
     measures[Measure.POWER_NORM] = measures[Measure.ASLEEP_POWER_NORM] + 1000.0 * power_norm
     measures[Measure.ELASTIC] = measures[Measure.ASLEEP_ELASTIC] + 500.0 * elastic
@@ -41,25 +52,23 @@ def measure(placed, moving, pulled, resisted, measures, *columns):
     measures[Measure.POWER] = measures[Measure.ASLEEP_POWER] + 1000.0 * power
 
 
-def observe(time, dt, placed, moving, acting, reaction, forces, power, measures, observed, *columns):
+def observe(time, dt, displacement, velocity, applied, reaction, forces, power, measures, observed, *columns):
     """The derived columns of rods and particles, and the measures, of a state.
 
-    applied: what acts on each particle from outside (kN); reaction: of its support. yielding: which rods yield.
-    tension, compression: the rods' strengths (kN). yields: whether the model has plasticity.
+    applied: what acts on each particle from outside, contact forces included (kN); reaction: of its support. yielding: which
+    rods yield. tension, compression: their strengths (kN). yields: whether the model has plasticity.
     """
-    external(time, dt, *placed, *moving, *acting, *resisted, *columns)
-    insert(pushed)
-    insert(evaluation)
-    measure(*placed, *moving, *pulled, *resisted, measures, *columns)
+    external(time, dt, displacement, velocity, applied, resisting, *columns)
+    if MEETS:
+        for i in range(displacement.shape[0]):
+            for d in range(2):
+                applied[i, d] += support[i, d]
+    if ALIKE:
+        forces(time, dt, *state, *columns)
+    else:
+        evaluate(time, dt, *state, power, *columns)
+    measure(displacement, velocity, force, resisting, measures, *columns)
     for i in range(displacement.shape[0]):
-        for d in range(2):
+        for d in range(D):
             reaction[i, d] = 0.0 - (force[i, d] + resisting[i, d]) if fixed[i, d] else 0.0
-    insert(clamps)
     insert(rods)
-
-
-def pushed():
-    """Contact forces act from outside."""
-    for i in range(displacement.shape[0]):
-        for d in range(2):
-            applied[i, d] += support[i, d]

@@ -1,26 +1,23 @@
-"""Runge–Kutta integrators: one loop with error control and events for every tableau.
+"""Runge–Kutta integrators: one step with error control and events for every tableau.
 
 Constants besides those of every template: the tableau's, STAGES, NODES, … (systems/physics/tableaus.py), and the loop's
-(systems/physics/integrators.py). `work` has rows of shape (particles, 2): the accelerations of the stages, the
+(systems/physics/integrators.py). `work` has rows of shape (particles, D): the accelerations of the stages, the
 displacement and velocity at a stage and then of the result, and what implicit stages need. `marks` has a row for
 each rod. The function that computes the stages is called `stages` in the program.
 """
 
-# ruff: noqa: F821
+# ruff: noqa: F821, F841
 # mypy: ignore-errors
 
 
 def explicit_stages(time, dt, allowed, state, scratch, *columns):
     """Accelerations of the stages after the first; returns True: they can always be computed."""
     trial, speed = work[STAGES], work[STAGES + 1]
-    insert(trial_turns)
     for s in range(1, STAGES):
         extrapolate(s, dt, displacement, velocity, work, trial, speed)
-        insert(extrapolate_turns)
         at = time + NODES[s] * dt
-        evaluate(at, dt, *tried, *forces, stage_power, *columns)
+        evaluate(at, dt, trial, speed, *forces, stage_power, *columns)
         accelerate(force, resisting, work[s], particles_mobility)
-        insert(accelerate_turns)
         if POWERS or LOADS:
             for k in range(gained.shape[0]):
                 gained[k] += RESULT_V[0, s] * stage_power[k]
@@ -30,7 +27,7 @@ def explicit_stages(time, dt, allowed, state, scratch, *columns):
 def extrapolate(s, dt, displacement, velocity, work, trial, speed):
     """trial, speed ← displacement and velocity at stage `s`, from the accelerations of the stages before it."""
     for i in range(displacement.shape[0]):
-        for d in range(2):
+        for d in range(D):
             p = 0.0
             q = 0.0
             for j in range(s):
@@ -44,23 +41,21 @@ def extrapolate(s, dt, displacement, velocity, work, trial, speed):
 def accelerate(force, resisting, acceleration, particles_mobility):
     """acceleration ← that of the particles under the forces of a state (m/s²)."""
     for i in range(force.shape[0]):
-        fx = force[i, 0]
-        fy = force[i, 1]
-        if RATES:
-            fx += resisting[i, 0]
-            fy += resisting[i, 1]
-        acceleration[i, 0] = fx * particles_mobility[i, 0]
-        acceleration[i, 1] = fy * particles_mobility[i, 1]
+        for d in range(D):
+            total = force[i, d] + resisting[i, d] if RATES else force[i, d]
+            acceleration[i, d] = total * particles_mobility[i, d]
 
 
-def combine(dt, tolerance, displacement, velocity, work, control, search):
+def combine(kind, dt, tolerance, displacement, velocity, work, control, search):
     """The result of a step, left in the trial rows of `work`; returns its error: 1 is the tolerance, 0 without control.
+
+    kind: 0 for what moves, 1 for what turns: the error of a step is the larger of the two.
 
     The norms are Euclidean over all particles, of displacement and velocity each relative to the largest so
     far: an integrator that controlled each component relative to itself would chase the round-off of particles
-    that stand still. Round-off of displacements x causes one of accelerations ω²x: in steps shorter than the
-    longest stable one, some 6/ω, the velocities have less of it. Short steps can therefore cross a force that
-    jumps, such as the damper of a cable.
+    that stand still. Those of rotations count from a share of what displacements amount to. Round-off of displacements x
+    causes one of accelerations ω²x: in steps shorter than the longest stable one, some 6/ω, the velocities have less of
+    it. Short steps can therefore cross a force that jumps, such as the damper of a cable.
     """
     trial, speed = work[STAGES], work[STAGES + 1]
     size_x = 0.0
@@ -70,7 +65,7 @@ def combine(dt, tolerance, displacement, velocity, work, control, search):
     also_x = 0.0
     also_v = 0.0
     for i in range(displacement.shape[0]):
-        for d in range(2):
+        for d in range(2 * kind, 2 + kind):
             p = 0.0
             q = 0.0
             for j in range(STAGES):
@@ -97,19 +92,16 @@ def combine(dt, tolerance, displacement, velocity, work, control, search):
                     q += RESULT_X[2, j] * work[j, i, d]
                 also_x += q * q
                 also_v += p * p
-    search[Search.LARGEST_DISPLACEMENT] = max(control[Control.LARGEST_DISPLACEMENT], insert(norm_x))
-    search[Search.LARGEST_SPEED] = max(control[Control.LARGEST_SPEED], insert(norm_v))
+    largest_x = max(control[Control.LARGEST_DISPLACEMENT + 2 * kind], math.sqrt(size_x))
+    largest_v = max(control[Control.LARGEST_SPEED + 2 * kind], math.sqrt(size_v))
+    if kind > 0:
+        largest_x = max(largest_x, LEAST_TURN * search[Search.LARGEST_DISPLACEMENT])
+        largest_v = max(largest_v, LEAST_TURN * search[Search.LARGEST_SPEED])
+    search[Search.LARGEST_DISPLACEMENT + 2 * kind] = largest_x
+    search[Search.LARGEST_SPEED + 2 * kind] = largest_v
+    size = size_x + size_v
     return error_of(
-        dt,
-        tolerance,
-        search[Search.LIMIT],
-        search[Search.LARGEST_DISPLACEMENT],
-        search[Search.LARGEST_SPEED],
-        size_x + size_v,
-        wrong_x,
-        wrong_v,
-        also_x,
-        also_v,
+        dt, tolerance, search[Search.LIMIT], largest_x, largest_v, size, wrong_x, wrong_v, also_x, also_v
     )
 
 
@@ -183,7 +175,7 @@ def attempt(time, end, tolerance, smallest, control, state, scratch, *columns):
     gap = 0.0
     rejected = False
     if EVENTS:
-        gap = mark(h, *placed, *moving, marks, *columns)
+        gap = mark(h, displacement, velocity, marks, *columns)
         begin_search(search, h, gap)
     while h >= smallest:
         ahead = end
@@ -192,16 +184,19 @@ def attempt(time, end, tolerance, smallest, control, state, scratch, *columns):
             h = ahead - time
         for k in range(gained.shape[0]):
             gained[k] = RESULT_V[0, 0] * power[k]
-        allowed = (tolerance if tolerance > 0.0 else FIXED_TOLERANCE) * control[Control.LARGEST_SPEED]
-        insert(allow_turns)
+        fastest = max(control[Control.LARGEST_SPEED], control[Control.LARGEST_SPIN])
+        allowed = (tolerance if tolerance > 0.0 else FIXED_TOLERANCE) * fastest
         solved = stages(time, h, allowed, *state, *scratch, *columns)
-        error = combine(h, tolerance, displacement, velocity, work, control, search)
-        insert(combine_turns)
+        error = 0.0
+        for kind in range(D - 1):
+            found = combine(kind, h, tolerance, displacement, velocity, work, control, search)
+            if error >= 0.0 and not error >= found:  # also where it is not a number
+                error = found
         if not solved or not error < math.inf:
             error = BEYOND
         elif EVENTS and search[Search.ENDED] == 0.0:
             first = search[Search.FAR] == 0.0
-            wanted = narrow(search, h, passed(h, *reached, marks, first, *columns))
+            wanted = narrow(search, h, passed(h, work[STAGES], work[STAGES + 1], marks, first, *columns))
             if wanted < smallest:  # the event is where the step begins
                 search[Search.ENDED] = 1.0
                 wanted = search[Search.LENGTH]
@@ -222,70 +217,29 @@ def attempt(time, end, tolerance, smallest, control, state, scratch, *columns):
     return 0.0, time, 0.0, True
 
 
-def controlled(steps, first, origin, tolerance, limit, bounds, control, state, scratch, account, *columns):
-    """Take up to `steps` steps that end by `until` (s); returns (steps taken, StopReason).
-
-    tolerance: relative, of one step; 0: all steps have the length control[Control.STEP_SIZE]. breaks: times that
-    no step passes, ascending, the last one infinite. landing: another such time (s), after which steps of fixed
-    length are counted from there. A fixed step that breaks interrupt goes on to its end in pieces; none of them is taken
-    where that end is after `until`.
-    """
-    time = control[Control.TIME]
-    search[Search.LIMIT] = limit
-    taken = 0
-    coming = 0
-    while taken < steps:
-        step = control[Control.STEP_SIZE]
-        goal, reach = aim(time, step, origin, first + taken, tolerance)
-        while breaks[coming] <= time:
-            coming += 1
-        stop = breaks[coming]
-        if time < landing < stop:
-            stop = landing
-        end = stop if reach >= stop else goal
-        if end > until or (tolerance == 0.0 and min(goal, landing) > until):
-            break
-        least = max(SMALLEST_SHARE * min(step, end - time), np.nextafter(time, math.inf) - time)
-        h, ahead, error, rejected = attempt(time, end, tolerance, least, control, *state, *scratch, *columns)
-        if h == 0.0:
-            control[Control.TIME] = time
-            return taken, StopReason.UNRESOLVED.value
-        time = ahead
-        for i in range(displacement.shape[0]):
-            for d in range(2):
-                displacement[i, d] = work[STAGES, i, d]
-                velocity[i, d] = work[STAGES + 1, i, d]
-        insert(accept_turns)
-        if POWERS or LOADS:
-            for k in range(gained.shape[0]):
-                account[k] += 1000.0 * h * gained[k]
-        if COMMITS:
-            remember(time, h, *placed, account, *columns)
-        evaluate(time, h, *state, power, *columns)
-        accelerate(force, resisting, work[0], particles_mobility)
-        insert(begin_turns)
-        control[Control.LARGEST_DISPLACEMENT] = search[Search.LARGEST_DISPLACEMENT]
-        control[Control.LARGEST_SPEED] = search[Search.LARGEST_SPEED]
-        insert(largest_turns)
-        if tolerance > 0.0:
-            taken += 1
-            follow(control, h, limit, error, rejected)
-        elif time >= goal or time == landing:
-            taken += 1
-        if STOPS and happened(*placed, *moving, *scratch, *columns):
-            control[Control.TIME] = time
-            return taken, StopReason.EVENT.value
-    control[Control.TIME] = time
-    return taken, StopReason.DONE.value
-
-
-def aim(time, step, origin, age, tolerance):
-    """When a step would end, and up to when a break ends it instead: no step of a sliver is left before the break."""
+def step():
+    """A step that meets the tolerance and passes no event."""
+    least = max(SMALLEST_SHARE * min(size, end - time), np.nextafter(time, math.inf) - time)
+    h, time, error, rejected = attempt(time, end, tolerance, least, control, *state, *scratch, *columns)
+    if h == 0.0:
+        return taken, StopReason.UNRESOLVED.value
+    for i in range(displacement.shape[0]):
+        for d in range(D):
+            displacement[i, d] = work[STAGES, i, d]
+            velocity[i, d] = work[STAGES + 1, i, d]
+    if POWERS or LOADS:
+        for k in range(gained.shape[0]):
+            account[k] += 1000.0 * h * gained[k]
+    if COMMITS:
+        remember(time, h, displacement, account, *columns)
+    evaluate(time, h, *state, power, *columns)
+    accelerate(force, resisting, work[0], particles_mobility)
+    for k in range(2 * (D - 1)):
+        control[Control.LARGEST_DISPLACEMENT + k] = search[Search.LARGEST_DISPLACEMENT + k]
     if tolerance > 0.0:
-        goal = time + step
-        return goal, goal + 0.01 * step
-    goal = origin + (age + 1) * step
-    return goal, goal
+        follow(control, h, limit, error, rejected)
+    counted = total + taken + 1
+    compared = control[Control.STEP_SIZE]
 
 
 def follow(control, h, limit, error, rejected):
@@ -306,66 +260,3 @@ def follow(control, h, limit, error, rejected):
     else:
         control[Control.STEP_SIZE] = min(max(h * factor, step if h < step else 0.0), limit)
     control[Control.STEP_ERROR] = max(error, LEAST_ERROR)
-
-
-def advance(
-    steps,
-    fresh,
-    total,
-    first,
-    origin,
-    tolerance,
-    limit,
-    bounds,
-    loads_end,
-    control,
-    state,
-    scratch,
-    account,
-    measures,
-    *columns,
-):
-    """Take up to `steps` steps that end by `until` (s); returns (steps taken, StopReason).
-
-    fresh: the forces are still those of the present state. total: all steps so far. first: steps since the time origin,
-    which moves with every step whose size is controlled. Checks happen after 1, 2, 4, … steps in all, and whenever the
-    total is a multiple of CHECK_INTERVAL: at counts that do not depend on how the steps are divided into calls.
-    """
-    if not fresh:
-        evaluate(control[Control.TIME], control[Control.STEP_SIZE], *state, power, *columns)
-        accelerate(force, resisting, work[0], particles_mobility)
-        insert(begin_turns)
-    taken = 0
-    while taken < steps:
-        wanted = min(steps - taken, steps_to_check(total + taken, total + taken))
-        done, ended = integrate(
-            wanted,
-            first + taken,
-            origin,
-            tolerance,
-            limit,
-            *bounds,
-            control,
-            *state,
-            *scratch,
-            account,
-            *columns,
-        )
-        taken += done
-        if ended == StopReason.UNRESOLVED:
-            return taken, ended
-        now = total + taken
-        if done > 0 and is_check_due(now, now):
-            measure(*placed, *moving, *pulled, *resisted, measures, *columns)
-            reason = judge(
-                measures, account, control[Control.STEP_SIZE], SHADOW, 0.0, control[Control.TIME] >= loads_end
-            )
-            if reason != StopReason.DONE:
-                return taken, reason.value
-        if done > 0 and now % REVIEW_INTERVAL == 0:
-            return taken, StopReason.REVIEW.value
-        if ended == StopReason.EVENT:
-            return taken, ended
-        if done < wanted:
-            break
-    return taken, StopReason.DONE.value

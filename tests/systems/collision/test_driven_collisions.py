@@ -506,7 +506,7 @@ def test_a_state_that_is_returned_to_is_under_its_own_contact_forces() -> None:
     before, unbalanced = simulation.present(), simulation.program.unbalanced.copy()
     session.run(time=0.3)
     assert persistent_contacts(session.model) is not None
-    simulation.programs.return_to(before)
+    before.restore(simulation.model)
     simulation.program.observe()
     assert simulation.program.unbalanced.tolist() == unbalanced.tolist()
 

@@ -1,6 +1,7 @@
 """Templates of step programs: what stands for what, and how it is put in."""
 
 import ast
+import re
 from enum import IntEnum
 
 import numpy as np
@@ -17,7 +18,7 @@ from pinjoint.systems.program.program import _writer
 from pinjoint.systems.program.writer import FEW, MANY, VERY_MANY
 
 # mypy: ignore-errors
-# ruff: noqa: F821, F841
+# ruff: noqa: F821, F841, SIM108
 
 
 def template(time, state, *columns):
@@ -33,6 +34,18 @@ def template(time, state, *columns):
 
 def nothing():
     """To do."""
+
+
+def choosing():
+    """A choice in another."""
+    if OUTER:
+        first = 1
+        if INNER:
+            second = 2
+        else:
+            second = 3
+    if first:
+        last = 4
 
 
 def test_a_template_is_pasted_with_lines_expressions_and_groups() -> None:
@@ -53,6 +66,13 @@ def test_a_fragment_is_what_follows_the_docstring() -> None:
     assert fragment(nothing) == []
 
 
+def test_of_a_choice_the_lines_that_are_wanted_stay() -> None:
+    last = ["if first:", "    last = 4"]
+    assert fragment(choosing, OUTER=True, INNER=True) == ["first = 1", "second = 2", *last]
+    assert fragment(choosing, OUTER=True, INNER=False) == ["first = 1", "second = 3", *last]
+    assert fragment(choosing, OUTER=False, INNER=True) == last
+
+
 @pytest.mark.parametrize("form", [FEW, MANY, VERY_MANY])
 @pytest.mark.parametrize("integrator", ["velocity_verlet", "dop853", "esdirk4"])
 def test_nothing_of_a_template_is_left_in_a_program(integrator: str, form: str) -> None:
@@ -63,6 +83,7 @@ def test_nothing_of_a_template_is_left_in_a_program(integrator: str, form: str) 
     tree = ast.parse(writer.source())
     assert not any(isinstance(node, ast.Starred) for node in ast.walk(tree))
     assert not any(isinstance(node, ast.Name) and node.id == "insert" for node in ast.walk(tree))
+    assert not re.search(r"\b(ALIKE|BENDS|DAMPED|FORESEES|LOADED|MEETS|OF_AXIS|WARM)\b", writer.source())
     functions = [node for node in tree.body if isinstance(node, ast.FunctionDef)]
     assert functions[0].name == "advance"
     assert {"observe", "commit"} <= {function.name for function in functions}
