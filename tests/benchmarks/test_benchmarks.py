@@ -11,7 +11,7 @@ from pinjoint.commands import bench
 from pinjoint.commands.arguments import UsageError
 from pinjoint.commands.output import FORMATS, Format
 from pinjoint.components.settings import INTEGRATORS
-from tests.benchmarks import collisions, drawing, speed, stability, start
+from tests.benchmarks import collisions, drawing, ratios, speed, stability, start
 from tests.reference.scenes_of_discs import gas, packed
 from tests.stability.cases import damped
 
@@ -57,6 +57,16 @@ def test_one_model_is_examined_by_its_number(capsys: pytest.CaptureFixture[str])
     assert bench.command(["differential", "--seed", "14", "--format", "json"]) == 0
     (row,) = json.loads(capsys.readouterr().out)["differential"]["model"]
     assert row["seed"] == 14
+
+
+def test_ratios_that_do_not_hold_are_told() -> None:
+    good = {"kind": "elastic", "rods": "1000", "ns_per_rod": "8", "ratio_to_plain": "1.1"}
+    large = good | {"rods": "100000", "ns_per_rod": "16"}
+    assert list(ratios.broken([good, large])) == []
+    small = good | {"rods": "3", "ns_per_rod": "90", "ratio_to_plain": "3"}
+    assert list(ratios.broken([small, good])) == []
+    assert "2.50 times a plain kernel" in "".join(ratios.broken([good | {"ratio_to_plain": "2.5"}]))
+    assert "80.0 ns a rod among 100000" in "".join(ratios.broken([good, large | {"ns_per_rod": "80"}]))
 
 
 def test_every_part_of_a_frame_is_told(monkeypatch: pytest.MonkeyPatch) -> None:
