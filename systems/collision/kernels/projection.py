@@ -195,7 +195,7 @@ def _fit(fitted, group):
         for r in range(fitted):
             c = group.chosen[r]
             present = contacts[c, Contact.IMPULSE]
-            if values[r] <= 0.0 and present <= share * (present - values[r]):
+            if values[r] <= 0.0 and not present / (present - values[r]) > share:  # to the bit as above
                 contacts[c, Contact.IMPULSE] = 0.0
                 group.state[c] = IDLE
             else:

@@ -7,7 +7,6 @@ from typing import Any
 import numpy as np
 import pytest
 from hypothesis import example, given
-from hypothesis import seed as draw
 from hypothesis import strategies as st
 from numpy.typing import NDArray
 
@@ -88,7 +87,7 @@ def pushed(group: Any) -> NDArray[np.float64]:
     return change
 
 
-@draw(1)  # of one in 250, whose contacts nearly depend on one another, the sweeps of a crowd are too few
+@example(seed=181, discs=7, slack=0.0)  # of two quotients that are equal one was taken for larger
 @given(seed=st.integers(0, 10**6), discs=st.integers(2, 9), slack=st.sampled_from([0.0, 0.7]))
 def test_contacts_are_held_apart_by_the_least_change_of_motion(seed: int, discs: int, slack: float) -> None:
     """The conditions of Karush, Kuhn and Tucker, which only the least change satisfies."""
