@@ -166,6 +166,7 @@ class Program:
     def _of_no_rods(self) -> list[Column]:
         whole: dict[str, Any] = {
             "pair_reach": np.array([0.0, math.inf]),
+            "pair_count": np.zeros(1, dtype=np.int64),
             "pair_grid": Grid.empty(0, 1),
         }  # no list
         return [whole.get(name, column[:0]) for name, column in self.columns.items()]
