@@ -123,6 +123,7 @@ class Text(Part):
 
     def _lines(self, u: float, width: float) -> list[str]:
         size = self.size(u, width)
+        width += 0.01  # pixels: what is as wide as its place is whole, whatever sums of widths were rounded to
         if self.lines == 1:
             return [shortened(self.text, width, size, self.weight)]
         return at_most(wrapped(self.text, width, size, self.weight), self.lines, width, size, self.weight)

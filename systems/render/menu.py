@@ -13,7 +13,7 @@ from pinjoint.systems.render.layout import Column, Drawn, Gap, Paper, Part, Plat
 from pinjoint.systems.render.marks import Mark, Panel, Strokes
 from pinjoint.systems.render.theme import Colour, Theme, faded
 
-_SIZES = (12.5, 21.0), (10.0, 16.0)  # points: type, and from entry to entry
+_SIZES = (12.5, 21.0), (11.5, 19.0), (10.0, 16.0), (9.0, 13.0)  # points: type, and from entry to entry
 _LEAST = 200.0  # points across a column where not all have room
 _EDGE = 4.0  # points above, below, and to the edges of the window
 
