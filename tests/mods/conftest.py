@@ -8,8 +8,22 @@ import pytest
 
 from pinjoint import mods
 from pinjoint.systems.input.actions import ACTIONS
+from pinjoint.systems.program.compiler import VARIABLE, Choice, Compile
 
 Write = Callable[..., Path]
+
+
+@pytest.fixture(autouse=True)
+def interpreted(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Laws are interpreted, in processes that a test starts, too, unless it is about compiling them."""
+    monkeypatch.setattr(Choice, "compile", Compile.NEVER)
+    monkeypatch.setenv(VARIABLE, Compile.NEVER.value)
+
+
+@pytest.fixture
+def compiling(interpreted: None, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Programs with laws are compiled before their first step."""
+    monkeypatch.setattr(Choice, "compile", Compile.SOON)
 
 
 @pytest.fixture

@@ -30,7 +30,7 @@ RUN = """
 import json, sys
 from pinjoint import Session
 from pinjoint.systems.program.compiler import Choice
-Choice.patience = {seconds}
+Choice.patience = 1.0
 print("runs", flush=True)
 Session.open(json.loads(sys.argv[1]), mods=[sys.argv[2]]).run(time=0.1)
 """
@@ -43,15 +43,14 @@ def endless(write_mod: Write) -> Path:
     return write_mod("apple", law)
 
 
-def process(folder: Path, form: str, seconds: float) -> subprocess.Popen[str]:
-    words = [sys.executable, "-c", RUN.format(seconds=seconds), json.dumps(TRUSS), str(folder)]
-    environment = os.environ | {"PINJOINT_COMPILE": form}
+def process(form: str, *words: str) -> subprocess.Popen[str]:
+    words, environment = (sys.executable, *words), os.environ | {"PINJOINT_COMPILE": form}
     return subprocess.Popen(words, env=environment, text=True, stdout=subprocess.PIPE, stderr=subprocess.PIPE)
 
 
 @pytest.mark.parametrize("form", ["never", "always"])
 def test_a_kernel_that_does_not_end_is_named(write_mod: Write, form: str) -> None:
-    with process(endless(write_mod), form, 1.0) as run:
+    with process(form, "-c", RUN, json.dumps(TRUSS), str(endless(write_mod))) as run:
         _, said = run.communicate(timeout=120)
     assert run.returncode == 1
     assert "A step has not ended for 1 s. It calls kernels of mods: bad (" in said
@@ -74,14 +73,8 @@ def test_a_compiler_that_takes_long_is_no_kernel_that_does_not_end(fresh_process
 
 def test_ctrl_c_is_heard_while_machine_code_does_not_end(write_mod: Write) -> None:
     folder = endless(write_mod)
-    program = [sys.executable, "-m", "pinjoint", "run", "isostatic", "--at", "1", "--mods", str(folder)]
-    with subprocess.Popen(
-        program,
-        env=os.environ | {"PINJOINT_COMPILE": "always"},
-        text=True,
-        stdout=subprocess.PIPE,
-        stderr=subprocess.PIPE,
-    ) as run:
+    words = "-m", "pinjoint", "run", "isostatic", "--at", "1", "--mods", str(folder)
+    with process("always", *words) as run:
         assert run.stderr is not None
         assert "no step was made yet" in run.stderr.readline()  # after 5 s
         began = time.monotonic()

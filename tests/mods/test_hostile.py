@@ -76,6 +76,7 @@ def test_in_a_window(hostile: Hostile, bad: Any) -> None:
 
 
 @CASES
+@pytest.mark.usefixtures("compiling")
 def test_in_a_run_of_its_own(hostile: Hostile, bad: Any) -> None:
     mods.load([bad(hostile)])
     session = Session.open(modelled())
@@ -91,6 +92,7 @@ def test_in_a_run_of_its_own(hostile: Hostile, bad: Any) -> None:
 
 
 @CASES
+@pytest.mark.usefixtures("compiling")
 def test_a_check_finds_it(hostile: Hostile, bad: Any, capsys: pytest.CaptureFixture[str]) -> None:
     assert main(["mods", "check", str(bad(hostile))]) == 1
     out = capsys.readouterr().out

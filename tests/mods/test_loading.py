@@ -1,7 +1,6 @@
 """Which mods are loaded, in which order, and what is said of the others. Nothing of these stays loaded."""
 
 import io
-import os
 import subprocess
 import sys
 from pathlib import Path
@@ -14,6 +13,7 @@ from pinjoint.components import Particle
 from pinjoint.components.extensions import EXTENSIONS
 from pinjoint.systems.input.actions import ACTIONS, action_for
 from pinjoint.systems.physics.integrators import VelocityVerlet
+from pinjoint.systems.program.compiler import Choice
 from tests.mods.conftest import Write
 
 BALL = {"format": "pinjoint model", "version": 1, "particles": [{"name": "A", "position": [0, 0]}]}
@@ -281,12 +281,15 @@ def test_a_key_that_a_component_does_not_have_is_refused(write_mod: Write) -> No
 # --- the command line ------------------------------------------------------------------------------------------------
 
 
-def test_a_new_mod_works_at_the_first_try(tmp_path: Path, unloaded: None) -> None:
+def test_a_new_mod_works_at_the_first_try(
+    tmp_path: Path, unloaded: None, compiling: None, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(Choice, "proved", ("",))  # the kernel is compiled, to be checked; no program
     assert main(["mods", "new", "gust", "--into", str(tmp_path)]) == 0
     assert main(["mods", "check", str(tmp_path / "gust")]) == 0
     done = subprocess.run(
         [sys.executable, "-m", "pytest", "-q", "-p", "no:cacheprovider", "gust"],
-        cwd=tmp_path, env=os.environ | {"PINJOINT_COMPILE": "never"}, capture_output=True, text=True, check=False,
+        cwd=tmp_path, capture_output=True, text=True, check=False,
     )  # fmt: skip
     assert done.returncode == 0, done.stdout
     assert "1 passed" in done.stdout
@@ -330,6 +333,7 @@ RIGHT = {
 }
 
 
+@pytest.mark.usefixtures("compiling")
 @pytest.mark.parametrize(
     ("change", "said"),
     [

@@ -17,6 +17,7 @@ from pinjoint import mods
 from pinjoint.commands.command_line import main
 from pinjoint.commands.output import FORMATS
 from pinjoint.components.extensions import EXTENSIONS
+from pinjoint.systems.program.compiler import Choice, Compile
 
 ROOT = Path(__file__).parents[3]
 
@@ -217,6 +218,7 @@ def test_every_command_that_prints_knows_three_formats(
     command: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
     monkeypatch.chdir(ROOT)
+    monkeypatch.setattr(Choice, "compile", Compile.NEVER)
     printed = {}
     for chosen in FORMATS:
         path = tmp_path / f"result.{chosen}"
