@@ -71,9 +71,8 @@ class Boundary:
             if not self._holds:
                 raise
             with suppress(Exception):  # such as a MemoryError while it is told
-                if isinstance(
-                    error, Mistake
-                ):  # of a person, such as in a script that was dropped on the window
+                # of a person, such as in a script that was dropped on the window
+                if isinstance(error, Mistake):
                     self._context.notice = self.said = str(error)
                 elif not blamed_on_mod(error):
                     self._tell(what, error)

@@ -224,9 +224,8 @@ class _Rewriting(ast.NodeTransformer):
         if isinstance(node.right, ast.Constant) and node.right.value != 0:
             return node
         (early, a), (first, b) = self._twice(node.left), self._twice(node.right)
-        if (
-            early is not a
-        ):  # found before, once: written twice, a quotient of quotients doubles with each of them
+        # found before, once: written twice, a quotient of quotients doubles with each of them
+        if early is not a:
             first = ast.BoolOp(ast.Or(), [ast.Compare(early, [ast.Is()], [ast.Constant(None)]), first])
         return ast.copy_location(
             ast.IfExp(first, ast.BinOp(a, ast.Div(), b), _call_of("quotient__", a, b)), node
@@ -415,9 +414,8 @@ def _in_scope(value: Any, name: str, scope: dict[str, Any]) -> Any:
     if not hasattr(value, "py_func"):
         return value
     plain = value.py_func
-    surely = (
-        is_ours(plain.__module__) and plain not in _rewritten
-    )  # of others it has to be seen whether there is source
+    # of others it has to be seen whether there is source
+    surely = is_ours(plain.__module__) and plain not in _rewritten
     return _when_called(value, name, scope) if surely else in_lists(value)
 
 

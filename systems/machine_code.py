@@ -180,9 +180,8 @@ class _MachineCode(NullCache):
 
     def load_overload(self, signature: Any, target: Any) -> Any:
         """What was compiled for these types; None if it is to be compiled."""
-        rtsys.initialize(
-            target
-        )  # all that Pinjoint's own kernels need; a compiler would take six times as long
+        # all that Pinjoint's own kernels need; a compiler would take six times as long
+        rtsys.initialize(target)
         name = self._name(signature)
         content = cache.read(name)
         if content is None:
@@ -209,9 +208,8 @@ class _PartCode(JITCodeLibrary):
 
     def finalize(self) -> None:
         """End construction without optimising: the entry that links this part optimises it."""
-        if hasattr(
-            self, "_reload_init"
-        ):  # newer versions of numba: functions to call when cached code is loaded
+        # newer versions of numba: functions to call when cached code is loaded
+        if hasattr(self, "_reload_init"):
             for called in self._linking_libraries:
                 self._reload_init.update(called._reload_init)
         self._finalized = True

@@ -25,9 +25,8 @@ from pinjoint.components.language import DOMAIN, ENGLISH, LANGUAGES, LOCALE
 ROOT = Path(__file__).parents[1]
 MODS = ROOT / "assets" / "mods"
 SETTINGS = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))["tool"]["babel"]
-KEYWORDS = parse_keywords(
-    SETTINGS["keywords"]
-)  # names of functions whose arguments are sentences, and which of them are
+# names of functions whose arguments are sentences, and which of them are
+KEYWORDS = parse_keywords(SETTINGS["keywords"])
 FIELDS = ("Field", "state", "derived", "look", "by_end", "if_known")  # what makes them
 NO_DATE = datetime(2000, 1, 1, tzinfo=UTC)  # a date would make every update a change
 _HEADER = """\

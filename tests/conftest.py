@@ -15,9 +15,8 @@ from pinjoint.documents import library, preferences
 from pinjoint.systems.program.compiler import Choice
 
 ROOT = Path(__file__).resolve().parents[1]
-os.environ.setdefault(
-    "SDL_VIDEODRIVER", "dummy"
-)  # windows of tests, and of processes that they start, are seen by nobody
+# windows of tests, and of processes that they start, are seen by nobody
+os.environ.setdefault("SDL_VIDEODRIVER", "dummy")
 
 # The first example of a plan may compile for seconds, so no example has a deadline. The same examples every
 # time, so that a change is judged by what it changed; `--hypothesis-profile=explore` looks for new ones.

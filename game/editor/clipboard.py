@@ -26,9 +26,8 @@ from pinjoint.documents.models import laid_out
 from pinjoint.systems.edit import Refusal
 from pinjoint.systems.edit.moving import moving_rows
 
-RowsByKind = Mapping[
-    type[Handle], NDArray[np.int64]
-]  # particles first, then rods and loads, then kinds of mods
+# particles first, then rods and loads, then kinds of mods
+RowsByKind = Mapping[type[Handle], NDArray[np.int64]]
 REFERENCES = {"between", "on"}  # Fields that refer to particles
 
 

@@ -66,9 +66,8 @@ def _pressed(context: Context, key: str, hit: Hit) -> str | None:
     in_menu, in_help = context.view.menu is not None, context.view.help > 0
     if in_help and key == "right click":
         return "close help"
-    once = key == "double click" and not (
-        hit.again or in_menu or in_help
-    )  # a panel that moves up is not closed, too
+    # a panel that moves up is not closed, too
+    once = key == "double click" and not (hit.again or in_menu or in_help)
     if once or (in_help and key.endswith("drag")) or (key == "right click" and not in_menu) or not hit.enabled:
         return None
     return hit.action or None

@@ -73,9 +73,8 @@ def loaded(model: Model, released: Sequence[Unknown], amounts: Sequence[float]) 
     force = np.zeros((model.particles.count, 3))
     for unknown, amount in zip(released, amounts, strict=True):
         unit, couple = unit_load(model, unknown)
-        np.add.at(
-            unit[:, 2], model.rods.between, -couple
-        )  # seen on the joint; the other of the pair acts on the rod
+        # seen on the joint; the other of the pair acts on the rod
+        np.add.at(unit[:, 2], model.rods.between, -couple)
         force += amount * unit
     copy.assign(list(copy.particles), "force", force[:, :2].tolist())
     copy.assign(list(copy.particles), "moment", force[:, 2].tolist())

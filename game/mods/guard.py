@@ -240,7 +240,7 @@ class Guard:
         what = tr("the command '{name}'", name=name)
         return self.mod.guarded(
             what, run, otherwise=BAD_INPUT, declared=int, patience=math.inf, mistakes=MISTAKES
-        )  # of a list of its own
+        )
 
     def layer(self, draw: Layer) -> Layer:
         """A layer of a mod, whose marks are cut to what is seen; what it adds to the sheet itself is not drawn."""

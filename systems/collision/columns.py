@@ -52,9 +52,8 @@ class Disc(Places):
     VX, VY = auto(), auto()  # velocity at the epoch, m/s
     AX, AY = auto(), auto()  # acceleration of the path, m/s²
     EPOCH = auto()  # s
-    STEP = (
-        auto()
-    )  # time at which the forces in its persistent contacts are due again, t₀ + h, s; ∞ if they are not
+    # time at which the forces in its persistent contacts are due again, t₀ + h, s; ∞ if they are not
+    STEP = auto()
     NOISE = auto()  # round-off in the velocity, from the impact or the contacts that caused it, m/s
     BX, BY = auto(), auto()  # how the path bends, m/s³
     CX, CY = auto(), auto()  # and how that changes, m/s⁴
@@ -379,9 +378,8 @@ class Number(Places):
     WORK_SINCE = auto()  # time since which Count.WORK is counted, s
     LOSS = auto()  # energy that impacts and piles have taken so far, the present step of a pile in full, J
     STOP = auto()  # at which forces change: a step of a pile ends there, s; ∞ if they do not
-    MOST_LOSS = (
-        auto()
-    )  # the largest LOSS until the present step of a pile, J: what appears later is no loss undone
+    # the largest LOSS until the present step of a pile, J: what appears later is no loss undone
+    MOST_LOSS = auto()
     DEEPEST = auto()  # overlap in which a step of a pile began so far, in radii of the smaller disc
 
 

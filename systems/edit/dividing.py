@@ -126,9 +126,8 @@ def _particles(model: Model, rod: Rod, shares: Numbers) -> list[Particle]:
         return start + np.multiply.outer(shares, end - start)
 
     across, slopes = deflected(model, rod.row, shares)
-    if not (
-        particles.displacement.any() or particles.rotation.any()
-    ):  # the beginning, which stays as it was drawn
+    # the beginning, which stays as it was drawn
+    if not (particles.displacement.any() or particles.rotation.any()):
         across, slopes = 0.0 * across, 0.0 * slopes
     return model.create(
         Particle,

@@ -27,9 +27,8 @@ def snapped(model: Model, view: View, point: Vector) -> Vector:
     spacing = model.grids.spacing[shown[-1]].tolist() if len(shown) else (math.inf, math.inf)
     found = []
     for value, step in zip(point, spacing, strict=True):
-        line = (
-            float(f"{round(value / step) * step:.12g}") if math.isfinite(step) else math.inf
-        )  # 3 × 0.1 is 0.3
+        # 3 × 0.1 is 0.3
+        line = float(f"{round(value / step) * step:.12g}") if math.isfinite(step) else math.inf
         near = abs(line - value) * view.camera.scale <= SNAP_REACH * view.pixel_ratio
         found.append((line if near else round(value, _digits(view))) + 0.0)  # no −0
     return found[0], found[1]

@@ -115,9 +115,8 @@ def hand_on(model: Model, view: View, particle: Particle, pace: Callable[[], flo
     truss bends instead of being torn apart. The damper is critical for the particle by itself.
     """
     clock = model.clock
-    by_error = (
-        clock.step_limit > 0.0 or clock.step_error > 0.0
-    )  # its steps are chosen so: to them any stiffness is good
+    # its steps are chosen so: to them any stiffness is good
+    by_error = clock.step_limit > 0.0 or clock.step_error > 0.0
     step = 0.0 if by_error else clock.step_size  # 0 where no run could begin, too
     fastest = 1.0 / (STEPS_PER_RADIAN * step) if step > 0.0 else math.inf
     if (model.rods.between == particle.row).any():

@@ -175,6 +175,5 @@ class ImplicitRungeKutta4(RungeKutta4):
 
 _EXACT = VelocityVerlet, DormandPrince853, ImplicitRungeKutta4, RungeKutta4
 INTEGRATORS: dict[str, Integrator] = EXTENSIONS.integrators  # ours, then those of mods
-INTEGRATORS |= {
-    kind.key: kind for kind in (kind() for kind in (*_EXACT, SemiImplicitEuler, ThesisTaylor))
-}  # the last two to compare with
+# the last two to compare with
+INTEGRATORS |= {kind.key: kind for kind in (kind() for kind in (*_EXACT, SemiImplicitEuler, ThesisTaylor))}

@@ -119,9 +119,8 @@ class _Writer:
         self.form, self.v, self.paper, self.theme, self.u = form, viewport, paper, theme, paper.unit
         self.selected, self.chosen = form.selected, form.chosen
         self.width = max(min(self.v.width - 2 * _EDGE * self.u, _WIDEST * self.u), 1.0)
-        self.files = next(
-            (box for box in form.boxes if box.target == "name"), None
-        )  # it stays, tiles are scrolled
+        # it stays, tiles are scrolled
+        self.files = next((box for box in form.boxes if box.target == "name"), None)
         lines = _tile_lines(form, self.width / self.u) if self.files else _box_lines(form, self.width, self.u)
         self.lines = list(lines)
 

@@ -135,10 +135,8 @@ def _caption(sheet: Sheet, heading_end: float, top: float) -> tuple[list[Mark], 
         looks.append((shape.title, "semibold", theme.sketch))
     if not looks:
         return [], top
-    room, behind = (
-        v.width - 2 * EDGE * u,
-        faded(theme.background, 0.85),
-    )  # keeps lines of a grid out of the text
+    room = v.width - 2 * EDGE * u
+    behind = faded(theme.background, 0.85)  # keeps lines of a grid out of the text
     lines = [
         Row(
             (
@@ -343,9 +341,8 @@ def _swatch(name: str, theme: Theme, place: Rectangle, u: float) -> list[Mark]:
 # --- scale -----------------------------------------------------------------------------------------
 
 
-Scale = tuple[
-    Rectangle, float, list[str]
-]  # where it stands, the metres that its ruler means (0: none), and notes
+# where it stands, the metres that its ruler means (0: none), and notes
+Scale = tuple[Rectangle, float, list[str]]
 
 
 def place_scale(sheet: Sheet, room: tuple[float, float]) -> Scale | None:

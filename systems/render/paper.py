@@ -44,9 +44,8 @@ _STYLES = {  # font, size and leading relative to text, grey, space before and a
     "caption": (REGULAR, 0.9, 1.2, True, 0.0, 0.2, 0.0),
 }
 
-Block = tuple[
-    float, list[Flowable]
-]  # parts below each other, and their width in points; 0: what is left of a row
+# parts below each other, and their width in points; 0: what is left of a row
+Block = tuple[float, list[Flowable]]
 
 
 @dataclass(frozen=True)

@@ -44,9 +44,8 @@ LEAST_SHARE = 0.01  # of an increment to try next where a rod leaves its piece s
 REVERSAL = 1e-5  # increment to which the end of yielding is located; the error goes with its square
 SMALLEST = 1e-12  # increment, of the change of load, below which a path is lost
 NARROWINGS = 42  # halvings that locate a loss of stability
-CONFIRMING = range(
-    12, 28
-)  # halvings after which what is found beyond has to be close by, before round-off counts
+# halvings after which what is found beyond has to be close by, before round-off counts
+CONFIRMING = range(12, 28)
 FARTHER = 8.0  # times the way between two states on a path: they are on two if they are that far apart
 FEW_NARROWINGS = 14  # the same in structures larger than EXACT_EVENTS
 ACTIVE_SET_ROUNDS = 12

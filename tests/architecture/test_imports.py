@@ -18,9 +18,8 @@ from pinjoint.systems import is_ours
 ROOT = Path(__file__).parents[2]
 LAYERS = ("components", "systems", "game", "tests")  # each may import itself and those before it
 RESOURCES = "assets"
-NAMES = {top: f"pinjoint.{top}" for top in ("components", "systems", RESOURCES)} | {
-    "game": "pinjoint"
-}  # of folders
+# of folders
+NAMES = {top: f"pinjoint.{top}" for top in ("components", "systems", RESOURCES)} | {"game": "pinjoint"}
 WINDOW = ("systems/render/pygame_*.py", "systems/input/pygame_*.py", "game/app.py")
 COMPILER = "systems/machine_code.py"  # numba is imported as soon as it is
 COMPILED = (COMPILER, "systems/program/*.py")

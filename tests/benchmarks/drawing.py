@@ -41,9 +41,8 @@ def _picture(model: Model, diagrams: bool) -> Row:
     surface, canvas, theme = pygame.Surface(SIZE, depth=32), Canvas(load_raster), load_theme()
     composing = drawing = np.inf
     placed: Placed = {}
-    for seed in range(
-        ROUNDS + 1
-    ):  # every picture another one, with other values to write; the first is left out
+    # every picture another one, with other values to write; the first is left out
+    for seed in range(ROUNDS + 1):
         _deform(model, seed)
         started = time.thread_time()
         picture = compose(model, view, theme, placed)

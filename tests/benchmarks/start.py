@@ -27,9 +27,8 @@ SETTLED = 1.0  # s for which frames are watched after what was waited for
 QUICK = ("isostatic", "ball_on_truss")
 EDITS = ("plasticity", "rod", "break", "pull", "statics")  # in mid run; see _Edits
 BEGAN = "PINJOINT_BENCH_BEGAN"
-ROOT = Path(__file__).parents[
-    2
-]  # from which the processes import the benchmarks, wherever this one was started
+# from which the processes import the benchmarks, wherever this one was started
+ROOT = Path(__file__).parents[2]
 ASSETS = ROOT / "assets"
 MODELS, MODS = ASSETS / "models", ASSETS / "mods"
 SCRIPT = (

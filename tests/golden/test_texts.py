@@ -172,9 +172,8 @@ def sizes(name: str, language: str) -> Iterable[str]:
         return [size for size in SIZES if size != "full HD"][[*ALL].index(name) % 2 :: 2]
     if language == "pt":
         return ["small"] if name in TOOLS else ["small", "full HD"]
-    hinted = (
-        name in TOOLS or name == "pulling"
-    )  # of hints a third longer the lower edge of a small window has no room
+    # of hints a third longer the lower edge of a small window has no room
+    hinted = name in TOOLS or name == "pulling"
     return ["usual"] if hinted else ["small", "usual"]
 
 

@@ -26,9 +26,8 @@ class Editing(RuleBasedStateMachine):
     def open(self, model: Any) -> None:
         self.session = Session.open(model)
         self.session.view.camera.scale = 100.0
-        put_states_aside(
-            self.session, beyond=4 * self.session.simulation.checkpoint().state.nbytes
-        )  # most of them
+        # most of them
+        put_states_aside(self.session, beyond=4 * self.session.simulation.checkpoint().state.nbytes)
         self.start = contents(self.session.model)
 
     @rule(at=places, key=st.sampled_from("plcfv"))

@@ -87,9 +87,8 @@ class Monkey:
         elements = self.session.model.particles.count + self.session.model.rods.count
         if elements > MOST_ELEMENTS and self.session.scene == "pause":
             return self._key("ctrl+a") + self._key("delete")
-        if (
-            chance < 0.03 and self.session.scene != "simulation"
-        ):  # else it stays for long where few keys lead away
+        # else it stays for long where few keys lead away
+        if chance < 0.03 and self.session.scene != "simulation":
             return self._key("escape")
         if chance < 0.5:
             known = [b.key for _, b in ACTIONS.bound() if self.session.scene in b.scenes]

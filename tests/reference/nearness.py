@@ -36,9 +36,8 @@ def _parts(mark: object, theme: Theme) -> Iterator[Part]:
             kind = "line" if table == "rods" else "shaft"
             for owner, *ends in zip(owners, mark.start, mark.end, strict=True):
                 yield Part(owner, kind, np.array(ends), mark.colour)
-        case Fills() if (
-            table == "rods" and mark.corners.shape[1] > 4
-        ):  # an area along a rod, from its start and back
+        # an area along a rod, from its start and back
+        case Fills() if table == "rods" and mark.corners.shape[1] > 4:
             count = mark.corners.shape[1] // 2
             for owner, corners in zip(owners, mark.corners, strict=True):
                 back = corners[::-1]

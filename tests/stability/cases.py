@@ -150,9 +150,8 @@ def damped(zeta: float) -> Case:
 def stepping(integrator: str, share: float) -> Case:
     """The mass with ζ = 0.1, by a share of the integrator's stable step (of 2/ω where it has no limit)."""
     zeta, moved = 0.1, 0.1
-    used = INTEGRATORS[
-        "velocity_verlet" if integrator == AUTOMATIC else integrator
-    ]  # a fixed step makes it that
+    # a fixed step makes it that
+    used = INTEGRATORS["velocity_verlet" if integrator == AUTOMATIC else integrator]
     limit = used.stable_step(OMEGA, zeta * OMEGA)
     if limit == math.inf:
         limit = 2 / OMEGA

@@ -102,9 +102,8 @@ def test_moments_change_with_the_shear() -> None:
     shares = np.linspace(0.0, 1.0, 7)
     slope = values(derivative(inner_forces(model, rows, MOMENT)), shares) / model.rods.length[:, None]
     shear = values(inner_forces(model, rows, SHEAR), shares)
-    axial = (
-        np.abs(model.rods.axial_force)[:, None] * 0.02
-    )  # times the slope, which the moment has and the shear not
+    # times the slope, which the moment has and the shear not
+    axial = np.abs(model.rods.axial_force)[:, None] * 0.02
     assert (np.abs(slope - shear) <= axial).all()
 
 

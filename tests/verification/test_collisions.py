@@ -344,9 +344,8 @@ def test_sliding_off_a_ball(start: float) -> None:
             break
     displacement, speeds = discs.state_at(discs.last_change)
     left, velocity = scene["position"][1] + displacement[1], speeds[1]
-    assert left[1] / reach == pytest.approx(
-        2 / 3 * math.cos(start), rel=0.018
-    )  # a step of the contact turns by 0.0156
+    # a step of the contact turns by 0.0156
+    assert left[1] / reach == pytest.approx(2 / 3 * math.cos(start), rel=0.018)
     assert velocity @ velocity == pytest.approx(GRAVITY * left[1], rel=0.04)
     energy = velocity @ velocity / 2 + GRAVITY * left[1]
     assert energy == pytest.approx(GRAVITY * reach * math.cos(start), rel=0.0156**2 / 12)  # of second order

@@ -285,9 +285,8 @@ def test_a_frame_is_held_until_it_snaps() -> None:
     Session(toggle).simulation.programs.compiled.observe()
     assert not is_held(toggle)
     (snap,) = (event for event in settle(toggle, (0.0, 1.2)).events if event.kind == "snap-through")
-    assert snap.load_factor * 0.034 == pytest.approx(
-        0.03387 * 1.019, rel=5e-3
-    )  # 1.9 % above that of fine divisions
+    # 1.9 % above that of fine divisions
+    assert snap.load_factor * 0.034 == pytest.approx(0.03387 * 1.019, rel=5e-3)
 
 
 @pytest.mark.parametrize("number", range(10))

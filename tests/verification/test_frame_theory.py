@@ -339,9 +339,8 @@ def test_a_cantilever_vibrates_as_euler_and_bernoulli_say(parts: int, slendernes
     found = vibrations(parse(model(particles, rods)))
     wanted = 1.87510406871**4 * EI * 1000.0 / (density * length**4)
     assert math.sqrt(found.angular_squared[0] / wanted) - 1.0 == pytest.approx(error, rel=0.02)
-    assert np.abs(found.modes[0][-1, 2]) * length == pytest.approx(
-        1.3765, rel=5e-3
-    )  # slope of mode 1 at its tip
+    # slope of mode 1 at its tip
+    assert np.abs(found.modes[0][-1, 2]) * length == pytest.approx(1.3765, rel=5e-3)
 
 
 def test_bars_bear_distributed_forces_at_both_ends() -> None:

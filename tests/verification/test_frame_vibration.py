@@ -95,9 +95,8 @@ def test_rods_that_would_vibrate_between_their_ends_are_named(name: str) -> None
     first, last, roots = SUPPORTS[name]
     expected = roots[0] ** 2 * math.sqrt(1000.0 * EI / DENSITY) / LENGTH**2 / (2.0 * math.pi)
     said = {parts: vibrations(beam(parts, first, last)) for parts in (1, 2, 3, 4, 6, 8)}
-    assert (
-        "Rod R0 bends more between its ends" in said[1].note
-    )  # also where no end can move, and no frequency is left
+    # also where no end can move, and no frequency is left
+    assert "Rod R0 bends more between its ends" in said[1].note
     assert not said[8].note
     assert (len(said[1].hertz) == 0) == (name == "clamped")
     assert all(abs(found.hertz[0] / expected - 1.0) < 0.05 for found in said.values() if not found.note)

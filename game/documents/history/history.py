@@ -161,9 +161,8 @@ class History:
             self._simulation.resume(entry.before)
             title = "run"
         else:
-            clock = self._like(
-                entry.clock
-            )  # as the edit left it, such as settling at the end of a load's history
+            # as the edit left it, such as settling at the end of a load's history
+            clock = self._like(entry.clock)
             target.push(Edit(self._model.apply(entry.inverse), clock, entry.key))
             if entry.clock is not None:
                 self._simulation.resume(entry.clock)

@@ -92,9 +92,8 @@ class Whole(Places):
     FOUND = auto()  # pairs when they were listed last; NONE: the grid had no room for LAYERS
     LAYERS = auto()  # of the grid, then
     LISTS = auto()  # so far
-    UNCLOSED = (
-        auto()
-    )  # steps since the run began whose contacts were left as they were, since no forces close them
+    # steps since the run began whose contacts were left as they were, since no forces close them
+    UNCLOSED = auto()
 
 
 class Real(Places):

@@ -58,9 +58,8 @@ def _support(model: Model) -> Column:
         _, normal = gaps(place, particles.radius, pairs, obstacles(model))
         push = normal * (0.001 * contacts.forces)[:, None]
         for d in range(2):
-            total[:, d] = np.bincount(pairs[:, 1], push[:, d], len(total))[
-                : len(total)
-            ]  # obstacles come after them
+            # obstacles come after them
+            total[:, d] = np.bincount(pairs[:, 1], push[:, d], len(total))[: len(total)]
             total[:, d] -= np.bincount(pairs[:, 0], push[:, d], len(total))
     return total
 

@@ -305,9 +305,8 @@ def list_pairs(layers, pairs, grid):
     """
     count, room = 0, pairs.shape[0]
     grid.heads[:] = NONE
-    for i in range(
-        grid.boxes.shape[0] - 1, -1, -1
-    ):  # from the last on, so that those entered have higher numbers
+    # from the last on, so that those entered have higher numbers
+    for i in range(grid.boxes.shape[0] - 1, -1, -1):
         left, bottom, right, top = grid.boxes[i]
         near = neighbours(i, left, bottom, right, top, grid, layers, 0)
         sort(grid.found, near)

@@ -106,9 +106,8 @@ def step(discs, grid, constraints, pile, report, numbers, counts):
         return reason
     h, fastest = choose_length(discs, pile, numbers, counts)
     end = numbers[Number.NOW] + h
-    if (
-        end > numbers[Number.STOP]
-    ):  # the pull of the whole step acts from its start on: none may be left half-way
+    # the pull of the whole step acts from its start on: none may be left half-way
+    if end > numbers[Number.STOP]:
         end = numbers[Number.STOP]
         h = end - numbers[Number.NOW]
     allow_more_shift(h, fastest, discs, pile)

@@ -51,9 +51,8 @@ def test_verify_has_moments_beside_the_run_and_states_like_run(portal: Path, cap
     assert verified["particles"]["B"]["rotation"]["simulation_error"] < 1e-6
     assert verified["particles"]["A"]["reaction_moment"]["exact"] == pytest.approx(54.32256, rel=1e-6)
     for moments in verified["self_stress_moments"]:
-        assert moments["AB"][1] == pytest.approx(
-            moments["BC"][0], abs=1e-12
-        )  # a joint of two rods passes them on
+        # a joint of two rods passes them on
+        assert moments["AB"][1] == pytest.approx(moments["BC"][0], abs=1e-12)
     (settled,) = found(capsys, "run", str(portal), "--static")["states"]
     exact, linear = (verified["states"][way] for way in ("exact", "linear"))
     assert set(exact) == set(linear) == set(settled)

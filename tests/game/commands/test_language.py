@@ -21,9 +21,8 @@ def person(tmp_path, monkeypatch):
         monkeypatch.setenv(variable, "")
     monkeypatch.setattr(locale, "getlocale", lambda: (None, None))
     monkeypatch.setenv(CONFIG_VARIABLE, str(tmp_path))
-    monkeypatch.setattr(
-        program, "end_in_time", lambda: None
-    )  # the next signal would end the process of the tests
+    # the next signal would end the process of the tests
+    monkeypatch.setattr(program, "end_in_time", lambda: None)
     return monkeypatch
 
 

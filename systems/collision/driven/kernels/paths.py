@@ -203,9 +203,8 @@ def first_impact(driven, h, after):
     for m in range(driven.whole[Whole.NEAR]):
         i = driven.near[m]
         fastest = max(fastest, abs(driven.velocity[i, 0]) + abs(driven.velocity[i, 1]))
-    noise = (
-        2.0 * NOISE * fastest
-    )  # a joint impact leaves approaches as slow as that in a row, of however slow a pair
+    # a joint impact leaves approaches as slow as that in a row, of however slow a pair
+    noise = 2.0 * NOISE * fastest
     for k in range(driven.whole[Whole.LISTED]):
         if driven.lasting[k] == 0:
             earliest = min(earliest, _impact_of(driven, k, h, after, noise))
