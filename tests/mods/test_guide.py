@@ -81,18 +81,10 @@ def test_what_is_public_exists_and_is_documented(module: str) -> None:
         assert not callable(thing) or thing.__doc__ or not hasattr(thing, "__module__"), name
 
 
-@pytest.mark.parametrize(
-    "module",
-    [
-        "pinjoint.components",
-        "pinjoint.systems.base",
-        "pinjoint.mods",
-        "pinjoint.session",
-        "pinjoint.checks",
-        "pinjoint.mods.app",
-        "pinjoint.api",
-    ],
-)
+OTHERS = "components", "systems.base", "mods", "session", "checks", "mods.app", "api"
+
+
+@pytest.mark.parametrize("module", [f"pinjoint.{name}" for name in OTHERS])
 def test_the_examples_in_docstrings_are_true(module: str) -> None:
     found = doctest.testmod(importlib.import_module(module))
     assert found.failed == 0

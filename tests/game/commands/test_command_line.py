@@ -121,14 +121,8 @@ def test_a_file_whose_name_is_no_utf_8(tmp_path: Path, capsys: pytest.CaptureFix
 
 
 def test_a_reader_that_has_seen_enough_is_no_error() -> None:
-    found = subprocess.run(
-        f"'{sys.executable}' -m pinjoint mods list | head -c 1; exit ${{PIPESTATUS[0]}}",
-        shell=True,
-        executable="/bin/bash",
-        cwd=ROOT,
-        capture_output=True,
-        text=True,
-    )
+    line = f"'{sys.executable}' -m pinjoint mods list | head -c 1; exit ${{PIPESTATUS[0]}}"
+    found = subprocess.run(["/bin/bash", "-c", line], cwd=ROOT, capture_output=True, text=True)
     assert found.returncode in (0, 1)
     assert found.stderr == ""
 
@@ -149,14 +143,9 @@ def test_help_says_what_each_command_does(
 def test_a_full_disk_is_said_in_one_line(command: str) -> None:
     if not Path("/dev/full").exists():
         pytest.skip("there is no /dev/full here")
+    words = [sys.executable, "-m", "pinjoint", *command.split()]
     with open("/dev/full", "w") as full:
-        found = subprocess.run(
-            [sys.executable, "-m", "pinjoint", *command.split()],
-            cwd=ROOT,
-            stdout=full,
-            stderr=subprocess.PIPE,
-            text=True,
-        )
+        found = subprocess.run(words, cwd=ROOT, stdout=full, stderr=subprocess.PIPE, text=True)
     assert found.returncode == 2
     assert re.fullmatch(r"pinjoint: Standard output cannot be \w+: No space left on device\..*\n", found.stderr)
 
