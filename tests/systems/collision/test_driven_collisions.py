@@ -609,3 +609,29 @@ def test_contacts_that_no_forces_close_are_counted_and_told() -> None:
     session.simulation._driven_collisions.unclosed = 1, 0.01
     assert "In one step no forces were found that close all contacts" in session.simulation.warning
     assert "1.00 % of a radius" in session.simulation.warning
+
+
+def test_a_step_that_time_cannot_halve_ends() -> None:
+    """Two discs that go on together for 3e14 s, where neither their gap nor a part of the step can be told."""
+    far = {"A": (0.0, 786302574516043.8), "B": (0.5, 786302574516043.4)}
+    discs = [
+        {
+            "name": name,
+            "position": [x, 0.0],
+            "displacement": [far_away, 0.0],
+            "velocity": [2.5, 0.0],
+            "mass": 1.0,
+        }
+        for name, (x, far_away) in far.items()
+    ]
+    document = {
+        "format": "pinjoint model",
+        "version": 1,
+        "settings": {"restitution": 0.0, "tolerance": 1e-9},
+        "particles": [*discs, *({"name": name, "position": [0.0, y]} for name, y in (("C", 2.0), ("D", -1.5)))],
+        "rods": [{"name": "CD", "between": ["C", "D"]}],
+        "state": {"time": 314521029806417.44, "step_size": 811667173693980.5, "steps": 4},
+    }
+    session = Session.open(document)
+    session.step(3)
+    assert session.model.clock.time > 314521029806417.44

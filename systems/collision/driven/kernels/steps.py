@@ -220,7 +220,10 @@ def _look(driven, control, account, place, speed):
         return _list_within(driven, span, Phase.HELD)
     after_start = first_impact(driven, now - start, after)
     if after_start == DOUBTFUL:
-        return _retry(driven, control, account, place, speed, 0.5 * (start + now))
+        middle = 0.5 * (start + now)
+        if not start < middle < now:  # time resolves no shorter step
+            return _accept(driven)
+        return _retry(driven, control, account, place, speed, middle)
     impact = start + after_start
     if impact > now:
         return _accept(driven)
