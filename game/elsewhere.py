@@ -45,9 +45,8 @@ from pinjoint.systems.program.writer import read_sources
 from pinjoint.systems.render.raster import RASTER
 
 UNITS = {unit.name: unit for unit in (RASTER, PARTING, EVENTS, HORIZONS, PILES, DRIVEN)}
-START = (
-    "import sys; sys.path[:] = sys.argv[1:]; from pinjoint.elsewhere import main; main()"  # of `python -P -c`
-)
+# Of `python -P -c`.
+START = "import sys; sys.path[:] = sys.argv[1:]; from pinjoint.elsewhere import main; main()"
 INTERVAL = 0.05  # s between two looks
 ENDING = 0.5  # s that what a thread is at may take before the window goes without it
 

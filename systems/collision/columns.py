@@ -245,10 +245,8 @@ class Contact(Places):
     ROUND = auto()  # 1: the normal turns as the discs move around each other; 0: along a flat side it does not
     PREVIOUS = auto()  # impulse before a sweep to and fro
     DIRECTION = auto()  # sum of the changes of the impulse by the sweeps so far
-    SX, SY = (
-        auto(),
-        auto(),
-    )  # vector from the first member to the nearest point of the second at the start of a step, m
+    # vector from the first member to the nearest point of the second at the start of a step, m
+    SX, SY = auto(), auto()
 
 
 class Pile(NamedTuple):

@@ -146,11 +146,10 @@ def largest_eigenvalue(operator: Callable[[Array], Array], rows: int, bound: flo
         return min(max(float(np.linalg.eigvalsh(matrix)[-1]), 0.0), bound)
     vector = np.modf(np.arange(1, width * rows + 1) ** 2 * 0.6180339887498949)[0] - 0.5
     vector /= math.sqrt(float((vector * vector).sum()))
-    most = min(LANCZOS_STEPS, width * rows)
-    basis = np.empty((most, width * rows))
+    basis = np.empty((LANCZOS_STEPS, width * rows))
     diagonal: list[float] = []
     off_diagonal: list[float] = []
-    for size in range(1, most + 1):
+    for size in range(1, LANCZOS_STEPS + 1):
         basis[size - 1] = vector
         product = operator(vector.reshape(-1, width)).ravel()
         diagonal.append(float((product * vector).sum()))

@@ -13,7 +13,7 @@ CONTAINERS = ("list", "dict", "set", "deque", "defaultdict", "OrderedDict", "Cou
 FUNCTION = ast.FunctionDef | ast.AsyncFunctionDef
 
 MOST = {
-    "lines": 62_581,
+    "lines": 62_577,
     "files": 366,
     "names": 3_619,  # functions, classes and constants of modules
     "public names": 2_265,
