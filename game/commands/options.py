@@ -9,7 +9,7 @@ from functools import partial
 
 from pinjoint.commands.arguments import Parser, UsageError, count, numbers, positive, times
 from pinjoint.commands.progress import follow
-from pinjoint.commands.reports.report import Analysis
+from pinjoint.commands.report import Analysis
 from pinjoint.components.language import tr
 from pinjoint.components.settings import INTEGRATORS
 from pinjoint.paths import apply_override

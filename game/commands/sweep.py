@@ -8,7 +8,7 @@ from pathlib import Path
 
 from pinjoint.commands.arguments import Parser, UsageError
 from pinjoint.commands.options import ANSWERED, NOT_ANSWERED, STOPPED, add_analysis, add_model, analysis_of
-from pinjoint.commands.reports.report import FOUND
+from pinjoint.commands.report import FOUND
 from pinjoint.components.language import tr
 from pinjoint.streams import tell
 from pinjoint.sweeps import sweep

@@ -8,7 +8,6 @@ from dataclasses import dataclass, replace
 from types import NoneType
 from typing import Any
 
-import msgspec
 import numpy as np
 
 from pinjoint.completion import complete
@@ -25,9 +24,8 @@ from pinjoint.components.snapshot import Snapshot
 from pinjoint.components.suggestions import missing, remedy
 from pinjoint.components.table import fields_of
 from pinjoint.components.wording import cut, is_broken, quoted
-from pinjoint.documents.facts import Gathered, gathered, spread
+from pinjoint.documents.facts import Facts
 from pinjoint.documents.format import (
-    BY_COLUMNS,
     FORMAT,
     SECTIONS,
     VERSION,
@@ -60,7 +58,7 @@ def parse(document: Mapping[str, Any], source: str = "") -> Model:
 
 def document(model: Model) -> dict[str, Any]:
     """The document that `parse` turns into this model again, bit for bit. Raises ModelError."""
-    return spread(gathered(model))
+    return Facts(model).document()
 
 
 # --- from a document to a model ----------------------------------------------------------------------
@@ -88,7 +86,7 @@ class _Section:
 
 
 def _parsed(document: Any) -> Model:
-    document = _of_this_version(_by_elements(document))
+    document = _of_this_version(document)
     try:
         document = upgraded(document)
     except ValueError as error:
@@ -125,17 +123,6 @@ def _read_added(model: Model, kinds: Any) -> None:
     for name, kind in EXTENSIONS.kinds.items():  # kinds that refer to others come after them
         if name in kinds:
             _read(model, _section(f"{path}.{name}", kind, kinds[name]))
-
-
-def _by_elements(document: Any) -> Any:
-    """A document in its usual form, in which it may be already."""
-    stated = document.get("format") if isinstance(document, Mapping) else None
-    if not (isinstance(stated, str) and stated == BY_COLUMNS):
-        return document
-    try:
-        return spread(msgspec.convert(document, Gathered))
-    except (msgspec.ValidationError, ValueError, IndexError, TypeError, AttributeError) as error:
-        fail("$", "its columns do not fit together ({error}); copy the model again.", error=error)
 
 
 def _of_this_version(document: Any) -> Mapping[str, Any]:

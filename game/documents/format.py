@@ -24,7 +24,6 @@ from pinjoint.components.wording import is_broken, quoted
 
 FORMAT = "pinjoint model"
 VERSION = 1
-BY_COLUMNS = "pinjoint model by columns"
 SECTIONS: Mapping[str, type[Handle]] = MappingProxyType(
     {
         "environment": Environment,

@@ -20,7 +20,7 @@ from pinjoint.components.rod import Rod
 from pinjoint.components.table import fields_of
 from pinjoint.components.tags import Selected
 from pinjoint.documents.document import parse
-from pinjoint.documents.facts import document_of
+from pinjoint.documents.facts import Facts
 from pinjoint.documents.format import ModelError
 from pinjoint.documents.models import laid_out
 from pinjoint.systems.edit import Refusal
@@ -48,7 +48,7 @@ def selected_rows(model: Model) -> RowsByKind:
 def as_text(model: Model, rows: RowsByKind) -> str:
     """Rows of a model as the text of a document. Raises Refusal if they cannot be written."""
     try:
-        return laid_out(document_of(model, rows), depth=2, spaced=False)
+        return laid_out(Facts(model, rows).document(), depth=2)
     except ModelError as error:
         raise Refusal("This cannot be copied: {error}", error=error) from None
 

@@ -12,7 +12,7 @@ from contextlib import contextmanager
 from itertools import islice
 from typing import Any
 
-from pinjoint.commands.reports.results import State, facts
+from pinjoint.commands.report import State, facts
 from pinjoint.components.language import ENGLISH, english, spoken
 from pinjoint.components.model import Model
 from pinjoint.components.snapshot import Snapshot

@@ -9,7 +9,7 @@ from functools import reduce
 from operator import getitem
 from typing import Any
 
-from pinjoint.commands.reports.results import State, reported
+from pinjoint.commands.report import State, reported
 from pinjoint.components.language import joined, marked, tr
 from pinjoint.components.model import Model
 from pinjoint.paths import EVERY, PathError, energy_named, locate

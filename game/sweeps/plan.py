@@ -13,7 +13,7 @@ import msgspec
 import numpy as np
 
 from pinjoint import __version__
-from pinjoint.commands.reports.report import Analysis
+from pinjoint.commands.report import Analysis
 from pinjoint.components.extensions import EXTENSIONS
 from pinjoint.components.language import english, tr
 from pinjoint.documents import models

@@ -1,20 +1,25 @@
-"""Analyses: runs of a model without a window, with their results as plain data; see results.py."""
+"""Reports: runs of a model without a window, with their results as plain data."""
 
 from __future__ import annotations
 
 import math
 import time
-from collections.abc import Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import asdict, dataclass
 from typing import TYPE_CHECKING, Any
 
-from pinjoint.commands.output import ResultError
-from pinjoint.commands.reports.results import Read, Run, State, state
+import numpy as np
+
+from pinjoint.commands.output import ResultError, plain
+from pinjoint.components.field import Column, Field
+from pinjoint.components.handle import Handle
 from pinjoint.components.language import joined, marked, tr
 from pinjoint.components.mistake import Mistake
 from pinjoint.components.model import Model
-from pinjoint.components.rod import bends
+from pinjoint.components.particle import Particle
+from pinjoint.components.rod import Rod, bends
 from pinjoint.components.settings import AUTOMATIC
+from pinjoint.components.table import fields_of
 from pinjoint.documents.open_documents import without_mods
 from pinjoint.mods.mod import ModError, check_mods, heeding_mods
 from pinjoint.paths import ENERGIES
@@ -36,6 +41,101 @@ FOUND = (  # statuses of a run that found what was asked for
     marked("at rest"),
     marked("time reached"),
 )
+
+
+State = dict[str, Any]
+Run = Mapping[str, Any]
+Read = Callable[..., State]  # takes what `state` takes
+
+
+def _facts(kind: type[Handle], *names: str) -> tuple[Field[Any], ...]:
+    fields = {field.name: field for field in fields_of(kind)}
+    return tuple(fields[name] for name in names)
+
+
+# Reported facts of every element, by key in a state, under their names and in their units.
+_OWN: Mapping[str, tuple[Field[Any], ...]] = {
+    "particles": _facts(Particle, "position", "displacement", "velocity", "reaction", "mass"),
+    "rods": _facts(Rod, "axial_force", "length", "strain", "plastic_strain", "yielding"),
+}
+# Further ones of models that bend, or bear distributed forces.
+_OF_BENDING: Mapping[str, tuple[Field[Any], ...]] = {
+    "particles": _facts(Particle, "rotation", "angular_velocity", "reaction_moment", "inertia"),
+    "rods": _facts(Rod, "end_axial_force", "shear", "bending_moment", "end_rotation", "largest_moment"),
+}
+
+
+def reported(model: Model, group: str) -> tuple[Field[Any], ...]:
+    """The fields of a table that results report: Pinjoint's own, then those of mods' components."""
+    bent = bends(model) or model.rods.distributed_force.any()
+    fields = model.tables[group].fields.values()
+    of_mods = (field for field in fields if field.component and field.dtype in (float, int, bool))
+    return (*_OWN[group], *(_OF_BENDING[group] if bent else ()), *of_mods)
+
+
+# --- one state -----------------------------------------------------------------------------------------
+
+
+def state(
+    model: Model,
+    energy: Mapping[str, float],
+    load_factor: float | None = None,
+    residual: float | None = None,
+    columns: Mapping[str, Column] | None = None,
+) -> State:
+    """The present state of a model as plain data: SI units with kN, vectors as [x, y].
+
+    energy: J, with the keys of ENERGIES. load_factor: of statics. residual: the largest
+    force out of balance, relative to the largest force. columns: by "table.field", columns that are reported
+    in place of the model's own. `position` is the original one. Raises ResultError.
+    """
+    made = facts(model, energy, load_factor, residual, columns)
+    for group in _OWN:
+        keys, rows = made[group], zip(*(column.tolist() for column in made[group].values()), strict=True)
+        made[group] = {
+            name: {key: None if value != value else value for key, value in zip(keys, row, strict=True)}
+            for name, row in zip(model.tables[group].names, rows, strict=True)
+        }
+    return made
+
+
+def facts(
+    model: Model,
+    energy: Mapping[str, float],
+    load_factor: float | None = None,
+    residual: float | None = None,
+    columns: Mapping[str, Column] | None = None,
+) -> State:
+    """As `state`, but of particles and of rods whole columns by name, in which NaN stands for no value."""
+    made = {
+        "time": model.clock.time,
+        "load_factor": load_factor,
+        **{group: _columns(model, group, columns or {}) for group in _OWN},
+        "energy": {name: energy[name] for name in ENERGIES},
+        "residual": residual,
+        "collisions": model.clock.collisions,
+    }
+    return made | {key: plain(made[key], key) for key in ("time", "load_factor", "energy", "residual")}
+
+
+def _columns(model: Model, group: str, given: Mapping[str, Column]) -> dict[str, Column]:
+    table, columns = model.tables[group], {}
+    for field in reported(model, group):
+        key = f"{group}.{field.name}"
+        columns[field.name] = column = given[key] if key in given else table.column(field.name)
+        finite = np.isfinite(column) | np.isnan(column) if field.nullable else np.isfinite(column)
+        if not finite.all():
+            row = int(np.argwhere(~finite)[0, 0])
+            element, value = model.describe(table[row]), field.loaded(column, row)
+            raise ResultError(
+                "{where} is {value}, not a finite number; report an earlier state.",
+                where=joined([element, field.named()], ": "),
+                value=str(value),
+            )
+    return columns
+
+
+# --- runs ------------------------------------------------------------------------------------------------
 
 
 @dataclass(frozen=True)
