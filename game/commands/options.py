@@ -3,11 +3,10 @@
 from __future__ import annotations
 
 import argparse
-import os
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable
 from functools import partial
 
-from pinjoint.commands.arguments import Parser, UsageError, count, numbers, positive, times
+from pinjoint.commands.arguments import UsageError, numbers, positive, times
 from pinjoint.commands.progress import follow
 from pinjoint.commands.report import Analysis
 from pinjoint.components.language import tr
@@ -16,19 +15,8 @@ from pinjoint.paths import apply_override
 from pinjoint.session import DEFAULT_LIMIT, Session
 from pinjoint.streams import tell
 from pinjoint.systems.base import System
-from pinjoint.systems.program.parallel import VARIABLE
 
 ANSWERED, NOT_ANSWERED, NO_DISPLAY, STOPPED = 0, 1, 3, 130  # exit statuses; BAD_INPUT is 2
-
-
-def use_cores_as_asked(words: Sequence[str]) -> list[str]:
-    """Read the option --cores N, which every command has, into the environment; returns the other words."""
-    parser = Parser(prog="pinjoint", add_help=False, allow_abbrev=False)
-    parser.add_argument("--cores", type=partial(count, least=1), metavar="N")
-    options, others = parser.parse_known_args(list(words))
-    if options.cores is not None:
-        os.environ[VARIABLE] = str(options.cores)  # for this process and those that it starts
-    return others
 
 
 def add_model(parser: argparse.ArgumentParser) -> None:

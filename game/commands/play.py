@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import Any
 
 from pinjoint.commands.arguments import Parser
-from pinjoint.commands.language import asked_language
+from pinjoint.commands.global_options import asked_language
 from pinjoint.commands.options import ANSWERED, NOT_ANSWERED
 from pinjoint.commands.output import Row, add_output, write_result
 from pinjoint.commands.progress import follow

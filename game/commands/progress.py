@@ -7,7 +7,7 @@ import time
 from collections.abc import Iterator
 from contextlib import contextmanager
 
-from pinjoint.components.language import tr
+from pinjoint.components.language import marked, tr
 from pinjoint.session import Session
 from pinjoint.streams import tell
 from pinjoint.systems.run.simulation import Simulation
@@ -36,7 +36,13 @@ def told() -> Iterator[None]:
             wait = FURTHER
             if not _followed:
                 continue
-            tell(how_far(time.monotonic() - began))
+            seconds, progress = time.monotonic() - began, _followed[-1].progress
+            said = marked(
+                "after {seconds:.0f} s: t = {time:.9g} s, {steps} steps, {impacts} impacts. Ctrl+C stops it."
+            )
+            if progress.steps == 0 and progress.impacts == 0:
+                said = marked("after {seconds:.0f} s: preparing, no step was made yet. Ctrl+C stops it.")
+            tell(tr(said, seconds=seconds, **vars(progress)))
 
     voice = threading.Thread(target=speak, daemon=True)
     voice.start()
@@ -45,17 +51,3 @@ def told() -> Iterator[None]:
     finally:
         done.set()
         _followed.clear()
-
-
-def how_far(seconds: float) -> str:
-    """How far the command is after some seconds."""
-    progress = _followed[-1].progress
-    if progress.steps == 0 and progress.impacts == 0:
-        return tr("after {seconds:.0f} s: preparing, no step was made yet. Ctrl+C stops it.", seconds=seconds)
-    return tr(
-        "after {seconds:.0f} s: t = {time:.9g} s, {steps} steps, {impacts} impacts. Ctrl+C stops it.",
-        seconds=seconds,
-        time=progress.time,
-        steps=progress.steps,
-        impacts=progress.impacts,
-    )

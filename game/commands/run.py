@@ -22,6 +22,7 @@ from pinjoint.components.language import marked, several, tr
 from pinjoint.components.particle import Particle
 from pinjoint.components.table import fields_of
 from pinjoint.documents.format import SECTIONS
+from pinjoint.paths import ENERGIES
 
 _ERRORS = {
     "relative": marked("displacements"),
@@ -29,15 +30,6 @@ _ERRORS = {
     "relative_axial_force": marked("axial forces"),
     "relative_rotation": marked("rotations"),
     "relative_bending_moment": marked("bending moments"),
-}
-_ENERGIES = {
-    "kinetic": marked("kinetic"),
-    "elastic": marked("elastic"),
-    "dissipated_damping": marked("dissipated by damping"),
-    "dissipated_plastic": marked("dissipated by yielding"),
-    "dissipated_impact": marked("dissipated by impacts"),
-    "work": marked("work of loads"),
-    "imbalance": marked("imbalance"),
 }
 STATUSES = (  # that runs end with, beside those of commands/report.py
     marked("mechanism"),
@@ -148,7 +140,7 @@ def _state_lines(made: State) -> Iterator[str]:
             yield ""
             yield from aligned(_element_rows(group, made[group]))
     yield ""
-    energies = [[tr(_ENERGIES[name]), value] for name, value in made["energy"].items()]
+    energies = [[tr(ENERGIES[name]), value] for name, value in made["energy"].items()]
     yield from aligned([[tr("energy"), "J"], *energies])
     yield ""
     counts = {"residual": as_written(made["residual"]), "collisions": made["collisions"]}

@@ -39,9 +39,6 @@ from pinjoint.systems.statics.vibration import vibrations
 VERIFIED, DIFFERS = marked("verified"), marked("differs from static theory")
 THEORY_ONLY, NOT_VERIFIED = marked("theory only"), marked("not verified")
 LEFT_OUT = marked("left out")  # of a simulation
-TAKES_LONG = marked(
-    "Not at rest after {steps} steps, so the simulation is left out here; --limit SECONDS lets it go on."
-)
 MOST_WORK = 200_000  # steps × elements of a simulation that nobody asked for: some seconds, interpreted
 PORTIONS = 10  # in which they are taken
 DEGREES = ("static", "internal", "external", "mechanisms")
@@ -124,9 +121,15 @@ def verify(session: Session, name: str, limit: float | None, *, simulate: bool =
     simulated = None
     if simulate and model.rods.count:
         status = _run_to_rest(session, limit)
+        message = session.message
+        if status == LEFT_OUT:
+            message = tr(
+                "Not at rest after {steps} steps, so the simulation is left out here; --limit SECONDS lets it go on.",
+                steps=model.clock.steps,
+            )
         found["simulation"] = {
             "status": status,
-            "message": session.message if status != LEFT_OUT else tr(TAKES_LONG, steps=model.clock.steps),
+            "message": message,
             "time": model.clock.time,
             "steps": model.clock.steps,
             "integrator": session.simulation.integrator.key,

@@ -13,7 +13,7 @@ import numpy as np
 from pinjoint.completion import complete
 from pinjoint.components.commands import Assign
 from pinjoint.components.extensions import EXTENSIONS
-from pinjoint.components.field import Column, Field, FieldError
+from pinjoint.components.field import SAVED, Column, Field, FieldError
 from pinjoint.components.grid import Grid
 from pinjoint.components.handle import Handle
 from pinjoint.components.language import joined, marked, tr
@@ -33,7 +33,6 @@ from pinjoint.documents.format import (
     copied,
     fail,
     required,
-    saved_fields,
 )
 from pinjoint.documents.mod_data import DATA as FOREIGN
 from pinjoint.documents.mod_data import MODS, upgraded
@@ -173,7 +172,7 @@ def _section(path: str, kind: type[Handle], value: Any) -> _Section:
             place = path if kind.single else f"{path}[{row}]"
             fail(place, "it must be an object, not {found}.", found=_kind_of(element))
     section = _Section(path, kind, elements, set().union(*elements))
-    known = [*(field.key for field in saved_fields(kind) if not field.component), FOREIGN]
+    known = [*(field.key for field in _saved(kind) if not field.component), FOREIGN]
     if not section.keys <= set(known):
         for row, element in enumerate(elements):
             _refuse_unknown(element, known, section.where(row), kind)
@@ -185,10 +184,14 @@ def _section(path: str, kind: type[Handle], value: Any) -> _Section:
     return section
 
 
+def _saved(kind: type[Handle]) -> list[Field[Any]]:
+    return [field for field in fields_of(kind) if field.role in SAVED]
+
+
 def _components(kind: type[Handle]) -> dict[str, dict[str, Field[Any]]]:
     """The Fields of mods' components of a kind, by component and key."""
     found: dict[str, dict[str, Field[Any]]] = {}
-    for field in saved_fields(kind):
+    for field in _saved(kind):
         if field.component:
             found.setdefault(field.component, {})[field.key] = field
     return found
@@ -228,7 +231,7 @@ def _read(model: Model, section: _Section) -> None:
         _check_components(section)
     if kind is Rod and not section.keys.isdisjoint(NAMES):
         section = _with_numbers(section)
-    columns = {field.name: _column(model, section, field) for field in saved_fields(kind)}
+    columns = {field.name: _column(model, section, field) for field in _saved(kind)}
     if kind is Grid:
         _check_grids(section, columns["shown"])
     handles: Sequence[Handle]

@@ -36,7 +36,7 @@ class Facts:
         self._versions = known_versions(model.foreign_versions)
         self._sections, self._added = (
             {
-                name: _facts_of(model, kind, rows and rows[kind])
+                name: _facts_of(model, kind, None if rows is None else rows[kind])
                 for name, kind in kinds.items()
                 if (kind in rows if rows is not None else kind.table in model.tables)
             }

@@ -4,18 +4,15 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping, Sequence
-from types import MappingProxyType
 from typing import Any, NoReturn
 
 from pinjoint.components.clock import Clock
 from pinjoint.components.extensions import EXTENSIONS
-from pinjoint.components.field import SAVED, Field
 from pinjoint.components.grid import Grid
 from pinjoint.components.handle import Handle
 from pinjoint.components.language import joined, tr
 from pinjoint.components.load import Load
 from pinjoint.components.mistake import Mistake
-from pinjoint.components.model import Model
 from pinjoint.components.particle import Particle
 from pinjoint.components.rod import Rod
 from pinjoint.components.settings import Environment, Settings
@@ -24,20 +21,20 @@ from pinjoint.components.wording import is_broken, quoted
 
 FORMAT = "pinjoint model"
 VERSION = 1
-SECTIONS: Mapping[str, type[Handle]] = MappingProxyType(
-    {
-        "environment": Environment,
-        "settings": Settings,
-        "particles": Particle,
-        "rods": Rod,
-        "loads": Load,
-        "grids": Grid,
-        "state": Clock,
-    }
-)
-REQUIRED: Mapping[str, tuple[str, ...]] = MappingProxyType(
-    {"particles": ("name", "position"), "rods": ("name", "between"), "loads": ("on",)}
-)
+SECTIONS: Mapping[str, type[Handle]] = {
+    "environment": Environment,
+    "settings": Settings,
+    "particles": Particle,
+    "rods": Rod,
+    "loads": Load,
+    "grids": Grid,
+    "state": Clock,
+}
+REQUIRED: Mapping[str, tuple[str, ...]] = {
+    "particles": ("name", "position"),
+    "rods": ("name", "between"),
+    "loads": ("on",),
+}
 
 
 class ModelError(Mistake, ValueError):
@@ -55,10 +52,6 @@ def required(kind: type[Handle]) -> Sequence[str]:
     return [field.key for field in fields_of(kind) if field.name in kind.points or field.references]
 
 
-def saved_fields(kind: type[Handle]) -> list[Field[Any]]:
-    return [field for field in fields_of(kind) if field.role in SAVED]
-
-
 def copied(value: Any, where: str) -> Any:
     """A copy of a value that JSON can hold."""
     if isinstance(value, Mapping) and all(isinstance(key, str) and not is_broken(key) for key in value):
@@ -70,9 +63,3 @@ def copied(value: Any, where: str) -> Any:
     if value is None or isinstance(value, str | int) or (isinstance(value, float) and math.isfinite(value)):
         return value
     fail(where, "a model file cannot hold {value}.", value=quoted(value))
-
-
-def missing_mods(model: Model) -> list[str]:
-    """Names of the mods, not loaded, whose data a model keeps."""
-    kept = [*model.foreign.values(), model.foreign_kinds]
-    return sorted({name.partition(".")[0] for part in kept for name in part})

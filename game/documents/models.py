@@ -325,9 +325,10 @@ def laid_out(value: Any, depth: int, indent: str = "") -> str:
     """JSON text whose outermost `depth` levels have one entry a line, indented by 2 spaces."""
     if depth == 0 or not isinstance(value, dict | list) or not value:
         return msgspec.json.format(msgspec.json.encode(value), indent=0).decode()
-    inner, named = indent + "  ", isinstance(value, dict)
-    entries = [laid_out(item, depth - 1, inner) for item in (value.values() if named else value)]
-    if named:
-        entries = [f"{laid_out(key, 0)}: {entry}" for key, entry in zip(value, entries, strict=True)]
-    opening, closing = "{}" if named else "[]"
+    inner, (opening, closing) = indent + "  ", "[]"
+    if isinstance(value, dict):
+        entries = [f"{laid_out(key, 0)}: {laid_out(item, depth - 1, inner)}" for key, item in value.items()]
+        opening, closing = "{}"
+    else:
+        entries = [laid_out(item, depth - 1, inner) for item in value]
     return f"{opening}\n{inner}" + f",\n{inner}".join(entries) + f"\n{indent}{closing}"

@@ -26,7 +26,6 @@ from pinjoint.components.view import Preview, Readout, View
 from pinjoint.documents import models
 from pinjoint.documents.autosave import Autosave
 from pinjoint.documents.chronicle import Happening
-from pinjoint.documents.format import missing_mods
 from pinjoint.documents.open_documents import ModelFile, OpenDocument, OpenDocuments, Source, file_of
 from pinjoint.scripts.script import Script
 from pinjoint.systems.base import Mod
@@ -380,7 +379,8 @@ class Context:
             self.view.all_diagrams, self.view.quantity = True, self.model.settings.diagrams
         if self.model.rods.count:
             self.view.rigid = bends(self.model)
-        if missing := missing_mods(self.model):
+        kept = [*self.model.foreign.values(), self.model.foreign_kinds]
+        if missing := sorted({name.partition(".")[0] for part in kept for name in part}):
             self.notice = tr(
                 "This model uses mods that are not loaded: {mods}. Their data is kept and saved again, but has no effect.",
                 mods=listed(missing),

@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Callable, Iterator
 from typing import Any
 
 from pinjoint.components.language import tr
 from pinjoint.lessons import progress
 from pinjoint.lessons.course import Course
-from pinjoint.lessons.judging import filled, is_filled
+from pinjoint.lessons.judging import filled
 from pinjoint.lessons.tasks import CHOICES, UNTIL, Lesson
 from pinjoint.scripts.lines import Failure
 from pinjoint.scripts.script import Script
@@ -49,7 +50,7 @@ def _failures(lesson: Lesson, number: int, session: Any) -> Iterator[tuple[str, 
         course.check()
         if course.accepted:
             yield tr("a wrong answer that is refused: {say}", say=wrong.say), tr("it is accepted")
-        elif not is_filled(course.said, wrong.say):
+        elif not _is_filled(course.said, wrong.say):
             yield wrong.say, course.said
     for choice in task.choices if task.kind == CHOICES else ():
         course.again()
@@ -65,3 +66,9 @@ def _failures(lesson: Lesson, number: int, session: Any) -> Iterator[tuple[str, 
         course.check()
     if not course.accepted:
         yield tr("a solution that is accepted"), course.said or tr("nothing was answered")
+
+
+def _is_filled(said: str, text: str) -> bool:
+    """True if what was said is a text with any values in its places."""
+    pattern = ".*".join(re.escape(part) for part in re.split(r"\{[^{}]*\}", tr(text)))
+    return re.fullmatch(pattern, said) is not None

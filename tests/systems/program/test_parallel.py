@@ -11,7 +11,7 @@ import pytest
 
 from pinjoint import Session
 from pinjoint.commands.arguments import UsageError
-from pinjoint.commands.options import use_cores_as_asked
+from pinjoint.commands.global_options import use_cores_as_asked
 from pinjoint.documents import models
 from pinjoint.systems.edit.pull import Hand
 from pinjoint.systems.program import blocks as layout
