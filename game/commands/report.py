@@ -29,13 +29,11 @@ from pinjoint.systems.physics.automatic import AFFORDABLE
 from pinjoint.systems.run.measured_error import IN_A_COMMAND
 from pinjoint.systems.run.simulation import Simulation
 from pinjoint.systems.run.watch import watched
-from pinjoint.systems.statics.events import Event
 
 if TYPE_CHECKING:  # it imports scipy
     from pinjoint.systems.statics.state import StaticState
 
 INTERRUPTED = marked("interrupted")  # the status of a run that Ctrl+C ended
-MOD_FAILED = marked("mod failed")
 FOUND = (  # statuses of a run that found what was asked for
     marked("equilibrium"),
     marked("at rest"),
@@ -198,7 +196,7 @@ class Analysis:
             "message": joined([settlement.message, note]),
             "left_out": left_out,
             "wall_seconds": seconds,
-            "events": _records(simulation.model, settlement.events),
+            "events": [event.record(simulation.model) for event in settlement.events],
         }
 
     def run_in(self, session: Session, name: str) -> Run:
@@ -215,14 +213,16 @@ class Analysis:
                 raise
             return _interrupted(session.simulation, name, reported)
         except ModError as failure:
-            return _failed(session.simulation, name, failure)
+            stopped = _run(session.simulation, name, marked("mod failed"), [_state(session.simulation)])
+            return {**stopped, "message": str(failure)}
         happened = [asdict(event) for event in session.simulation.events]
+        happened += [event.record(session.model) for event in session.document.assessment.remarks]
         error = session.document.assessment.error(math.inf if self.measures_error else IN_A_COMMAND)
         unknown = "" if error is not None else _uncontrolled(session.simulation)
         return {
             **found,
             "message": joined([session.message, unknown]),
-            "events": [*happened, *_records(session.model, session.document.assessment.remarks)],
+            "events": happened,
             "error_estimate": error.record(bent=bends(session.model)) if error is not None else None,
         }
 
@@ -236,11 +236,6 @@ def _interrupted(simulation: Simulation, name: str, states: list[State]) -> Run:
         "Interrupted at t = {time:.9g} s, after {steps} steps.", time=found["time"], steps=found["steps"]
     )
     return {**found, "message": joined([reached, found["message"]]), "error_estimate": None}
-
-
-def _failed(simulation: Simulation, name: str, error: ModError) -> Run:
-    """The result of a run that stopped because a mod failed, with the state in which it did."""
-    return {**_run(simulation, name, MOD_FAILED, [_state(simulation)]), "message": str(error)}
 
 
 def _uncontrolled(simulation: Simulation) -> str:
@@ -271,10 +266,6 @@ def _state(simulation: Simulation, read: Read = state) -> State:
         return read(simulation.model, simulation.energy.as_dict(), None, simulation.residual)
     except ResultError as error:
         raise ResultError(simulation.message or str(error)) from None
-
-
-def _records(model: Model, events: Sequence[Event]) -> list[dict[str, Any]]:
-    return [event.record(model) for event in events]
 
 
 def _run(

@@ -26,16 +26,17 @@ from pinjoint.components.table import fields_of
 from pinjoint.components.wording import cut, is_broken, quoted
 from pinjoint.documents.facts import Facts
 from pinjoint.documents.format import (
+    FOREIGN,
     FORMAT,
+    MODS,
     SECTIONS,
     VERSION,
     ModelError,
     copied,
     fail,
     required,
+    upgraded,
 )
-from pinjoint.documents.mod_data import DATA as FOREIGN
-from pinjoint.documents.mod_data import MODS, upgraded
 from pinjoint.documents.sliders import KEY as SLIDERS
 from pinjoint.documents.sliders import read_sliders
 

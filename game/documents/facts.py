@@ -16,9 +16,17 @@ from pinjoint.components.handle import Handle
 from pinjoint.components.language import tr
 from pinjoint.components.model import Model
 from pinjoint.components.world import called
-from pinjoint.documents.format import FORMAT, SECTIONS, VERSION, ModelError, copied, required
-from pinjoint.documents.mod_data import DATA as FOREIGN
-from pinjoint.documents.mod_data import MODS, known_versions, versions_in
+from pinjoint.documents.format import (
+    FOREIGN,
+    FORMAT,
+    MODS,
+    SECTIONS,
+    VERSION,
+    ModelError,
+    copied,
+    mods_in,
+    required,
+)
 from pinjoint.documents.sliders import KEY as SLIDERS
 from pinjoint.documents.sliders import slider_entries
 
@@ -33,7 +41,7 @@ class Facts:
         self._texts = {key: getattr(model, key) for key in ("title", "description")} if whole else {}
         self._sliders = slider_entries(model) if whole else []
         self._foreign_kinds = dict(model.foreign_kinds) if whole else {}
-        self._versions = known_versions(model.foreign_versions)
+        self._versions = {**model.foreign_versions, **EXTENSIONS.versions}
         self._sections, self._added = (
             {
                 name: _facts_of(model, kind, None if rows is None else rows[kind])
@@ -57,8 +65,8 @@ class Facts:
         added = {name: elements for name, facts in self._added.items() if (elements := facts.elements())}
         added |= self._foreign_kinds
         made |= {FOREIGN: dict(sorted(added.items()))} if added else {}
-        versions = versions_in(made, self._versions)
-        return made | ({MODS: versions} if versions else {})
+        known = sorted(self._versions.keys() & mods_in(made)) if self._versions else []
+        return made | ({MODS: {name: self._versions[name] for name in known}} if known else {})
 
 
 @dataclass(frozen=True)

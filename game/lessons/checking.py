@@ -3,19 +3,20 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Callable, Iterator
-from typing import Any
+from collections.abc import Iterator
 
 from pinjoint.components.language import tr
+from pinjoint.components.model import Model
 from pinjoint.lessons import progress
 from pinjoint.lessons.course import Course
 from pinjoint.lessons.judging import filled
 from pinjoint.lessons.tasks import CHOICES, UNTIL, Lesson
 from pinjoint.scripts.lines import Failure
 from pinjoint.scripts.script import Script
+from pinjoint.session import Session
 
 
-def check_lesson(script: Script, open_session: Callable[[], Any]) -> list[Failure]:
+def check_lesson(script: Script) -> list[Failure]:
     """Play all tasks; what is wrong with each. Raises ScriptError.
 
     A task must not be done before anything was; its solution must be accepted; every wrong answer must be refused, and
@@ -26,11 +27,11 @@ def check_lesson(script: Script, open_session: Callable[[], Any]) -> list[Failur
         return [
             Failure(task.line, *failure)
             for number, task in enumerate(lesson.tasks)
-            for failure in _failures(lesson, number, open_session())
+            for failure in _failures(lesson, number, Session(Model()))
         ]
 
 
-def _failures(lesson: Lesson, number: int, session: Any) -> Iterator[tuple[str, str]]:
+def _failures(lesson: Lesson, number: int, session: Session) -> Iterator[tuple[str, str]]:
     """(expected, got) of what is wrong with one task."""
     course = Course(session, lesson)
     session.course = course

@@ -18,7 +18,7 @@ from pinjoint.components.mistake import WrongValue
 from pinjoint.components.obstacles import Shape
 from pinjoint.components.table import fields_of
 from pinjoint.documents import models
-from pinjoint.documents.mod_data import Upgrade
+from pinjoint.documents.format import Upgrade
 from pinjoint.editor.gestures.drawing import drawing_of
 from pinjoint.editor.scenes import Scene, all_scenes
 from pinjoint.mods.declared import check
