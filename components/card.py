@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
+from pinjoint.components.toolbar import Tool
+
 WIDE, COLUMN, WIDEST, COLUMN_SHARE = (
     860.0,
     270.0,
@@ -14,24 +16,13 @@ STRIP, HIGHEST, STRIP_SHARE = 132.0, 230.0, 0.38  # points, and share of the hei
 
 
 @dataclass(frozen=True)
-class CardButton:
-    """A button: the action of a click, its title and the key that does the same. main: the next thing to do."""
-
-    action: str
-    title: str
-    key: str = ""
-    enabled: bool = True
-    main: bool = False
-
-
-@dataclass(frozen=True)
 class Card:
     """A task as it stands.
 
     title: of the lesson. progress: which task of how many, and done: those that were done. paragraphs: the task.
     choices: (text, chosen) of possible answers, with the action of each in `answers`. entry: what was typed, with its unit;
     None: nothing is to be typed. said: what is said of the last check, or a hint, and its `mood`: "right", "wrong", "hint".
-    first: by how many lines it is scrolled on, or back if negative.
+    buttons: the first is the next thing to do. first: by how many lines it is scrolled on, or back if negative.
     """
 
     title: str
@@ -44,7 +35,7 @@ class Card:
     entry: str | None = None
     said: tuple[str, ...] = ()
     mood: str = ""
-    buttons: tuple[CardButton, ...] = ()
+    buttons: tuple[Tool, ...] = ()
     first: int = 0
 
 
