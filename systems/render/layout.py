@@ -152,7 +152,7 @@ def rule(colour: Colour, high: float) -> Drawn:
     """A hairline in the middle of so many points of height."""
     return Drawn(
         lambda at, u: [
-            marks.boxes(colour, (round(at.left), round(at.middle[1]), round(at.width), max(round(u), 1)))
+            Panel(round(at.left), round(at.middle[1]), round(at.width), max(round(u), 1), 0.0, colour)
         ],
         high=high,
         grow=1.0,
@@ -263,7 +263,7 @@ class Scroll(Column):
             width, length = max(round(3.0 * u), 2), max(place.height * shown / len(each), 16.0 * u)
             top = place.top + (place.height - length) * first / (len(each) - shown)
             left = round(place.right + self.beside * u) - width
-            paper.marks.append(marks.boxes(self.bar, (left, round(top), width, round(length))))
+            paper.marks.append(Panel(left, round(top), width, round(length), 0.0, self.bar))
 
 
 def _last_first(heights: Sequence[float], gap: float, room: float) -> int:

@@ -15,7 +15,7 @@ from pinjoint.components.round_numbers import round_down
 from pinjoint.components.view import BETWEEN
 from pinjoint.systems.render import marks
 from pinjoint.systems.render.layout import ALL, Column, Drawn, Gap, Paper, Part, Plate, Row, Text, icon
-from pinjoint.systems.render.marks import Mark, Panel, Stamps, Strokes, boxes
+from pinjoint.systems.render.marks import Mark, Panel, Stamps, Strokes
 from pinjoint.systems.render.sheet import Sheet
 from pinjoint.systems.render.structure import HALO_OPACITY
 from pinjoint.systems.render.symbols import dashed
@@ -73,11 +73,11 @@ def _status_bar(sheet: Sheet) -> tuple[list[Mark], float]:
         return [], float(v.bottom)
     top, thin = round(v.bottom - BAR * u), max(round(u), 1)
     sheet.occupancy.block(v.left, top, v.width, BAR * u)
-    bar = (
-        boxes(theme.panel, (v.left, top, v.width, v.bottom - top)),
-        boxes(theme.line, (v.left, top, v.width, thin)),
-    )
-    paper, steps, parts = Paper(u, marks=[*bar]), status.hint.split(BETWEEN), list[Part]()
+    bar: list[Mark] = [
+        Panel(v.left, top, v.width, v.bottom - top, 0.0, theme.panel),
+        Panel(v.left, top, v.width, thin, 0.0, theme.line),
+    ]
+    paper, steps, parts = Paper(u, marks=bar), status.hint.split(BETWEEN), list[Part]()
     if status.state:
         state = Text(begun(tr(status.state)), 12.0, theme.text, "semibold")
         moods = {"running": theme.running, "paused": theme.halted, "halted": theme.halted}
@@ -126,10 +126,11 @@ def _caption(sheet: Sheet, heading_end: float, top: float) -> tuple[list[Mark], 
     They stand below the legend, which ends at `top`; a title alone beside it where it has room there.
     """
     v, u, theme = sheet.viewport, sheet.unit, sheet.theme
-    paper, shape, thin = Paper(u), sheet.view.shape, max(round(u), 1)
+    paper, shape, thin, edges = Paper(u), sheet.view.shape, max(round(u), 1), list[Mark]()
     looks = [(line, "regular", theme.muted) for line in sheet.view.caption]
     if looks:
-        paper.marks.append(boxes(theme.line, (v.left, v.top, v.width, thin), (v.left, v.top, thin, v.height)))
+        sides = (v.width, thin), (thin, v.height)
+        edges = [Panel(v.left, v.top, *size, 0.0, theme.line) for size in sides]
         looks[0] = looks[0][0], "semibold", theme.text
     if shape is not None:
         looks.append((shape.title, "semibold", theme.sketch))
@@ -154,7 +155,7 @@ def _caption(sheet: Sheet, heading_end: float, top: float) -> tuple[list[Mark], 
         upper = heading_end
     paper.put(column, Rectangle(left - 4.0 * u, upper + 8.0 * u, room + 8.0 * u, high))
     _block(sheet, paper)
-    return paper.marks, max(top, upper + 8.0 * u + high)
+    return edges + paper.marks, max(top, upper + 8.0 * u + high)
 
 
 def draw_notice(sheet: Sheet, ends: tuple[float, float]) -> list[Mark]:
@@ -394,8 +395,8 @@ def _ruler(theme: Theme, at: Rectangle, u: float) -> list[Mark]:
     """A line with a tick at both ends."""
     x, y, length = round(at.left), round(at.top + 6.0 * u), round(at.width)
     thin, tick = max(round(1.5 * u), 1), round(7.0 * u)
-    ends = (x, y, thin, tick), (x + length - thin, y, thin, tick)
-    return [boxes(theme.muted, (x, y + tick, length, thin), *ends)]
+    line, ends = (x, y + tick, length, thin), ((x, y, thin, tick), (x + length - thin, y, thin, tick))
+    return [Panel(*box, 0.0, theme.muted) for box in (line, *ends)]
 
 
 def _freest(sheet: Sheet, width: float, room: tuple[float, float]) -> tuple[float, float]:

@@ -6,14 +6,13 @@ import itertools
 import math
 
 import numpy as np
-from numpy.typing import NDArray
 
 from pinjoint.components import written
 from pinjoint.components.field import Vector
 from pinjoint.components.language import several
 from pinjoint.components.round_numbers import round_up
 from pinjoint.components.view import Plot
-from pinjoint.systems.render.marks import Mark, Panel, Points, Stamps, Strokes, Text
+from pinjoint.systems.render.marks import Mark, Panel, Points, Stamps, Strokes, Text, Truths, Values
 from pinjoint.systems.render.theme import Colour, Theme
 from pinjoint.systems.render.typography import font_size, text_width
 
@@ -48,7 +47,7 @@ class _Drawing:
         colours = theme.curve_1, theme.curve_2, theme.curve_3, theme.curve_4
         self.coloured = list(zip(plot.curves, itertools.cycle(colours), strict=False))
 
-    def pixels(self, x: NDArray[np.float64], y: NDArray[np.float64]) -> Points:
+    def pixels(self, x: Values, y: Values) -> Points:
         """Points of a curve in pixels, shape (n, 2)."""
         across = (x - self.x_range[0]) / (self.x_range[1] - self.x_range[0])
         up = (y - self.y_range[0]) / (self.y_range[1] - self.y_range[0])
@@ -95,7 +94,7 @@ class _Drawing:
 
     def _curve(self, points: Points, colour: Colour) -> list[Mark]:
         points = _thinned(points, _STEP * self.unit)
-        finite: NDArray[np.bool_] = np.asarray(np.isfinite(points).all(axis=1))
+        finite: Truths = np.asarray(np.isfinite(points).all(axis=1))
         whole = finite[1:] & finite[:-1]
         start, end = points[:-1][whole], points[1:][whole]
         length = np.maximum(np.hypot(*(end - start).T), 1e-9)[:, None]
@@ -137,13 +136,13 @@ def _thinned(points: Points, step: float) -> Points:
     if len(points) < 2:
         return points
     along = np.cumsum(np.nan_to_num(np.hypot(*np.diff(points, axis=0, prepend=points[:1]).T)))
-    kept: NDArray[np.bool_] = np.diff(np.floor(along / step), prepend=-1.0) > 0.0
+    kept: Truths = np.diff(np.floor(along / step), prepend=-1.0) > 0.0
     kept[-1] = True
     found: Points = points[kept | ~np.isfinite(points).all(axis=1)]
     return found
 
 
-def _range(columns: list[NDArray[np.float64]]) -> Range:
+def _range(columns: list[Values]) -> Range:
     """The least and the largest finite value, widened if equal."""
     values = np.concatenate([*columns, np.empty(0)])
     values = values[np.isfinite(values)]

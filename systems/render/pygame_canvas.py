@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 from pinjoint.components.camera import Viewport
 from pinjoint.components.wording import UNPRINTABLE
 from pinjoint.systems.program.compiler import Choice, Compile
-from pinjoint.systems.render.marks import Bars, Discs, Fills, Panel, Picture, Rectangles, Stamps, Strokes, Text
+from pinjoint.systems.render.marks import Bars, Discs, Fills, Panel, Picture, Stamps, Strokes, Text
 from pinjoint.systems.render.raster import (
     Clip,
     Pixels,
@@ -80,9 +80,6 @@ class Canvas:
                     _fill(surface, mark.corners, mark.colour)
                 case Bars():
                     self._bars(surface, mark)
-                case Rectangles():
-                    for box in mark.boxes.tolist():
-                        surface.fill(mark.colour, box)
                 case Panel():
                     self._panel(surface, mark)
         surface.set_clip(before)
@@ -115,6 +112,9 @@ class Canvas:
         left, top = round(mark.left), round(mark.top)
         size = round(mark.left + mark.width) - left, round(mark.top + mark.height) - top
         if min(size) <= 0:  # what a window of some pixels leaves of it
+            return
+        if not mark.radius and mark.outline is None and mark.fill[3] == 255:
+            surface.fill(mark.fill, (left, top, *size))
             return
         key = ("panel", size, mark.radius, mark.fill, mark.outline)
         surface.blit(self._kept(key, partial(_rounded, size, mark)), (left, top))

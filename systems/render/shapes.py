@@ -15,7 +15,6 @@ from pinjoint.systems.render.marks import (
     Panel,
     Picture,
     Points,
-    Rectangles,
     Stamps,
     Strokes,
     Text,
@@ -60,9 +59,6 @@ def shapes(mark: Mark) -> Iterator[tuple[Whose, Shape]]:
     match mark:
         case Text() | Panel():
             yield mark.of, mark
-        case Rectangles():
-            for left, top, width, height in mark.boxes.tolist():
-                yield None, Panel(left, top, width, height, 0.0, mark.colour)
         case Strokes():
             ends = zip(mark.start.tolist(), mark.end.tolist(), strict=True)
             lines = (Line((x, y), (far_x, far_y), mark.width, mark.colour) for (x, y), (far_x, far_y) in ends)

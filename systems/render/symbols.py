@@ -14,11 +14,10 @@ from functools import cache
 from importlib.resources import files
 
 import numpy as np
-from numpy.typing import NDArray
 
 from pinjoint.components.extensions import EXTENSIONS
 from pinjoint.components.mistake import WrongValue
-from pinjoint.systems.render.marks import Points, Stamps
+from pinjoint.systems.render.marks import Points, Rows, Stamps
 
 Part = tuple[str, tuple[float, ...]]
 Parts = list[tuple[str, Points]]  # ("ink" or "hollow", corners (k, 2)), in painter's order
@@ -193,7 +192,7 @@ SYMBOLS: dict[str, Callable[[float, float], Parts]] = {
 }
 
 
-def dashed(start: Points, end: Points, dash: float) -> tuple[Points, Points, NDArray[np.intp]]:
+def dashed(start: Points, end: Points, dash: float) -> tuple[Points, Points, Rows]:
     """Segments cut into dashes and gaps of about that length, a dash at both ends; and of which segment each dash is."""
     step = end - start
     count = np.maximum(np.round((np.hypot(*step.T) / dash - 1.0) / 2.0), 0.0).astype(np.int64) + 1

@@ -12,7 +12,7 @@ from pinjoint.components.view import Hit, View
 from pinjoint.systems.render.buttons import button, titled, tool_icon, written_key
 from pinjoint.systems.render.help import put_help
 from pinjoint.systems.render.layout import Column, Gap, Paper, Part, Plate, Row, Text
-from pinjoint.systems.render.marks import Mark, Panel, Picture, boxes
+from pinjoint.systems.render.marks import Mark, Panel, Picture
 from pinjoint.systems.render.marks import Text as Written
 from pinjoint.systems.render.menu import put_menu
 from pinjoint.systems.render.theme import Theme
@@ -35,7 +35,8 @@ def compose_toolbar(toolbar: Toolbar, view: View, theme: Theme, below: Sequence[
 def _put_strip(paper: Paper, toolbar: Toolbar, view: View, theme: Theme) -> None:
     """The bar with a hairline at its right edge, and its buttons, the last group at the bottom."""
     s, thin = view.strip, max(round(paper.unit), 1)
-    paper.marks += [boxes(theme.panel, s.box), boxes(theme.line, (s.right - thin, s.top, thin, s.height))]
+    paper.marks.append(Panel(*s.box, 0.0, theme.panel))
+    paper.marks.append(Panel(s.right - thin, s.top, thin, s.height, 0.0, theme.line))
     columns, high = toolbar.columns(view.camera.viewport, paper.unit)
     parts: list[Part] = []
     for number, group in enumerate(toolbar.groups):

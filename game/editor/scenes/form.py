@@ -13,8 +13,9 @@ from pinjoint.components.language import decimals, english, joined, marked, tr
 from pinjoint.components.suggestions import missing
 from pinjoint.editor.context import Context, Scene
 from pinjoint.systems.forms import typing
-from pinjoint.systems.render.form import FormLayout, lay_out
+from pinjoint.systems.render.form import FormLayout
 from pinjoint.systems.render.form_box import caret_at
+from pinjoint.systems.render.layout import Paper
 from pinjoint.systems.render.picture import Stage
 from pinjoint.systems.render.theme import load_theme
 
@@ -106,7 +107,8 @@ class FormScene(Scene):
     def layout(self, context: Context) -> FormLayout:
         """Where its boxes and tiles are now."""
         view = context.view
-        return lay_out(self.form, self.viewport(context), view.pixel_ratio, load_theme(view.theme))
+        paper = Paper(view.pixel_ratio, draws=False)
+        return FormLayout(self.form, self.viewport(context), paper, load_theme(view.theme))
 
     def resized(self, context: Context) -> None:
         """Keep the selected box in sight."""
@@ -198,7 +200,7 @@ class FormScene(Scene):
         layout, form = self.layout(context), self.form
         if layout.place_of(item) is not None:
             return
-        row = next(number for number, row in enumerate(layout.rows) if item in row)
+        row = next(number for number, line in enumerate(layout.lines) if item in line.items)
         form.first = min(layout.paper.scrolled[0], row)
         while form.first < row and self.layout(context).place_of(item) is None:
             form.first += 1
