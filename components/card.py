@@ -6,14 +6,6 @@ from dataclasses import dataclass
 
 from pinjoint.components.toolbar import Tool
 
-WIDE, COLUMN, WIDEST, COLUMN_SHARE = (
-    860.0,
-    270.0,
-    380.0,
-    0.27,
-)  # points: from which width on it is a column; its width
-STRIP, HIGHEST, STRIP_SHARE = 132.0, 230.0, 0.38  # points, and share of the height: of a strip below the model
-
 
 @dataclass(frozen=True)
 class Card:
@@ -37,10 +29,3 @@ class Card:
     mood: str = ""
     buttons: tuple[Tool, ...] = ()
     first: int = 0
-
-
-def share_of(width: int, height: int, unit: float) -> tuple[int, int]:
-    """The pixels that a card takes of a window: of its width, at the right, or of its height, at the bottom."""
-    if width >= WIDE * unit:
-        return round(min(max(COLUMN * unit, COLUMN_SHARE * width), WIDEST * unit)), 0
-    return 0, round(min(max(STRIP * unit, STRIP_SHARE * height), HIGHEST * unit, 0.6 * height))

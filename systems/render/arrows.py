@@ -22,7 +22,6 @@ from pinjoint.systems.render.supports import NO_SUPPORT, crowding
 from pinjoint.systems.render.symbols import SUPPORT_DEPTH
 from pinjoint.systems.render.theme import Colour
 from pinjoint.systems.render.values import (
-    BY_ARROW,
     FEW_VALUES,
     FIRST,
     SMALLEST,
@@ -47,6 +46,7 @@ _SHORT_HEAD = 0.65
 _FIELDS = {"load": "particles.applied_force", "reaction": "particles.reaction"}  # what arrows along axes show
 _MANY = 200  # such arrows of a kind, up to which all are drawn, though they may lie over each other
 _SQUARE = 20.0  # points, the side of squares of which each shows one of more arrows
+_BY_ARROW = 5.5  # points between an arrow in a diagram and its value
 _OFF_ARCS = 6.0  # points between the arrow of a moment and that of a force
 
 
@@ -320,7 +320,7 @@ def _write_forces(
     texts = [said(sheet, size, "kN" if few else "") for size in np.abs(value[shown]).tolist()]
     font = sheet.font(12.0 if few else 11.0)
     half, start, end = half_sizes(sheet, texts, font), start[shown], end[shown]
-    places = by_arrows(half, start, end, BY_ARROW * sheet.unit)
+    places = by_arrows(half, start, end, _BY_ARROW * sheet.unit)
     out = (end - start) / np.hypot(*(end - start).T)[:, None]
     colour, ranks = getattr(sheet.theme, name), (FIRST - worth).tolist()
     for k, index in enumerate(shown.tolist()):

@@ -19,7 +19,6 @@ from pinjoint.systems.render.buttons import button, closing
 from pinjoint.systems.render.form_box import bare_box, is_short, titled_box
 from pinjoint.systems.render.help import put_help
 from pinjoint.systems.render.layout import (
-    ALL,
     Column,
     Drawn,
     Gap,
@@ -34,13 +33,13 @@ from pinjoint.systems.render.marks import Mark, Panel, Picture, Stamps
 from pinjoint.systems.render.marks import Text as Written
 from pinjoint.systems.render.theme import Colour, Theme, faded
 from pinjoint.systems.render.thumbnails import thumbnail
-from pinjoint.systems.render.typography import font_size, in_rows, text_width
+from pinjoint.systems.render.typography import ALL, font_size, in_rows, text_width
 
 PROPERTIES = marked("Properties")  # the heading of an element's own boxes, where its results stand above them
 _WIDEST, _EDGE = 1500.0, 16.0  # points that tiles spread over, and around all
 _SECTION, _READING, _GAP = 28.0, 20.0, 10.0  # points: of a heading, of a result, between boxes
 _MOST_READINGS = 0.4  # share of the height that results take without being scrolled
-_NARROW, _NARROWEST = 140.0, 120.0  # points, a box less wide does not share its row; one of a vector
+_NARROW = 120.0  # points: a box less wide does not share its row
 _TILE, _TILE_GAP, _CAPTION, _PROPORTION = (
     172.0,
     16.0,
@@ -286,8 +285,8 @@ def _box_lines(form: Form, width: float, u: float) -> Iterator[_Line]:
     for section, those in groupby(form.boxes, lambda box: box.section):
         own = section == form.heading
         title = PROPERTIES if own and len(form.readings) else "" if own else section
-        for (vector, short), some in groupby(those, lambda box: (box.vector, is_short(box, half, u))):
-            columns = 2 if short and half >= (_NARROWEST if vector else _NARROW) * u else 1
+        for (_, short), some in groupby(those, lambda box: (box.vector, is_short(box, half, u))):
+            columns = 2 if short and half >= _NARROW * u else 1
             for row in in_rows(list(some), columns):
                 yield _Line(title, row, columns)
                 title = ""

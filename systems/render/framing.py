@@ -27,7 +27,6 @@ from pinjoint.systems.render.marks import (
     owners,
 )
 from pinjoint.systems.render.symbols import (
-    LARGEST_STAMP,
     SUPPORT_DEPTH,
     SYMBOLS,
     arc,
@@ -39,6 +38,7 @@ from pinjoint.systems.render.theme import Colour
 from pinjoint.systems.render.typography import WEIGHTS
 
 _MARGIN = 4.0  # pixels around the viewport within which cuts are not seen
+_LARGEST_STAMP = 64.0  # points, greatest radius of a circle drawn as a stamp
 _FAR = 1e7  # pixels; what is larger looks the same
 _FARTHEST = 1e9  # pixels; places beyond it are moved there
 _SHAPES: dict[type, dict[str, tuple[int | None, ...]]] = {  # of a mark's arrays; None: any number
@@ -193,7 +193,7 @@ def _stamps(mark: Stamps, viewport: Viewport) -> Iterator[Mark]:
     mark = replace(mark, at=mark.at[near], of=owners(mark.of, near))
     if not len(mark.at) or not mark.size or not mark.unit:
         return
-    if reach <= 4.0 * LARGEST_STAMP:
+    if reach <= 4.0 * _LARGEST_STAMP:
         yield mark
         return
     for role, corners in turned_parts(mark):
@@ -203,9 +203,9 @@ def _stamps(mark: Stamps, viewport: Viewport) -> Iterator[Mark]:
 
 def cut_discs(mark: Discs, viewport: Viewport, unit: float) -> Iterator[Mark]:
     """Discs near the viewport; large ones as polygons, of whose rims that part which may be seen."""
-    large = mark.radius > LARGEST_STAMP * unit
-    small = ~large & _near(mark.at, LARGEST_STAMP * unit, viewport)
-    rim = min(mark.rim, LARGEST_STAMP * unit)
+    large = mark.radius > _LARGEST_STAMP * unit
+    small = ~large & _near(mark.at, _LARGEST_STAMP * unit, viewport)
+    rim = min(mark.rim, _LARGEST_STAMP * unit)
     if small.any():
         yield replace(mark, at=mark.at[small], radius=mark.radius[small], rim=rim, of=owners(mark.of, small))
     low, high = viewport.corners

@@ -249,7 +249,8 @@ def _led(
         colour = faded(label.colour, LEADER_OPACITY)
         marks.append(Strokes(line[0][None], line[1][None], unit, colour, whose))
         marks.append(Discs(line[1][None], np.array([_DOT * unit]), colour, colour, of=whose))
-        marks += _marks(label, _LED + int(place[index]), *middle[index].tolist(), unit, placed)
+        x, y = middle[index].tolist()
+        marks += _marks(label, _LED + int(place[index]), x, y, unit, placed)
         if len(led) == _MOST_LED:
             break
     return marks

@@ -20,9 +20,7 @@ from pinjoint.components.view import Hit
 from pinjoint.systems.render import marks
 from pinjoint.systems.render.marks import Mark, Panel, Stamps
 from pinjoint.systems.render.theme import Colour
-from pinjoint.systems.render.typography import at_most, font_size, line_height, shortened, text_width, wrapped
-
-ALL = 1_000  # lines: as many as a text takes
+from pinjoint.systems.render.typography import font_size, line_height, shortened, text_width, wrapped
 
 
 @dataclass
@@ -126,7 +124,7 @@ class Text(Part):
         width += 0.01  # pixels: what is as wide as its place is whole, whatever sums of widths were rounded to
         if self.lines == 1:
             return [shortened(self.text, width, size, self.weight)]
-        return at_most(wrapped(self.text, width, size, self.weight), self.lines, width, size, self.weight)
+        return wrapped(self.text, width, size, self.weight, self.lines)
 
 
 @dataclass(frozen=True)

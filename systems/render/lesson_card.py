@@ -11,11 +11,11 @@ from pinjoint.components.card import Card
 from pinjoint.components.toolbar import Tool
 from pinjoint.components.view import View
 from pinjoint.systems.render.buttons import button, ink_of
-from pinjoint.systems.render.layout import ALL, Column, Drawn, Gap, Paper, Part, Plate, Row, Scroll, Text
+from pinjoint.systems.render.layout import Column, Drawn, Gap, Paper, Part, Plate, Row, Scroll, Text
 from pinjoint.systems.render.marks import Mark, Panel, Picture, Stamps, Strokes
 from pinjoint.systems.render.marks import Text as Written
 from pinjoint.systems.render.theme import Theme, faded
-from pinjoint.systems.render.typography import font_size, wrapped
+from pinjoint.systems.render.typography import ALL, font_size, wrapped
 
 _EDGE, _GAP = 14.0, 8.0  # points: around all, between parts
 _TEXTS = (

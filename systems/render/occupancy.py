@@ -2,12 +2,15 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
+
 import numpy as np
 from numpy.typing import NDArray
 
 from pinjoint.components.camera import Viewport
-from pinjoint.systems.render.marks import Owners, Points, Rows, Truths, Values
+from pinjoint.systems.render.marks import Mark, Owners, Panel, Points, Rows, Text, Truths, Values
 from pinjoint.systems.render.nearness import NOBODY, Codes, Parts, within
+from pinjoint.systems.render.typography import text_width
 
 FAINT, STRONG = 1, 2  # lines that names never cover; lines that values cover only in need
 _FAR = 1e6  # pixels
@@ -31,6 +34,16 @@ class Occupancy:
     def block(self, left: float, top: float, width: float, height: float) -> None:
         """Take a rectangle."""
         self.taken[self._cells(left, top, width, height)] = True
+
+    def block_marks(self, marks: Iterable[Mark]) -> None:
+        """Take the texts among some marks, and the plates on which they stand."""
+        for mark in marks:
+            if isinstance(mark, Panel) and mark.radius:
+                self.block(*mark[:4])
+            elif isinstance(mark, Text):
+                width = text_width(mark.text, mark.size, mark.weight)
+                left = mark.x - {"left": 0.0, "centre": 0.5, "right": 1.0}[mark.anchor] * width
+                self.block(left, mark.y - mark.size / 2, width, mark.size)
 
     def block_squares(self, centres: Points, half: Values) -> None:
         """Take many squares of half width `half` (n,) about `centres` (n, 2)."""

@@ -12,15 +12,15 @@ from pinjoint.components import written
 from pinjoint.components.camera import Rectangle, Viewport
 from pinjoint.components.language import begun, marked, plural, tr
 from pinjoint.components.round_numbers import round_down
-from pinjoint.components.view import BETWEEN
+from pinjoint.components.view import BETWEEN, LEAST_MODEL
 from pinjoint.systems.render import marks
-from pinjoint.systems.render.layout import ALL, Column, Drawn, Gap, Paper, Part, Plate, Row, Text, icon
+from pinjoint.systems.render.layout import Column, Drawn, Gap, Paper, Part, Plate, Row, Text, icon
 from pinjoint.systems.render.marks import Mark, Panel, Stamps, Strokes
 from pinjoint.systems.render.sheet import Sheet
 from pinjoint.systems.render.structure import HALO_OPACITY
 from pinjoint.systems.render.symbols import dashed
 from pinjoint.systems.render.theme import Colour, Theme, faded
-from pinjoint.systems.render.typography import font_size, line_height, text_width, wrapped
+from pinjoint.systems.render.typography import ALL, font_size, line_height, text_width, wrapped
 from pinjoint.systems.render.utilisation import scale_bar
 
 EDGE = 14.0  # points between overlays and the edges of the viewport
@@ -44,20 +44,10 @@ def draw_overlays(sheet: Sheet) -> tuple[list[Mark], tuple[float, float]]:
         lines = text.height(u, room)
         heading.put(text, Rectangle(v.left + EDGE * u, v.top + 9.0 * u, room, lines))
         right, top = v.left + EDGE * u + min(text.width(u), room), v.top + (EDGE - 4.0) * u + lines
-    _block(sheet, heading)
+    sheet.occupancy.block_marks(heading.marks)
     legend, below = _legend(sheet, right, top)
     caption, below = _caption(sheet, top, below)
     return status + heading.marks + legend + caption, (below, bottom)
-
-
-def _block(sheet: Sheet, paper: Paper) -> None:
-    """Keep labels off the texts and plates on a paper."""
-    for mark in paper.marks:
-        if isinstance(mark, Panel):
-            sheet.occupancy.block(mark.left, mark.top, mark.width, mark.height)
-        elif isinstance(mark, marks.Text):
-            width = text_width(mark.text, mark.size, mark.weight)
-            sheet.occupancy.block(mark.x, mark.y - mark.size / 2, width, mark.size)
 
 
 # --- the status bar --------------------------------------------------------------------------------
@@ -126,11 +116,11 @@ def _caption(sheet: Sheet, heading_end: float, top: float) -> tuple[list[Mark], 
     They stand below the legend, which ends at `top`; a title alone beside it where it has room there.
     """
     v, u, theme = sheet.viewport, sheet.unit, sheet.theme
-    paper, shape, thin, edges = Paper(u), sheet.view.shape, max(round(u), 1), list[Mark]()
+    paper, shape, thin = Paper(u), sheet.view.shape, max(round(u), 1)
     looks = [(line, "regular", theme.muted) for line in sheet.view.caption]
     if looks:
         sides = (v.width, thin), (thin, v.height)
-        edges = [Panel(v.left, v.top, *size, 0.0, theme.line) for size in sides]
+        paper.marks += [Panel(v.left, v.top, *size, 0.0, theme.line) for size in sides]
         looks[0] = looks[0][0], "semibold", theme.text
     if shape is not None:
         looks.append((shape.title, "semibold", theme.sketch))
@@ -154,8 +144,8 @@ def _caption(sheet: Sheet, heading_end: float, top: float) -> tuple[list[Mark], 
     if not sheet.view.caption and not sheet.occupancy.is_taken(left, heading_end + 8.0 * u, wide, high):
         upper = heading_end
     paper.put(column, Rectangle(left - 4.0 * u, upper + 8.0 * u, room + 8.0 * u, high))
-    _block(sheet, paper)
-    return edges + paper.marks, max(top, upper + 8.0 * u + high)
+    sheet.occupancy.block_marks(paper.marks)
+    return paper.marks, max(top, upper + 8.0 * u + high)
 
 
 def draw_notice(sheet: Sheet, ends: tuple[float, float]) -> list[Mark]:
@@ -272,7 +262,7 @@ def _legend(sheet: Sheet, right: float, heading_end: float) -> tuple[list[Mark],
     """
     v, u, theme = sheet.viewport, sheet.unit, sheet.theme
     meanings = meanings_of(sheet.legend) if sheet.view.legend else {}
-    if not meanings or v.width < 240.0 * u:
+    if not meanings or v.width < LEAST_MODEL * u:
         return [], heading_end
     plates, beside = _arranged(meanings, theme, v.width, right - v.left, u)
     top = v.top + _ABOVE * u if beside else heading_end + 8.0 * u
@@ -281,7 +271,7 @@ def _legend(sheet: Sheet, right: float, heading_end: float) -> tuple[list[Mark],
         width = plate.width(u)
         paper.put(plate, Rectangle(v.right - _ABOVE * u - width, top, width, 24.0 * u))
         top += _ROW * u
-    _block(sheet, paper)
+    sheet.occupancy.block_marks(paper.marks)
     return paper.marks, max(top - 4.0 * u, heading_end)
 
 

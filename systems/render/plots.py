@@ -8,6 +8,7 @@ import math
 import numpy as np
 
 from pinjoint.components import written
+from pinjoint.components.camera import Rectangle
 from pinjoint.components.field import Vector
 from pinjoint.components.language import several
 from pinjoint.components.round_numbers import round_up
@@ -21,11 +22,8 @@ _REACH = 30.0  # points from a curve, within which the pointer reads it
 _STEP = 2.0  # points along a curve between drawn samples
 _TICKS = 4  # on each axis, about
 
-Box = tuple[float, float, float, float]  # left, top, width, height in pixels
-Range = tuple[float, float]
 
-
-def draw_plot(plot: Plot, box: Box, theme: Theme, unit: float, pointer: Vector | None) -> list[Mark]:
+def draw_plot(plot: Plot, box: Rectangle, theme: Theme, unit: float, pointer: Vector | None) -> list[Mark]:
     """A plot within a box, as marks in pixels."""
     return _Drawing(plot, box, theme, unit).marks(pointer)
 
@@ -33,17 +31,16 @@ def draw_plot(plot: Plot, box: Box, theme: Theme, unit: float, pointer: Vector |
 class _Drawing:
     """Places one plot in a box: the axes' titles and ticks outside, the curves inside."""
 
-    def __init__(self, plot: Plot, box: Box, theme: Theme, unit: float) -> None:
+    def __init__(self, plot: Plot, box: Rectangle, theme: Theme, unit: float) -> None:
         self.plot, self.theme, self.unit = plot, theme, unit
         self.size = font_size(_TEXT, unit)
         self.x_range = _range([x for _, x, _ in plot.curves])
         low, high = _range([y for _, _, y in plot.curves])
         self.y_range = low - 0.06 * (high - low), high + 0.06 * (high - low)
         self.x_ticks, self.y_ticks = round_ticks(self.x_range), round_ticks(self.y_range)
-        left, top, width, height = box
         labels = max((text_width(text, self.size) for _, text in self.y_ticks), default=0.0)
-        self.left, self.right = left + labels + 6.0 * unit, left + width - 4.0 * unit
-        self.top, self.bottom = top + 16.0 * unit, top + height - 30.0 * unit
+        self.left, self.right = box.left + labels + 6.0 * unit, box.right - 4.0 * unit
+        self.top, self.bottom = box.top + 16.0 * unit, box.bottom - 30.0 * unit
         colours = theme.curve_1, theme.curve_2, theme.curve_3, theme.curve_4
         self.coloured = list(zip(plot.curves, itertools.cycle(colours), strict=False))
 
@@ -142,7 +139,7 @@ def _thinned(points: Points, step: float) -> Points:
     return found
 
 
-def _range(columns: list[Values]) -> Range:
+def _range(columns: list[Values]) -> Vector:
     """The least and the largest finite value, widened if equal."""
     values = np.concatenate([*columns, np.empty(0)])
     values = values[np.isfinite(values)]
@@ -155,7 +152,7 @@ def _range(columns: list[Values]) -> Range:
     return low - room, high + room
 
 
-def round_ticks(values: Range, count: int = _TICKS) -> list[tuple[float, str]]:
+def round_ticks(values: Vector, count: int = _TICKS) -> list[tuple[float, str]]:
     """Round values within a range, 1, 2 or 5 times a power of ten apart, and how they are written."""
     step = round_up(values[1] / count - values[0] / count)
     first, last = math.ceil(values[0] / step), math.floor(values[1] / step)

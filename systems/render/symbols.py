@@ -26,7 +26,6 @@ STROKE = 1.8  # the width of lines of icons
 _NUMBERS = {"disc": 3, "arc": 5}  # of one part; lines and areas have two for each of their points
 SUPPORT_DEPTH = 25.0  # points from the particle's rim to the far side of the ground
 RIM = 1.75  # points
-LARGEST_STAMP = 64.0  # points, greatest radius of a circle drawn as a stamp
 _HALF_WIDTH, _HEIGHT = 9.5, 16.0  # points, of a support's triangle
 _GROUND = 13.0  # points, half the length of the ground under it
 _SQUARE = 9.5  # points, half the side of a square around a joint that cannot turn

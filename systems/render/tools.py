@@ -20,8 +20,6 @@ _APART, _MOST_ARROWS = 26.0, 40  # points between arrows along a rod, and how ma
 _ARC = 24.0  # points, radius of a moment's
 _COILS = 9  # of the spring that pulls
 
-Drawn = Callable[[Sheet, Points, Points], list[Mark]]
-
 
 def draw_flashes(sheet: Sheet) -> list[Mark]:
     """Flashes where particles collided just now."""
@@ -149,7 +147,7 @@ def _label(sheet: Sheet, preview: Preview, at: Points) -> list[Mark]:
     ]
 
 
-_KINDS: dict[str, Drawn] = {
+_KINDS: dict[str, Callable[[Sheet, Points, Points], list[Mark]]] = {
     "rod": _rod,
     "force": lambda sheet, start, end: _arrow(sheet, start, end, sheet.theme.load),
     "distributed force": lambda sheet, start, end: [],

@@ -11,6 +11,8 @@ from typing import Any, TypeVar
 
 T = TypeVar("T")
 
+ALL = 1_000  # lines: as many as a text takes
+
 WEIGHTS = {"regular": "Inter-Regular.otf", "semibold": "Inter-SemiBold.otf"}
 
 
@@ -74,8 +76,8 @@ def fitting(characters: Iterable[str], width: float, size: int, weight: str = "r
     return count
 
 
-def wrapped(text: str, width: float, size: int, weight: str = "regular") -> list[str]:
-    """The text in lines no wider than `width`, broken at spaces; a single longer word is shortened."""
+def wrapped(text: str, width: float, size: int, weight: str = "regular", most: int = ALL) -> list[str]:
+    """The text in at most so many lines of a width, broken at spaces; a longer word, and what is left over, is shortened."""
     lines: list[str] = []
     for paragraph in text.split("\n"):
         line = ""
@@ -87,16 +89,11 @@ def wrapped(text: str, width: float, size: int, weight: str = "regular") -> list
             else:
                 line = longer
         lines.append(line)
+    if len(lines) > most:
+        lines[most - 1 :] = [" ".join(lines[most - 1 :])]
     return [shortened(line, width, size, weight) for line in lines]
 
 
 def in_rows(items: list[T], each: int) -> list[list[T]]:
     """Items in rows of `each`; the last row may be shorter."""
     return [items[first : first + each] for first in range(0, len(items), each)]
-
-
-def at_most(lines: list[str], most: int, width: float, size: int, weight: str = "regular") -> list[str]:
-    """The first lines, the last of them ending in an ellipsis if there are more."""
-    if len(lines) <= most:
-        return lines
-    return [*lines[: most - 1], shortened(" ".join(lines[most - 1 :]), width, size, weight)]

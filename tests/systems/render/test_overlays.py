@@ -131,7 +131,11 @@ def test_a_long_notice_stands_beside_a_structure_that_fills_the_height(size: tup
     session.view.status = Status(notice=said)
     marks = compose(session.model, session.view, LIGHT).marks
     pairs = itertools.pairwise(marks)
-    [box] = [a for a, b in pairs if isinstance(a, Panel) and a.radius and isinstance(b, Stamps) and b.symbol == "disc"]
+    [box] = [
+        a
+        for a, b in pairs
+        if isinstance(a, Panel) and a.radius and isinstance(b, Stamps) and b.symbol == "disc"
+    ]
     x, y = session.view.camera.to_pixels(drawn_positions(session.model)).T
     reach = 8.0
     covered = (x > box.left - reach) & (x < box.left + box.width + reach)
