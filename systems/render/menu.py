@@ -13,7 +13,7 @@ from pinjoint.systems.render.layout import Column, Drawn, Gap, Paper, Part, Plat
 from pinjoint.systems.render.marks import Mark, Panel, Strokes
 from pinjoint.systems.render.theme import Colour, Theme, faded
 
-_SIZE, _ROW = 12.5, 21.0  # points: type, and from entry to entry
+_SIZES = (12.5, 21.0), (11.5, 19.0), (10.0, 16.0)  # points: type, and from entry to entry
 _EDGE = 4.0  # points above, below, and to the edges of the window
 
 
@@ -25,7 +25,7 @@ def put_menu(paper: Paper, view: View, theme: Theme) -> None:
     menu, window, u = view.menu, view.camera.viewport, view.pixel_ratio
     if menu is None:
         return
-    parts = _columns(view, theme)
+    parts, (points, row) = _columns(view, theme)
     widths = [Column(column).width(u) for column in parts]
     fits = sum(widths) <= window.width - 2 * _EDGE * u
     wheel = None if fits else ("menu left", "menu right")
@@ -33,8 +33,8 @@ def put_menu(paper: Paper, view: View, theme: Theme) -> None:
     last = next((n for n, column in enumerate(parts) if menu.chosen in numbers_in(column)), 0)
     first = max(min(last, len(parts) - 1) - most + 1, 0)
     columns = Row([Column(column, grow=1.0) for column in parts[first : first + most]])
-    title = [Text(menu.title, _SIZE, theme.muted, "semibold")] if menu.title else []
-    head = Row(title, around=(10.0, 0.0, 0.0), high=_ROW if title else 0.0)
+    title = [Text(menu.title, points, theme.muted, "semibold")] if menu.title else []
+    head = Row(title, around=(10.0, 0.0, 0.0), high=row if title else 0.0)
     whole = Plate(
         Column((head, columns), around=(0.0, _EDGE, _EDGE)),
         theme.background,
@@ -80,7 +80,7 @@ def _pointed_at(view: View, hits: list[Hit], pointer: Vector | None) -> int:
 
 def entry_beside(view: View, theme: Theme, number: int, by: int) -> int:
     """The entry at the same height in the column to the right (1) or left (-1) of that of an entry, or the same."""
-    columns = [numbers_in(column) for column in _columns(view, theme)]
+    columns = [numbers_in(column) for column in _columns(view, theme)[0]]
     here = next((n for n, column in enumerate(columns) if number in column), 0)
     if not 0 <= here + by < len(columns):
         return number
@@ -93,20 +93,27 @@ def numbers_in(column: list[Part]) -> list[int]:
     return [part.item for part in column if isinstance(part, Plate)]
 
 
-def _columns(view: View, theme: Theme) -> list[list[Part]]:
-    """The entries in as few columns as the height of the window lets them have."""
+def _columns(view: View, theme: Theme) -> tuple[list[list[Part]], tuple[float, float]]:
+    """The entries in columns, in the largest type in which all have room beside each other, and its size and rows."""
     assert view.menu is not None
-    menu, u, number = view.menu, view.pixel_ratio, iter(range(len(view.menu.entries)))
-    room = view.camera.viewport.height - (4 * _EDGE + _ROW * bool(menu.title)) * u
-    groups = [[_entry(tool, next(number), menu.at, theme) for tool in group] for group in menu.groups]
-    return in_columns(groups, Row((Gap(10.0), rule(theme.line, 7.0), Gap(10.0))), u, room, np.inf)
+    menu, u, window = view.menu, view.pixel_ratio, view.camera.viewport
+    between = Row((Gap(10.0), rule(theme.line, 7.0), Gap(10.0)))
+    for points, row in _SIZES:
+        number, room = iter(range(len(menu.entries))), window.height - (4 * _EDGE + row * bool(menu.title)) * u
+        groups = [
+            [_entry(tool, next(number), menu.at, theme, points, row) for tool in group] for group in menu.groups
+        ]
+        columns = in_columns(groups, between, u, room, np.inf)
+        if sum(Column(column).width(u) for column in columns) <= window.width - 2 * _EDGE * u:
+            break
+    return columns, (points, row)
 
 
-def _entry(tool: Tool, number: int, at: Vector, theme: Theme) -> Plate:
+def _entry(tool: Tool, number: int, at: Vector, theme: Theme, points: float, row: float) -> Plate:
     """A check mark if it is on, its title and its key."""
     ink = ink_of(theme, enabled=tool.enabled)
     sign = Drawn(lambda at, u: _tick(at, u, ink) if tool.pressed else [], 16.0)
-    inside = Row((tool_row(tool, theme, sign, _SIZE, 20.0),), around=(10.0, 0.0, 0.0), high=_ROW)
+    inside = Row((tool_row(tool, theme, sign, points, 20.0),), around=(10.0, 0.0, 0.0), high=row)
     return Plate(inside, action=tool.action, enabled=tool.enabled, item=number, at=at)
 
 
