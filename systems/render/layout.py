@@ -119,7 +119,7 @@ class Text(Part):
     def _apart(self, u: float) -> float:
         return self.apart * u or line_height(self.size(u))
 
-    def _lines(self, u: float, width: float) -> list[str]:
+    def _lines(self, u: float, width: float) -> Sequence[str]:
         size = self.size(u, width)
         width += 0.01  # pixels: what is as wide as its place is whole, whatever sums of widths were rounded to
         if self.lines == 1:

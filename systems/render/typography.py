@@ -76,7 +76,8 @@ def fitting(characters: Iterable[str], width: float, size: int, weight: str = "r
     return count
 
 
-def wrapped(text: str, width: float, size: int, weight: str = "regular", most: int = ALL) -> list[str]:
+@lru_cache(maxsize=2048)  # a form asks for the heights of all that it could explain, several times a frame
+def wrapped(text: str, width: float, size: int, weight: str = "regular", most: int = ALL) -> tuple[str, ...]:
     """The text in at most so many lines of a width, broken at spaces; a longer word, and what is left over, is shortened."""
     lines: list[str] = []
     for paragraph in text.split("\n"):
@@ -91,7 +92,7 @@ def wrapped(text: str, width: float, size: int, weight: str = "regular", most: i
         lines.append(line)
     if len(lines) > most:
         lines[most - 1 :] = [" ".join(lines[most - 1 :])]
-    return [shortened(line, width, size, weight) for line in lines]
+    return tuple(shortened(line, width, size, weight) for line in lines)
 
 
 def in_rows(items: list[T], each: int) -> list[list[T]]:
