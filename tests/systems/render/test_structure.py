@@ -133,10 +133,9 @@ def test_selected_grid_is_red_and_hidden_grids_are_not_drawn() -> None:
     first, second = model.create(Grid, 2, name=["grid 1", "grid 2"], shown=[True, False])
     assert LIGHT.grid[:3] == (200, 200, 200)
     lines = len(marks_of(picture_of(model), Panel, LIGHT.grid))
-    assert lines
     for grid in (first, second):
         model.tag(grid, Selected)
-        assert len(marks_of(picture_of(model), Panel, LIGHT.selected)) == lines
+        assert len(marks_of(picture_of(model), Panel, LIGHT.selected)) == lines > 0
         assert not marks_of(picture_of(model), Panel, LIGHT.grid)
 
 

@@ -7,9 +7,7 @@ import pytest
 
 from pinjoint.systems.render.theme import load_theme, theme_names
 from pinjoint.systems.render.utilisation import LEVELS, shade
-from tests.systems.render.pictures import (
-    LIGHT,
-)
+from tests.systems.render.pictures import LIGHT
 
 
 def test_themes_load_and_the_default_is_the_thesis() -> None:
