@@ -18,6 +18,7 @@ from pinjoint.components.field import Role
 from pinjoint.components.language import marked, tr
 from pinjoint.components.mistake import Explained
 from pinjoint.components.model import Model
+from pinjoint.components.table import read_only
 from pinjoint.components.wording import is_identifier
 from pinjoint.systems import is_ours
 from pinjoint.systems.base import Commit, Event, Law, StepSystem
@@ -322,13 +323,6 @@ def shape_given(b: Bound, parameter: str, model: Model) -> tuple[int, ...]:
         table, _, column = parameter.partition("_")
         single, shape = model.tables[table].kind.single, model.tables[table].fields[column].shape
     return (2, *shape) if b.each == "pairs" and not single else shape
-
-
-def read_only(array: NDArray[Any]) -> NDArray[Any]:
-    """A view that kernels cannot write to; the system itself may write to the array between steps."""
-    view = array.view()
-    view.flags.writeable = False
-    return view
 
 
 def check_names(bound: Iterable[Bound]) -> None:

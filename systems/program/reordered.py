@@ -10,8 +10,9 @@ from numpy.typing import NDArray
 
 from pinjoint.components.field import Column, Role
 from pinjoint.components.model import Model
+from pinjoint.components.table import read_only
 from pinjoint.systems.base import Integrator, StepSystem
-from pinjoint.systems.program.binding import bind, read_only
+from pinjoint.systems.program.binding import bind
 from pinjoint.systems.program.blocks import Layout, Numbers
 from pinjoint.systems.program.program import OBSERVED, Program
 from pinjoint.systems.program.writer import PUSHED

@@ -655,9 +655,11 @@ class Writer:
         return []
 
     def _particles(self, where: str, span: str = EVERY) -> list[str]:
-        """A loop in which the integrator moves every particle."""
+        """A loop in which the integrator moves every particle; none where it has nothing to do."""
+        if not where:
+            return []
         lines = self.lines(find(where, self.integrator), total_force=self.lines(fixed_steps.total_force))
-        return [f"for i in range({span}):", *indented(lines)] if lines else []
+        return [f"for i in range({span}):", *indented(lines)]
 
     def _gains(self, resist: str, given: str) -> list[str]:
         """The lines by which each account gains in the step that ends here."""
