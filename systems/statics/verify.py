@@ -12,8 +12,8 @@ from pinjoint.components import written
 from pinjoint.components.field import ENDS
 from pinjoint.components.language import begun, joined, marked, tr
 from pinjoint.components.model import Model
-from pinjoint.components.suggestions import missing
 from pinjoint.components.table import flags
+from pinjoint.components.wording import missing
 from pinjoint.components.world import called
 from pinjoint.systems.statics.equations import ROUND_OFF, Array, Flags, largest
 from pinjoint.systems.statics.events import Event, NoEquilibrium
