@@ -268,11 +268,11 @@ class Session(Context):
         rad, axial_force (k, rods) in kN, bending_moment (k, rods, 2) in kN·m and stable (k,); its events are limit points
         and bifurcations; complete: False if it could not be followed so far. Raises ValueError.
         """
-        from pinjoint.systems.statics.path import goal_of, load_path
+        from pinjoint.systems.statics.path import Goal, load_path
 
         if points < 2:
             raise WrongValue("points is {points}; a curve has at least 2.", points=points)
-        return load_path(self.model, goal_of(self.model, factor, until), points=points, branch=branch)
+        return load_path(self.model, Goal.of(self.model, factor, until), points=points, branch=branch)
 
     def buckling(self, modes: int = 5) -> Buckling:
         """Critical load factors by linear buckling, ascending, with their modes; changes nothing.
@@ -281,11 +281,11 @@ class Session(Context):
         effective_length (rods,) in m, NaN of rods that are not compressed; message: why there is none. Raises
         ValueError, and NoEquilibrium without a state that could lose its stability.
         """
-        from pinjoint.systems.statics.buckling import buckling
+        from pinjoint.systems.statics.buckling import Buckling
 
         if modes < 1:
             raise WrongValue("modes is {modes}; ask for at least 1.", modes=modes)
-        return buckling(self.model, modes)
+        return Buckling.of(self.model, modes)
 
     # --- editing -----------------------------------------------------------------------------------
 

@@ -15,7 +15,6 @@ from pinjoint.components.language import joined, marked, plural, tr
 from pinjoint.components.model import Model
 from pinjoint.components.rod import bends
 from pinjoint.streams import tell
-from pinjoint.systems.statics.events import event_record
 
 if TYPE_CHECKING:  # it imports scipy
     from pinjoint.systems.statics.path import Curve
@@ -151,7 +150,7 @@ def _data(model: Model, curve: Curve) -> dict[str, Any]:
         "axial_force": dict(zip(model.rods.names, curve.axial_force.T, strict=True)),
         **bent,
         "points": [_point(model, curve, number) for number in range(len(curve.load_factor))],
-        "events": [event_record(model, event) for event in curve.events],
+        "events": [event.record(model) for event in curve.events],
     }
 
 

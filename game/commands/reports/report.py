@@ -24,7 +24,7 @@ from pinjoint.systems.physics.automatic import AFFORDABLE
 from pinjoint.systems.run.measured_error import IN_A_COMMAND
 from pinjoint.systems.run.simulation import Simulation
 from pinjoint.systems.run.watch import watched
-from pinjoint.systems.statics.events import Event, event_record
+from pinjoint.systems.statics.events import Event
 
 if TYPE_CHECKING:  # it imports scipy
     from pinjoint.systems.statics.state import StaticState
@@ -174,7 +174,7 @@ def _state(simulation: Simulation, read: Read = state) -> State:
 
 
 def _records(model: Model, events: Sequence[Event]) -> list[dict[str, Any]]:
-    return [event_record(model, event) for event in events]
+    return [event.record(model) for event in events]
 
 
 def _run(
