@@ -109,7 +109,7 @@ def adopt(module: ModuleType, name: str, kernels: Iterable[Any]) -> None:
     """
     for kernel in kernels:
         if isinstance(kernel, CPUDispatcher):
-            kernel._cache = NullCache()
+            kernel._cache = NullCache()  # type: ignore[attr-defined]
         if not is_ours(kernel.__module__):
             cpu_target.target_context.refresh()  # it may refer to anything of numba's
     module.__name__ = name

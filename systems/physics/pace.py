@@ -128,7 +128,8 @@ def _forces(model: Model) -> Array:
 def _solved_in_full(model: Model, free: NDArray[np.intp], force: Array) -> Array:
     """The displacements of free directions under forces, both (k,), by a full matrix."""
     matrix, stiffest = stiffness_matrix(model)
-    return np.linalg.solve(matrix + SLIGHTLY * stiffest * np.eye(len(free)), force)
+    held = matrix + SLIGHTLY * stiffest * np.eye(len(free))
+    return np.asarray(np.linalg.solve(held, force), dtype=np.float64)
 
 
 def _solved_sparsely(model: Model, free: NDArray[np.intp], force: Array) -> Array:
