@@ -11,8 +11,8 @@ from pinjoint import Session
 from pinjoint.commands.command_line import main
 from pinjoint.editor.readouts import own_readouts
 from pinjoint.systems.run.measured_error import FINEST_TOLERANCE
-from tests.properties.limits import within
 from tests.benchmarks.problems import Problem, tightly, transient, under_damped, yielding_step
+from tests.properties.limits import within
 from tests.reference import bits
 from tests.reference.elements import Model
 from tests.reference.models import oscillator, pendulum, square, triangle
