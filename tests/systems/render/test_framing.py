@@ -11,17 +11,7 @@ from hypothesis import strategies as st
 
 from pinjoint.components.camera import Viewport
 from pinjoint.systems.render.framing import framed
-from pinjoint.systems.render.marks import (
-    Bars,
-    Discs,
-    Fills,
-    Mark,
-    Panel,
-    Picture,
-    Stamps,
-    Strokes,
-    Text,
-)
+from pinjoint.systems.render.marks import Bars, Discs, Fills, Mark, Panel, Picture, Stamps, Strokes, Text
 from pinjoint.systems.render.pygame_canvas import Canvas
 from pinjoint.systems.render.symbols import SYMBOLS
 
