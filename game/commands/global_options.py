@@ -25,7 +25,7 @@ from pinjoint.documents.preferences import preferred
 from pinjoint.mods.loading import load
 from pinjoint.mods.mod import INCLUDED, LOG, ModError
 from pinjoint.streams import tell
-from pinjoint.systems.program.parallel import VARIABLE as CORES
+from pinjoint.systems.program.reordered import VARIABLE as CORES
 
 VARIABLE = "PINJOINT_LANGUAGE"
 _OF_SYSTEM = ("LANGUAGE", "LC_ALL", "LC_MESSAGES", "LANG")  # the first that is set counts, as for gettext
