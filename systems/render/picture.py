@@ -19,7 +19,7 @@ from pinjoint.systems.broad_phase import distance_to_segments
 from pinjoint.systems.render.arrows import draw_loads, draw_particle_diagrams, draw_velocities
 from pinjoint.systems.render.cuts import draw_cuts
 from pinjoint.systems.render.diagrams import draw_diagrams
-from pinjoint.systems.render.empty_card import put_card, shows_card
+from pinjoint.systems.render.empty_card import put_card
 from pinjoint.systems.render.form import compose_form
 from pinjoint.systems.render.free_bodies import draw_free_bodies
 from pinjoint.systems.render.labels import Placed, place_labels
@@ -122,8 +122,7 @@ def _put_controls(paper: Paper, model: Model, view: View, theme: Theme) -> None:
             paper.hits.append(Hit(v.left, v.bottom - high, v.width, high, ""))
         wheel, places = ("slider up", "slider down"), view.slider_places  # a slider knows its button
         paper.hits += [Hit(*place.box, SLIDER, item=place, wheel=wheel, again=True) for place in places]
-    if shows_card(model, view):
-        put_card(paper, view, theme)
+    put_card(paper, model, view, theme)
 
 
 def _draw_structure(sheet: Sheet) -> None:

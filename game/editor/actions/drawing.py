@@ -15,7 +15,7 @@ from pinjoint.editor.context import Context
 from pinjoint.editor.gestures.drawing import HINGES, DrawForce, DrawMoment, DrawRod, DrawVelocity, tool_in_hand
 from pinjoint.systems.edit import Refusal
 from pinjoint.systems.edit.picking import End, pick_end, pick_particle, pick_rod
-from pinjoint.systems.edit.placing import place
+from pinjoint.systems.edit.placing import place, snapped
 from pinjoint.systems.edit.rods import is_rigid, set_rigid, share_at, toggle_hinge, toggle_joint
 from pinjoint.systems.edit.supports import next_support
 from pinjoint.systems.input.actions import PAUSE, actions_of
@@ -35,7 +35,8 @@ def _place(context: Context, pixel: Vector) -> None:
     if context.view.strip.contains(pixel):
         context.take_up("place")
         return
-    particle = place(context.model, context.view, pixel)
+    model, view = context.model, context.view
+    particle = place(model, view, snapped(model, view, view.camera.to_model(pixel)))
     context.notice = tr(
         "{element}: {value}",
         element=context.name(particle),
