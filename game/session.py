@@ -44,7 +44,7 @@ from pinjoint.mods import load_all
 from pinjoint.mods.mod import blamed_on_mod, heeding_mods
 from pinjoint.scripts.expectation import expect
 from pinjoint.scripts.script import Script, ScriptError
-from pinjoint.systems.base import EVENT_INTERVAL, Phase, StopReason, System
+from pinjoint.systems.base import DEFAULT_LIMIT, EVENT_INTERVAL, Phase, StopReason, System
 from pinjoint.systems.catalogue import step_systems
 from pinjoint.systems.edit import Refusal
 from pinjoint.systems.edit.dividing import divide
@@ -62,7 +62,6 @@ from pinjoint.systems.input.actions import (
 )
 from pinjoint.systems.run.simulation import Simulation
 from pinjoint.systems.run.system import Time
-from pinjoint.systems.run.watch import watched
 from pinjoint.systems.schedule import Plan, Schedule
 
 if TYPE_CHECKING:  # they import scipy
@@ -73,7 +72,6 @@ if TYPE_CHECKING:  # they import scipy
 MODEL, SCRIPT = ".json", ".jsonl"  # files that a person may drop on the window
 FARTHEST = 1e9  # pixels from the corner of the window to which a click may be
 LARGEST_SIDE, LARGEST_RATIO = 65_536, 64.0  # of a window, in pixels, and in pixels per point
-DEFAULT_LIMIT = 60.0  # s of simulated time in which a model is expected to come to rest
 
 
 class Session(Context):
@@ -221,7 +219,7 @@ class Session(Context):
         document.history.begin_run()
         document.timeline.begin()
         try:
-            with heeding_mods(simulation), self.without_frames(), watched(simulation):
+            with heeding_mods(simulation), self.without_frames(), simulation.watched():
                 yield simulation
                 document.chronicle.look()
         finally:
@@ -271,8 +269,6 @@ class Session(Context):
         """
         from pinjoint.systems.statics.path import goal_of, load_path
 
-        if points < 2:
-            raise WrongValue("points is {points}; a curve has at least 2.", points=points)
         return load_path(self.model, goal_of(self.model, factor, until), points=points, branch=branch)
 
     def buckling(self, modes: int = 5) -> Buckling:
@@ -284,8 +280,6 @@ class Session(Context):
         """
         from pinjoint.systems.statics.buckling import buckling
 
-        if modes < 1:
-            raise WrongValue("modes is {modes}; ask for at least 1.", modes=modes)
         return buckling(self.model, modes)
 
     # --- editing -----------------------------------------------------------------------------------

@@ -15,7 +15,7 @@ from pinjoint.components.camera import Viewport
 from pinjoint.components.extensions import EXTENSIONS
 from pinjoint.components.field import Vector
 from pinjoint.components.handle import Handle
-from pinjoint.components.language import begun, listed, marked, tr
+from pinjoint.components.language import begun, marked, tr
 from pinjoint.components.mistake import NotFound, WrongValue
 from pinjoint.components.model import Model
 from pinjoint.components.rod import bends
@@ -380,11 +380,7 @@ class Context:
             self.view.all_diagrams, self.view.quantity = True, self.model.settings.diagrams
         if self.model.rods.count:
             self.view.rigid = bends(self.model)
-        if missing := missing_mods(self.model):
-            self.notice = tr(
-                "This model uses mods that are not loaded: {mods}. Their data is kept and saved again, but has no effect.",
-                mods=listed(missing),
-            )
+        self.notice = missing_mods(self.model) or self.notice
         self._go_on()
 
     @property

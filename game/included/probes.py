@@ -7,7 +7,7 @@ from array import array
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -15,11 +15,13 @@ from pinjoint.components import Model, Particle, Plot, Readout, Rod, Vector, wri
 from pinjoint.components.field import ENDS
 from pinjoint.components.language import english, joined, listed, marked, tr
 from pinjoint.documents.models import replace
-from pinjoint.editor.context import Context
 from pinjoint.mods import App
 from pinjoint.paths import TIME, Quantity, quantity
 from pinjoint.systems.base import Phase, System
 from pinjoint.systems.edit import Refusal
+
+if TYPE_CHECKING:  # a command needs no editor
+    from pinjoint.editor.context import Context
 
 MOST = 20_000  # samples; beyond, every second one is dropped
 FEW = 3  # plots at a time

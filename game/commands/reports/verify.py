@@ -14,7 +14,9 @@ from pinjoint.commands.reports.report import static_state
 from pinjoint.components.field import ENDS
 from pinjoint.components.language import decimals, joined, marked, plural, tr
 from pinjoint.components.model import Model
-from pinjoint.session import DEFAULT_LIMIT, Session
+from pinjoint.session import Session
+from pinjoint.systems.base import DEFAULT_LIMIT
+from pinjoint.systems.catalogue import left_out_of_statics
 from pinjoint.systems.statics.counting import Count, counted
 from pinjoint.systems.statics.equations import AXES
 from pinjoint.systems.statics.events import NoEquilibrium, event_record
@@ -120,7 +122,7 @@ def _run_to_rest(session: Session, limit: float | None) -> str:
 
 def _left_out(session: Session) -> Iterator[str]:
     """A sentence about the laws of mods that act in the simulation and not in theory, if there are some."""
-    if laws := session.schedule.left_out_of_statics(session.model):
+    if laws := left_out_of_statics(session.model):
         yield tr("Theory leaves out the laws of mods: {laws}.", laws=", ".join(laws))
 
 
