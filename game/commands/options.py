@@ -6,22 +6,27 @@ import argparse
 import os
 from collections.abc import Iterable, Sequence
 from functools import partial
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, TypeVar
 
 from pinjoint.commands.arguments import Parser, UsageError, count, numbers, positive, times
 from pinjoint.commands.progress import follow
 from pinjoint.commands.reports.report import Analysis
+from pinjoint.components.extensions import EXTENSIONS
 from pinjoint.components.language import tr
 from pinjoint.components.model import Model
 from pinjoint.components.settings import INTEGRATORS
 from pinjoint.documents import models
 from pinjoint.documents.format import missing_mods
+from pinjoint.mods.mod import INCLUDED
 from pinjoint.paths import apply_override
 from pinjoint.streams import tell
 from pinjoint.systems.base import CORES, DEFAULT_LIMIT, System
 
 if TYPE_CHECKING:  # statics needs no session
+    from pinjoint.headless import Headless
     from pinjoint.session import Session
+
+H = TypeVar("H", bound="Headless")
 
 ANSWERED, NOT_ANSWERED, NO_DISPLAY, STOPPED = 0, 1, 3, 130  # exit statuses; BAD_INPUT is 2
 
@@ -66,7 +71,19 @@ def session_of(options: argparse.Namespace, systems: Iterable[System] = ()) -> S
     """A session with the model of `add_model`, and further systems. Raises ModelError, PathError, FieldError."""
     from pinjoint.session import Session
 
-    session = Session.open(options.model, systems)
+    return _prepared(Session.open(options.model, systems), options)
+
+
+def headless_of(options: argparse.Namespace) -> Headless:
+    """Likewise without scenes, for which only systems of mods may ask."""
+    if any(mod.loaded and mod.source != INCLUDED for mod in EXTENSIONS.mods):
+        return session_of(options)
+    from pinjoint.headless import Headless
+
+    return _prepared(Headless.open(options.model), options)
+
+
+def _prepared(session: H, options: argparse.Namespace) -> H:
     follow(session.simulation.progress)
     _change(session.model, options)
     return session

@@ -13,8 +13,8 @@ from pinjoint.commands.options import (
     add_analysis,
     add_model,
     analysis_of,
+    headless_of,
     model_of,
-    session_of,
 )
 from pinjoint.commands.output import add_output, writable, write, write_result
 from pinjoint.commands.reports.report import FOUND, INTERRUPTED
@@ -45,7 +45,7 @@ def command(words: Sequence[str]) -> int:
         model = model_of(options)
         run, impacts = analysis.settled_in(model, options.model), Impacts(model)
     else:
-        session = session_of(options)
+        session = headless_of(options)
         run, impacts = analysis.run_in(session, options.model), session.impacts
     write_result(options, run, run_rows, run_lines)
     if options.events is not None:

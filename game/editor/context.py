@@ -9,7 +9,7 @@ import operator
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any, ClassVar, Protocol, TypeVar
+from typing import TYPE_CHECKING, Any, ClassVar, Protocol, TypeVar
 
 from pinjoint.components.camera import Viewport
 from pinjoint.components.extensions import EXTENSIONS
@@ -24,7 +24,6 @@ from pinjoint.components.slider import Place, under
 from pinjoint.components.tags import Selected
 from pinjoint.components.view import Preview, Readout, View
 from pinjoint.documents import models
-from pinjoint.documents.autosave import Autosave
 from pinjoint.documents.chronicle import Happening
 from pinjoint.documents.format import missing_mods
 from pinjoint.documents.open_documents import ModelFile, OpenDocument, OpenDocuments, Source, file_of
@@ -33,11 +32,14 @@ from pinjoint.systems.base import Mod
 from pinjoint.systems.collision.impacts import Impacts
 from pinjoint.systems.edit.pull import Pull
 from pinjoint.systems.physics.pace import natural_pace
-from pinjoint.systems.render.picture import Stage
 from pinjoint.systems.run.energy import Energy
 from pinjoint.systems.run.simulation import Simulation
 from pinjoint.systems.run.system import Time
 from pinjoint.systems.schedule import Schedule
+
+if TYPE_CHECKING:  # of a window
+    from pinjoint.documents.autosave import Autosave
+    from pinjoint.systems.render.picture import Stage
 
 # --- what a window gives ---------------------------------------------------------------------------------
 

@@ -254,7 +254,7 @@ def _heading(probe: Probe) -> str:
 def run(words: list[str]) -> int:
     """`pinjoint plot MODEL --of QUANTITY --until T --output FILE`."""
     from pinjoint.commands.arguments import Parser, UsageError, count, positive
-    from pinjoint.commands.options import add_model, session_of
+    from pinjoint.commands.options import add_model, headless_of
     from pinjoint.commands.output import writable, writing
 
     parser = Parser(
@@ -270,7 +270,7 @@ def run(words: list[str]) -> int:
     parser.add_argument("--samples", type=count, default=500, metavar="N", help=tr("at least; default 500"))
     parser.add_argument("--output", type=writable, required=True, metavar="FILE", help=tr(".csv or .png"))
     options = parser.parse_args(words)
-    session = session_of(options)
+    session = headless_of(options)
     probe = probes_of(session).add(session, options.of, options.against)
     output = Path(options.output)
     if output.suffix not in (".csv", ".png"):

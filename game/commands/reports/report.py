@@ -23,7 +23,7 @@ from pinjoint.systems.schedule import Schedule
 from pinjoint.systems.statics.events import Event, event_record
 
 if TYPE_CHECKING:  # statics needs no session, and a run no scipy
-    from pinjoint.session import Session
+    from pinjoint.headless import Headless
     from pinjoint.systems.run.simulation import Simulation
     from pinjoint.systems.statics.state import StaticState
 
@@ -112,7 +112,7 @@ class Analysis:
 
             return _failed(Simulation(model, Schedule(all_systems())), name, failure)
 
-    def run_in(self, session: Session, name: str) -> Run:
+    def run_in(self, session: Headless, name: str) -> Run:
         """A run through time in a session, which adds remarks of theory and its measured error."""
         from pinjoint.systems.run.measured_error import IN_A_COMMAND
 
