@@ -506,8 +506,8 @@ class Simulation:
 
         def look() -> int:
             nonlocal when
-            if not kept or time.monotonic() - when > KEPT_EVERY:
-                kept[:], when = [self.checkpoint()], time.monotonic()
+            if not kept or time.perf_counter() - when > KEPT_EVERY:
+                kept[:], when = [self.checkpoint()], time.perf_counter()
             return max(WORK_AT_ONCE // (model.particles.count + model.rods.count + 1), 1)
 
         self.before_steps.append(look)
