@@ -10,7 +10,6 @@ from typing import TYPE_CHECKING, Any, Self
 
 import numpy as np
 
-from pinjoint.components.extensions import EXTENSIONS
 from pinjoint.components.language import joined, marked, tr
 from pinjoint.components.load import Load
 from pinjoint.components.mistake import WrongValue
@@ -29,7 +28,7 @@ from pinjoint.editor.frame import HeadlessFrame
 from pinjoint.mods import load_all
 from pinjoint.mods.mod import heeding_mods
 from pinjoint.systems.base import DEFAULT_LIMIT, EVENT_INTERVAL, Phase, StopReason, System
-from pinjoint.systems.catalogue import step_systems
+from pinjoint.systems.catalogue import all_systems
 from pinjoint.systems.edit.pull import Pull
 from pinjoint.systems.run.simulation import Simulation
 from pinjoint.systems.schedule import Schedule
@@ -62,10 +61,8 @@ class Headless(Context):
         seen: Iterable[System] = (),
     ) -> None:
         pull = Pull()
-        schedule = Schedule(
-            [*seen, *step_systems(), pull, *(make() for make in EXTENSIONS.systems), *systems],
-            wanted={scene.name: scene.systems for scene in scenes},
-        )
+        wanted = {scene.name: scene.systems for scene in scenes}
+        schedule = Schedule([*seen, *all_systems(pull), *systems], wanted)
         super().__init__(model, schedule, pull, scenes, view or View(), file)
 
     @classmethod

@@ -33,7 +33,7 @@ from pinjoint.headless import Headless, forward
 from pinjoint.lessons.course import Course
 from pinjoint.lessons.tasks import Lesson
 from pinjoint.mods.mod import blamed_on_mod
-from pinjoint.scripts.expectation import expect
+from pinjoint.scripts.expectation import check
 from pinjoint.scripts.script import Script, ScriptError
 from pinjoint.systems.base import Phase, System
 from pinjoint.systems.edit import Refusal
@@ -351,7 +351,8 @@ class Session(Headless):
 
         Also "rods.AB.axial_force ≈ -28.34 ± 0.01", "energy.imbalance < 1"; see game/scripts/script.py.
         """
-        expect(self, text)
+        for expected, got in check(self, text):
+            raise AssertionError(tr("expected {expected}, got {got}", expected=expected, got=str(got)))
 
     def click_box(self, title: str) -> None:
         """Select the box with that title. Raises LookupError if there is none."""

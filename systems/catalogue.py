@@ -6,6 +6,7 @@ from pinjoint.components.extensions import EXTENSIONS
 from pinjoint.components.model import Model
 from pinjoint.systems.base import Law, StepSystem, System
 from pinjoint.systems.collision.system import Collision
+from pinjoint.systems.edit.pull import Pull
 from pinjoint.systems.loads.system import varying_loads
 from pinjoint.systems.physics.system import (
     AxialDamping,
@@ -42,9 +43,9 @@ def step_systems() -> list[StepSystem]:
     ]
 
 
-def all_systems() -> list[System]:
-    """The step systems of Pinjoint, then the systems of mods, frame systems among them."""
-    return [*step_systems(), *(make() for make in EXTENSIONS.systems)]
+def all_systems(pull: Pull | None = None) -> list[System]:
+    """The step systems of Pinjoint, with the pull of a hand, then the systems of mods, frame systems among them."""
+    return [*step_systems(), pull or Pull(), *(make() for make in EXTENSIONS.systems)]
 
 
 def left_out_of_statics(model: Model) -> list[str]:

@@ -62,8 +62,8 @@ def command(words: Sequence[str]) -> int:
     from pinjoint.systems.statics.path import goal_of, load_path
 
     try:
-        goal = goal_of(model, options.factor, options.until)
-        found = load_path(model, goal, points=options.points, branch=options.branch)
+        end = goal_of(model, options.factor, options.until)
+        found = load_path(model, end, points=options.points, branch=options.branch)
     except ValueError as error:
         raise UsageError(str(error)) from None
     laws = left_out_of_statics(model)

@@ -8,6 +8,7 @@ import time
 from collections.abc import Callable, Generator, Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass, replace
+from time import monotonic
 from typing import Any
 
 from pinjoint.components.extensions import EXTENSIONS
@@ -506,8 +507,8 @@ class Simulation:
 
         def look() -> int:
             nonlocal when
-            if not kept or time.perf_counter() - when > KEPT_EVERY:
-                kept[:], when = [self.checkpoint()], time.perf_counter()
+            if not kept or monotonic() - when > KEPT_EVERY:
+                kept[:], when = [self.checkpoint()], monotonic()
             return max(WORK_AT_ONCE // (model.particles.count + model.rods.count + 1), 1)
 
         self.before_steps.append(look)
