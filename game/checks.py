@@ -2,14 +2,14 @@
 
 from __future__ import annotations
 
-import time
-from collections.abc import Callable, Iterable, Iterator, Mapping
+from collections.abc import Callable, Collection, Iterable, Iterator, Mapping
 from contextlib import contextmanager, suppress
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
 import numpy as np
+from numpy.typing import ArrayLike, NDArray
 
 from pinjoint.components.extensions import EXTENSIONS
 from pinjoint.components.field import MADE, SAVED, Column, Field, FieldError, Role, same
@@ -30,10 +30,10 @@ from pinjoint.systems.base import Commit, Event, Integrator, Law, StepSystem, St
 from pinjoint.systems.catalogue import all_systems
 from pinjoint.systems.input.actions import ACTIONS, PAUSE, SIMULATION
 from pinjoint.systems.physics.integrators import INTEGRATORS
-from pinjoint.systems.program.binding import KERNELS, ProgramError, bind
+from pinjoint.systems.program.binding import KERNELS, PROVIDED, Bound, ProgramError, bind
 from pinjoint.systems.program.compiler import Choice
 from pinjoint.systems.program.faults import problem_of
-from pinjoint.systems.program.kernel_rows import KernelRows
+from pinjoint.systems.program.near_pairs import pairs_within
 from pinjoint.systems.program.program import MOTION, TURNING
 from pinjoint.systems.program.writer import read_sources
 from pinjoint.systems.run.simulation import Simulation
@@ -92,14 +92,10 @@ class SystemCheckError(Explained, AssertionError):
 
 @dataclass(frozen=True)
 class Checked:
-    """A checked system: the number of models that need it, and its cost.
-
-    cost: ns for one element in one step (a law, a commit) or one frame.
-    """
+    """A checked system, and the number of models that need it."""
 
     name: str
     needed: int
-    cost: float
 
 
 def check_system(
@@ -135,8 +131,9 @@ def check_system(
             "No model needs {name}; give check_system models=[…] for which needs() is true.", name=name
         )
     check = _check_steps if isinstance(system(), StepSystem) else _check_frames
-    cost = max(check(system, source) for source in needed)
-    return Checked(name, len(needed), cost)
+    for source in needed:
+        check(system, source)
+    return Checked(name, len(needed))
 
 
 def _model(source: Source) -> Model:
@@ -156,7 +153,7 @@ def _is_needed(system: Callable[[], System], source: Source) -> bool:
     before = columns_of(model)
     answers = {bool(system().needs(model)) for _ in range(2)}
     undeclared = marked("{name}: needs(model) changed {column}; it must not change the model.")
-    compare(system().name, before, columns_of(model), set(), undeclared)
+    compare(system().name, before, columns_of(model), undeclared)
     if len(answers) > 1:
         raise SystemCheckError(
             "{name}: needs(model) is sometimes true and sometimes false for the same model.", name=system().name
@@ -174,7 +171,11 @@ def columns_of(model: Model) -> dict[str, Column]:
 
 
 def compare(
-    name: str, before: Mapping[str, Column], after: Mapping[str, Column], allowed: set[str], refusal: str
+    name: str,
+    before: Mapping[str, Column],
+    after: Mapping[str, Column],
+    refusal: str,
+    allowed: Collection[str] = (),
 ) -> None:
     """Raise SystemCheckError if other columns than those allowed, by name or table, differ.
 
@@ -194,7 +195,7 @@ def _all_with(system: System) -> list[System]:
     return [*(other for other in all_systems() if other.name != system.name), system]
 
 
-def _check_steps(system: Callable[[], System], source: Source) -> float:
+def _check_steps(system: Callable[[], System], source: Source) -> None:
     made = system()
     assert isinstance(made, StepSystem)
     first = _run(made, source, backwards=False)
@@ -204,50 +205,76 @@ def _check_steps(system: Callable[[], System], source: Source) -> float:
     allowed |= {column for other in beside for column in other.writes}
     if isinstance(made, Integrator):
         allowed.add("settings.integrator")
-    compare(made.name, before, after, allowed, UNDECLARED)
+    compare(made.name, before, after, UNDECLARED, allowed)
     _check_finite(made.name, first)
     again = columns_of(_run(system(), source, backwards=False))
-    _check_alike(made.name, after, again, NOT_REPEATED)
+    compare(made.name, after, again, NOT_REPEATED)
     turned = columns_of(_run(system(), source, backwards=True))
     refusal = marked(
         "{name}: registered in another order, it gives another {column}; the order must not matter."
     )
-    _check_alike(made.name, after, turned, refusal)
+    compare(made.name, after, turned, refusal)
     if isinstance(made, Law) and made.each == "pairs":
         _check_pairs(made, first)
-    has_kernel = isinstance(made, Law | Commit)
-    return 1e9 * KernelRows(bind(made, first), first).seconds_per_call() if has_kernel else 0.0
 
 
 def _check_pairs(law: Law, model: Model) -> None:
     """Check that a law of pairs gives opposite forces, and those of its potential."""
     bound = bind(law, model)
-    force = KernelRows(bound, model).results()
-    if not np.allclose(force, -KernelRows(bound, model, turned=True).results(), rtol=1e-9, atol=0.0):
+    apart, force = _of_pairs(bound, model)
+    if not np.allclose(force, -_of_pairs(bound, model, turned=True)[1], rtol=1e-9, atol=0.0):
         raise SystemCheckError(
             "{name}: the forces on two particles change if the two are swapped; they must be opposite in any order.",
             name=law.name,
         )
     if not law.potential:
         return
-    energy, apart = bind(law, model, "potential"), np.hypot(*KernelRows(bound, model).apart.T)
-    for axis in range(2):
-        ahead, behind = (
-            KernelRows(energy, model, moved=(side * NEARBY * (1 - axis), side * NEARBY * axis)).results()[:, 0]
-            for side in (1.0, -1.0)
-        )
-        slope = (ahead - behind) / (2.0 * NEARBY * apart)
-        wrong = np.abs(slope - force[:, axis]) > 1e-4 * (np.hypot(*force.T) + np.abs(ahead) / apart)
+    energy, distance = bind(law, model, "potential"), np.hypot(*apart.T)
+    for axis, step in enumerate(NEARBY * np.eye(2)):
+        ahead, behind = (_of_pairs(energy, model, moved=side * step)[1][:, 0] for side in (1.0, -1.0))
+        slope = (ahead - behind) / (2.0 * NEARBY * distance)
+        wrong = np.abs(slope - force[:, axis]) > 1e-4 * (np.hypot(*force.T) + np.abs(ahead) / distance)
         if wrong.any():
             row = int(np.argmax(wrong))
             raise SystemCheckError(
                 "{name}: at a distance of {distance:g} m the slope of its potential is {slope:g} kN, but the force"
                 " on the first particle along the same axis is {force:g} kN; they must be equal.",
                 name=law.name,
-                distance=float(apart[row]),
+                distance=float(distance[row]),
                 slope=float(slope[row]),
                 force=float(force[row, axis]),
             )
+
+
+def _of_pairs(
+    bound: Bound, model: Model, *, turned: bool = False, moved: ArrayLike = 0.0
+) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    """Vectors (m) between all pairs that a kernel acts on, and what it gives for them; what only programs provide is 0.
+
+    turned: the second particle of each comes first; moved: vectors are longer by this share (x, y) of their length.
+    """
+    pairs = pairs_within(model, bound.cutoff)[:, :: -1 if turned else 1]
+
+    def between(name: str) -> NDArray[np.float64]:
+        return np.diff(model.column(f"particles.{name}")[pairs], axis=1)[:, 0]
+
+    apart = between("position") + between("displacement")
+    apart = apart + np.hypot(*apart.T)[:, None] * moved
+    given = dict.fromkeys(PROVIDED, np.zeros(len(pairs))) | {"apart": apart, "drift": between("velocity")}
+    for parameter in set(bound.parameters) - given.keys():
+        table, _, name = parameter.partition("_")
+        own = bound.arrays.get(parameter)
+        column = model.column(f"{table}.{name}") if own is None else own
+        shared = own is None and model.tables[table].kind.single
+        given[parameter] = np.repeat(column, len(pairs), axis=0) if shared else column[pairs]
+    rows = zip(*(map(_as_tuples, given[name].tolist()) for name in bound.parameters), strict=True)
+    made = np.array([bound.function(*row) for row in rows], dtype=np.float64)
+    return apart, made.reshape(len(pairs), -1 if len(pairs) else 2)
+
+
+def _as_tuples(value: Any) -> Any:
+    """A row as kernels get it."""
+    return tuple(map(_as_tuples, value)) if isinstance(value, list) else value
 
 
 def _run(system: System, source: Source, *, backwards: bool) -> Model:
@@ -297,32 +324,21 @@ def _check_finite(name: str, model: Model) -> None:
                 )
 
 
-def _check_alike(name: str, one: Mapping[str, Column], other: Mapping[str, Column], refusal: str) -> None:
-    for column, values in one.items():
-        if not same(values, other[column]):
-            raise SystemCheckError(refusal, name=name, column=column)
-
-
 # --- frame systems -----------------------------------------------------------------------------------------
 
 
-def _check_frames(system: Callable[[], System], source: Source) -> float:
+def _check_frames(system: Callable[[], System], source: Source) -> None:
     made, session = system(), Session(_model(source))
-    seconds = run_frames(made, session)
+    run_frames(made, session)
     _check_finite(made.name, session.model)
     other = Session(_model(source))
     run_frames(system(), other)
-    one, two = columns_of(session.model), columns_of(other.model)
-    _check_alike(made.name, one, two, NOT_REPEATED)
-    return 1e9 * seconds / FRAMES / max(session.particles.count + session.rods.count, 1)
+    compare(made.name, columns_of(session.model), columns_of(other.model), NOT_REPEATED)
 
 
-def run_frames(system: System, session: Session) -> float:
-    """Run a system for FRAMES frames; returns the seconds that it took.
-
-    Raises SystemCheckError if it fails, or changes columns that it does not declare.
-    """
-    before, started = columns_of(session.model), time.perf_counter()
+def run_frames(system: System, session: Session) -> None:
+    """Run a system for FRAMES frames. Raises SystemCheckError if it fails, or changes columns that it does not declare."""
+    before = columns_of(session.model)
     for _ in range(FRAMES):
         session.model.activate()
         try:
@@ -330,25 +346,18 @@ def run_frames(system: System, session: Session) -> float:
         except Exception as error:
             told = {"name": system.name, "kind": type(error).__name__, "error": error}
             raise SystemCheckError("{name} raises {kind}: {error}", **told) from error
-    seconds, declared = time.perf_counter() - started, {*system.writes, *system.adds}
-    compare(system.name, before, columns_of(session.model), declared, UNDECLARED)
-    return seconds
+    compare(system.name, before, columns_of(session.model), UNDECLARED, {*system.writes, *system.adds})
 
 
 # --- a whole mod -------------------------------------------------------------------------------------------
 
 
-def mistakes_of(mod: Mod) -> list[str]:
-    """What is wrong with a mod, a sentence each.
+class Trial:
+    """What is wrong with a mod, a sentence each, in `found`.
 
     Its kernels are compiled, it is seen, its scenes are entered, its keys pressed, its systems and integrators run.
     What it changes is forgotten; a part that fails does not keep the others from being tried.
     """
-    return _Trial(mod).found
-
-
-class _Trial:
-    """found: the mistakes so far, each once."""
 
     def __init__(self, mod: Mod) -> None:
         self.mod = mod

@@ -211,9 +211,9 @@ class Headless(Context):
         rad, axial_force (k, rods) in kN, bending_moment (k, rods, 2) in kN·m and stable (k,); its events are limit points
         and bifurcations; complete: False if it could not be followed so far. Raises ValueError.
         """
-        from pinjoint.systems.statics.path import goal_of, load_path
+        from pinjoint.systems.statics.path import Goal, load_path
 
-        return load_path(self.model, goal_of(self.model, factor, until), points=points, branch=branch)
+        return load_path(self.model, Goal.of(self.model, factor, until), points=points, branch=branch)
 
     def buckling(self, modes: int = 5) -> Buckling:
         """Critical load factors by linear buckling, ascending, with their modes; changes nothing.
@@ -222,9 +222,9 @@ class Headless(Context):
         effective_length (rods,) in m, NaN of rods that are not compressed; message: why there is none. Raises
         ValueError, and NoEquilibrium without a state that could lose its stability.
         """
-        from pinjoint.systems.statics.buckling import buckling
+        from pinjoint.systems.statics.buckling import Buckling
 
-        return buckling(self.model, modes)
+        return Buckling.of(self.model, modes)
 
 
 def forward(name: str, value: float, *, whole: bool = False) -> float:

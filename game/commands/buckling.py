@@ -39,11 +39,11 @@ def command(words: Sequence[str]) -> int:
     add_output(parser)
     options = parser.parse_args(words)
     model = model_of(options)
-    from pinjoint.systems.statics.buckling import buckling
+    from pinjoint.systems.statics.buckling import Buckling
     from pinjoint.systems.statics.events import NoEquilibrium
 
     try:
-        found = buckling(model, options.modes)
+        found = Buckling.of(model, options.modes)
     except NoEquilibrium as error:
         raise UsageError(str(error), NOT_ANSWERED) from None
     laws = left_out_of_statics(model)

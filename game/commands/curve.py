@@ -16,7 +16,6 @@ from pinjoint.components.model import Model
 from pinjoint.components.rod import bends
 from pinjoint.streams import tell
 from pinjoint.systems.catalogue import left_out_of_statics
-from pinjoint.systems.statics.events import event_record
 
 if TYPE_CHECKING:  # it imports scipy
     from pinjoint.systems.statics.path import Curve
@@ -59,10 +58,10 @@ def command(words: Sequence[str]) -> int:
     add_output(parser, default="csv")
     options = parser.parse_args(words)
     model = model_of(options)
-    from pinjoint.systems.statics.path import goal_of, load_path
+    from pinjoint.systems.statics.path import Goal, load_path
 
     try:
-        end = goal_of(model, options.factor, options.until)
+        end = Goal.of(model, options.factor, options.until)
         found = load_path(model, end, points=options.points, branch=options.branch)
     except ValueError as error:
         raise UsageError(str(error)) from None
@@ -153,7 +152,7 @@ def _data(model: Model, curve: Curve) -> dict[str, Any]:
         "axial_force": dict(zip(model.rods.names, curve.axial_force.T, strict=True)),
         **bent,
         "points": [_point(model, curve, number) for number in range(len(curve.load_factor))],
-        "events": [event_record(model, event) for event in curve.events],
+        "events": [event.record(model) for event in curve.events],
     }
 
 

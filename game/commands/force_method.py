@@ -70,10 +70,10 @@ def command(words: Sequence[str]) -> int:
     model, names = model_of(options), dict.fromkeys(options.release or ())
     from pinjoint.force_method.tables import Tables
     from pinjoint.systems.statics.force_method import solve
-    from pinjoint.systems.statics.unknowns import ForceMethodError, find_unknown, redundants
+    from pinjoint.systems.statics.unknowns import ForceMethodError, Unknown, redundants
 
     try:
-        solution = solve(model, [find_unknown(model, one) for one in names] if names else redundants(model))
+        solution = solve(model, [Unknown.named(model, one) for one in names] if names else redundants(model))
     except ForceMethodError as error:
         raise UsageError(str(error)) from None
     if options.report is not None and not solution.unknowns:

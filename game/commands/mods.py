@@ -6,7 +6,7 @@ from collections.abc import Iterator, Sequence
 from pathlib import Path
 from typing import Any
 
-from pinjoint.checks import mistakes_of
+from pinjoint.checks import Trial
 from pinjoint.commands.arguments import Parser
 from pinjoint.commands.options import ANSWERED, NOT_ANSWERED
 from pinjoint.commands.output import Row, add_output, write_result
@@ -76,7 +76,7 @@ def _checked(folder: Path) -> list[dict[str, Any]]:
     found = load([folder])
     if not found:
         raise ModError("There is no mod in {folder}; to write one, use: pinjoint mods new NAME", folder=folder)
-    return [_described(mod) | ({} if mod.off else {"problems": mistakes_of(mod)}) for mod in found]
+    return [_described(mod) | ({} if mod.off else {"problems": Trial(mod).found}) for mod in found]
 
 
 def _rows(found: Sequence[dict[str, Any]]) -> Iterator[Row]:

@@ -68,24 +68,24 @@ class Assessment:
     def theories(self) -> Theories:
         """Linear and exact answers from the beginning of the run, under the present load."""
         from pinjoint.systems.statics.state import Start
-        from pinjoint.systems.statics.verify import theories
+        from pinjoint.systems.statics.verify import Theories
 
         begun = self._begun
         revision = self._model.newest(Role.DOCUMENT, *(() if begun else (Role.STATE,)))
         if self._theories is None or self._theories[0] != revision:
             names = ("particles.displacement", "rods.plastic_strain", "particles.rotation")
             start = Start(*(begun.column(self._model, name).copy() for name in names)) if begun else None
-            self._theories = revision, theories(self._model, start)
+            self._theories = revision, Theories.of(self._model, start)
         return self._theories[1]
 
     @property
     def indeterminacy(self) -> Indeterminacy:
         """Static and kinematic degrees by rank, found anew when the geometry or the supports change."""
-        from pinjoint.systems.statics.theory import indeterminacy
+        from pinjoint.systems.statics.theory import Indeterminacy
 
         shape = tuple(self._model.version(name) for name in _SHAPE)
         if self._degrees is None or self._degrees[0] != shape:
-            self._degrees = shape, indeterminacy(self._model)
+            self._degrees = shape, Indeterminacy.of(self._model)
         return self._degrees[1]
 
     @property
@@ -127,9 +127,7 @@ class Assessment:
 
     def comparison(self) -> Comparison:
         """The run as it is now beside theory."""
-        from pinjoint.systems.statics.verify import compare, observed
-
-        return compare(self._model, self.theories, observed(self._model))
+        return self.theories.beside(self._model)
 
     @property
     def remarks(self) -> tuple[Event, ...]:
@@ -138,9 +136,7 @@ class Assessment:
             return ()
         key = self._moment
         if self._remarks is None or self._remarks[0] != key:
-            from pinjoint.systems.statics.verify import remarks
-
-            self._remarks = key, tuple(remarks(self._model, self.theories))
+            self._remarks = key, tuple(self.theories.remarks(self._model))
         return self._remarks[1]
 
     def error(self, most_work: float | None = None) -> MeasuredError | None:

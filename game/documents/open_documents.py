@@ -166,13 +166,12 @@ class OpenDocument:
         It is not called "equilibrium" where laws of mods act that statics does not know.
         """
         from pinjoint.systems.statics.settle import settle  # scipy
-        from pinjoint.systems.statics.state import apply
 
         self._note_undeformed()
         model, clock = self.model, self.model.clock
         found, strain = settle(model, factors), model.rods.plastic_strain.copy()
         with model.transaction("settle"):
-            apply(model, found.final)
+            found.final.put(model)
             time = max([clock.time, *(end for end in load_ends(model) if end < math.inf)])
             model.give("clock.time", np.array([time]))
             model.give("clock.origin", np.array([time]))

@@ -95,9 +95,9 @@ def _first_ones(model: Model) -> list[Shape]:
 def mechanism_shapes(model: Model, most: int | None = None) -> list[Shape]:
     """Motions that elongate no rod; at most 20 of large structures, or `most`."""
     from pinjoint.systems.statics.explain import describe_motion
-    from pinjoint.systems.statics.theory import indeterminacy, mechanisms
+    from pinjoint.systems.statics.theory import Indeterminacy, mechanisms
 
-    motions, count = mechanisms(model), indeterminacy(model).mechanisms
+    motions, count = mechanisms(model), Indeterminacy.of(model).mechanisms
     return [
         _shape(
             model,
@@ -115,11 +115,11 @@ def mechanism_shapes(model: Model, most: int | None = None) -> list[Shape]:
 
 def buckling_shapes(model: Model, most: int = LOWEST) -> list[Shape]:
     """The modes in which the structure gives way under its load. Raises NoShape, saying why there is none."""
-    from pinjoint.systems.statics.buckling import buckling
+    from pinjoint.systems.statics.buckling import Buckling
     from pinjoint.systems.statics.events import NoEquilibrium
 
     try:
-        found = buckling(model, most)
+        found = Buckling.of(model, most)
     except NoEquilibrium as reason:
         raise NoShape(str(reason)) from None
     if found.message:
@@ -129,11 +129,11 @@ def buckling_shapes(model: Model, most: int = LOWEST) -> list[Shape]:
 
 def _meant(model: Model) -> list[Shape]:
     """The lowest buckling modes, but of factors at which what is compressed were strained beyond all that is elastic."""
-    from pinjoint.systems.statics.buckling import STRAINED, buckling
+    from pinjoint.systems.statics.buckling import STRAINED, Buckling
     from pinjoint.systems.statics.events import NoEquilibrium
 
     try:
-        found = buckling(model, LOWEST_BUCKLING)
+        found = Buckling.of(model, LOWEST_BUCKLING)
     except NoEquilibrium:
         return []
     strains = [(-(found.dead + factor * found.live) / model.rods.stiffness).max() for factor in found.factors]
@@ -167,16 +167,16 @@ def mode_shapes(model: Model, most: int | None = None) -> list[Shape]:
     else of the unloaded structure, less its mechanisms.
     """
     from pinjoint.systems.statics.state import Start
-    from pinjoint.systems.statics.theory import FULL, indeterminacy
-    from pinjoint.systems.statics.vibration import rests_under_load, vibrations
+    from pinjoint.systems.statics.theory import FULL, Indeterminacy
+    from pinjoint.systems.statics.vibration import Vibrations, rests_under_load
 
     if model.rods.count == 0:
         return []
-    degrees = indeterminacy(model)
+    degrees = Indeterminacy.of(model)
     about = Start.present(model) if rests_under_load(model) else None
     unknowns = degrees.mechanisms + degrees.rank
     wanted = min(unknowns if unknowns <= FULL else LOWEST_OF_LARGE, unknowns if most is None else most)
-    found = vibrations(model, about, count=degrees.mechanisms + wanted)
+    found = Vibrations.of(model, about, count=degrees.mechanisms + wanted)
     still = degrees.mechanisms if about is None else int((found.angular_squared <= 0.0).sum())
     modes = list(zip(found.hertz[still:].tolist(), found.modes[still:], strict=True))
     title, places = marked("Mode {number} of {count}: {hertz} Hz"), None

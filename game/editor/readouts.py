@@ -21,7 +21,7 @@ from pinjoint.components.view import Readout
 from pinjoint.documents.assessment import LARGEST
 from pinjoint.editor.context import Context
 from pinjoint.systems.base import StopReason
-from pinjoint.systems.statics.counting import counted
+from pinjoint.systems.statics.counting import Count
 
 if TYPE_CHECKING:  # it imports scipy
     from pinjoint.systems.statics.verify import Comparison, Theories
@@ -183,7 +183,7 @@ def _overview(context: Context, theory: Theories, comparison: Comparison) -> Ite
 
     settlement = theory.settlement
     yield from _verdict(context, comparison)
-    count, degrees = counted(context.model), context.document.assessment.indeterminacy
+    count, degrees = Count.of(context.model), context.document.assessment.indeterminacy
     yield count.formula, count.numbers
     if said := count.by_rank(degrees.static, degrees.mechanisms):
         yield tr("by matrix rank"), said
@@ -219,11 +219,11 @@ def _overview(context: Context, theory: Theories, comparison: Comparison) -> Ite
 
 def _verdict(context: Context, comparison: Comparison) -> Iterator[tuple[str, str]]:
     """Whether a run at rest is where a slowly growing load leads to, and if not, why."""
-    from pinjoint.systems.statics.verify import DEPARTURES, differs
+    from pinjoint.systems.statics.verify import DEPARTURES
 
     if context.simulation.reason is not StopReason.REST or comparison.worst("simulation") is None:
         return
-    if differs(comparison):
+    if comparison.differs:
         reasons = [
             DEPARTURES[remark.kind]
             for remark in context.document.assessment.remarks

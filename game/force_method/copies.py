@@ -11,8 +11,8 @@ from pinjoint.components.field import MADE
 from pinjoint.components.model import Model
 from pinjoint.components.written import ROUNDING
 from pinjoint.systems.statics.equations import largest
-from pinjoint.systems.statics.external import external_forces
-from pinjoint.systems.statics.force_method import SetState, unit_load
+from pinjoint.systems.statics.external import External
+from pinjoint.systems.statics.force_method import SetState
 from pinjoint.systems.statics.settle import settle
 from pinjoint.systems.statics.unknowns import Unknown
 
@@ -72,7 +72,7 @@ def loaded(model: Model, released: Sequence[Unknown], amounts: Sequence[float]) 
     copy = unloaded(model, released)
     force = np.zeros((model.particles.count, 3))
     for unknown, amount in zip(released, amounts, strict=True):
-        unit, couple = unit_load(model, unknown)
+        unit, couple = unknown.unit_load(model)
         # seen on the joint; the other of the pair acts on the rod
         np.add.at(unit[:, 2], model.rods.between, -couple)
         force += amount * unit
@@ -90,7 +90,7 @@ def still(copy: Model, whole: Model, state: SetState) -> Model:
     copy.writable("particles.rotation")[...] = 0.0
     if rods.bending_stiffness.any():
         copy.writable("rods.bending_stiffness")[...] *= _STIFF
-    load = np.pad(external_forces(copy).at(1.0), ((0, 0), (0, 1)))
+    load = np.pad(External.of(copy).at(1.0), ((0, 0), (0, 1)))
     held = np.column_stack([particles.fixed, particles.fixed_rotation])
     counts = held & (np.abs(state.reaction) > ROUNDING * largest(state.axial_force))
     reaction = np.where(counts, state.reaction, 0.0)

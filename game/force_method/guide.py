@@ -10,12 +10,12 @@ from typing import Any
 import numpy as np
 
 from pinjoint.components.bent import AXIAL, MOMENT, SHEAR
-from pinjoint.components.field import Column, Vector
+from pinjoint.components.field import LARGEST, SMALLEST, Column, Vector
 from pinjoint.components.handle import Handle
 from pinjoint.components.language import tr
 from pinjoint.components.model import Model
 from pinjoint.components.particle import Particle
-from pinjoint.components.rod import Rod, bends
+from pinjoint.components.rod import Rod, bends, rigid_joints
 from pinjoint.components.round_numbers import round_down
 from pinjoint.components.table import Table
 from pinjoint.components.tags import Selected
@@ -28,12 +28,11 @@ from pinjoint.systems.edit.arrows import extent
 from pinjoint.systems.run.real_time import RealTimeRunner
 from pinjoint.systems.run.simulation import Simulation
 from pinjoint.systems.schedule import Schedule
-from pinjoint.systems.statics.counting import counted
+from pinjoint.systems.statics.counting import Count
 from pinjoint.systems.statics.equations import largest
-from pinjoint.systems.statics.force_method import SetState, Solution, solve, superposed
+from pinjoint.systems.statics.force_method import SetState, Solution, solve
 from pinjoint.systems.statics.settle import settle
-from pinjoint.systems.statics.state import apply
-from pinjoint.systems.statics.unknowns import ForceMethodError, Unknown, is_turned
+from pinjoint.systems.statics.unknowns import ForceMethodError, Unknown
 
 DIAGRAM_HEIGHT = 34.0  # px of the largest force diagram
 SWING = 3.0  # s in which a mechanism is shown to move there and back
@@ -70,20 +69,20 @@ class Set:
     def scale_to(self, state: SetState) -> None:
         """Choose drawing scales for the displacements and forces of a final state."""
         size = extent(self.model) if self.model.rods.count else 0.0
-        self.suited = _scale_to(DRAWN_SHARE * size, largest(state.displacement))
-        self.model.settings.diagram_scale = _scale_to(DIAGRAM_HEIGHT, largest(state.axial_force))
+        self.suited = scale_to(DRAWN_SHARE * size, largest(state.displacement))
+        self.model.settings.diagram_scale = scale_to(DIAGRAM_HEIGHT, largest(state.axial_force))
 
     def settle(self) -> None:
         """Skip the rest of the motion: go to its equilibrium, if there is one."""
         final = settle(self.model).final if self.live is not None else None
         if final is not None and final.balanced:
             with self.model.transaction("settle"):
-                apply(self.model, final)
+                final.put(self.model)
 
 
-def _scale_to(drawn: float, size: float) -> float:
-    """The round scale at which a size is drawn so large; 1 where it, or the picture, has none."""
-    return round_down(drawn / size) if min(drawn, size) > 0.0 else 1.0
+def scale_to(drawn: float, size: float) -> float:
+    """The round scale at which a size is drawn so large, if a model can have that; 1 where it, or the picture, has none."""
+    return round_down(min(max(drawn / size, SMALLEST), LARGEST)) if min(drawn, size) > 0.0 else 1.0
 
 
 class Mechanism:
@@ -127,7 +126,7 @@ class Guide:
         self._tables: Tables | None = None
         self.quantity = MOMENT
         real = solve(model, [])
-        self.count = counted(model)
+        self.count = Count.of(model)
         self.sets: list[Set] = []
         self.sets = [self._make_set([], real.real)]
         self._scale_alike()
@@ -272,7 +271,7 @@ class Guide:
 
     def _clamps(self, particle: Particle) -> bool:
         """True if a support holds rods against turning."""
-        return particle.fixed_rotation and is_turned(self.model, particle.row)
+        return particle.fixed_rotation and bool(rigid_joints(self.model)[particle.row])
 
     def pick_axis(self, axis: int) -> None:
         """Choose the direction of a support that holds several: 0: x, 1: y, 2: the moment of a clamp (part 2)."""
@@ -308,7 +307,7 @@ class Guide:
     def _times(self, amounts: Sequence[float]) -> SetState:
         """The state of the released structure under so much of its unknowns."""
         assert self.solution is not None
-        state = superposed(self.solution.units, amounts)
+        state = SetState.superposed(self.solution.units, amounts)
         for bar in (unknown for unknown in self.released if unknown.of_bar):
             state.axial_force[bar.place] = 0.0  # cut
         return state

@@ -14,12 +14,12 @@ from pinjoint.components.bent import AXIAL, MOMENT, SHEAR, is_frame
 from pinjoint.components.camera import Camera, Viewport
 from pinjoint.components.language import listed, tr
 from pinjoint.components.model import Model
-from pinjoint.components.rod import rigid_joints
-from pinjoint.components.round_numbers import round_down
+from pinjoint.components.rod import nodes, rigid_joints
 from pinjoint.components.tags import DiagramShown
 from pinjoint.components.view import THESIS, Cut, View
 from pinjoint.force_method import index, words
 from pinjoint.force_method.copies import base_structure, loaded, still, unloaded
+from pinjoint.force_method.guide import scale_to
 from pinjoint.force_method.tables import PRODUCTS, Table, Tables
 from pinjoint.force_method.words import EXACT
 from pinjoint.systems.render.arrows import largest_force
@@ -38,10 +38,10 @@ from pinjoint.systems.render.paper import (
 )
 from pinjoint.systems.render.picture import compose
 from pinjoint.systems.render.theme import load_theme
-from pinjoint.systems.statics.counting import counted
+from pinjoint.systems.statics.counting import Count
 from pinjoint.systems.statics.equations import largest
-from pinjoint.systems.statics.external import external_forces
-from pinjoint.systems.statics.force_method import SetState, superposed
+from pinjoint.systems.statics.external import External
+from pinjoint.systems.statics.force_method import SetState
 from pinjoint.systems.statics.unknowns import Unknown
 
 _BESIDE_IT, _ABOVE, _BELOW = 56.0, 46.0, 62.0  # pixels around a structure, for supports, loads and diagrams
@@ -132,7 +132,7 @@ def _figure(
     view.camera.fit(model.particles.position, 0.0, inner, 1.0)
     view.largest_force = _SHORTER * largest_force(model, view)
     pulled = 0.0 if is_frame(model) else largest(model.rods.axial_force)
-    model.settings.diagram_scale = round_down(_DIAGRAM / pulled) if pulled > 0.0 else 1.0
+    model.settings.diagram_scale = scale_to(_DIAGRAM, pulled)
     loaded_ones = [p for p in model.particles if any(p.force) or p.moment] + [
         one.particle for one in model.loads
     ]
@@ -204,7 +204,7 @@ class _Page:
         model, solution, layout = self.model, self.solution, self.layout
         quantity, unit = (MOMENT, "kN·m") if self.solved.bends else (AXIAL, "kN")
         symbol, unknowns = "M" if self.solved.bends else "N", list(solution.unknowns)
-        nothing = superposed([solution.real], [0.0])
+        nothing = SetState.superposed([solution.real], [0.0])
         real = still(base_structure(model, []), model, nothing)
         released = base_structure(model, unknowns)
         blocks = [_figure(layout, real, tr("The structure, its supports and its loads"))]
@@ -237,7 +237,7 @@ class _Page:
 
     def _said(self) -> list[Block]:
         """The degree of static indeterminacy, and the unknowns."""
-        count, unknowns = counted(self.model), self.solution.unknowns
+        count, unknowns = Count.of(self.model), self.solution.unknowns
         degree = [
             self._text(tr("Degree of static indeterminacy")),
             self._text(f"{count.formula} = {count.numbers}", "equation"),
@@ -290,9 +290,7 @@ class _Page:
             sums = tr("Bending and axial forces ({units}):  {sums}", units=solved.units, sums=sums)
             blocks.append((WIDTH if len(every) > 1 else 0.0, [self._text(sums)]))
         compatibility = self._compatibility()
-        if self._rows > _BESIDE:
-            return [*_flowing(heading, blocks, self._rows), together(*compatibility)]
-        if len(every) == 1:
+        if len(every) == 1 and self._rows <= _BESIDE:
             return _flowing(heading, [*blocks, (0.0, compatibility)], self._rows)
         return [*_flowing(heading, blocks, self._rows), together(*compatibility)]
 
@@ -418,7 +416,7 @@ def _same(size: float) -> float:
 
 def _counted(solved: Tables) -> str:
     """What the letters of the formula count."""
-    count = counted(solved.model)
+    count = Count.of(solved.model)
     if count.hinges is None:
         return tr(
             "m = {rods} rods, r = {constraints} reactions, n = {nodes} joints",
@@ -448,9 +446,8 @@ def _formulas(solved: Tables, *, pulls: bool) -> Iterator[str]:
 
 def _balance(model: Model, state: SetState) -> Iterator[tuple[str, list[float]]]:
     """Sums of loads and reactions, of moments about the first support; each force is a term where they are few."""
-    load, (x, y) = external_forces(model).at(1.0), model.particles.position.T
-    used = np.zeros(model.particles.count, dtype=bool)
-    used[model.rods.between] = True
+    load, (x, y) = External.of(model).at(1.0), model.particles.position.T
+    used = nodes(model)
     held = np.flatnonzero(used & model.particles.fixed.any(axis=1))
     about = int(held[0]) if len(held) else 0
     for axis, name in enumerate(("ΣH", "ΣV", f"ΣM({model.particles.names[about]})")):

@@ -141,9 +141,9 @@ OVER_ALL: dict[str, Callable[[Sequence[float]], float]] = {  # of what a path wi
 
 def _frequency(session: Any) -> float:
     """The lowest natural frequency (Hz); NaN if nothing can vibrate."""
-    from pinjoint.systems.statics.vibration import vibrations  # scipy
+    from pinjoint.systems.statics.vibration import Vibrations  # scipy
 
-    hertz = vibrations(session.model).hertz
+    hertz = Vibrations.of(session.model).hertz
     return float(hertz[0]) if len(hertz) else math.nan
 
 

@@ -19,7 +19,6 @@ from pinjoint.systems.statics.equations import Array, Rows, Structure, normalise
 from pinjoint.systems.statics.events import NoEquilibrium
 from pinjoint.systems.statics.explain import describe_motion, divide_named, rod_names
 from pinjoint.systems.statics.factor import (
-    NO_STIFFNESS,
     SOFT,
     Factor,
     pseudo_random,
@@ -71,42 +70,42 @@ class Buckling:
     message: str = ""
     coarse: bool = False
 
+    @classmethod
+    def of(cls, model: Model, count: int = MODES, start: Start | None = None) -> Buckling:
+        """The lowest critical load factors of a model, its rods elastic, and the modes in which it gives way.
 
-def buckling(model: Model, count: int = MODES, start: Start | None = None) -> Buckling:
-    """The lowest critical load factors of a model, its rods elastic, and the modes in which it gives way.
-
-    start: as in first-order theory. Raises NoEquilibrium where that has no answer, where what acts in full is too much
-    already, or where nothing but its stiffness under no load resists a motion.
-    """
-    if count < 1:
-        raise WrongValue("modes is {modes}; ask for at least 1.", modes=count)
-    dead, whole = (linear(model, start, factor).axial_force for factor in (0.0, 1.0))
-    live = whole - dead
-    live[np.abs(live) <= NOTHING * np.abs(whole).max(initial=0.0)] = 0.0
-    structure = Structure.of(model)
-    stiffness = structure.initial_tangent + _geometric(structure, dead, 0.0)
-    softening = _geometric(structure, live, 1.0)
-    held = _resisting(model, structure, stiffness, softening)
-    softens = bool((live < 0.0).any() or model.rods.distributed_force.any())
-    vectors = _modes(structure, held, softening, count if softens else 0)
-    factors = _factors(structure, vectors, _geometric(structure, dead, 0.0), softening)
-    fields = structure.fields(vectors)
-    modes = np.array([upright(normalised(field)) for field in fields]).reshape(fields.shape)
-    leading = np.array([int(_work(structure, field, -live).argmax()) for field in fields], dtype=np.intp)
-    lengths = [_effective_length(model, dead + factor * live) for factor in factors]
-    lowest = dead + factors[0] * live if len(factors) else np.zeros(len(dead))
-    return Buckling(
-        factors,
-        modes,
-        dead,
-        live,
-        _effective_length(model, lowest),
-        leading,
-        np.array([length[row] for length, row in zip(lengths, leading, strict=True)]),
-        tuple(_notes(model, factors, lowest)),
-        "" if len(factors) else _why_none(model, live),
-        bool((needed_parts(model, lowest) > 1).any()),
-    )
+        start: as in first-order theory. Raises NoEquilibrium where that has no answer, where what acts in full is too much
+        already, or where nothing but its stiffness under no load resists a motion.
+        """
+        if count < 1:
+            raise WrongValue("modes is {modes}; ask for at least 1.", modes=count)
+        dead, whole = (linear(model, start, factor).axial_force for factor in (0.0, 1.0))
+        live = whole - dead
+        live[np.abs(live) <= NOTHING * np.abs(whole).max(initial=0.0)] = 0.0
+        structure = Structure.of(model)
+        stiffness = structure.initial_tangent + _geometric(structure, dead, 0.0)
+        softening = _geometric(structure, live, 1.0)
+        held = _resisting(model, structure, stiffness, softening)
+        softens = bool((live < 0.0).any() or model.rods.distributed_force.any())
+        vectors = _modes(structure, held, softening, count if softens else 0)
+        factors = _factors(structure, vectors, _geometric(structure, dead, 0.0), softening)
+        fields = structure.fields(vectors)
+        modes = np.array([upright(normalised(field)) for field in fields]).reshape(fields.shape)
+        leading = np.array([int(_work(structure, field, -live).argmax()) for field in fields], dtype=np.intp)
+        lengths = [_effective_length(model, dead + factor * live) for factor in factors]
+        lowest = dead + factors[0] * live if len(factors) else np.zeros(len(dead))
+        return cls(
+            factors,
+            modes,
+            dead,
+            live,
+            _effective_length(model, lowest),
+            leading,
+            np.array([length[row] for length, row in zip(lengths, leading, strict=True)]),
+            tuple(_notes(model, factors, lowest)),
+            "" if len(factors) else _why_none(model, live),
+            bool((needed_parts(model, lowest) > 1).any()),
+        )
 
 
 def _geometric(structure: Structure, axial_force: Array, share: float) -> Matrix:
@@ -126,7 +125,7 @@ def _resisting(model: Model, structure: Structure, stiffness: Matrix, softening:
     weight = structure.weight
     if regular(stiffness, weight, -SOFT).definite:
         return stiffness
-    if not regular(stiffness, weight, NO_STIFFNESS).definite:
+    if not regular(stiffness, weight).definite:
         message = tr(
             "The structure already buckles under what the load factor does not multiply: weight, lack of fit, temperature,"
             " moved supports. Stiffen it, or let the weight act as forces on particles, which the factor multiplies."

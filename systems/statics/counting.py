@@ -11,8 +11,7 @@ import numpy as np
 
 from pinjoint.components.language import joined, plural, tr
 from pinjoint.components.model import Model
-from pinjoint.components.rod import bends, nodes
-from pinjoint.components.table import flags
+from pinjoint.components.rod import bends, nodes, rigid_joints
 
 
 @dataclass(frozen=True)
@@ -30,6 +29,20 @@ class Count:
     constraints: int
     nodes: int
     hinges: int | None = None
+
+    @classmethod
+    def of(cls, model: Model) -> Count:
+        """The rods, constraints and nodes of a model, and its hinges if it bends; particles without rods are no nodes."""
+        particles, rods, used = model.particles, model.rods, nodes(model)
+        constraints = int(particles.fixed[used].sum())
+        if not bends(model):
+            return cls(rods.count, constraints, int(used.sum()))
+        rigid = rods.turning_shares > 0.0
+        turns = rigid_joints(model)
+        hinges = int(np.count_nonzero(~rigid)) - int((used & ~turns).sum())
+        return cls(
+            rods.count, constraints + int(particles.fixed_rotation[turns].sum()), int(used.sum()), hinges
+        )
 
     @property
     def formula(self) -> str:
@@ -60,15 +73,3 @@ class Count:
         if not static:
             stressed = tr("no state of self-stress")
         return joined([stressed, plural("one mechanism", "{count} mechanisms", mechanisms)], ", ")
-
-
-def counted(model: Model) -> Count:
-    """The rods, constraints and nodes of a model, and its hinges if it bends; particles without rods are no nodes."""
-    particles, rods, used = model.particles, model.rods, nodes(model)
-    constraints = int(particles.fixed[used].sum())
-    if not bends(model):
-        return Count(rods.count, constraints, int(used.sum()))
-    rigid = rods.turning_shares > 0.0
-    turns = flags(rods.between[rigid], particles.count)
-    hinges = int(np.count_nonzero(~rigid)) - int((used & ~turns).sum())
-    return Count(rods.count, constraints + int(particles.fixed_rotation[turns].sum()), int(used.sum()), hinges)

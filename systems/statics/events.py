@@ -32,20 +32,19 @@ class Event:
     rods: tuple[str, ...] = ()
     motion: NDArray[np.float64] | None = None
 
-
-def event_record(model: Model, event: Event) -> dict[str, Any]:
-    """An event as plain data; its motion as {name: [x, y]}, or [x, y, rotation], of the particles that take part."""
-    record: dict[str, Any] = {
-        "kind": event.kind,
-        "load_factor": event.load_factor,
-        "message": event.message,
-        "rods": list(event.rods),
-    }
-    if event.motion is not None:
-        names = model.particles.column("name")
-        taking_part = np.flatnonzero(np.abs(event.motion).max(axis=1) > RESTS)
-        record["motion"] = {str(names[row]): event.motion[row].tolist() for row in taking_part}
-    return record
+    def record(self, model: Model) -> dict[str, Any]:
+        """It as plain data; its motion as {name: [x, y]}, or [x, y, rotation], of the particles that take part."""
+        record: dict[str, Any] = {
+            "kind": self.kind,
+            "load_factor": self.load_factor,
+            "message": self.message,
+            "rods": list(self.rods),
+        }
+        if self.motion is not None:
+            names = model.particles.names
+            taking_part = np.flatnonzero(np.abs(self.motion).max(axis=1) > RESTS)
+            record["motion"] = {names[row]: self.motion[row].tolist() for row in taking_part}
+        return record
 
 
 class NoEquilibrium(Exception):

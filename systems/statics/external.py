@@ -10,8 +10,7 @@ from pinjoint.components import written
 from pinjoint.components.language import plural, tr
 from pinjoint.components.load import static_factor
 from pinjoint.components.model import Model
-from pinjoint.components.rod import bends
-from pinjoint.components.table import flags
+from pinjoint.components.rod import bends, rigid_joints
 from pinjoint.systems.statics.equations import Array, Rows, Structure
 from pinjoint.systems.statics.events import Event
 from pinjoint.systems.statics.explain import listed
@@ -31,38 +30,38 @@ class External:
     steady: Array
     notes: tuple[str, ...]
 
+    @classmethod
+    def of(cls, model: Model) -> External:
+        """The external forces on a model; a varying load counts with the factor of its history in statics."""
+        particles, rods, environment = model.particles, model.rods, model.environment
+        scaled, moment = particles.force + np.array(environment.force), particles.moment.copy()
+        if rods.distributed_force.any():
+            halves = 0.5 * rods.distributed_force * rods.rest_length[:, None]
+            np.add.at(scaled, rods.between.ravel(), np.repeat(halves, 2, axis=0))
+        notes = []
+        for load in model.loads:
+            factor = static_factor(load.history)
+            np.add.at(scaled, load.on, factor * np.array(load.force))
+            moment[load.on] += factor * load.moment
+            if factor == 0.0:
+                notes.append(
+                    tr(
+                        "The {history} load on {particle} counts as 0 in statics.",
+                        history=load.history["kind"],
+                        particle=load.particle.name,
+                    )
+                )
+        acceleration = particles.acceleration + np.array(environment.acceleration)
+        steady = particles.mass[:, None] * acceleration / 1000.0
+        if bends(model):
+            turns = rigid_joints(model) | particles.fixed_rotation
+            scaled = np.column_stack([scaled, np.where(turns, moment, 0.0)])
+            steady = np.column_stack([steady, np.zeros(particles.count)])
+        return cls(scaled, steady, tuple(notes))
+
     def at(self, factor: float) -> Array:
         """The whole external force at a load factor."""
         return factor * self.scaled + self.steady
-
-
-def external_forces(model: Model) -> External:
-    """The external forces on a model; a varying load counts with the factor of its history in statics."""
-    particles, rods, environment = model.particles, model.rods, model.environment
-    scaled, moment = particles.force + np.array(environment.force), particles.moment.copy()
-    if rods.distributed_force.any():
-        halves = 0.5 * rods.distributed_force * rods.rest_length[:, None]
-        np.add.at(scaled, rods.between.ravel(), np.repeat(halves, 2, axis=0))
-    notes = []
-    for load in model.loads:
-        factor = static_factor(load.history)
-        np.add.at(scaled, load.on, factor * np.array(load.force))
-        moment[load.on] += factor * load.moment
-        if factor == 0.0:
-            notes.append(
-                tr(
-                    "The {history} load on {particle} counts as 0 in statics.",
-                    history=load.history["kind"],
-                    particle=load.particle.name,
-                )
-            )
-    acceleration = particles.acceleration + np.array(environment.acceleration)
-    steady = particles.mass[:, None] * acceleration / 1000.0
-    if bends(model):
-        turns = flags(rods.between[rods.turning_shares > 0.0], particles.count) | particles.fixed_rotation
-        scaled = np.column_stack([scaled, np.where(turns, moment, 0.0)])
-        steady = np.column_stack([steady, np.zeros(particles.count)])
-    return External(scaled, steady, tuple(notes))
 
 
 @dataclass(frozen=True)
@@ -72,6 +71,34 @@ class LooseBody:
     particles: Rows
     axis: int
     pull: float
+
+    def event(self, model: Model, factor: float) -> Event:
+        """What happens to it at a load factor."""
+        names = model.particles.names
+        who, along = listed([names[row] for row in self.particles]), "xy"[self.axis]
+        if self.pull:
+            message = plural(
+                "Free body: nothing holds {names} along {axis}, where {force} pull it. Hold it by a support along {axis}.",
+                "Free body: nothing holds {names} along {axis}, where {force} pull them. Hold one of them by a support along"
+                " {axis}.",
+                len(self.particles),
+                names=who,
+                axis=along,
+                force=written.force(self.pull),
+            )
+        else:
+            message = plural(
+                "Free body: nothing holds {names} along {axis}, but the forces on it in that direction add up to zero."
+                " Hold it by a support along {axis}.",
+                "Free body: nothing holds {names} along {axis}, but the forces on them in that direction add up to zero."
+                " Hold one of them by a support along {axis}.",
+                len(self.particles),
+                names=who,
+                axis=along,
+            )
+        motion = np.zeros((model.particles.count, 2))
+        motion[self.particles, self.axis] = np.sign(self.pull) or 1.0
+        return Event("free body", factor, message, motion=motion)
 
 
 def loose_bodies(structure: Structure, load: Array) -> list[LooseBody]:
@@ -88,32 +115,3 @@ def loose_bodies(structure: Structure, load: Array) -> list[LooseBody]:
             rows = np.flatnonzero(structure.body == body)
             found.append(LooseBody(rows, axis, float(net[body]) if pulled[body] else 0.0))
     return found
-
-
-def loose_event(model: Model, body: LooseBody, factor: float) -> Event:
-    """The event of a loose body at a load factor."""
-    names = model.particles.column("name")
-    who, along = listed([str(names[row]) for row in body.particles]), "xy"[body.axis]
-    if body.pull:
-        message = plural(
-            "Free body: nothing holds {names} along {axis}, where {force} pull it. Hold it by a support along {axis}.",
-            "Free body: nothing holds {names} along {axis}, where {force} pull them. Hold one of them by a support along"
-            " {axis}.",
-            len(body.particles),
-            names=who,
-            axis=along,
-            force=written.force(body.pull),
-        )
-    else:
-        message = plural(
-            "Free body: nothing holds {names} along {axis}, but the forces on it in that direction add up to zero."
-            " Hold it by a support along {axis}.",
-            "Free body: nothing holds {names} along {axis}, but the forces on them in that direction add up to zero."
-            " Hold one of them by a support along {axis}.",
-            len(body.particles),
-            names=who,
-            axis=along,
-        )
-    motion = np.zeros((model.particles.count, 2))
-    motion[body.particles, body.axis] = np.sign(body.pull) or 1.0
-    return Event("free body", factor, message, motion=motion)

@@ -29,9 +29,9 @@ from pinjoint.components.numeric_range import incomputable
 from pinjoint.systems.statics.equations import Array, Rows, Structure, normalised
 from pinjoint.systems.statics.events import NoEquilibrium
 from pinjoint.systems.statics.explain import cables_named, describe_motion
-from pinjoint.systems.statics.external import external_forces
+from pinjoint.systems.statics.external import External
 from pinjoint.systems.statics.theory import FirstOrder
-from pinjoint.systems.statics.unknowns import ForceMethodError, Unknown, refuse_unsuited
+from pinjoint.systems.statics.unknowns import ForceMethodError, Unknown
 
 _ROUNDING = 1e-12  # of the geometric mean of their diagonal: smaller flexibilities are 0
 
@@ -56,15 +56,15 @@ class SetState:
         moment: Array = self.end_moment * np.array([-1.0, 1.0])
         return moment
 
-
-def superposed(states: Sequence[SetState], amounts: Sequence[float]) -> SetState:
-    """The sum of so much of each of some states."""
-    return SetState(
-        *(
-            sum(amount * getattr(state, part.name) for state, amount in zip(states, amounts, strict=True))
-            for part in fields(SetState)
+    @classmethod
+    def superposed(cls, states: Sequence[SetState], amounts: Sequence[float]) -> SetState:
+        """The sum of so much of each of some states."""
+        return cls(
+            *(
+                sum(amount * getattr(state, part.name) for state, amount in zip(states, amounts, strict=True))
+                for part in fields(cls)
+            )
         )
-    )
 
 
 @dataclass(frozen=True)
@@ -141,7 +141,7 @@ class Solution:
     @property
     def superposed(self) -> SetState:
         """Set 2 + Σ X × set 3, which equals set 1."""
-        return superposed((self.base, *self.units), (1.0, *self.force.tolist()))
+        return SetState.superposed((self.base, *self.units), (1.0, *self.force.tolist()))
 
 
 def solve(model: Model, unknowns: Sequence[Unknown]) -> Solution:
@@ -161,7 +161,8 @@ def solve(model: Model, unknowns: Sequence[Unknown]) -> Solution:
             " stay taut ordinary rods, and delete those that go slack.",
             cables=cables_named(model),
         )
-    refuse_unsuited(model, unknowns)
+    for unknown in unknowns:
+        unknown.check_suits(model)
     try:
         whole = _Released(model, ())
         real, released = whole.under_load(), _Released(model, unknowns) if unknowns else whole
@@ -195,24 +196,6 @@ def solve(model: Model, unknowns: Sequence[Unknown]) -> Solution:
         delta_base=sign * gap + free,
         delta_unit=(sign[:, None] * flexibility + np.diag(own)).reshape(flexibility.shape),
     )
-
-
-def unit_load(model: Model, unknown: Unknown) -> tuple[Array, Array]:
-    """What a unit of an unknown does to the particles, (n, 3), and to released ends of rods, counter-clockwise, (rods, 2).
-
-    1 kN along a released constraint, or 1 kN·m; a pair of 1 kN that pulls a released bar's ends together; 1 kN·m on the end
-    of a rod, which hands its opposite on to the joint.
-    """
-    force, couple = np.zeros((model.particles.count, 3)), np.zeros((model.rods.count, 2))
-    if unknown.of_bar:
-        row = unknown.element.row
-        axis = model.rods.difference[row] / model.rods.original_length[row]
-        force[model.rods.between[row], :2] = axis, -axis
-    elif unknown.of_support:
-        force[unknown.place] = 1.0
-    else:
-        couple[unknown.place] = (-1.0, 1.0)[unknown.axis or 0]
-    return force, couple
 
 
 class _Released:
@@ -251,11 +234,11 @@ class _Released:
 
     def under_load(self) -> SetState:
         """The state under the real load, lack of fit, warmth and moved supports."""
-        return self._state(external_forces(self._model).at(1.0), 1.0, np.zeros(self._hinges.shape))
+        return self._state(External.of(self._model).at(1.0), 1.0, np.zeros(self._hinges.shape))
 
     def under(self, unknown: Unknown) -> SetState:
         """The state under a unit of an unknown alone."""
-        force, couple = unit_load(self._model, unknown)
+        force, couple = unknown.unit_load(self._model)
         if self._whole.bending is not None:
             couple += self._whole.bending.carried_over(couple, self._hinges)
         state = self._state(force[:, : self._whole.width], 0.0, couple)

@@ -1,9 +1,15 @@
-"""Load–displacement curves: paths of equilibria through limit points, with a growing or falling load."""
+"""Load–displacement curves: paths of equilibria through limit points, with a growing or falling load.
+
+Critical points on the way, at which the tangent stiffness is singular, are limit points, where the load turns back, and
+bifurcations, from which another branch leads away.
+"""
 
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass, replace
+from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
@@ -13,11 +19,12 @@ from pinjoint.components.mistake import WrongValue
 from pinjoint.components.model import Model
 from pinjoint.components.suggestions import missing
 from pinjoint.components.wording import cut
-from pinjoint.systems.statics.critical import BIFURCATION, branch_off, passed
-from pinjoint.systems.statics.equations import AXES, Array, Structure
+from pinjoint.systems.statics.equations import AXES, Array, Structure, normalised, upright
 from pinjoint.systems.statics.events import Event
-from pinjoint.systems.statics.external import External, external_forces
-from pinjoint.systems.statics.follow import Path, Point, Step, Tangent
+from pinjoint.systems.statics.explain import describe_motion
+from pinjoint.systems.statics.external import External
+from pinjoint.systems.statics.factor import nearest_mode, regular
+from pinjoint.systems.statics.follow import HALF, Path, Point, Step, Tangent
 from pinjoint.systems.statics.settle import settle
 from pinjoint.systems.statics.state import StaticState
 
@@ -25,6 +32,11 @@ DETAIL = 0.02  # of a rod's length between points; smaller: a smoother curve
 FIRST = 1e-3  # of the same, for the first increment
 LANDED = 1e-13  # of the goal, or of the last increment: near enough
 LANDINGS = 60  # trials
+LIMIT_POINT, BIFURCATION = marked("limit point"), marked("bifurcation")
+SHARPNESS = 1e-10  # of an increment, to which a critical point is found in it
+MOST_TRIALS = 200
+ALONG = 0.5  # of the first increment on a branch: one that goes less far along its mode fell back
+SMALLEST_BRANCH = 1e-5  # of a rod's length: the least first increment on a branch
 
 
 @dataclass(frozen=True)
@@ -58,42 +70,42 @@ class Goal:
     value: float
     displaced: tuple[int, int] | None = None
 
+    @classmethod
+    def of(cls, model: Model, factor: float = 1.0, until: str | None = None) -> Goal:
+        """The end of a curve: a load factor, a displacement such as "B.y=-2.5" (m), or a rotation "B.rotation=1" (rad).
 
-def goal_of(model: Model, factor: float = 1.0, until: str | None = None) -> Goal:
-    """The end of a curve: a load factor, a displacement such as "B.y=-2.5" (m), or a rotation "B.rotation=1" (rad).
-
-    Raises ValueError.
-    """
-    if until is None:
-        if not math.isfinite(factor):
-            raise WrongValue("The load factor is {factor}; give a finite number.", factor=str(factor))
-        return Goal(factor)
-    place, _, amount = until.partition("=")
-    name, _, axis = place.strip().rpartition(".")
-    try:
-        value = float(amount)
-    except ValueError:
-        value = math.nan
-    if axis not in AXES or not math.isfinite(value):
-        raise WrongValue(
-            "'{until}' is no displacement; write it like B.y=-2.5, in m, or B.rotation=1, in rad.",
-            until=cut(until),
-        )
-    if name not in model.particles:
-        raise ValueError(missing(marked("particles"), name, model.particles.names))
-    particle, direction = model.particles[name], AXES.index(axis)
-    if axis == "rotation":
-        if model.particles.turning[particle.row] == 0.0:
+        Raises ValueError.
+        """
+        if until is None:
+            if not math.isfinite(factor):
+                raise WrongValue("The load factor is {factor}; give a finite number.", factor=str(factor))
+            return cls(factor)
+        place, _, amount = until.partition("=")
+        name, _, axis = place.strip().rpartition(".")
+        try:
+            value = float(amount)
+        except ValueError:
+            value = math.nan
+        if axis not in AXES or not math.isfinite(value):
             raise WrongValue(
-                "{particle} cannot turn: it is clamped, or no rod is rigidly joined to it.", particle=name
+                "'{until}' is no displacement; write it like B.y=-2.5, in m, or B.rotation=1, in rad.",
+                until=cut(until),
             )
-    elif particle.fixed[direction]:
-        raise WrongValue(
-            "{particle} is held along {axis}, so it cannot move that way; choose a free direction.",
-            particle=name,
-            axis=axis,
-        )
-    return Goal(value, (particle.row, direction))
+        if name not in model.particles:
+            raise ValueError(missing(marked("particles"), name, model.particles.names))
+        particle, direction = model.particles[name], AXES.index(axis)
+        if axis == "rotation":
+            if model.particles.turning[particle.row] == 0.0:
+                raise WrongValue(
+                    "{particle} cannot turn: it is clamped, or no rod is rigidly joined to it.", particle=name
+                )
+        elif particle.fixed[direction]:
+            raise WrongValue(
+                "{particle} is held along {axis}, so it cannot move that way; choose a free direction.",
+                particle=name,
+                axis=axis,
+            )
+        return cls(value, (particle.row, direction))
 
 
 def load_path(model: Model, goal: Goal, *, points: int = 500, detail: float = DETAIL, branch: int = 0) -> Curve:
@@ -110,7 +122,7 @@ def load_path(model: Model, goal: Goal, *, points: int = 500, detail: float = DE
     unloaded = settle(model, (0.0,)).final
     if not unloaded.balanced:
         raise ValueError(joined([tr("There is no equilibrium to start from."), unloaded.message]))
-    structure, external = Structure.of(model), external_forces(model)
+    structure, external = Structure.of(model), External.of(model)
     loaded = external.scaled + structure.carried(structure.unmoved)
     if not structure.gather(loaded).any():
         raise WrongValue(
@@ -128,6 +140,72 @@ def load_path(model: Model, goal: Goal, *, points: int = 500, detail: float = DE
         complete=complete,
         events=tuple(events),
     )
+
+
+@dataclass(frozen=True)
+class _Critical:
+    """A point where the tangent stiffness is singular, and the tangent of the path there.
+
+    kind: "limit point", where the load turns back, or "bifurcation".
+    """
+
+    path: Path
+    kind: str
+    point: Point
+    tangent: Tangent
+
+    @cached_property
+    def motion(self) -> Array:
+        """What nothing resists, (n, …), the largest 1."""
+        structure = self.path.structure
+        matrix = structure.tangent(self.point.response, self.tangent.soft)
+        return upright(normalised(structure.spread(nearest_mode(matrix, structure.weight))))
+
+    def event(self, model: Model, sign: float, number: int) -> Event:
+        """It in words; sign: of the load factor along the path, number: that of the bifurcation."""
+        factor, motion = sign * self.point.t, self.motion
+        if self.kind == LIMIT_POINT:
+            if self.tangent.sense < 0.0:
+                message = tr(
+                    "Limit point at the load factor {factor:.6g}: from here on the load grows again.",
+                    factor=factor,
+                )
+            else:
+                message = tr(
+                    "Limit point at the load factor {factor:.6g}: the structure bears no more load here, and from here on"
+                    " the load falls; under a constant load the structure would jump.",
+                    factor=factor,
+                )
+        else:
+            message = tr(
+                "Bifurcation at the load factor {factor:.6g}: another equilibrium path branches off here, along which"
+                " {motion} can move; to follow it to one side or the other, give --branch {number} or --branch -{number}.",
+                factor=factor,
+                motion=describe_motion(model, motion[None]),
+                number=number,
+            )
+        return Event(self.kind, factor, message, motion=motion)
+
+    def branch(self, side: float, first: float) -> Step | None:
+        """The first step on the other branch of a bifurcation, along its mode or against it (side 1, −1), if it is found.
+
+        first: the largest change of a rod, of its length. The step is corrected on a plane across the mode.
+        """
+        path, structure, start = self.path, self.path.structure, self.point
+        mode = structure.gather(self.motion)
+        mode = mode * (side / structure.move(mode, start.response))
+        across = replace(self.tangent, rate=mode * (path.reference / path.size(mode)))
+        size = first
+        while size > SMALLEST_BRANCH:
+            guess = start.displacement + structure.spread(size * mode)
+            found = path.correct(start, guess, start.t, across)
+            if found is not None:
+                change = structure.gather(found.displacement - start.displacement)
+                along = (structure.measure * change) @ (structure.measure * mode) / path.size(mode) ** 2
+                if along >= ALONG * size:
+                    return Step(found, path.tangent(found, start, self.tangent), size, size)
+            size *= HALF
+        return None
 
 
 @dataclass(frozen=True)
@@ -179,12 +257,12 @@ class _Search:
             reached = side * self.beyond(step.point) <= 0.0
             if reached:
                 step = self._landed(found[-1], step)
-            for critical in passed(path, point, tangent, step):
+            for critical in self._passed(point, tangent, step):
                 bifurcations += critical.kind == BIFURCATION
-                events.append(critical.event(model, path, self.sign, bifurcations))
+                events.append(critical.event(model, self.sign, bifurcations))
                 if critical.kind == BIFURCATION and bifurcations == abs(branch):
                     found.append((critical.point, critical.tangent))
-                    switched = branch_off(path, critical, math.copysign(1.0, branch), detail)
+                    switched = critical.branch(math.copysign(1.0, branch), detail)
                     if switched is None:
                         return found, False, events
                     step, reached = switched, side * self.beyond(switched.point) <= 0.0
@@ -194,6 +272,43 @@ class _Search:
                 return found, True, events
             increment = min(1.0, 2.0 * increment)
         return found, side == 0.0, events
+
+    def _passed(self, point: Point, tangent: Tangent, step: Step) -> Iterator[_Critical]:
+        """The critical points that a step from a point passes, a limit point first."""
+        path, following, turned = self.path, step.tangent, step.tangent.sense != tangent.sense
+        if not np.array_equal(following.soft, tangent.soft):  # a corner of the path, where rods begin to yield
+            if turned:
+                yield _Critical(path, LIMIT_POINT, step.point, following)
+            return
+        if not (following.factor.exists and tangent.factor.exists):
+            return
+        before = tangent.factor.negative
+
+        def has_turned(there: Point, along: Tangent) -> bool:
+            return along.sense != tangent.sense
+
+        def has_branched(there: Point, along: Tangent) -> bool:
+            """By the tangent as it is, without what `regular` adds to it."""
+            matrix = path.structure.tangent(there.response, along.soft)
+            return abs(regular(matrix, path.structure.weight, 0.0).negative - before) > int(turned)
+
+        def last_before(beyond: Callable[[Point, Tangent], bool]) -> tuple[Point, Tangent]:
+            """The last point of the step that is not beyond, and its tangent, to rounding."""
+            found, size = (point, tangent), 0.5 * step.taken
+            for _ in range(MOST_TRIALS):
+                if size <= SHARPNESS * step.taken:
+                    break
+                trial = path.attempt(*found, size)
+                if isinstance(trial, tuple) and not beyond(*trial):
+                    found = trial
+                else:
+                    size *= HALF
+            return found
+
+        if turned:
+            yield _Critical(path, LIMIT_POINT, *last_before(has_turned))
+        if abs(following.factor.negative - before) > int(turned):
+            yield _Critical(path, BIFURCATION, *last_before(has_branched))
 
     def _landed(self, last: tuple[Point, Tangent], step: Step) -> Step:
         """The last increment shortened so that it ends at the goal, by the secant method with bisection."""

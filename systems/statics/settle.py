@@ -23,11 +23,11 @@ from pinjoint.systems.statics.contacts import Discs, Sinking
 from pinjoint.systems.statics.equations import ROUND_OFF, Array, Structure, largest, normalised
 from pinjoint.systems.statics.events import Event, NoEquilibrium
 from pinjoint.systems.statics.explain import describe_motion, divide_named, nothing_stops, slack_named
-from pinjoint.systems.statics.external import external_forces, loose_bodies, loose_event
+from pinjoint.systems.statics.external import External, loose_bodies
 from pinjoint.systems.statics.factor import SOFT, soft_modes, softest
 from pinjoint.systems.statics.follow import Path, Point
 from pinjoint.systems.statics.loading import Loading, first_order_mechanism
-from pinjoint.systems.statics.state import NEUTRAL, STABLE, UNSTABLE, Start, StaticState, state_of
+from pinjoint.systems.statics.state import NEUTRAL, STABLE, UNSTABLE, Start, StaticState
 
 LARGEST_GROWTH, SMALLEST_GROWTH = (
     1 / 16,
@@ -123,7 +123,7 @@ def settle(
 def _touch(model: Model, discs: Discs, factors: Sequence[float], found: Settlement, start: Start) -> bool:
     """True if a body without supports is pulled that others may hold, if discs overlap that did not at the beginning, or if
     they move so far that they may pass an obstacle."""
-    structure, external = Structure.of(model), external_forces(model)
+    structure, external = Structure.of(model), External.of(model)
     loose = [body for factor in factors for body in loose_bodies(structure, external.at(factor))]
     if any(body.pull and len(body.particles) < len(discs.radius) for body in loose):
         return True
@@ -161,7 +161,7 @@ class _Settling:
     def __init__(self, model: Model, geometry: str, start: Start) -> None:
         self.model = model
         self.structure = Structure.of(model, geometry)
-        self.external = external_forces(model)
+        self.external = External.of(model)
         self.events = [Event("note", 0.0, note) for note in self.external.notes]
         self.looked_for_bodies = self.soft = False
         self.slender = np.zeros(model.rods.count, dtype=bool)
@@ -345,7 +345,7 @@ class _Settling:
         """Report bodies that nothing holds along an axis. Raises NoEquilibrium if one is pulled along it."""
         for body in loose_bodies(self.structure, target):
             if body.pull or not self.looked_for_bodies:
-                event = loose_event(self.model, body, factor)
+                event = body.event(self.model, factor)
                 self.events.append(event)
                 if body.pull:
                     raise NoEquilibrium("mechanism", event.message)
@@ -353,7 +353,7 @@ class _Settling:
 
     def _state(self, status: str, message: str) -> StaticState:
         told = [message] if message else [e.message for e in self.events if e.kind in TOLD]
-        state = state_of(
+        state = StaticState.of(
             self.model,
             self.structure,
             self.point.response,

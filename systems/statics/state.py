@@ -56,6 +56,54 @@ class StaticState:
     contacts: Rows
     contact_force: Array
 
+    @classmethod
+    def of(
+        cls,
+        model: Model,
+        structure: Structure,
+        response: Response,
+        displacement: Array,
+        load: Array,
+        **facts: Any,
+    ) -> StaticState:
+        """The state at these displacements (n, …) under a load; facts: the other fields of the state."""
+        rods, count = slice(model.rods.count), model.particles.count  # what follows: contacts, obstacles
+        pressing = rods.stop + np.flatnonzero(response.axial_force[rods.stop :] < 0.0)
+        reaction = np.where(structure.fixed, structure.internal(response) - load, 0.0)[:count]
+        elastic = 500.0 * float(
+            (response.axial_force**2 * structure.rest_length / structure.stiffness)[rods].sum()
+        )
+        if structure.bending is not None and response.bent is not None:
+            elastic += 1000.0 * float(structure.bending.energy(response.bent.slopes).sum())
+        length = response.length
+        if structure.linear:  # response.length is that about which rods turn
+            length = structure.original_length + response.elongation - structure.misfit
+        return cls(
+            displacement=displacement[:count, :2],
+            rotation=structure.rotation(displacement)[:count],
+            plastic_strain=response.plastic_strain[rods],
+            axial_force=response.axial_force[rods],
+            strain=response.strain[rods],
+            length=length[rods],
+            yielding=structure.at_limit(response)[rods],
+            reaction=reaction[:, :2],
+            reaction_moment=structure.rotation(reaction),
+            diagrams=diagrams(
+                model.rods,
+                response.axis[rods],
+                response.length[rods],
+                structure.chords(displacement)[rods],
+                structure.rotation(displacement)[structure.ends[rods]],
+                (response.axial_force[rods], structure.end_moments(response)[rods]),
+                share=response.share,
+                first_order=structure.linear,
+            ),
+            elastic_energy=elastic,
+            contacts=structure.ends[pressing],
+            contact_force=-response.axial_force[pressing],
+            **facts,
+        )
+
     @property
     def columns(self) -> dict[str, NDArray[Any]]:
         """What the columns of a model are in this state, by "table.field"."""
@@ -82,6 +130,12 @@ class StaticState:
         """True if all forces are in balance, whether or not the state is stable."""
         return self.status in EQUILIBRIA
 
+    def put(self, model: Model) -> None:
+        """Put a model into this state: its displacements and plastic strains, without velocity."""
+        moving = ("displacement", "velocity", *(("rotation", "angular_velocity") if bends(model) else ()))
+        for name in (*(f"particles.{name}" for name in moving), "rods.plastic_strain"):
+            model.give(name, self.columns[name])
+
 
 @dataclass(frozen=True)
 class Start:
@@ -96,53 +150,3 @@ class Start:
         """A model's present state."""
         particles = model.particles
         return cls(particles.displacement.copy(), model.rods.plastic_strain.copy(), particles.rotation.copy())
-
-
-def state_of(
-    model: Model, structure: Structure, response: Response, displacement: Array, load: Array, **facts: Any
-) -> StaticState:
-    """The state at these displacements (n, …) under a load; facts: the other fields of the state."""
-    rods, count = (
-        slice(model.rods.count),
-        model.particles.count,
-    )  # what follows them are contacts, and obstacles
-    pressing = rods.stop + np.flatnonzero(response.axial_force[rods.stop :] < 0.0)
-    reaction = np.where(structure.fixed, structure.internal(response) - load, 0.0)[:count]
-    elastic = 500.0 * float((response.axial_force**2 * structure.rest_length / structure.stiffness)[rods].sum())
-    if structure.bending is not None and response.bent is not None:
-        elastic += 1000.0 * float(structure.bending.energy(response.bent.slopes).sum())
-    length = response.length
-    if structure.linear:  # response.length is that about which rods turn
-        length = structure.original_length + response.elongation - structure.misfit
-    return StaticState(
-        displacement=displacement[:count, :2],
-        rotation=structure.rotation(displacement)[:count],
-        plastic_strain=response.plastic_strain[rods],
-        axial_force=response.axial_force[rods],
-        strain=response.strain[rods],
-        length=length[rods],
-        yielding=structure.at_limit(response)[rods],
-        reaction=reaction[:, :2],
-        reaction_moment=structure.rotation(reaction),
-        diagrams=diagrams(
-            model.rods,
-            response.axis[rods],
-            response.length[rods],
-            structure.chords(displacement)[rods],
-            structure.rotation(displacement)[structure.ends[rods]],
-            (response.axial_force[rods], structure.end_moments(response)[rods]),
-            share=response.share,
-            first_order=structure.linear,
-        ),
-        elastic_energy=elastic,
-        contacts=structure.ends[pressing],
-        contact_force=-response.axial_force[pressing],
-        **facts,
-    )
-
-
-def apply(model: Model, state: StaticState) -> None:
-    """Put a model into a static state: its displacements and plastic strains, without velocity."""
-    moving = ("displacement", "velocity", *(("rotation", "angular_velocity") if bends(model) else ()))
-    for name in (*(f"particles.{name}" for name in moving), "rods.plastic_strain"):
-        model.give(name, state.columns[name])

@@ -13,9 +13,9 @@ from pinjoint.components.model import Model
 from pinjoint.systems.statics.equations import ROUND_OFF, Array, Response, Structure, largest, normalised
 from pinjoint.systems.statics.events import NoEquilibrium
 from pinjoint.systems.statics.explain import cables_named, describe_motion
-from pinjoint.systems.statics.external import external_forces, loose_bodies, loose_event
+from pinjoint.systems.statics.external import External, loose_bodies
 from pinjoint.systems.statics.factor import SOFT, pseudo_random, regular, soft_count, soft_modes, unresisted
-from pinjoint.systems.statics.state import STABLE, Start, StaticState, state_of
+from pinjoint.systems.statics.state import STABLE, Start, StaticState
 
 _REFINEMENTS = 4  # of a linear solution
 _REFINEMENTS_OF_BENDING = 40  # at most; few unless hundreds of rods divide a long member
@@ -112,16 +112,16 @@ def linear(model: Model, start: Start | None = None, factor: float = 1.0) -> Sta
     Raises NoEquilibrium, naming the particles, for a mechanism or a free body that the load moves.
     """
     structure, start = Structure.of(model, "linear"), start or Start.present(model)
-    load = external_forces(model).at(factor)
+    load = External.of(model).at(factor)
     for body in loose_bodies(structure, load):
         if body.pull:
-            raise NoEquilibrium("mechanism", loose_event(model, body, factor).message)
+            raise NoEquilibrium("mechanism", body.event(model, factor).message)
     supports = np.where(structure.fixed, structure.field(start.displacement, start.rotation), 0.0)
     theory = FirstOrder(model, structure)
     moved, elastic = theory.equilibrium(load, supports, start.plastic_strain, factor, structure)
     unbalanced = np.where(structure.fixed, 0.0, structure.internal(elastic) - load)
     forces = max(structure.largest(load), structure.largest_force(elastic))
-    return state_of(
+    return StaticState.of(
         model,
         structure,
         elastic,
@@ -153,18 +153,18 @@ class Indeterminacy:
     mechanisms: int
     rank: int
 
+    @classmethod
+    def of(cls, model: Model) -> Indeterminacy:
+        """Degrees by the rank r of the compatibility matrix, with supports and without; cables count as taut.
 
-def indeterminacy(model: Model) -> Indeterminacy:
-    """Degrees by the rank r of the compatibility matrix, with supports and without; cables count as taut.
-
-    m rods between particles with f free directions have m − r states of self-stress and f − r mechanisms. A rigid end of
-    a rod that bends counts as one more of the m, a rotation as a direction.
-    """
-    structure = Structure.of(model, "linear").with_translations()
-    unsupported = replace(structure, fixed=np.zeros_like(structure.fixed)).with_translations()
-    deformations, rank = structure.deformations, _rank(structure)
-    static, internal = deformations - rank, deformations - _rank(unsupported)
-    return Indeterminacy(static, internal, static - internal, structure.size - rank, rank)
+        m rods between particles with f free directions have m − r states of self-stress and f − r mechanisms. A rigid end of
+        a rod that bends counts as one more of the m, a rotation as a direction.
+        """
+        structure = Structure.of(model, "linear").with_translations()
+        unsupported = replace(structure, fixed=np.zeros_like(structure.fixed)).with_translations()
+        deformations, rank = structure.deformations, _rank(structure)
+        static, internal = deformations - rank, deformations - _rank(unsupported)
+        return cls(static, internal, static - internal, structure.size - rank, rank)
 
 
 def mechanisms(model: Model) -> Array:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from typing import Any
 
@@ -14,7 +13,7 @@ from pinjoint.components.language import marked
 from pinjoint.components.mistake import Explained
 from pinjoint.components.model import Model
 from pinjoint.components.particle import Particle
-from pinjoint.components.rod import Rod, bends
+from pinjoint.components.rod import Rod, bends, rigid_joints
 from pinjoint.components.suggestions import missing
 from pinjoint.systems.statics.equations import AXES, Array, Structure
 
@@ -80,79 +79,88 @@ class Unknown:
         """Of the unknown itself."""
         return "kN·m" if self.is_moment else "kN"
 
+    @classmethod
+    def named(cls, model: Model, name: str) -> Unknown:
+        """The unknown called "AC" (a rod), "AB.start" (its bending moment there), "A.y" or "A.rotation" (a support).
 
-def find_unknown(model: Model, name: str) -> Unknown:
-    """The unknown called "AC" (a rod), "AB.start" (its bending moment there), "A.y" or "A.rotation" (a support).
+        Raises ForceMethodError.
+        """
+        if name in model.rods:
+            return cls(model.rods[name])
+        place, _, what = name.rpartition(".")
+        if place in model.rods and what in ENDS:
+            return cls(model.rods[place], ENDS.index(what))._checked(model)
+        if place in model.particles and what in AXES:
+            return cls(model.particles[place], AXES.index(what))._checked(model)
+        if name in model.particles:
+            raise ForceMethodError(
+                "'{name}' is a particle; say which of its supports, such as {name}.x or {name}.y.", name=name
+            )
+        particles = model.particles
+        fixed = np.column_stack([particles.fixed, particles.fixed_rotation & bends(model)])
+        supports = [cls(particles[row], axis) for row, axis in np.argwhere(fixed).tolist()]
+        choices = [*model.rods.names, *(unknown.name for unknown in (*supports, *_of_ends(model)))]
+        raise ForceMethodError(missing(marked("rods and supports"), name, choices))
 
-    Raises ForceMethodError.
-    """
-    if name in model.rods:
-        return Unknown(model.rods[name])
-    place, _, what = name.rpartition(".")
-    if place in model.rods and what in ENDS:
-        return _found(model, Unknown(model.rods[place], ENDS.index(what)))
-    if place in model.particles and what in AXES:
-        return _found(model, Unknown(model.particles[place], AXES.index(what)))
-    if name in model.particles:
-        raise ForceMethodError(
-            "'{name}' is a particle; say which of its supports, such as {name}.x or {name}.y.", name=name
-        )
-    particles = model.particles
-    fixed = np.column_stack([particles.fixed, particles.fixed_rotation & bends(model)])
-    supports = [Unknown(particles[row], axis) for row, axis in np.argwhere(fixed).tolist()]
-    choices = [*model.rods.names, *(unknown.name for unknown in (*supports, *_of_ends(model)))]
-    raise ForceMethodError(missing(marked("rods and supports"), name, choices))
+    def _checked(self, model: Model) -> Unknown:
+        """The same. Raises ForceMethodError where there is no such force."""
+        row, axis, place = self.element.row, self.axis, self.element.name
+        if self.of_end and not model.rods.turning_shares[row, axis]:
+            raise ForceMethodError(
+                "There is no moment to release at {name}: {rod} is hinged there, or does not bend.",
+                name=self.name,
+                rod=place,
+            )
+        if axis == 2 and not model.particles.fixed_rotation[row]:
+            raise ForceMethodError(
+                "{particle} is not clamped, so there is no moment to release there.", particle=place
+            )
+        if self.of_support and axis in (0, 1) and not model.particles.fixed[row, axis]:
+            raise ForceMethodError(
+                "{particle} is free along {axis}, so there is no reaction to release there.",
+                particle=place,
+                axis=AXES[axis],
+            )
+        return self
 
-
-def _found(model: Model, unknown: Unknown) -> Unknown:
-    """The same unknown. Raises ForceMethodError where there is no such force."""
-    row, axis, place = unknown.element.row, unknown.axis, unknown.element.name
-    if unknown.of_end and not model.rods.turning_shares[row, axis]:
-        raise ForceMethodError(
-            "There is no moment to release at {name}: {rod} is hinged there, or does not bend.",
-            name=unknown.name,
-            rod=place,
-        )
-    if axis == 2 and not model.particles.fixed_rotation[row]:
-        raise ForceMethodError(
-            "{particle} is not clamped, so there is no moment to release there.", particle=place
-        )
-    if unknown.of_support and axis in (0, 1) and not model.particles.fixed[row, axis]:
-        raise ForceMethodError(
-            "{particle} is free along {axis}, so there is no reaction to release there.",
-            particle=place,
-            axis=AXES[axis],
-        )
-    return unknown
-
-
-def refuse_unsuited(model: Model, unknowns: Sequence[Unknown]) -> None:
-    """Raise ForceMethodError for an unknown whose force no other part of the structure shares."""
-    for unknown in unknowns:
-        row = unknown.element.row
-        if unknown.of_bar and (model.rods.turning_shares[row] > 0.0).any():
+    def check_suits(self, model: Model) -> None:
+        """Raise ForceMethodError where no other part of the structure shares the force."""
+        row = self.element.row
+        if self.of_bar and (model.rods.turning_shares[row] > 0.0).any():
             raise ForceMethodError(
                 "{rod} bends. Release the moment at one of its ends instead: {rod}.start or {rod}.end.",
-                rod=unknown.name,
+                rod=self.name,
             )
-        if unknown.of_support and not (model.rods.between == row).any():
+        if self.of_support and not (model.rods.between == row).any():
             raise ForceMethodError(
                 "{name} is not a static unknown: no rod ends at {particle}, so its reaction only balances what acts"
                 " on it there. Choose a rod, or a support of the structure.",
-                name=unknown.name,
-                particle=unknown.element.name,
+                name=self.name,
+                particle=self.element.name,
             )
-        if unknown.axis == 2 and unknown.of_support and not is_turned(model, row):
+        if self.axis == 2 and self.of_support and not rigid_joints(model)[row]:
             raise ForceMethodError(
                 "{name} is not a static unknown: no rod that bends is joined rigidly at {particle}.",
-                name=unknown.name,
-                particle=unknown.element.name,
+                name=self.name,
+                particle=self.element.name,
             )
 
+    def unit_load(self, model: Model) -> tuple[Array, Array]:
+        """What a unit of it does to the particles, (n, 3), and to released ends of rods, counter-clockwise, (rods, 2).
 
-def is_turned(model: Model, particle: int) -> bool:
-    """True if a rod that bends is joined rigidly to a particle, so that its rotation counts."""
-    return bool(((model.rods.between == particle) & (model.rods.turning_shares > 0.0)).any())
+        1 kN along a released constraint, or 1 kN·m; a pair of 1 kN that pulls a released bar's ends together; 1 kN·m on the
+        end of a rod, which hands its opposite on to the joint.
+        """
+        force, couple = np.zeros((model.particles.count, 3)), np.zeros((model.rods.count, 2))
+        if self.of_bar:
+            row = self.element.row
+            axis = model.rods.difference[row] / model.rods.original_length[row]
+            force[model.rods.between[row], :2] = axis, -axis
+        elif self.of_support:
+            force[self.place] = 1.0
+        else:
+            couple[self.place] = (-1.0, 1.0)[self.axis or 0]
+        return force, couple
 
 
 def _of_ends(model: Model) -> list[Unknown]:

@@ -12,8 +12,8 @@ from pinjoint.components import written
 from pinjoint.components.field import ENDS
 from pinjoint.components.language import begun, joined, marked, tr
 from pinjoint.components.model import Model
+from pinjoint.components.rod import rigid_joints
 from pinjoint.components.suggestions import missing
-from pinjoint.components.table import flags
 from pinjoint.components.world import called
 from pinjoint.systems.statics.equations import ROUND_OFF, Array, Flags, largest
 from pinjoint.systems.statics.events import Event, NoEquilibrium
@@ -60,27 +60,80 @@ class Theories:
         final = self.settlement.final
         return final if final.balanced else None
 
+    @classmethod
+    def of(cls, model: Model, start: Start | None = None) -> Theories:
+        """The answers under the model's load, from a state (None: the present one) on.
 
-def theories(model: Model, start: Start | None = None) -> Theories:
-    """Linear and exact answers under the model's load, from a state (None: the present one) on.
+        Raises FieldError for numbers too large or too small to compute with.
+        """
+        start = start or Start.present(model)
+        exact = settle(model, start=start)
+        refusal, first_order = None, None
+        try:
+            first_order = linear(model, start)
+        except NoEquilibrium as reason:
+            refusal = reason
+        return cls(start, first_order, refusal, exact)
 
-    Raises FieldError for numbers too large or too small to compute with.
-    """
-    start = start or Start.present(model)
-    exact = settle(model, start=start)
-    refusal, first_order = None, None
-    try:
-        first_order = linear(model, start)
-    except NoEquilibrium as reason:
-        refusal = reason
-    return Theories(start, first_order, refusal, exact)
+    def beside(self, model: Model, *, simulated: bool = True) -> Comparison:
+        """The three answers side by side, that of a simulation being the present state; simulated: there is one at rest."""
+        present = {
+            f"{table}.{name}": model.tables[table].column(name).copy()
+            for name, (table, _) in QUANTITIES.items()
+        }
+        by_theory = {"linear": self.linear, "exact": self.exact}
+        found = {way: None if state is None else state.columns for way, state in by_theory.items()}
+        return Comparison(model, {"simulation": present if simulated else None, **found})
 
+    # --- departures of a simulation from statics ---------------------------------------------------
 
-def observed(model: Model) -> Answer:
-    """The present state of a model, as a simulation left it."""
-    return {
-        f"{table}.{name}": model.tables[table].column(name).copy() for name, (table, _) in QUANTITIES.items()
-    }
+    def remarks(self, model: Model) -> list[Event]:
+        """Events about the model at rest: a collapse, jumps, overshoots, another equilibrium than that of statics.
+
+        It must have come from `start` under one load, applied at once or growing by one history.
+        """
+        if self.exact is None:
+            return [event for event in self.settlement.events if event.kind == "collapse"]
+        overshot = [*self._overshoots(model, self.exact)]
+        worst = self.beside(model).worst("simulation", "displacement")
+        alike = not overshot and (model.rods.plastic_strain == self.exact.plastic_strain).all()
+        if alike and worst is not None and (worst.simulation_error or 0.0) > ELSEWHERE:
+            if {event.kind for event in self.settlement.events} & {"bifurcation", "mechanism"}:
+                return []  # either side was possible
+            message = tr(
+                "The model is at rest in another equilibrium than under a slowly growing load: the {quantity} differs by"
+                " {distance}. The sudden load carried the structure past an unstable position.",
+                quantity=worst.title,
+                distance=written.displacement(abs((worst.simulation or 0.0) - (worst.exact or 0.0))),
+            )
+            return [Event("other equilibrium", 1.0, message)]
+        return [event for event in self.settlement.events if event.kind in JUMPS] + overshot
+
+    def _overshoots(self, model: Model, final: StaticState) -> Iterator[Event]:
+        """Rods that yielded, or yielded further, unlike under a slowly growing load."""
+        present, before = model.rods.plastic_strain, self.start.plastic_strain
+        static, flowed = np.abs(final.plastic_strain - before), np.abs(present - before)
+        limit = np.where(present > before, model.rods.tension_limit, model.rods.compression_limit)
+        further = flowed - static > np.maximum(FURTHER * static, LEAST * limit / model.rods.stiffness)
+        for row in np.flatnonzero(np.isfinite(limit) & further).tolist():
+            who = begun(rod_names(model, np.array([row])))
+            if static[row] == 0.0:
+                message = tr(
+                    "{rod} yielded only because the sudden load overshot: in equilibrium its force is {force} kN, below its"
+                    " strength of {strength} kN. Apply the load more slowly, or raise the damping.",
+                    rod=who,
+                    force=written.given(abs(final.axial_force[row]), written.DIGITS),
+                    strength=written.given(limit[row]),
+                )
+            else:
+                message = tr(
+                    "{rod} yielded more because the sudden load overshot: its plastic strain is {strain}, under a slowly"
+                    " growing load {static}. Apply the load more slowly, or raise the damping.",
+                    rod=who,
+                    strain=written.strain(present[row]),
+                    static=written.strain(final.plastic_strain[row]),
+                )
+            yield Event("overshoot", 1.0, message, (model.rods.names[row],))
 
 
 @dataclass(frozen=True)
@@ -171,6 +224,12 @@ class Comparison:
                 row = self.row(quantity, tuple(int(i) for i in np.unravel_index(errors.argmax(), errors.shape)))
         return row
 
+    @property
+    def differs(self) -> bool:
+        """True if the simulation is farther from the exact equilibrium than errors of integration account for."""
+        worst = self.worst("simulation")
+        return worst is not None and (worst.simulation_error or 0.0) > ELSEWHERE
+
     def _concerned(self, quantity: str) -> Flags:
         """Where a quantity has a meaning, in the shape of its array."""
         particles, rods = self.model.particles, self.model.rods
@@ -180,9 +239,8 @@ class Comparison:
         if quantity in ("shear", "bending_moment"):
             return np.repeat(rigid.any(axis=1, keepdims=True), 2, axis=1)
         if quantity in ("rotation", "reaction_moment"):
-            turns: Flags = flags(rods.between[rigid], particles.count)
             clamped = particles.fixed_rotation if quantity == "reaction_moment" else ~particles.fixed_rotation
-            return np.asarray(turns & clamped)
+            return np.asarray(rigid_joints(self.model) & clamped)
         fixed: Flags = particles.fixed
         return fixed if quantity == "reaction" else ~fixed
 
@@ -225,73 +283,3 @@ class Comparison:
             }
             for quantity, values in self._values.items()
         }
-
-
-def differs(comparison: Comparison) -> bool:
-    """True if the simulation is farther from the exact equilibrium than errors of integration account for."""
-    worst = comparison.worst("simulation")
-    return worst is not None and (worst.simulation_error or 0.0) > ELSEWHERE
-
-
-def compare(model: Model, theory: Theories, simulated: Answer | None) -> Comparison:
-    """The three answers side by side; simulated: None if there is no simulation at rest."""
-    by_theory = {"linear": theory.linear, "exact": theory.exact}
-    found = {way: None if state is None else state.columns for way, state in by_theory.items()}
-    return Comparison(model, {"simulation": simulated, **found})
-
-
-# --- departures of a simulation from statics ------------------------------------------------------------------
-
-
-def remarks(model: Model, theory: Theories) -> list[Event]:
-    """Events about a model at rest: a collapse, jumps, overshoots, another equilibrium than that of statics.
-
-    The model must have come from theory.start under one load, applied at once or growing by one history.
-    """
-    if theory.exact is None:
-        return [event for event in theory.settlement.events if event.kind == "collapse"]
-    overshot = overshoots(model, theory)
-    worst = compare(model, theory, observed(model)).worst("simulation", "displacement")
-    alike = not overshot and (model.rods.plastic_strain == theory.exact.plastic_strain).all()
-    if alike and worst is not None and (worst.simulation_error or 0.0) > ELSEWHERE:
-        if {event.kind for event in theory.settlement.events} & {"bifurcation", "mechanism"}:
-            return []  # either side was possible
-        message = tr(
-            "The model is at rest in another equilibrium than under a slowly growing load: the {quantity} differs by"
-            " {distance}. The sudden load carried the structure past an unstable position.",
-            quantity=worst.title,
-            distance=written.displacement(abs((worst.simulation or 0.0) - (worst.exact or 0.0))),
-        )
-        return [Event("other equilibrium", 1.0, message)]
-    return [event for event in theory.settlement.events if event.kind in JUMPS] + overshot
-
-
-def overshoots(model: Model, theory: Theories) -> list[Event]:
-    """Rods that yielded, or yielded further, unlike under a slowly growing load."""
-    final, present, before = theory.exact, model.rods.plastic_strain, theory.start.plastic_strain
-    if final is None:
-        return []
-    static, flowed = np.abs(final.plastic_strain - before), np.abs(present - before)
-    limit = np.where(present > before, model.rods.tension_limit, model.rods.compression_limit)
-    further = flowed - static > np.maximum(FURTHER * static, LEAST * limit / model.rods.stiffness)
-    names, found = model.rods.column("name"), []
-    for row in np.flatnonzero(np.isfinite(limit) & further).tolist():
-        who = begun(rod_names(model, np.array([row])))
-        if static[row] == 0.0:
-            message = tr(
-                "{rod} yielded only because the sudden load overshot: in equilibrium its force is {force} kN, below its"
-                " strength of {strength} kN. Apply the load more slowly, or raise the damping.",
-                rod=who,
-                force=written.given(abs(final.axial_force[row]), written.DIGITS),
-                strength=written.given(limit[row]),
-            )
-        else:
-            message = tr(
-                "{rod} yielded more because the sudden load overshot: its plastic strain is {strain}, under a slowly growing"
-                " load {static}. Apply the load more slowly, or raise the damping.",
-                rod=who,
-                strain=written.strain(present[row]),
-                static=written.strain(final.plastic_strain[row]),
-            )
-        found.append(Event("overshoot", 1.0, message, (str(names[row]),)))
-    return found

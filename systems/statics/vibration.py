@@ -12,7 +12,7 @@ from scipy.sparse.linalg import LinearOperator, eigsh
 from pinjoint.components.model import Model
 from pinjoint.systems.statics.equations import ROUND_OFF, Array, Response, Structure, largest, normalised
 from pinjoint.systems.statics.explain import divide_named
-from pinjoint.systems.statics.external import external_forces
+from pinjoint.systems.statics.external import External
 from pinjoint.systems.statics.factor import Factor, pseudo_random
 from pinjoint.systems.statics.state import Start, StaticState
 from pinjoint.systems.statics.theory import FULL
@@ -35,6 +35,35 @@ class Vibrations:
     modes: Array
     note: str
 
+    @classmethod
+    def of(cls, model: Model, state: StaticState | Start | None = None, count: int | None = None) -> Vibrations:
+        """The lowest natural modes of small undamped vibrations, K φ = ω² M φ, in which no rod yields.
+
+        Where members bend, so do rotations vibrate, with the inertias of particles.
+
+        state: the equilibrium about which the structure vibrates, stiffened or softened by its axial forces; None: the
+        original positions, without axial forces and with taut cables. count: number of modes; None: all of a small
+        structure, 10 of a large one.
+        """
+        structure = Structure.of(model).with_translations()
+        mass, inertia = model.particles.mass, model.particles.inertia
+        root = np.sqrt(structure.gather(structure.field(np.repeat(mass, 2).reshape(-1, 2), inertia)) / 1000.0)
+        stiffness = structure.initial_tangent
+        if state is not None:
+            response = _present(structure, state)
+            stiffness = structure.tangent(response, response.slack)
+        if structure.size <= FULL:
+            full = stiffness if isinstance(stiffness, np.ndarray) else stiffness.toarray()
+            values, vectors = eigh(full / root[:, None] / root)
+            noise = 8.0 * len(root) * ROUND_OFF * largest(values)
+            values, vectors = np.where(np.abs(values) > noise, values, 0.0)[:count], vectors[:, :count]
+        else:
+            scaled = csc_matrix(diags(1.0 / root) @ stiffness @ diags(1.0 / root))
+            values, vectors = _lowest(scaled, count or LOWEST)
+        fields = structure.fields(vectors / root[:, None])
+        modes = np.array([normalised(field) for field in fields]).reshape(fields.shape)
+        return cls(values, modes, _note(model, values))
+
     @property
     def hertz(self) -> Array:
         """Frequencies (Hz), 0 for mechanisms and for motions that are not stable."""
@@ -45,7 +74,7 @@ def rests_under_load(model: Model) -> bool:
     """True if the present state is an equilibrium with forces in the rods."""
     structure = Structure.of(model).with_translations()
     response = _present(structure, Start.present(model))
-    external, pull = external_forces(model).at(1.0), structure.largest_force(response)
+    external, pull = External.of(model).at(1.0), structure.largest_force(response)
     unbalanced = structure.gather(external - structure.internal(response))
     return pull > 0.0 and structure.greatest(unbalanced) <= BALANCED * max(pull, structure.largest(external))
 
@@ -54,35 +83,6 @@ def _present(structure: Structure, state: StaticState | Start) -> Response:
     """The rods in a state under the whole load."""
     place = structure.field(state.displacement, state.rotation)
     return structure.respond(place, state.plastic_strain, 1.0)
-
-
-def vibrations(model: Model, state: StaticState | Start | None = None, count: int | None = None) -> Vibrations:
-    """The lowest natural modes of small undamped vibrations, K φ = ω² M φ, in which no rod yields.
-
-    Where members bend, so do rotations vibrate, with the inertias of particles.
-
-    state: the equilibrium about which the structure vibrates, stiffened or softened by its axial forces; None: the
-    original positions, without axial forces and with taut cables. count: number of modes; None: all of a small
-    structure, 10 of a large one.
-    """
-    structure = Structure.of(model).with_translations()
-    mass, inertia = model.particles.mass, model.particles.inertia
-    root = np.sqrt(structure.gather(structure.field(np.repeat(mass, 2).reshape(-1, 2), inertia)) / 1000.0)
-    stiffness = structure.initial_tangent
-    if state is not None:
-        response = _present(structure, state)
-        stiffness = structure.tangent(response, response.slack)
-    if structure.size <= FULL:
-        full = stiffness if isinstance(stiffness, np.ndarray) else stiffness.toarray()
-        values, vectors = eigh(full / root[:, None] / root)
-        noise = 8.0 * len(root) * ROUND_OFF * largest(values)
-        values, vectors = np.where(np.abs(values) > noise, values, 0.0)[:count], vectors[:, :count]
-    else:
-        scaled = csc_matrix(diags(1.0 / root) @ stiffness @ diags(1.0 / root))
-        values, vectors = _lowest(scaled, count or LOWEST)
-    fields = structure.fields(vectors / root[:, None])
-    modes = np.array([normalised(field) for field in fields]).reshape(fields.shape)
-    return Vibrations(values, modes, _note(model, values))
 
 
 def _note(model: Model, angular_squared: Array) -> str:

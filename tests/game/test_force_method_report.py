@@ -15,7 +15,7 @@ from pinjoint.force_method.tables import Column, Tables
 from pinjoint.systems.render.paper import LAYOUTS, WIDTH, Layout
 from pinjoint.systems.statics.force_method import solve
 from pinjoint.systems.statics.theory import linear
-from pinjoint.systems.statics.unknowns import find_unknown, redundants
+from pinjoint.systems.statics.unknowns import Unknown, redundants
 from tests.benchmarks.models import lattice
 from tests.game.force_method_models import panels, propped, two_span
 
@@ -24,7 +24,7 @@ OWN = {"panels": panels, "propped": propped, "two_span": two_span}
 
 def solved(name: str, *released: str) -> Tables:
     model = OWN[name]() if name in OWN else models.load(name)
-    unknowns = [find_unknown(model, one) for one in released] or redundants(model)
+    unknowns = [Unknown.named(model, one) for one in released] or redundants(model)
     return Tables(model, solve(model, unknowns))
 
 

@@ -50,9 +50,7 @@ def test_our_step_systems_pass(name: str) -> None:
         "physics.axial_damping_of_cables": CABLES,
         **dict.fromkeys(("physics.bending", "physics.bending_damping", "physics.turning_drag"), FRAME),
     }
-    checked = check_system(partial(again, OURS[name]), [others.get(name, EVERYTHING)])
-    assert checked.needed == 1
-    assert 0.0 < checked.cost < 1e6
+    assert check_system(partial(again, OURS[name]), [others.get(name, EVERYTHING)]).needed == 1
 
 
 @pytest.mark.parametrize("name", INTEGRATORS)
@@ -315,7 +313,7 @@ class Harder(Spring):
 
 
 def test_laws_of_pairs_are_checked_for_opposite_forces_and_those_of_their_potential() -> None:
-    assert check_system(Spring, [BODIES]).cost > 0.0
+    assert check_system(Spring, [BODIES]).needed == 1
     with pytest.raises(SystemCheckError, match="change if the two are swapped"):
         check_system(Attraction, [BODIES])
     with pytest.raises(

@@ -15,7 +15,7 @@ from pinjoint import Session
 from pinjoint.commands.command_line import main
 from pinjoint.components.model import Model
 from pinjoint.documents.models import parse
-from pinjoint.systems.statics.buckling import buckling
+from pinjoint.systems.statics.buckling import Buckling
 from pinjoint.systems.statics.events import NoEquilibrium
 from pinjoint.systems.statics.theory import linear
 from tests.reference.models import model
@@ -55,7 +55,7 @@ CASES = [
 def test_eulers_four_loads(foot: dict[str, Any], head: str, root: float, errors: dict[int, float]) -> None:
     """P = u² EI/L²: the error of so many rods, of fourth order; the mode and the effective length π L/u."""
     for parts, error in errors.items():
-        found = buckling(parse(column(parts, foot, HEADS[head])))
+        found = Buckling.of(parse(column(parts, foot, HEADS[head])))
         critical = root**2 * EI / LENGTH**2
         assert found.factors[0] / critical - 1.0 == pytest.approx(error, rel=0.01)
         assert found.effective_length == pytest.approx(math.pi * LENGTH / root / math.sqrt(1 + error), rel=1e-4)
@@ -63,7 +63,7 @@ def test_eulers_four_loads(foot: dict[str, Any], head: str, root: float, errors:
 
 
 def test_the_mode_of_a_pinned_column_is_a_sine() -> None:
-    mode = buckling(parse(column(8, PINNED, HEADS["pinned"]))).modes[0]
+    mode = Buckling.of(parse(column(8, PINNED, HEADS["pinned"]))).modes[0]
     along = math.pi * np.arange(9) / 8
     assert mode[:, 0] == pytest.approx(np.sin(along), abs=1e-5)
     assert mode[:, 2] == pytest.approx(-math.pi / LENGTH * np.cos(along), abs=1e-4)
@@ -71,7 +71,7 @@ def test_the_mode_of_a_pinned_column_is_a_sine() -> None:
 
 @pytest.mark.parametrize("parts", [250])
 def test_many_rods_are_solved_sparsely(parts: int) -> None:
-    found = buckling(parse(column(parts, CLAMPED, HEADS["free"], stiffness=1e5)), count=3)
+    found = Buckling.of(parse(column(parts, CLAMPED, HEADS["free"], stiffness=1e5)), count=3)
     expected = [((2 * k + 1) * math.pi / 2 / LENGTH) ** 2 * EI for k in range(3)]
     assert found.factors == pytest.approx(expected, rel=1e-7)
 
@@ -81,7 +81,7 @@ def test_a_column_under_its_own_distributed_weight() -> None:
     errors = []
     for parts in (2, 4, 8):
         own = column(parts, CLAMPED, {"force": [0.0, 0.0]}, distributed_force=[0.0, -1.0])
-        errors.append(buckling(parse(own)).factors[0] * LENGTH**3 / EI / 7.837347438943446 - 1.0)
+        errors.append(Buckling.of(parse(own)).factors[0] * LENGTH**3 / EI / 7.837347438943446 - 1.0)
     assert errors[0] < 0.02
     assert abs(errors[2]) < 5e-5
     assert errors[0] / errors[1] == pytest.approx(16.0, rel=0.2)
@@ -90,17 +90,17 @@ def test_a_column_under_its_own_distributed_weight() -> None:
 def test_weight_acts_in_full_and_does_not_grow() -> None:
     """Half the critical load weighs on the column: so the force may be the other half."""
     light = column(4, CLAMPED, HEADS["free"])
-    critical = buckling(parse(light)).factors[0]
+    critical = Buckling.of(parse(light)).factors[0]
     heavy = column(4, CLAMPED, HEADS["free"])
     for particle in heavy["particles"]:
         particle["mass"] = 1000.0 if particle["name"] == "P4" else 1e-9
     heavy["environment"] = {"acceleration": [0.0, -0.5 * critical]}
-    found = buckling(parse(heavy))
+    found = Buckling.of(parse(heavy))
     assert found.factors[0] == pytest.approx(0.5 * critical, rel=1e-9)
     assert found.dead == pytest.approx(-0.5 * critical, rel=1e-9)
     heavy["environment"] = {"acceleration": [0.0, -1.1 * critical]}
     with pytest.raises(NoEquilibrium, match="already buckles under what the load factor does not multiply"):
-        buckling(parse(heavy))
+        Buckling.of(parse(heavy))
 
 
 def portal(parts: int, foot: dict[str, Any], beam: float) -> dict[str, Any]:
@@ -135,7 +135,7 @@ def test_portals_sway(foot: dict[str, Any], beam: float) -> None:
     else:
         root = brentq(lambda u: u * math.sin(u) - ratio * math.cos(u), 0.0, math.pi / 2)
     critical = root**2 * EI / 16.0
-    errors = [buckling(parse(portal(parts, foot, beam))).factors[0] / critical - 1.0 for parts in (1, 4)]
+    errors = [Buckling.of(parse(portal(parts, foot, beam))).factors[0] / critical - 1.0 for parts in (1, 4)]
     assert 0.0 < errors[0] < (0.008 if foot is PINNED else 0.03)
     assert 0.0 < errors[1] < 6e-4
 
@@ -203,7 +203,7 @@ def test_random_frames_and_trusses_against_textbook_matrices(number: int) -> Non
         for (i, j), bent in zip(pairs, bends.tolist(), strict=True)
     ]
     made = parse(model(particles, rods))
-    assert buckling(made).factors[0] == pytest.approx(textbook(made), rel=1e-9)
+    assert Buckling.of(made).factors[0] == pytest.approx(textbook(made), rel=1e-9)
 
 
 def test_a_vierendeel_girder_gives_way_in_its_upper_chord() -> None:
@@ -221,7 +221,7 @@ def test_a_vierendeel_girder_gives_way_in_its_upper_chord() -> None:
     facts = {"stiffness": 2e5, "bending_stiffness": 500.0}
     rods = [{"name": a + b, "between": [a, b], **facts} for a, b in pairs]
     made = parse(model(particles, rods))
-    found = buckling(made)
+    found = Buckling.of(made)
     assert found.factors[0] == pytest.approx(textbook(made), rel=1e-9)
     names = made.particles.names
     pressed = {
@@ -244,7 +244,7 @@ def test_a_shallow_truss_and_one_in_a_line() -> None:
     with pytest.raises(
         NoEquilibrium, match="a mechanism, which has no buckling load: nothing resists moving P1 along x"
     ):
-        buckling(parse(line))
+        Buckling.of(parse(line))
 
 
 def test_tension_holds_a_mechanism_beside_a_column() -> None:
@@ -256,18 +256,18 @@ def test_tension_holds_a_mechanism_beside_a_column() -> None:
     ]
     document["rods"].append({"name": "hanger", "between": ["top", "bob"], "stiffness": 1e5})
     critical = (math.pi / 2 / LENGTH) ** 2 * EI
-    assert buckling(parse(document)).factors[0] == pytest.approx(critical * (1 + 3.28e-5), rel=1e-6)
+    assert Buckling.of(parse(document)).factors[0] == pytest.approx(critical * (1 + 3.28e-5), rel=1e-6)
 
 
 def test_what_cannot_buckle_says_why() -> None:
-    pulled = buckling(parse(column(2, CLAMPED, {"force": [0.0, 1.0]})))
+    pulled = Buckling.of(parse(column(2, CLAMPED, {"force": [0.0, 1.0]})))
     assert not len(pulled.factors)
     assert pulled.message.startswith("The forces and loads compress no rod")
-    held = buckling(parse(column(1, CLAMPED, HEADS["clamped"])))
+    held = Buckling.of(parse(column(1, CLAMPED, HEADS["clamped"])))
     assert "the ends of the compressed rod R0 cannot move sideways" in held.message
-    bare = buckling(parse(column(1, CLAMPED, {"force": [0.0, 0.0]})))
+    bare = Buckling.of(parse(column(1, CLAMPED, {"force": [0.0, 0.0]})))
     assert bare.message.startswith("No force or load acts")
-    strut = buckling(parse(column(1, PINNED, HEADS["pinned"], hinged=[True, True])))
+    strut = Buckling.of(parse(column(1, PINNED, HEADS["pinned"], hinged=[True, True])))
     assert not len(strut.factors)
 
 
@@ -282,7 +282,7 @@ def _with_a_short_beam(length: float) -> Model:
 
 
 def test_very_short_rods_leave_the_loads_of_the_others_as_they_are() -> None:
-    found, longer = buckling(_with_a_short_beam(7.434768331e-6), 2), buckling(_with_a_short_beam(7e-5), 2)
+    found, longer = Buckling.of(_with_a_short_beam(7.434768331e-6), 2), Buckling.of(_with_a_short_beam(7e-5), 2)
     assert found.factors == pytest.approx(longer.factors, rel=1e-4)
 
 
@@ -293,7 +293,7 @@ def test_what_round_off_alone_resists_has_no_answer() -> None:
     frame.particles[0].position = 1.5000000000135028, 1.5000000000135028
     frame.particles[3].force = 0.0, -2783206662.9832897
     with pytest.raises(NoEquilibrium, match="differ too much"):
-        buckling(frame)
+        Buckling.of(frame)
 
 
 def test_notes_name_struts_and_strains() -> None:
@@ -308,12 +308,12 @@ def test_notes_name_struts_and_strains() -> None:
             {"name": "BC", "between": ["B", "C"]},
         ],
     )
-    found = buckling(parse(document))
+    found = Buckling.of(parse(document))
     assert "is shortened by" in found.notes[0]
     assert "At a lower load, rod AB would buckle between its hinges" in found.notes[1]
-    (coarse,) = buckling(parse(column(1, PINNED, HEADS["pinned"]))).notes
+    (coarse,) = Buckling.of(parse(column(1, PINNED, HEADS["pinned"]))).notes
     assert "Rod R0 bends more between its ends than a single rod can represent" in coarse
-    assert not buckling(parse(column(1, CLAMPED, HEADS["free"]))).notes
+    assert not Buckling.of(parse(column(1, CLAMPED, HEADS["free"]))).notes
 
 
 # --- the command -----------------------------------------------------------------------------------------
@@ -372,19 +372,19 @@ def test_few_modes_of_many_unknowns_are_found() -> None:
         for a, b in steps
         if i + a < side and j + b < side
     ]
-    pulled = buckling(parse(model(particles, rods)))
+    pulled = Buckling.of(parse(model(particles, rods)))
     assert pulled.message.startswith("The forces and loads compress no rod")
     particles.append({"name": "Q", "position": [-2.0, side - 1.0], **PINNED})
     rods.append({"name": "QP", "between": ["Q", f"0.{side - 2}"]})
     made = parse(model(particles, rods))
-    found = buckling(made, count=3)
+    found = Buckling.of(made, count=3)
     assert found.factors[0] == pytest.approx(textbook(made), rel=1e-6)
 
 
 @pytest.mark.parametrize("stiffness", [1e6, 1e12])
 def test_slender_columns_keep_their_digits(stiffness: float) -> None:
     """Matrices of many short rods have lost them; the energy of deformations has not."""
-    found = buckling(parse(column(100, CLAMPED, HEADS["free"], stiffness=stiffness)), count=1)
+    found = Buckling.of(parse(column(100, CLAMPED, HEADS["free"], stiffness=stiffness)), count=1)
     assert found.factors[0] / ((math.pi / 2 / LENGTH) ** 2 * EI) - 1.0 == pytest.approx(8.4e-11, rel=0.2)
 
 

@@ -16,7 +16,7 @@ from pinjoint.documents import models
 from pinjoint.force_method.copies import exact_forces
 from pinjoint.systems.statics.force_method import solve
 from pinjoint.systems.statics.theory import linear
-from pinjoint.systems.statics.unknowns import ForceMethodError, find_unknown, redundants
+from pinjoint.systems.statics.unknowns import ForceMethodError, Unknown, redundants
 from tests.reference.models import panel_truss
 from tests.reference.statics import direct_stiffness
 
@@ -25,7 +25,7 @@ def test_each_rod_of_the_square_has_the_force_of_linear_theory() -> None:
     model = models.load("hyperstatic")
     linear = direct_stiffness(models.document(model))["axial_force"]
     for rod in model.rods:
-        solution = solve(model, [find_unknown(model, rod.name)])
+        solution = solve(model, [Unknown.named(model, rod.name)])
         assert solution.force[0] == pytest.approx(linear[rod.name], rel=1e-12, abs=1e-11)
         assert solution.delta_unit[0, 0] < 0.0  # the unit pair pulls the ends together
 
@@ -33,7 +33,7 @@ def test_each_rod_of_the_square_has_the_force_of_linear_theory() -> None:
 def test_support_of_the_panel_truss() -> None:
     """4 panels of 2 m, height 2 m, 10 kN down at L2: the reaction at L3 is 10 (2 − √2)."""
     model = models.load(panel_truss())
-    solution = solve(model, [find_unknown(model, "L3.y")])
+    solution = solve(model, [Unknown.named(model, "L3.y")])
     assert solution.delta_real[0] == 0.0
     assert solution.delta_unit[0, 0] > 0.0
     assert solution.force[0] == pytest.approx(10.0 * (2.0 - math.sqrt(2.0)), rel=1e-12)
@@ -89,7 +89,7 @@ def _complete_graph(random: np.random.Generator, count: int) -> Model:
 def test_an_unknown_whose_release_makes_a_mechanism_is_refused_with_the_motion() -> None:
     model = models.load("isostatic")
     with pytest.raises(ForceMethodError, match=r"Without AB the structure is a mechanism: .*B .* can move"):
-        solve(model, [find_unknown(model, "AB")])
+        solve(model, [Unknown.named(model, "AB")])
 
 
 @pytest.mark.parametrize(
@@ -102,7 +102,7 @@ def test_an_unknown_whose_release_makes_a_mechanism_is_refused_with_the_motion()
 )
 def test_unknowns_that_do_not_exist_are_explained(name: str, words: str) -> None:
     with pytest.raises(ForceMethodError, match=words):
-        find_unknown(models.load("hyperstatic"), name)
+        Unknown.named(models.load("hyperstatic"), name)
 
 
 def test_lack_of_fit_counts() -> None:
@@ -111,7 +111,7 @@ def test_lack_of_fit_counts() -> None:
     model.particles["C"].force = (0.0, 0.0)
     rod = model.rods["AC"]
     rod.rest_length = rod.original_length + 1e-4
-    solution = solve(model, [find_unknown(model, "AC")])
+    solution = solve(model, [Unknown.named(model, "AC")])
     along = rod.stiffness / rod.rest_length * (solution.delta_real[0] - 1e-4)
     assert solution.force[0] == pytest.approx(along, rel=1e-10)
     assert solution.force[0] < 0.0
@@ -133,7 +133,7 @@ THREE_BARS: dict[str, Any] = {
 @pytest.mark.parametrize("name", ["AD", "BD", "CD", "B.y"])
 def test_moved_supports_count(name: str) -> None:
     model = models.load(THREE_BARS)
-    unknown = find_unknown(model, name)
+    unknown = Unknown.named(model, name)
     solution, theory = solve(model, [unknown]), linear(model)
     by_theory = theory.reaction[1, 1] if name == "B.y" else theory.axial_force[model.rods[name].row]
     assert solution.force[0] == pytest.approx(by_theory, rel=1e-12)

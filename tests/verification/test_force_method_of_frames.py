@@ -14,8 +14,8 @@ from pinjoint.components.model import Model
 from pinjoint.documents import models
 from pinjoint.documents.models import parse
 from pinjoint.systems.statics.force_method import SetState, Solution, solve
-from pinjoint.systems.statics.theory import indeterminacy, linear
-from pinjoint.systems.statics.unknowns import ForceMethodError, Unknown, find_unknown, redundants
+from pinjoint.systems.statics.theory import Indeterminacy, linear
+from pinjoint.systems.statics.unknowns import ForceMethodError, Unknown, redundants
 from tests.reference.models import model, random_truss
 from tests.verification.test_frame_theory import EA, EI, beam, free, held, random_frame
 
@@ -25,7 +25,7 @@ L, Q = 4.0, 7.0
 
 def solved(made: Model, *names: str) -> Solution:
     """The solution for these unknowns, which agrees with linear theory and with the displacements of its sets."""
-    return checked(made, [find_unknown(made, name) for name in names])
+    return checked(made, [Unknown.named(made, name) for name in names])
 
 
 def checked(made: Model, unknowns: list[Unknown], within: float = 1e-9) -> Solution:
@@ -135,7 +135,7 @@ def test_a_portal_clamped_at_its_feet() -> None:
     height, span, load = 3.0, 5.0, 10.0
     n = height / span + 2.0
     made = portal(load)
-    found = solve(made, [find_unknown(made, name) for name in ("D.x", "D.y", "D.rotation")])
+    found = solve(made, [Unknown.named(made, name) for name in ("D.x", "D.y", "D.rotation")])
     thrust, foot = load * span**2 / (4.0 * height * n), load * span**2 / (12.0 * n)
     assert found.force == pytest.approx([-thrust, load * span / 2.0, foot], rel=1e-6)
     corner = found.superposed.bending_moment[1, 0]
@@ -156,7 +156,7 @@ def test_warmth_across_a_beam_clamped_at_both_ends() -> None:
 @given(SEEDS)
 def test_random_frames_by_all_their_unknowns_and_by_some(seed: int) -> None:
     made = parse(random_frame(seed))
-    degrees = indeterminacy(made)
+    degrees = Indeterminacy.of(made)
     assume(degrees.static and not degrees.mechanisms)
     unknowns = redundants(made)
     assert len(unknowns) == degrees.static
@@ -170,7 +170,7 @@ def test_random_frames_by_all_their_unknowns_and_by_some(seed: int) -> None:
 @given(SEEDS)
 def test_random_trusses_with_warm_and_misfitting_rods(seed: int) -> None:
     made = parse(random_truss(seed))
-    degrees = indeterminacy(made)
+    degrees = Indeterminacy.of(made)
     assume(degrees.static and not degrees.mechanisms)
     lot = np.random.default_rng(seed)
     for rod in made.rods:
@@ -191,7 +191,7 @@ def test_random_trusses_with_warm_and_misfitting_rods(seed: int) -> None:
 def test_unknowns_that_are_none_are_explained(name: str, words: str) -> None:
     made = propped()
     with pytest.raises(ForceMethodError, match=words):
-        solve(made, [find_unknown(made, name)])
+        solve(made, [Unknown.named(made, name)])
 
 
 @pytest.mark.parametrize("name", ["hyperstatic", "tower", "portal", "two_storey_frame", "vierendeel"])
@@ -203,7 +203,7 @@ def test_bundled_models(name: str) -> None:
 def test_a_flexibility_that_is_zero_is_told_as_zero() -> None:
     """By symmetry a horizontal force at the foot of a portal does not lift it."""
     model = models.load("portal")
-    flexibility = solve(model, [find_unknown(model, name) for name in ("D.x", "D.y")]).flexibility
+    flexibility = solve(model, [Unknown.named(model, name) for name in ("D.x", "D.y")]).flexibility
     assert flexibility[0, 1] == flexibility[1, 0] == 0.0
     assert (np.diag(flexibility) > 0.0).all()
 

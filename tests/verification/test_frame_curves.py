@@ -12,8 +12,8 @@ from scipy.special import ellipe, ellipk
 from pinjoint.commands.command_line import main
 from pinjoint.components.model import Model
 from pinjoint.documents.models import parse
-from pinjoint.systems.statics.buckling import buckling
-from pinjoint.systems.statics.path import Goal, goal_of, load_path
+from pinjoint.systems.statics.buckling import Buckling
+from pinjoint.systems.statics.path import Goal, load_path
 from tests.reference.closed_forms import von_mises_force
 from tests.reference.models import model, von_mises_truss
 from tests.verification.test_buckling import CLAMPED, EI, HEADS, LENGTH, PINNED, column
@@ -85,11 +85,11 @@ def test_a_column_behind_its_bifurcation_is_the_elastica(turned: float) -> None:
     critical, errors = (math.pi / 2 / LENGTH) ** 2 * EI, []
     for parts in (2, 4, 8):
         straight = parse(column(parts, CLAMPED, HEADS["free"]))
-        goal = goal_of(straight, until=f"P{parts}.rotation={-turned}")
+        goal = Goal.of(straight, until=f"P{parts}.rotation={-turned}")
         curve = load_path(straight, goal, branch=1)
         assert curve.complete
         assert [event.kind for event in curve.events] == ["bifurcation"]
-        assert curve.events[0].load_factor == pytest.approx(buckling(straight).factors[0], rel=1e-6)
+        assert curve.events[0].load_factor == pytest.approx(Buckling.of(straight).factors[0], rel=1e-6)
         assert curve.rotation[-1, parts] == pytest.approx(-turned, rel=1e-12)
         assert curve.stable[-1]
         tip = curve.displacement[-1, parts] / LENGTH + [0.0, 1.0]
@@ -162,4 +162,4 @@ def test_the_command_tells_points_and_events(capsys: pytest.CaptureFixture[str],
 )
 def test_goals_are_checked(until: str, said: str) -> None:
     with pytest.raises(ValueError, match=said):
-        goal_of(parse(column(2, CLAMPED, HEADS["free"])), until=until)
+        Goal.of(parse(column(2, CLAMPED, HEADS["free"])), until=until)

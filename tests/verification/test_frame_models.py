@@ -10,7 +10,7 @@ from pinjoint import Session
 from pinjoint.components.model import Model
 from pinjoint.documents import models
 from pinjoint.documents.models import parse
-from pinjoint.systems.statics.buckling import buckling
+from pinjoint.systems.statics.buckling import Buckling
 from pinjoint.systems.statics.settle import settle
 from pinjoint.systems.statics.state import StaticState
 from pinjoint.systems.statics.theory import linear
@@ -144,7 +144,7 @@ def test_four_columns_buckle_under_eulers_loads() -> None:
         particle.pop("force", None)
     beta = np.array([2.0, 1.0, math.pi / 4.493409457909064, 0.5])
     alone = [content | {"loads": [load]} for load in content["loads"]]
-    critical = [3.0 * float(buckling(parse(one), count=1).factors[0]) for one in alone]
+    critical = [3.0 * float(Buckling.of(parse(one), count=1).factors[0]) for one in alone]
     assert critical == pytest.approx(10.0 / beta**2, rel=6e-4)
     assert np.round(10.0 / beta**2, 2).tolist() == [2.5, 10.0, 20.46, 40.0]
 

@@ -15,8 +15,8 @@ from pinjoint.documents.models import parse
 from pinjoint.session import Session
 from pinjoint.systems.statics.factor import is_held
 from pinjoint.systems.statics.settle import settle
-from pinjoint.systems.statics.state import StaticState, apply
-from pinjoint.systems.statics.theory import indeterminacy, linear
+from pinjoint.systems.statics.state import StaticState
+from pinjoint.systems.statics.theory import Indeterminacy, linear
 from tests.reference import frames
 from tests.reference.models import model
 from tests.verification.test_frame_theory import random_frame
@@ -38,7 +38,7 @@ def cantilever(parts: int, tip: dict[str, Any], slenderness: float = 1e4, **fact
 
 def held_by_reference(loaded: Model, state: StaticState, within: float) -> None:
     """The slow reference finds no force out of balance but the reactions."""
-    apply(loaded, state)
+    state.put(loaded)
     force, moment = frames.forces(loaded)
     particles = loaded.particles
     size = max(float(np.abs(state.axial_force).max()), float(np.abs(particles.constant_force).max()))
@@ -88,7 +88,7 @@ def test_settled_is_where_the_energy_is_least(number: int) -> None:
     found = settle(loaded).final
     assert found.status == "equilibrium"
     assert np.abs(found.rotation).max() > 0.01
-    apply(loaded, found)
+    found.put(loaded)
     displacement, rotation = frames.least_energy(loaded)
     assert found.displacement == pytest.approx(displacement, abs=1e-9 * np.abs(displacement).max())
     assert found.rotation == pytest.approx(rotation, abs=1e-9 * np.abs(rotation).max())
@@ -160,7 +160,7 @@ def test_a_settled_frame_stays_where_it_is() -> None:
     document["settings"] = {"collisions": False}
     loaded = parse(document)
     first = settle(loaded).final
-    apply(loaded, first)
+    first.put(loaded)
     for factors in ((1.0,), (0.5, 1.0), (0.0, 1.0)):
         again = settle(loaded, factors).final
         assert again.status == "equilibrium"
@@ -229,7 +229,7 @@ def test_two_discs_at_the_ends_of_cantilevers_carry_a_ball() -> None:
 def test_a_long_member_is_no_mechanism(parts: int, slenderness: float) -> None:
     """However many rods divide it, and however stiff its axis is beside bending: PL³/3EI to the last digits."""
     bent = cantilever(parts, {"force": [0.0, -EI / LENGTH**2]}, slenderness)
-    assert indeterminacy(bent).mechanisms == indeterminacy(bent).static == 0
+    assert Indeterminacy.of(bent).mechanisms == Indeterminacy.of(bent).static == 0
     assert linear(bent).displacement[-1, 1] == pytest.approx(-LENGTH / 3.0, rel=1e-13)
 
 
@@ -279,7 +279,7 @@ def test_a_frame_is_held_until_it_snaps() -> None:
     assert is_held(toggle, at_first=True)
     below = settle(toggle).final
     assert [event.kind for event in below.events] == ["note"]  # to divide both, for a limit load exact to 1 %
-    apply(toggle, below)
+    below.put(toggle)
     assert is_held(toggle)
     toggle.particles["B"].displacement = (0.0, -0.35)
     Session(toggle).simulation.programs.compiled.observe()

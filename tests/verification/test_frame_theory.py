@@ -11,13 +11,13 @@ from hypothesis import strategies as st
 from pinjoint.commands.reports.verify import influence
 from pinjoint.components.model import Model
 from pinjoint.documents.models import parse
-from pinjoint.systems.statics.counting import counted
+from pinjoint.systems.statics.counting import Count
 from pinjoint.systems.statics.events import NoEquilibrium
 from pinjoint.systems.statics.settle import settle
 from pinjoint.systems.statics.state import StaticState
-from pinjoint.systems.statics.theory import indeterminacy, linear, mechanisms, self_stress
+from pinjoint.systems.statics.theory import Indeterminacy, linear, mechanisms, self_stress
 from pinjoint.systems.statics.unknowns import ForceMethodError
-from pinjoint.systems.statics.vibration import vibrations
+from pinjoint.systems.statics.vibration import Vibrations
 from tests.reference import frame_theory
 from tests.reference.models import model
 
@@ -82,7 +82,7 @@ def agrees(document: dict[str, Any], found: StaticState, made: Model, *, within:
 def test_random_frames_agree_with_an_independent_solver(seed: int) -> None:
     document = random_frame(seed)
     made = parse(document)
-    degrees, count = indeterminacy(made), counted(made)
+    degrees, count = Indeterminacy.of(made), Count.of(made)
     assert count.degree == degrees.static - degrees.mechanisms
     if not degrees.mechanisms:
         agrees(document, linear(made), made)
@@ -174,8 +174,8 @@ def test_a_gerber_beam() -> None:
     rods = [beam("AB"), beam("BC", hinged=[True, False], distributed_force=[0.0, -load])]
     made, found = answered(particles, rods)
     half = load * outer / 2.0
-    assert indeterminacy(made).static == 0
-    assert counted(made).numbers == "3·2 + 4 − 3·3 − 1 = 0"
+    assert Indeterminacy.of(made).static == 0
+    assert Count.of(made).numbers == "3·2 + 4 − 3·3 − 1 = 0"
     assert found.reaction[:, 1] == pytest.approx([half, 0.0, half], abs=1e-10)
     assert found.diagrams["bending_moment"] == pytest.approx(
         np.array([[-half * inner, 0.0], [0.0, 0.0]]), abs=1e-9
@@ -208,7 +208,7 @@ def test_a_three_hinged_arch() -> None:
             }
         )
     made, found = answered(particles, rods)
-    assert indeterminacy(made).static == 0
+    assert Indeterminacy.of(made).static == 0
     thrust = load * span**2 / (8.0 * rise)
     assert found.reaction[[0, -1], 0] == pytest.approx([thrust, -thrust], rel=1e-9)
     assert found.diagrams["bending_moment"] == pytest.approx(0.0, abs=1e-7 * thrust)
@@ -292,9 +292,9 @@ def test_a_beam_with_a_hinge_too_many_is_a_mechanism() -> None:
     ]
     rods = [beam("AB"), beam("BC", hinged=[True, False]), beam("CD", hinged=[True, False])]
     made = parse(model(particles, rods))
-    degrees = indeterminacy(made)
+    degrees = Indeterminacy.of(made)
     assert (degrees.static, degrees.mechanisms) == (0, 1)
-    assert counted(made).degree == -1
+    assert Count.of(made).degree == -1
     (motion,) = mechanisms(made)
     assert motion[:, 1] == pytest.approx([0.0, 0.0, 1.0, 0.0], abs=1e-12)
     assert np.abs(motion[:, 2]) == pytest.approx([0.0, 0.0, 0.5, 0.5], abs=1e-12)
@@ -310,7 +310,7 @@ def test_states_of_self_stress_balance_every_joint() -> None:
         model([free(*corner) for corner in corners], [beam(name) for name in ("AB", "BC", "CD", "DA")])
     )
     states = self_stress(made)
-    degrees = indeterminacy(made)
+    degrees = Indeterminacy.of(made)
     assert (degrees.static, degrees.internal, degrees.mechanisms, len(states)) == (3, 3, 3, 3)
     first, second = made.rods.between.astype(int).T
     axis = made.rods.difference / made.rods.original_length[:, None]
@@ -336,7 +336,7 @@ def test_a_cantilever_vibrates_as_euler_and_bernoulli_say(parts: int, slendernes
     particles = [free(f"P{i}", length * i / parts) for i in range(parts + 1)]
     particles[0] |= {"fixed": [True, True], "fixed_rotation": True}
     rods = [{**beam("AB", **stiff), "name": f"R{i}", "between": [f"P{i}", f"P{i + 1}"]} for i in range(parts)]
-    found = vibrations(parse(model(particles, rods)))
+    found = Vibrations.of(parse(model(particles, rods)))
     wanted = 1.87510406871**4 * EI * 1000.0 / (density * length**4)
     assert math.sqrt(found.angular_squared[0] / wanted) - 1.0 == pytest.approx(error, rel=0.02)
     # slope of mode 1 at its tip

@@ -10,7 +10,7 @@ from pinjoint.components.model import Model
 from pinjoint.documents.models import parse
 from pinjoint.systems.physics.automatic import _of_frame
 from pinjoint.systems.statics.settle import settle
-from pinjoint.systems.statics.vibration import vibrations
+from pinjoint.systems.statics.vibration import Vibrations
 from tests.reference import frames
 from tests.reference.models import model
 from tests.verification.test_buckling import CLAMPED, PINNED
@@ -42,7 +42,7 @@ def test_beams_vibrate_as_in_textbooks(name: str) -> None:
     first, last, roots = SUPPORTS[name]
     expected = np.array(roots) ** 2 * math.sqrt(1000.0 * EI / DENSITY) / LENGTH**2 / (2.0 * math.pi)
     order = 2.0 if name == "cantilever" else 4.0
-    errors = [np.abs(vibrations(beam(parts, first, last)).hertz[:3] / expected - 1.0) for parts in (16, 32)]
+    errors = [np.abs(Vibrations.of(beam(parts, first, last)).hertz[:3] / expected - 1.0) for parts in (16, 32)]
     assert (errors[1] < (0.007 if name == "cantilever" else 2e-5)).all()
     assert np.log2(errors[0] / errors[1])[2] == pytest.approx(order, abs=0.25)
 
@@ -50,7 +50,7 @@ def test_beams_vibrate_as_in_textbooks(name: str) -> None:
 def test_the_mode_of_a_cantilever() -> None:
     """cosh − cos − σ (sinh − sin), and its slope."""
     parts = 40
-    mode = vibrations(beam(parts, CLAMPED, {})).modes[0]
+    mode = Vibrations.of(beam(parts, CLAMPED, {})).modes[0]
     mode = mode / mode[-1, 1]
     k = 1.875104068711961
     sigma = (math.cosh(k) + math.cos(k)) / (math.sinh(k) + math.sin(k))
@@ -73,7 +73,7 @@ def test_random_frames_against_the_operator_of_the_stable_step(number: int) -> N
     made = parse(document)
     matrix = _of_frame(made)
     values = np.sort(np.linalg.eigvalsh(matrix))
-    found = np.sort(vibrations(made).angular_squared)
+    found = np.sort(Vibrations.of(made).angular_squared)
     moving = values > 1e-6 * values.max()
     assert found[-moving.sum() :] == pytest.approx(values[moving], rel=1e-6)
 
@@ -81,11 +81,11 @@ def test_random_frames_against_the_operator_of_the_stable_step(number: int) -> N
 def test_compression_lets_a_beam_swing_more_slowly_and_tension_faster() -> None:
     """ω² = ω₀² (1 + N L²/π²EI) of a simply supported beam."""
     critical = math.pi**2 * EI / LENGTH**2
-    plain = vibrations(beam(16, *SUPPORTS["simply supported"][:2])).angular_squared[0]
+    plain = Vibrations.of(beam(16, *SUPPORTS["simply supported"][:2])).angular_squared[0]
     for share in (-0.9, -0.5, 2.0):
         last = SUPPORTS["simply supported"][1] | {"force": [share * critical, 0.0]}
         loaded = beam(16, PINNED, last)
-        found = vibrations(loaded, settle(loaded).final).angular_squared[0]
+        found = Vibrations.of(loaded, settle(loaded).final).angular_squared[0]
         assert found / plain == pytest.approx(1.0 + share, abs=4e-3)
 
 
@@ -94,7 +94,7 @@ def test_rods_that_would_vibrate_between_their_ends_are_named(name: str) -> None
     """Without a word, the frequency is within 5 %."""
     first, last, roots = SUPPORTS[name]
     expected = roots[0] ** 2 * math.sqrt(1000.0 * EI / DENSITY) / LENGTH**2 / (2.0 * math.pi)
-    said = {parts: vibrations(beam(parts, first, last)) for parts in (1, 2, 3, 4, 6, 8)}
+    said = {parts: Vibrations.of(beam(parts, first, last)) for parts in (1, 2, 3, 4, 6, 8)}
     # also where no end can move, and no frequency is left
     assert "Rod R0 bends more between its ends" in said[1].note
     assert not said[8].note

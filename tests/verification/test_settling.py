@@ -19,7 +19,7 @@ from pinjoint.systems.statics import loading
 from pinjoint.systems.statics.events import Event
 from pinjoint.systems.statics.follow import Path
 from pinjoint.systems.statics.settle import Settlement, settle
-from pinjoint.systems.statics.state import StaticState, apply
+from pinjoint.systems.statics.state import StaticState
 from tests.reference import closed_forms, statics
 from tests.reference import models as trusses
 from tests.reference.elements import Model as Document
@@ -326,7 +326,7 @@ def test_the_square_loaded_and_unloaded_by_slow_ramps_ends_in_the_exact_column()
 def test_from_a_loaded_state_on_it_snaps_at_the_same_load(share: float) -> None:
     """What is reported is the load that acts then, not the share of what was added."""
     model = models.load("von_mises")
-    apply(model, settle(model, [share]).final)
+    settle(model, [share]).final.put(model)
     (event,) = events(settle(model), "snap-through")
     assert event.load_factor * 3800.0 == pytest.approx(3789.46, abs=0.01)
 

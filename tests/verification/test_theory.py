@@ -18,12 +18,12 @@ from pinjoint.components.model import Model
 from pinjoint.components.particle import Particle
 from pinjoint.components.rod import Rod
 from pinjoint.documents import models
-from pinjoint.systems.statics.counting import counted
+from pinjoint.systems.statics.counting import Count
 from pinjoint.systems.statics.events import NoEquilibrium
 from pinjoint.systems.statics.settle import settle
-from pinjoint.systems.statics.theory import indeterminacy, linear, mechanisms, self_stress
-from pinjoint.systems.statics.verify import compare, theories
-from pinjoint.systems.statics.vibration import vibrations
+from pinjoint.systems.statics.theory import Indeterminacy, linear, mechanisms, self_stress
+from pinjoint.systems.statics.verify import Theories
+from pinjoint.systems.statics.vibration import Vibrations
 from tests.reference import closed_forms, pynite, statics
 from tests.reference import models as trusses
 from tests.reference.elements import Model as Document
@@ -143,7 +143,7 @@ def equilibrium_matrix(document: Document) -> np.ndarray:
     ],
 )
 def test_degrees_of_indeterminacy(document: Document, internal: int, external: int, moving: int) -> None:
-    found = indeterminacy(models.load(document))
+    found = Indeterminacy.of(models.load(document))
     assert (found.internal, found.external, found.mechanisms) == (internal, external, moving)
     assert found.static == internal + external
 
@@ -152,7 +152,7 @@ def test_a_free_body_has_three_mechanisms() -> None:
     document = trusses.square()
     for particle in document["particles"]:
         particle["fixed"] = [False, False]
-    found = indeterminacy(models.load(document))
+    found = Indeterminacy.of(models.load(document))
     assert (found.static, found.mechanisms) == (1, 3)
 
 
@@ -166,7 +166,7 @@ def test_indeterminacy_against_the_rank_of_the_equilibrium_matrix(seed: int, nod
     matrix = equilibrium_matrix(document)
     rank = int(np.linalg.matrix_rank(matrix))
     model = models.load(document)
-    found = indeterminacy(model)
+    found = Indeterminacy.of(model)
     assert found.static == matrix.shape[1] - rank
     assert found.mechanisms == matrix.shape[0] - rank == len(mechanisms(model))
     assert len(self_stress(model)) == found.static
@@ -228,7 +228,7 @@ def test_a_mechanism_has_no_influence_lines() -> None:
 def test_frequencies_of_a_chain() -> None:
     """f_j = (1/π) √(k/m) sin(jπ/2(n+1)); k = 1e5 N/m, m = 10 kg, n = 8: f₁ = (100/π) sin(π/18)."""
     document = trusses.chain(8, 1e5, 10.0)
-    found = vibrations(models.load(document)).hertz
+    found = Vibrations.of(models.load(document)).hertz
     assert found[0] == pytest.approx(100 / math.pi * math.sin(math.pi / 18), rel=1e-12)
     assert found == pytest.approx(closed_forms.chain_frequencies(8, 1e5, 10.0), rel=RELATIVE)
 
@@ -242,7 +242,7 @@ def test_frequencies_and_shapes_against_a_dense_eigenvalue_problem(seed: int) ->
     masses = np.repeat([particle.mass / 1000 for particle in elements.particles], 2)[free]
     stiffness = statics.stiffness_matrix(document)[np.ix_(free, free)]
     squared = eigh(stiffness, np.diag(masses), eigvals_only=True)
-    found = vibrations(models.load(document))
+    found = Vibrations.of(models.load(document))
     assert found.angular_squared == pytest.approx(squared, rel=RELATIVE)
     for value, mode in zip(found.angular_squared, found.modes, strict=True):
         shape = mode.ravel()[free]
@@ -253,15 +253,15 @@ def test_frequencies_and_shapes_against_a_dense_eigenvalue_problem(seed: int) ->
 def test_a_loaded_pendulum_swings() -> None:
     """ω² = g/L, the length L = L₀ (1 + mg/EA) being that under its weight."""
     model = models.load(trusses.pendulum(0.4))
-    swinging = vibrations(model, settle(model).final)
+    swinging = Vibrations.of(model, settle(model).final)
     length = 1.0 + 9.81e-3 / 200.0
     assert swinging.angular_squared[0] == pytest.approx(9.81 / length, rel=RELATIVE)
-    assert vibrations(model).hertz[0] == 0.0  # unloaded, it is a mechanism
+    assert Vibrations.of(model).hertz[0] == 0.0  # unloaded, it is a mechanism
 
 
 def test_the_lowest_modes_of_a_large_structure() -> None:
     """A chain of 700: sparse eigenvalues near zero, f_j = (1/π) √(k/m) sin(jπ/2(n+1))."""
-    found = vibrations(models.load(trusses.chain(700, 1e5, 10.0)), count=5).hertz
+    found = Vibrations.of(models.load(trusses.chain(700, 1e5, 10.0)), count=5).hertz
     assert found == pytest.approx(closed_forms.chain_frequencies(700, 1e5, 10.0)[:5], rel=1e-8)
 
 
@@ -270,7 +270,7 @@ def test_the_lowest_modes_of_a_large_structure() -> None:
 
 def test_errors_are_relative_to_the_largest_exact_value() -> None:
     model = models.load("isostatic")
-    comparison = compare(model, theories(model), None)
+    comparison = Theories.of(model).beside(model, simulated=False)
     row = next(row for row in comparison.rows if row.name == "CA")
     assert row.linear == pytest.approx(20.0, rel=1e-12)
     assert row.exact == pytest.approx(20.0678998039911, rel=1e-12)
@@ -395,8 +395,8 @@ def test_the_rule_counts_self_stresses_less_mechanisms(seed: int) -> None:
     pairs = [(i, j) for i in range(6) for j in range(i) if random.random() < 0.5]
     if pairs:
         model.create(Rod, len(pairs), between=pairs)
-    found = indeterminacy(model)
-    assert counted(model).degree == found.static - found.mechanisms
+    found = Indeterminacy.of(model)
+    assert Count.of(model).degree == found.static - found.mechanisms
 
 
 @pytest.mark.parametrize(
@@ -421,14 +421,14 @@ def test_verify_tells_the_degree_where_there_are_rods(
 def test_verifying_leaves_no_trace_in_theory(capsys: pytest.CaptureFixture[str]) -> None:
     model = models.load("hyperstatic_yield")
     before = models.document(model)
-    theories(model), vibrations(model), mechanisms(model), self_stress(model)
+    Theories.of(model), Vibrations.of(model), mechanisms(model), self_stress(model)
     assert models.document(model) == before
 
 
 def test_an_empty_model_has_no_theory_to_fail() -> None:
     model = Model()
-    assert len(vibrations(model).hertz) == len(mechanisms(model)) == len(self_stress(model)) == 0
-    assert list(compare(model, theories(model), None).rows) == []
+    assert len(Vibrations.of(model).hertz) == len(mechanisms(model)) == len(self_stress(model)) == 0
+    assert list(Theories.of(model).beside(model, simulated=False).rows) == []
 
 
 def test_verify_leaves_out_a_simulation_that_takes_long_unless_it_is_asked_for(

@@ -20,7 +20,7 @@ from pinjoint.paths import ENERGIES
 from pinjoint.systems.base import DEFAULT_LIMIT, StopReason
 from pinjoint.systems.catalogue import all_systems, left_out_of_statics
 from pinjoint.systems.schedule import Schedule
-from pinjoint.systems.statics.events import Event, event_record
+from pinjoint.systems.statics.events import Event
 
 if TYPE_CHECKING:  # statics needs no session, and a run no scipy
     from pinjoint.headless import Headless
@@ -185,7 +185,7 @@ def _state(simulation: Simulation, read: Read = state) -> State:
 
 
 def _records(model: Model, events: Sequence[Event]) -> list[dict[str, Any]]:
-    return [event_record(model, event) for event in events]
+    return [event.record(model) for event in events]
 
 
 def _run(simulation: Simulation, name: str, status: str, states: list[State]) -> dict[str, Any]:

@@ -17,12 +17,12 @@ from pinjoint.components.model import Model
 from pinjoint.headless import Headless
 from pinjoint.systems.base import DEFAULT_LIMIT
 from pinjoint.systems.catalogue import left_out_of_statics
-from pinjoint.systems.statics.counting import Count, counted
+from pinjoint.systems.statics.counting import Count
 from pinjoint.systems.statics.equations import AXES
-from pinjoint.systems.statics.events import NoEquilibrium, event_record
+from pinjoint.systems.statics.events import NoEquilibrium
 from pinjoint.systems.statics.explain import describe_motion
-from pinjoint.systems.statics.theory import indeterminacy, influence_line, mechanisms, self_stress
-from pinjoint.systems.statics.unknowns import ForceMethodError, find_unknown
+from pinjoint.systems.statics.theory import Indeterminacy, influence_line, mechanisms, self_stress
+from pinjoint.systems.statics.unknowns import ForceMethodError, Unknown
 from pinjoint.systems.statics.verify import (
     DEPARTURES,
     ELSEWHERE,
@@ -30,12 +30,8 @@ from pinjoint.systems.statics.verify import (
     Comparison,
     Row,
     Theories,
-    compare,
-    differs,
-    observed,
-    theories,
 )
-from pinjoint.systems.statics.vibration import vibrations
+from pinjoint.systems.statics.vibration import Vibrations
 
 VERIFIED, DIFFERS = marked("verified"), marked("differs from static theory")
 THEORY_ONLY, NOT_VERIFIED = marked("theory only"), marked("not verified")
@@ -79,9 +75,9 @@ def verify(session: Headless, name: str, limit: float | None, *, simulate: bool 
     explains first; "theory only" without a simulation; else "not verified", and `message` gives the reason.
     """
     model = session.model
-    theory = theories(model)
+    theory = Theories.of(model)
     found = _found_by_theory(model, name, theory)
-    simulated = None
+    at_rest = False
     if simulate and model.rods.count:
         status = _run_to_rest(session, limit)
         found["simulation"] = {
@@ -91,16 +87,16 @@ def verify(session: Headless, name: str, limit: float | None, *, simulate: bool 
             "steps": model.clock.steps,
             "integrator": session.simulation.integrator.key,
         }
-        simulated = observed(model) if status == "at rest" else None
+        at_rest = status == "at rest"
         simulate = status != LEFT_OUT
-    comparison = compare(model, theory, simulated)
+    comparison = theory.beside(model, simulated=at_rest)
     found |= _by_element(comparison if model.rods.count else None)
     worst = {way: comparison.worst(way) for way in ("simulation", "linear")}
     found["worst"] = {way: row and asdict(row) for way, row in worst.items() if model.rods.count}
-    found["remarks"] = [event_record(model, event) for event in session.document.assessment.remarks]
-    if theory.exact is not None and (simulated is not None or not simulate) and model.rods.count:
+    found["remarks"] = [event.record(model) for event in session.document.assessment.remarks]
+    if theory.exact is not None and (at_rest or not simulate) and model.rods.count:
         departed = any(remark["kind"] in DEPARTURES for remark in found["remarks"])
-        agreed = VERIFIED if not differs(comparison) else DIFFERS if departed else NOT_VERIFIED
+        agreed = VERIFIED if not comparison.differs else DIFFERS if departed else NOT_VERIFIED
         found["status"] = agreed if simulate else THEORY_ONLY
     found["message"] = "\n".join([*_left_out(session), *_messages(found)])
     return found
@@ -140,9 +136,9 @@ def _by_element(comparison: Comparison | None) -> dict[str, dict[str, Any]]:
 
 
 def _found_by_theory(model: Model, name: str, theory: Theories) -> Found:
-    settlement, degrees, count = theory.settlement, indeterminacy(model), counted(model)
-    free = vibrations(model)
-    loaded = vibrations(model, settlement.final).hertz.tolist() if theory.exact is not None else None
+    settlement, degrees, count = theory.settlement, Indeterminacy.of(model), Count.of(model)
+    free = Vibrations.of(model)
+    loaded = Vibrations.of(model, settlement.final).hertz.tolist() if theory.exact is not None else None
     rods, names = model.rods.names, model.particles.names
     return {
         "model": name,
@@ -176,7 +172,7 @@ def _found_by_theory(model: Model, name: str, theory: Theories) -> Found:
         "exact": {
             "status": settlement.status,
             "message": settlement.message,
-            "events": [event_record(model, event) for event in settlement.events],
+            "events": [event.record(model) for event in settlement.events],
         },
     }
 
@@ -234,7 +230,7 @@ def influence(model: Model, names: Sequence[str]) -> Found:
     "A.y" or "A.rotation" (its reaction, kN per kN), or a free direction (its displacement, m per kN, by the unit-load
     method). Raises ForceMethodError for other names, and NoEquilibrium for a mechanism.
     """
-    if indeterminacy(model).mechanisms:
+    if Indeterminacy.of(model).mechanisms:
         moving = describe_motion(model, mechanisms(model))
         raise NoEquilibrium(
             "mechanism",
@@ -280,7 +276,7 @@ def _influenced(model: Model, name: str) -> tuple[str, int, int]:
         fixed = (*model.particles.fixed[row], model.particles.fixed_rotation[row])
         kinds = ("reaction", "reaction_moment") if fixed[axis] else ("displacement", "rotation")
         return kinds[axis == 2], row, axis
-    return "axial_force", find_unknown(model, name).element.row, 0
+    return "axial_force", Unknown.named(model, name).element.row, 0
 
 
 # --- as text -------------------------------------------------------------------------------------------

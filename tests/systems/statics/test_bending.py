@@ -10,7 +10,7 @@ from pinjoint.components.model import Model
 from pinjoint.documents.models import parse
 from pinjoint.session import Session
 from pinjoint.systems.statics.equations import Array, Structure
-from pinjoint.systems.statics.external import external_forces
+from pinjoint.systems.statics.external import External
 from tests.reference import frames
 
 SMALL = 1e-6
@@ -26,7 +26,7 @@ def made(number: int, count: int = 5) -> tuple[Model, Structure, Array]:
 def unbalanced(model: Model, structure: Structure, place: Array) -> Array:
     """Forces (n, 3) out of balance under the whole load, 0 where nothing is solved for."""
     response = structure.respond(place, model.rods.plastic_strain, 1.0)
-    found = external_forces(model).at(1.0) - structure.internal(response)
+    found = External.of(model).at(1.0) - structure.internal(response)
     return np.where(structure.unknown, found, 0.0)
 
 
