@@ -9,7 +9,7 @@ import operator
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, ClassVar, Protocol, TypeVar
+from typing import TYPE_CHECKING, Any, ClassVar, TypeVar
 
 from pinjoint.components.camera import Viewport
 from pinjoint.components.extensions import EXTENSIONS
@@ -40,30 +40,6 @@ from pinjoint.systems.schedule import Schedule
 if TYPE_CHECKING:  # of a window
     from pinjoint.documents.autosave import Autosave
     from pinjoint.systems.render.picture import Stage
-
-# --- what a window gives ---------------------------------------------------------------------------------
-
-
-class Window(Protocol):
-    """The window, for actions that only make sense in one."""
-
-    def toggle_full_screen(self) -> None:
-        """Fill the screen, or stop doing so."""
-
-    def magnify(self, by: int) -> str:
-        """Draw type and symbols a step larger or smaller; 0: as they suit the window. Returns which it is."""
-
-    def screenshot(self, suffix: str) -> str:
-        """Save a picture in the format of that suffix; returns where. Raises OSError."""
-
-    def save(self, name: str, contents: bytes) -> str:
-        """Save a file under this name, or one like it that is free; returns where. Raises OSError."""
-
-    def copied(self) -> str:
-        """The text on the system's clipboard."""
-
-    def copy(self, text: str) -> None:
-        """Put a text on the system's clipboard."""
 
 
 @dataclass(frozen=True)
@@ -273,7 +249,7 @@ H = TypeVar("H", bound=Handle)
 class Context:
     """The open documents with their runs, logs and files, what is seen of them, and what a person is doing with them.
 
-    schedule: all systems. notice: the last sentence said. window, autosave: what a window gives; None without one.
+    schedule: all systems. notice: the last sentence said. window, autosave: of a window; None without one.
     waits_for: what a simulation waits for, None if it can go on. awaited: the one that is too large to go on before its
     step program is compiled.
     scenes: the mode, and its transitions. gesture: what is being drawn or dragged. performing: a script is shown in the
@@ -290,7 +266,7 @@ class Context:
         self.documents = OpenDocuments(model, schedule, pull, file)
         self._clipboard = ""
         self.notice = ""
-        self.window: Window | None = None
+        self.window: Any = None  # pinjoint.app.App
         self.autosave: Autosave | None = None
         self.waits_for: Callable[[Simulation], Waiting | None] = lambda simulation: None
         self.awaited: Simulation | None = None
@@ -514,7 +490,9 @@ class Context:
     @property
     def clipboard(self) -> str:
         """The text that was copied last, here or, with a window, in any program."""
-        return self.window.copied() if self.window is not None else self._clipboard
+        if self.window is not None:
+            self._clipboard = self.window.copied()
+        return self._clipboard
 
     @clipboard.setter
     def clipboard(self, text: str) -> None:

@@ -8,6 +8,7 @@ import pytest
 
 ROOT = Path(__file__).parents[2]
 REST_OF_SCIPY = ("scipy.linalg.blas", "scipy.sparse", "scipy.spatial")  # that takes 0.15 s
+SCENES = ("pinjoint.session", "pinjoint.editor.scenes", "pinjoint.lessons.course")
 SESSION = ("pinjoint.session", "pinjoint.editor.context", "pinjoint.systems.run.simulation")
 WINDOW = ("pygame", "pinjoint.app", "pinjoint.preparation")
 OTHER_COMMANDS = (
@@ -54,7 +55,13 @@ def test_small_structures_settle_without_the_rest_of_scipy(model: str) -> None:
 
 def test_collisions_are_computed_without_statics() -> None:
     loaded = loaded_by_command("run collision_iii --at 0.2 --format json")
-    assert not loaded & {*WINDOW, *OTHER_COMMANDS, "scipy.sparse", "pinjoint.systems.statics.equations"}
+    assert not loaded & {
+        *WINDOW,
+        *OTHER_COMMANDS,
+        *SCENES,
+        "scipy.sparse",
+        "pinjoint.systems.statics.equations",
+    }
 
 
 def test_a_command_loads_no_other() -> None:
