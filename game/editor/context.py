@@ -32,6 +32,7 @@ from pinjoint.systems.base import Mod
 from pinjoint.systems.collision.impacts import Impacts
 from pinjoint.systems.edit.pull import Pull
 from pinjoint.systems.physics.pace import natural_pace
+from pinjoint.systems.render.sheet import Stage
 from pinjoint.systems.run.energy import Energy
 from pinjoint.systems.run.simulation import Simulation
 from pinjoint.systems.run.system import Time
@@ -39,7 +40,6 @@ from pinjoint.systems.schedule import Schedule
 
 if TYPE_CHECKING:  # of a window
     from pinjoint.documents.autosave import Autosave
-    from pinjoint.systems.render.picture import Stage
 
 
 @dataclass(frozen=True)

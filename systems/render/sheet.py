@@ -12,9 +12,11 @@ from numpy.typing import NDArray
 
 from pinjoint.components.bent import FLAT, Lines, curved_lines, is_frame, largest_sag
 from pinjoint.components.camera import Viewport
+from pinjoint.components.form import Form
 from pinjoint.components.model import Model
 from pinjoint.components.rod import rigid_joints
 from pinjoint.components.tags import Hovered
+from pinjoint.components.toolbar import Toolbar
 from pinjoint.components.view import View, drawn_positions
 from pinjoint.systems.render.clip import bounds, clip_rods, clip_segments
 from pinjoint.systems.render.labels import Label, Placed
@@ -24,6 +26,7 @@ from pinjoint.systems.render.theme import Colour, Theme
 from pinjoint.systems.render.typography import font_size
 
 Rows = NDArray[np.intp]
+Stage = tuple[Model | Form | Toolbar, View]  # what is shown, and how
 
 FEW = 30  # elements, up to which each shows its name
 MANY = 2000  # rods, above which details of single elements are left out

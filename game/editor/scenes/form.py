@@ -15,7 +15,7 @@ from pinjoint.editor.context import Context, Scene
 from pinjoint.systems.forms import typing
 from pinjoint.systems.render.form import FormLayout, lay_out
 from pinjoint.systems.render.form_box import caret_at
-from pinjoint.systems.render.picture import Stage
+from pinjoint.systems.render.sheet import Stage
 from pinjoint.systems.render.theme import load_theme
 
 
