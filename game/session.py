@@ -17,8 +17,8 @@ from pinjoint.components.language import begun, joined, listed, marked, tr
 from pinjoint.components.mistake import WrongValue
 from pinjoint.components.model import Model
 from pinjoint.components.rod import Rod
-from pinjoint.components.suggestions import missing
 from pinjoint.components.view import View
+from pinjoint.components.wording import missing
 from pinjoint.documents import models
 from pinjoint.documents.format import ModelError
 from pinjoint.documents.open_documents import ModelFile, file_of

@@ -11,7 +11,7 @@ from pinjoint.components.model import Model
 from pinjoint.systems.base import CORES
 from pinjoint.systems.catalogue import step_systems
 from pinjoint.systems.physics.integrators import INTEGRATORS
-from pinjoint.systems.program.parallel import make_program
+from pinjoint.systems.program.reordered import make_program
 from pinjoint.systems.schedule import Schedule
 
 STEP = 1e-6  # s, stable in all models of benchmarks
