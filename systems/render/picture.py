@@ -31,7 +31,7 @@ from pinjoint.systems.render.overlays import BAR, draw_notice, draw_overlays, dr
 from pinjoint.systems.render.page import draw_page
 from pinjoint.systems.render.pointed import draw_pointed
 from pinjoint.systems.render.readouts import put_readouts
-from pinjoint.systems.render.sheet import DIRECTIONS, MANY, Sheet, measure
+from pinjoint.systems.render.sheet import DIRECTIONS, MANY, Sheet, Stage, measure
 from pinjoint.systems.render.sliders import SLIDER, put_sliders
 from pinjoint.systems.render.structure import (
     draw_ghost,
@@ -51,7 +51,6 @@ from pinjoint.systems.render.utilisation import shade_rods
 REACH = 6.0  # points from the lines of an arrow
 
 _Lines = tuple[Points, Points, float, Owners]  # from, to, reach in pixels beside them, and whose each is
-Stage = tuple[Model | Form | Toolbar, View]  # what is shown, and how
 
 
 def compose_all(

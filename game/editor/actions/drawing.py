@@ -45,7 +45,9 @@ def _place(context: Context, pixel: Vector) -> None:
 
 
 # The status line names the kind of rods, too.
-action("rod", "l", "draw a rod between two particles", while_drawing=True, draws=DrawRod)(DrawRod.use)
+action("rod", "l", "draw a rod between two particles", while_drawing=True, draws=DrawRod.begin_anywhere)(
+    DrawRod.use
+)
 
 
 def _are_rigid(context: Context) -> bool:
@@ -148,7 +150,7 @@ action(
     "f",
     "draw a load on a particle or a rod",
     while_drawing=True,
-    draws=DrawForce,
+    draws=DrawForce.begin_anywhere,
     enabled=attrgetter("model.particles.count"),
     hint=marked("loads: drag an arrow from a particle     from a rod: a distributed load     F or Esc done"),
 )(DrawForce.use)
@@ -157,7 +159,7 @@ action(
     "ctrl+m",
     "draw a moment on a particle",
     while_drawing=True,
-    draws=DrawMoment,
+    draws=DrawMoment.begin_anywhere,
     enabled=attrgetter("model.particles.count"),
     hint=marked("moments: drag from a particle, to the left for counter-clockwise     Esc done"),
 )(DrawMoment.use)
@@ -166,7 +168,7 @@ action(
     "v",
     "draw the velocity of a particle",
     while_drawing=True,
-    draws=DrawVelocity,
+    draws=DrawVelocity.begin_anywhere,
     enabled=attrgetter("model.particles.count"),
     hint=marked("velocities: drag an arrow from a particle     V or Esc done"),
 )(DrawVelocity.use)
