@@ -21,7 +21,7 @@ def main() -> int:
 
         prepare_streams()
         try:
-            from pinjoint.commands.global_options import speak_as_asked
+            from pinjoint.commands.language import speak_as_asked
 
             words = speak_as_asked(sys.argv[1:])
             from pinjoint.commands import command_line

@@ -9,9 +9,9 @@ from importlib import import_module
 
 from pinjoint.commands import Command
 from pinjoint.commands.arguments import BAD_INPUT
-from pinjoint.commands.global_options import load_as_asked, use_cores_as_asked
-from pinjoint.commands.options import ANSWERED, NOT_ANSWERED, STOPPED
+from pinjoint.commands.options import ANSWERED, NOT_ANSWERED, STOPPED, use_cores_as_asked
 from pinjoint.commands.output import write
+from pinjoint.commands.with_mods import load_as_asked
 from pinjoint.completion import complete
 from pinjoint.components.extensions import EXTENSIONS
 from pinjoint.components.language import marked, tr

@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import Any
 
 from pinjoint.commands.arguments import Parser
-from pinjoint.commands.global_options import asked_language
+from pinjoint.commands.language import asked_language
 from pinjoint.commands.options import ANSWERED, NOT_ANSWERED
 from pinjoint.commands.output import Row, add_output, write_result
 from pinjoint.commands.progress import follow
@@ -62,7 +62,8 @@ def command(words: Sequence[str]) -> int:
             kept.enter_context(library.data_apart())
             failures = check_lesson(loaded)
         else:
-            session = follow(playing.session_of(loaded))
+            session = playing.session_of(loaded)
+            follow(session.simulation.progress)
             tell(session.notice)
             if not loaded.has_data:  # so that it ends alike however often it is played
                 kept.enter_context(library.data_apart())

@@ -3,27 +3,23 @@
 from __future__ import annotations
 
 import sys
-import time
 from collections.abc import Sequence
 from pathlib import Path
-from typing import TextIO
 
 from pinjoint.commands.arguments import Parser, UsageError
 from pinjoint.commands.options import ANSWERED, NOT_ANSWERED, STOPPED, add_analysis, add_model, analysis_of
-from pinjoint.commands.report import FOUND
+from pinjoint.commands.reports.report import FOUND
 from pinjoint.components.language import tr
 from pinjoint.streams import tell
 from pinjoint.sweeps import sweep
 from pinjoint.sweeps.variation import FORMS
-
-_WIDTH = 30  # characters of the bar
-_EVERY = 0.2  # s
 
 
 def command(words: Sequence[str]) -> int:
     """Do what the words after the command ask for; returns the exit status."""
     options = _parser().parse_args(words)
     from pinjoint.sweeps.results import check_output
+    from pinjoint.sweeps.run import ProgressBar
 
     if options.plot is not None:
         check_output(Path(options.plot), [".png"])
@@ -39,7 +35,7 @@ def command(words: Sequence[str]) -> int:
             output=options.output,
             workers=options.workers,
             scheduler=options.scheduler,
-            progress=_ProgressBar(sys.stderr),
+            progress=ProgressBar(sys.stderr),
         )
         if options.plot is not None:
             results.plot(options.plot)
@@ -99,42 +95,3 @@ def _parser() -> Parser:
     )
     where.add_argument("--scheduler", metavar="tcp://…", help=tr("compute on a running Dask cluster"))
     return parser
-
-
-class _ProgressBar:
-    """A bar on a terminal; elsewhere, such as in the log of a cluster, a line for every tenth."""
-
-    def __init__(self, stream: TextIO) -> None:
-        self._stream = stream
-        self._began: tuple[float, int] | None = None
-        self._shown = 0.0
-        self._tenths = 0
-
-    def __call__(self, done: int, total: int, failed: int) -> None:
-        """Show that so many variants are done, of which so many failed."""
-        now = time.monotonic()
-        began, first = self._began = self._began or (now, done)
-        left = (now - began) / (done - first) * (total - done) if done > first else None
-        parts = [tr("{done}/{total} variants", done=done, total=total)]
-        if failed:
-            parts.append(tr("{failed} failed", failed=failed))
-        if left is not None and done < total:
-            parts.append(tr("{time} left", time=_duration(left)))
-        text = ", ".join(parts)
-        if self._stream.isatty():
-            if now - self._shown >= _EVERY or done == total:
-                self._shown = now
-                filled = "█" * (_WIDTH * done // total)
-                self._stream.write(f"\r\x1b[K{filled:░<{_WIDTH}} {text}" + ("\n" if done == total else ""))
-        elif 10 * done // total > self._tenths:
-            self._tenths = 10 * done // total
-            self._stream.write(text + "\n")
-        self._stream.flush()
-
-
-def _duration(seconds: float) -> str:
-    minutes, seconds = divmod(round(seconds), 60)
-    hours, minutes = divmod(minutes, 60)
-    if hours:
-        return f"{hours:d} h {minutes:02d} min"
-    return f"{minutes:d} min {seconds:d} s" if minutes else f"{seconds:d} s"

@@ -9,9 +9,9 @@ from pathlib import Path
 from typing import Any
 
 from pinjoint.commands.arguments import Parser, UsageError
-from pinjoint.commands.global_options import in_use
 from pinjoint.commands.options import ANSWERED, NO_DISPLAY
 from pinjoint.commands.output import writable, writing
+from pinjoint.commands.with_mods import in_use
 from pinjoint.components.extensions import EXTENSIONS
 from pinjoint.components.language import LANGUAGES, tr
 from pinjoint.components.model import Model

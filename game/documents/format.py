@@ -11,9 +11,10 @@ from pinjoint.components.clock import Clock
 from pinjoint.components.extensions import EXTENSIONS
 from pinjoint.components.grid import Grid
 from pinjoint.components.handle import Handle
-from pinjoint.components.language import joined, tr
+from pinjoint.components.language import joined, listed, tr
 from pinjoint.components.load import Load
 from pinjoint.components.mistake import Mistake, WrongValue
+from pinjoint.components.model import Model
 from pinjoint.components.particle import Particle
 from pinjoint.components.rod import Rod
 from pinjoint.components.settings import Environment, Settings
@@ -69,6 +70,17 @@ def copied(value: Any, where: str) -> Any:
     if value is None or isinstance(value, str | int) or (isinstance(value, float) and math.isfinite(value)):
         return value
     fail(where, "a model file cannot hold {value}.", value=quoted(value))
+
+
+def missing_mods(model: Model) -> str:
+    """The sentence about mods, not loaded, whose data a model keeps; "" if there are none."""
+    kept = [*model.foreign.values(), model.foreign_kinds]
+    names = sorted({name.partition(".")[0] for part in kept for name in part})
+    said = tr(
+        "This model uses mods that are not loaded: {mods}. Their data is kept and saved again, but has no effect.",
+        mods=listed(names),
+    )
+    return said if names else ""
 
 
 # --- data of mods ---------------------------------------------------------------------------------------

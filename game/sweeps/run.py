@@ -4,19 +4,24 @@ from __future__ import annotations
 
 import hashlib
 import os
+import time
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from pathlib import Path
-from typing import Any, BinaryIO
+from typing import Any, BinaryIO, TextIO
 
 import msgspec
 
-from pinjoint.commands.report import Analysis
+from pinjoint.commands.reports.report import Analysis
+from pinjoint.components.language import tr
 from pinjoint.sweeps.execution import compute_all
 from pinjoint.sweeps.plan import FAILED, Outcome, Plan, plan_of
 from pinjoint.sweeps.results import Results, check_output
 from pinjoint.sweeps.variation import SweepError, Value
 
 Progress = Callable[[int, int, int], None]  # done, of how many, failed
+
+_WIDTH = 30
+_EVERY = 0.2  # s
 
 
 def sweep(
@@ -132,3 +137,42 @@ def _append(file: BinaryIO, line: bytes) -> None:
     file.write(line + b"\n")
     file.flush()
     os.fsync(file.fileno())
+
+
+class ProgressBar:
+    """A bar on a terminal; elsewhere, such as in the log of a cluster, a line for every tenth."""
+
+    def __init__(self, stream: TextIO) -> None:
+        self._stream = stream
+        self._began: tuple[float, int] | None = None
+        self._shown = 0.0
+        self._tenths = 0
+
+    def __call__(self, done: int, total: int, failed: int) -> None:
+        """Show that so many variants are done, of which so many failed."""
+        now = time.monotonic()
+        began, first = self._began = self._began or (now, done)
+        left = (now - began) / (done - first) * (total - done) if done > first else None
+        parts = [tr("{done}/{total} variants", done=done, total=total)]
+        if failed:
+            parts.append(tr("{failed} failed", failed=failed))
+        if left is not None and done < total:
+            parts.append(tr("{time} left", time=_duration(left)))
+        text = ", ".join(parts)
+        if self._stream.isatty():
+            if now - self._shown >= _EVERY or done == total:
+                self._shown = now
+                filled = "█" * (_WIDTH * done // total)
+                self._stream.write(f"\r\x1b[K{filled:░<{_WIDTH}} {text}" + ("\n" if done == total else ""))
+        elif 10 * done // total > self._tenths:
+            self._tenths = 10 * done // total
+            self._stream.write(text + "\n")
+        self._stream.flush()
+
+
+def _duration(seconds: float) -> str:
+    minutes, seconds = divmod(round(seconds), 60)
+    hours, minutes = divmod(minutes, 60)
+    if hours:
+        return f"{hours:d} h {minutes:02d} min"
+    return f"{minutes:d} min {seconds:d} s" if minutes else f"{seconds:d} s"

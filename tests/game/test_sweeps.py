@@ -12,7 +12,7 @@ import pytest
 
 from pinjoint import Session
 from pinjoint.commands.command_line import main
-from pinjoint.commands.report import Analysis
+from pinjoint.commands.reports.report import Analysis
 from pinjoint.documents import models
 from pinjoint.paths import apply_override
 from pinjoint.sweeps import SweepError, sweep

@@ -9,12 +9,12 @@ from pathlib import Path
 import pytest
 
 from pinjoint import Session, mods
-from pinjoint.commands.global_options import LEFT_OUT, crashed, in_use, load_as_asked
+from pinjoint.commands.with_mods import LEFT_OUT, crashed, in_use, load_as_asked
 from tests.mods.conftest import Write
 
 HOLD = """
 from pinjoint.mods import load
-from pinjoint.commands.global_options import in_use
+from pinjoint.commands.with_mods import in_use
 load(installed=True)
 with in_use():
     print("ready", flush=True)

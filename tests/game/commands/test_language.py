@@ -7,7 +7,7 @@ import sys
 import pytest
 
 from pinjoint import __main__ as program
-from pinjoint.commands import global_options as choice
+from pinjoint.commands import language as choice
 from pinjoint.components.language import language
 from pinjoint.documents.preferences import CONFIG_VARIABLE, preferred, remember
 

@@ -1,7 +1,7 @@
 """Reports of runs: the states at the times that were asked for."""
 
 from pinjoint import Session
-from pinjoint.commands.report import Analysis
+from pinjoint.commands.reports.report import Analysis
 from tests.reference.models import triangle
 
 DAMPED = triangle(damping=100, density=6.15)

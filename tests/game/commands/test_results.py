@@ -10,8 +10,7 @@ import numpy as np
 import pytest
 
 from pinjoint.commands.output import FORMATS, Format, ResultError, formatted
-from pinjoint.commands.report import state
-from pinjoint.commands.run import run_lines, run_rows
+from pinjoint.commands.reports.results import run_lines, run_rows, state
 from pinjoint.components.model import Model
 from pinjoint.documents import models
 from pinjoint.paths import ENERGIES

@@ -1,0 +1,1 @@
+"""What commands compute and print for one model; `pinjoint.sweeps` does so for many."""

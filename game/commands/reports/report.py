@@ -1,0 +1,217 @@
+"""Analyses: runs of a model without a window, with their results as plain data; see results.py."""
+
+from __future__ import annotations
+
+import math
+import time
+from collections.abc import Sequence
+from dataclasses import asdict, dataclass
+from typing import TYPE_CHECKING, Any
+
+from pinjoint.commands.output import ResultError
+from pinjoint.commands.reports.results import Read, Run, State, state
+from pinjoint.components.language import joined, marked, tr
+from pinjoint.components.mistake import Mistake
+from pinjoint.components.model import Model
+from pinjoint.components.rod import bends
+from pinjoint.components.settings import AUTOMATIC
+from pinjoint.mods.mod import ModError, check_mods, heeding_mods
+from pinjoint.paths import ENERGIES
+from pinjoint.systems.base import DEFAULT_LIMIT, StopReason
+from pinjoint.systems.catalogue import all_systems, left_out_of_statics
+from pinjoint.systems.schedule import Schedule
+from pinjoint.systems.statics.events import Event
+
+if TYPE_CHECKING:  # statics needs no session, and a run no scipy
+    from pinjoint.headless import Headless
+    from pinjoint.systems.run.simulation import Simulation
+    from pinjoint.systems.statics.state import StaticState
+
+INTERRUPTED = marked("interrupted")  # the status of a run that Ctrl+C ended
+MOD_FAILED = marked("mod failed")
+FOUND = (  # statuses of a run that found what was asked for
+    marked("equilibrium"),
+    marked("at rest"),
+    marked("time reached"),
+)
+
+
+@dataclass(frozen=True)
+class Analysis:
+    """The computation of a model's equilibria, of its state at certain times, or of its state at rest.
+
+    load_factors: settle at each in turn (statics). times: run through these, in s, ascending; None for both:
+    run until at rest, at most `limit` s of simulated time. measures_error: even if that takes long.
+    """
+
+    load_factors: tuple[float, ...] | None = None
+    times: tuple[float, ...] | None = None
+    limit: float = DEFAULT_LIMIT
+    measures_error: bool = False
+
+    def run(
+        self, simulation: Simulation, name: str, reported: list[State] | None = None, read: Read = state
+    ) -> Run:
+        """The result of the analysis, in which `name` is the model. reported: gets the states at `times`, one by one.
+
+        read: makes a state. Raises Mistake, ResultError, FieldError, and ModError if a mod has failed or fails meanwhile.
+        """
+        check_mods()
+        if self.load_factors is not None:
+            return self.settled(simulation.model, name, read)
+        with heeding_mods(simulation):
+            return self._through_time(simulation, name, [] if reported is None else reported, read)
+
+    def _through_time(self, simulation: Simulation, name: str, states: list[State], read: Read) -> Run:
+        if self.times is None:
+            simulation.run_until_rest(simulation.model.clock.time + self.limit)
+            states.append(_state(simulation, read))
+            ended = {StopReason.REST: marked("at rest"), StopReason.DIVERGED: marked("diverged")}
+            return _run(simulation, name, ended.get(simulation.reason, marked("limit reached")), states)
+        if self.times[0] < (present := simulation.model.clock.time):
+            raise Mistake(
+                "The model is at t = {present:.9g} s already, after {asked:.9g} s; ask for later times.",
+                present=present,
+                asked=self.times[0],
+            )
+        for target in self.times:
+            simulation.run_to(target)
+            states.append(_state(simulation, read))
+            if simulation.reason is StopReason.DIVERGED:
+                return _run(simulation, name, "diverged", states)
+        return _run(simulation, name, "time reached", states)
+
+    def settled(self, model: Model, name: str, read: Read = state) -> Run:
+        """The equilibrium of a model at each load factor in turn, with the yielding of those before.
+
+        Raises ModError if a mod has failed or fails meanwhile.
+        """
+        from pinjoint.systems.statics.settle import settle
+
+        check_mods()
+        left_out = left_out_of_statics(model)
+        started = time.perf_counter()
+        settlement = settle(model, self.load_factors or (1.0,))
+        seconds = time.perf_counter() - started
+        states = [static_state(model, found, read) for found in settlement.states]
+        status, note = settlement.beside(left_out)
+        check_mods(time=model.clock.time)
+        return _result(model, name, status, states) | {
+            "message": joined([settlement.message, note]),
+            "left_out": left_out,
+            "wall_seconds": seconds,
+            "events": _records(model, settlement.events),
+        }
+
+    def settled_in(self, model: Model, name: str) -> Run:
+        """The same, also where a mod fails."""
+        try:
+            return self.settled(model, name)
+        except ModError as failure:
+            from pinjoint.systems.run.simulation import Simulation
+
+            return _failed(Simulation(model, Schedule(all_systems())), name, failure)
+
+    def run_in(self, session: Headless, name: str) -> Run:
+        """A run through time in a session, which adds remarks of theory and its measured error."""
+        from pinjoint.systems.run.measured_error import IN_A_COMMAND
+
+        reported: list[State] = []
+        try:
+            session.run(steps=0)  # records the beginning, for theory beside the run
+            with session.without_frames(), session.simulation.watched():
+                found = self.run(session.simulation, name, reported)
+        except KeyboardInterrupt:
+            return _interrupted(session.simulation, name, reported)
+        except ModError as failure:
+            return _failed(session.simulation, name, failure)
+        happened = [asdict(event) for event in session.simulation.events]
+        error = session.document.assessment.error(math.inf if self.measures_error else IN_A_COMMAND)
+        unknown = "" if error is not None else _uncontrolled(session.simulation)
+        return {
+            **found,
+            "message": joined([session.message, unknown]),
+            "events": [*happened, *_records(session.model, session.document.assessment.remarks)],
+            "error_estimate": error.record(bent=bends(session.model)) if error is not None else None,
+        }
+
+
+def _interrupted(simulation: Simulation, name: str, states: list[State]) -> Run:
+    """The result of a run that was interrupted: what it had reported, and its last state between two steps."""
+    if not states or simulation.model.clock.time > states[-1]["time"]:
+        states = [*states, _state(simulation)]
+    found = _run(simulation, name, INTERRUPTED, states)
+    reached = tr(
+        "Interrupted at t = {time:.9g} s, after {steps} steps.", time=found["time"], steps=found["steps"]
+    )
+    return {**found, "message": joined([reached, found["message"]]), "error_estimate": None}
+
+
+def _failed(simulation: Simulation, name: str, error: ModError) -> Run:
+    """The result of a run that stopped because a mod failed, with the state in which it did."""
+    return {**_run(simulation, name, MOD_FAILED, [_state(simulation)]), "message": str(error)}
+
+
+def _uncontrolled(simulation: Simulation) -> str:
+    """What is to be said of a run whose error is neither controlled, though a person left that choice, nor measured."""
+    from pinjoint.systems.physics.automatic import AFFORDABLE
+
+    model = simulation.model
+    automatic = model.settings.integrator == AUTOMATIC and model.settings.time_step is None
+    if not automatic or model.rods.count <= AFFORDABLE or simulation.integrator.exact:
+        return ""
+    return tr(
+        "With more than {count} rods, the time steps are the longest stable ones, and the error of the run was not"
+        " measured. Use --measure-error to measure it, or --integrator dop853 to keep it small.",
+        count=AFFORDABLE,
+    )
+
+
+def static_state(model: Model, found: StaticState, read: Read = state) -> State:
+    """An equilibrium as a state; its work is the energy stored and dissipated on the path of equilibria."""
+    energy = dict.fromkeys(ENERGIES, 0.0) | {
+        "elastic": found.elastic_energy,
+        "dissipated_plastic": found.dissipated_plastic,
+        "work": found.elastic_energy + found.dissipated_plastic,
+    }
+    return read(model, energy, found.load_factor, found.residual, found.columns)
+
+
+def _state(simulation: Simulation, read: Read = state) -> State:
+    try:
+        return read(simulation.model, simulation.energy.as_dict(), None, simulation.residual)
+    except ResultError as error:
+        raise ResultError(simulation.message or str(error)) from None
+
+
+def _records(model: Model, events: Sequence[Event]) -> list[dict[str, Any]]:
+    return [event.record(model) for event in events]
+
+
+def _run(simulation: Simulation, name: str, status: str, states: list[State]) -> dict[str, Any]:
+    """The result of a run through time, without events."""
+    return _result(simulation.model, name, status, states) | {
+        "message": simulation.said,
+        "time_step": simulation.model.clock.step_size,
+        "integrator": simulation.integrator.key,
+        "wall_seconds": simulation.compute_seconds,
+        "compile_seconds": simulation.programs.compile_seconds,
+    }
+
+
+def _result(model: Model, name: str, status: str, states: list[State]) -> dict[str, Any]:
+    """What every result has. left_out: the laws of mods that act in the model and are not in the result."""
+    return {
+        "model": name,
+        "status": status,
+        "message": "",
+        "time": model.clock.time,
+        "steps": model.clock.steps,
+        "time_step": None,
+        "integrator": None,
+        "wall_seconds": 0.0,
+        "compile_seconds": 0.0,
+        "left_out": [],
+        "events": [],
+        "states": states,
+    }
