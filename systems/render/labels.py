@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
-from functools import lru_cache
 from itertools import pairwise
 from typing import Literal, NamedTuple
 
@@ -58,7 +57,6 @@ class Label(NamedTuple):
     close: int = 0
 
 
-@lru_cache(maxsize=8192)
 def half_size(text: str, size: int, weight: str, unit: float) -> tuple[float, float]:
     """Half the width and height in pixels of a label, its margins included."""
     return text_width(text, size, weight) / 2 + 3.5 * unit, line_height(size) / 2 + 0.5 * unit
