@@ -162,7 +162,7 @@ def working(guide: Guide) -> tuple[str, ...]:
     if guide.part == 1:
         return (
             f"{guide.count.formula} = {guide.count.numbers}",
-            degree_of(guide.degree),
+            degree_of(guide.count.degree),
             tr("Yielding is switched off: superposition needs linear behaviour."),
         )
     if solution is None or guide.part < 3:
