@@ -59,9 +59,9 @@ def unloaded(model: Model, released: Sequence[Unknown]) -> Model:
     """The released structure under nothing: no loads, lack of fit, warmth or displacements of supports."""
     copy = base_structure(model, released)
     copy.delete(list(copy.loads))
-    for name, fields in _ACTING.items():
-        for field in fields:
-            copy.assign(list(copy.tables[name]), field, copy.tables[name].fields[field].default)
+    for table in map(copy.tables.__getitem__, _ACTING):
+        for name in _ACTING[table.name]:
+            copy.assign(list(table), name, np.zeros_like(table.column(name)))
     copy.assign(list(copy.rods), "prescribed_rest_length", copy.rods.original_length.tolist())
     return copy
 
