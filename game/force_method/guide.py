@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 
 from pinjoint.components.bent import AXIAL, MOMENT, SHEAR
-from pinjoint.components.field import Column, Vector
+from pinjoint.components.field import LARGEST, SMALLEST, Column, Vector
 from pinjoint.components.handle import Handle
 from pinjoint.components.language import tr
 from pinjoint.components.model import Model
@@ -69,8 +69,8 @@ class Set:
     def scale_to(self, state: SetState) -> None:
         """Choose drawing scales for the displacements and forces of a final state."""
         size = extent(self.model) if self.model.rods.count else 0.0
-        self.suited = _scale_to(DRAWN_SHARE * size, largest(state.displacement))
-        self.model.settings.diagram_scale = _scale_to(DIAGRAM_HEIGHT, largest(state.axial_force))
+        self.suited = scale_to(DRAWN_SHARE * size, largest(state.displacement))
+        self.model.settings.diagram_scale = scale_to(DIAGRAM_HEIGHT, largest(state.axial_force))
 
     def settle(self) -> None:
         """Skip the rest of the motion: go to its equilibrium, if there is one."""
@@ -80,9 +80,9 @@ class Set:
                 final.put(self.model)
 
 
-def _scale_to(drawn: float, size: float) -> float:
-    """The round scale at which a size is drawn so large; 1 where it, or the picture, has none."""
-    return round_down(drawn / size) if min(drawn, size) > 0.0 else 1.0
+def scale_to(drawn: float, size: float) -> float:
+    """The round scale at which a size is drawn so large, if a model can have that; 1 where it, or the picture, has none."""
+    return round_down(min(max(drawn / size, SMALLEST), LARGEST)) if min(drawn, size) > 0.0 else 1.0
 
 
 class Mechanism:

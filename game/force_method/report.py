@@ -15,11 +15,11 @@ from pinjoint.components.camera import Camera, Viewport
 from pinjoint.components.language import listed, tr
 from pinjoint.components.model import Model
 from pinjoint.components.rod import nodes, rigid_joints
-from pinjoint.components.round_numbers import round_down
 from pinjoint.components.tags import DiagramShown
 from pinjoint.components.view import THESIS, Cut, View
 from pinjoint.force_method import index, words
 from pinjoint.force_method.copies import base_structure, loaded, still, unloaded
+from pinjoint.force_method.guide import scale_to
 from pinjoint.force_method.tables import PRODUCTS, Table, Tables
 from pinjoint.force_method.words import EXACT
 from pinjoint.systems.render.arrows import largest_force
@@ -132,7 +132,7 @@ def _figure(
     view.camera.fit(model.particles.position, 0.0, inner, 1.0)
     view.largest_force = _SHORTER * largest_force(model, view)
     pulled = 0.0 if is_frame(model) else largest(model.rods.axial_force)
-    model.settings.diagram_scale = round_down(_DIAGRAM / pulled) if pulled > 0.0 else 1.0
+    model.settings.diagram_scale = scale_to(_DIAGRAM, pulled)
     loaded_ones = [p for p in model.particles if any(p.force) or p.moment] + [
         one.particle for one in model.loads
     ]

@@ -19,6 +19,7 @@ FINER_TOLERANCE = 1e-2  # of the run's, by which it is taken again where the err
 FINEST_TOLERANCE = 1e-13
 OF_BENDING = "rotation", "bending_moment"
 PIECES = 64  # parts of a run at whose ends the quantities are compared
+MOST_STEPS = 16  # times those of the run, in which it is taken again: methods of order 3 need 5 times as many
 MOST_CREATED = 10.0  # of all energy supplied; Verlet creates 4 times as much at 0.9 of its stable step
 MOST_LOST = 0.25  # of it; more: finer steps lose much, too, and agree on what is wrong
 # Evaluations of the forces of rods up to which the error is measured without being asked for:
@@ -77,10 +78,11 @@ def measure_error(simulation: Simulation, beginning: Snapshot) -> MeasuredError 
         return None
     program = simulation.programs.compiled
     reached, size, target = _Quantities.of(program), clock.step_size, simulation.moved_until
+    steps = clock.steps - then["clock.steps"][0]
     yielded = clock.dissipated_plastic > then["clock.dissipated_plastic"][0]
     with simulation.aside(beginning):
         if program.tolerance > 0.0:
-            largest, factor = _by_tolerance(program, target), 1.0
+            largest, factor = _by_tolerance(program, target, MOST_STEPS * max(steps, PIECES)), 1.0
         else:
             largest = _by_steps(simulation, program, target, size)
             order = 1 if yielded and not program.integrator.controlled else program.integrator.order
@@ -128,13 +130,13 @@ class _Quantities:
         return np.array([length.max(initial=0.0) for length in (*lengths, *sizes)])
 
 
-def _by_tolerance(program: Program, target: float) -> Column:
+def _by_tolerance(program: Program, target: float, most: int) -> Column:
     """Run to a time with a hundredth of the tolerance and half the longest step; returns as _pieces does."""
     tolerance = program.tolerance
     program.tolerance = max(FINER_TOLERANCE * tolerance, FINEST_TOLERANCE)
     program.model.writable("clock.step_limit")[0] *= 0.5
     try:
-        return _pieces(program, target) if program.tolerance < 0.2 * tolerance else _UNKNOWN
+        return _pieces(program, target, most) if program.tolerance < 0.2 * tolerance else _UNKNOWN
     finally:
         program.tolerance = tolerance
 
@@ -154,16 +156,17 @@ def _by_steps(simulation: Simulation, program: Program, target: float, size: flo
     return largest
 
 
-def _pieces(program: Program, target: float) -> Column:
+def _pieces(program: Program, target: float, most: int) -> Column:
     """Run to a time exactly, past all that would stop a run.
 
-    Returns the largest quantities at the ends of pieces; not numbers if it did not get there.
+    Returns the largest quantities at the ends of pieces; not numbers if it did not get there in `most` steps.
     """
     clock, largest = program.model.clock, _Quantities.of(program).sizes
     for end in np.linspace(clock.time, target, PIECES + 1)[1:].tolist():
         while (before := clock.time) < end:
-            program.advance(REVIEW_INTERVAL, end, end)
-            if clock.time == before:
+            taken, _ = program.advance(min(most, REVIEW_INTERVAL), end, end)
+            most -= taken
+            if clock.time == before or most <= 0:
                 return _UNKNOWN
         largest = np.maximum(largest, _Quantities.of(program).sizes)
     return largest

@@ -401,6 +401,16 @@ def test_the_legend_explains_what_the_sets_show_in_every_part(source: str, size:
         assert {text for text in said(session) if is_meaning(text)} == left
 
 
+@pytest.mark.parametrize("force", [1e-35, 1e29])
+def test_forces_of_any_size_are_drawn(force: float) -> None:
+    session = Session.open("hyperstatic")
+    session.particles["C"].force = 0.0, -force
+    for _ in range(4):
+        session.press("k")
+    assert session.scene == "force method"
+    assert np.isfinite(guide_of(session).sets[0].model.settings.diagram_scale)
+
+
 def test_a_copy_is_elastic_undisplaced_and_at_rest_and_keeps_what_else_was_drawn() -> None:
     session = Session.open("hyperstatic_yield")
     session.rods["AC"].temperature_change = 20.0

@@ -12,6 +12,7 @@ from pinjoint.commands.command_line import main
 from pinjoint.editor.readouts import own_readouts
 from pinjoint.systems.run.measured_error import FINEST_TOLERANCE
 from tests.benchmarks.problems import Problem, tightly, transient, under_damped, yielding_step
+from tests.properties.limits import within
 from tests.reference import bits
 from tests.reference.elements import Model
 from tests.reference.models import oscillator, pendulum, square, triangle
@@ -230,3 +231,12 @@ def test_at_rest_time_that_passes_without_steps_is_not_run_again(capsys: pytest.
         estimates.append(json.loads(capsys.readouterr().out)["error_estimate"])
     assert estimates[0]["relative"] > 0.0
     assert estimates[0] == estimates[1]
+
+
+def test_a_run_that_cannot_be_taken_again_in_a_few_times_its_steps_has_no_measured_error() -> None:
+    session = Session.open("eulers_columns")
+    session.press("e")
+    session.press(".")
+    session.frame(0.0)
+    with within(20.0, "measuring the error of one long step"):
+        assert session.document.assessment.error() is None
