@@ -115,8 +115,3 @@ def outlines(model: Model) -> Iterator[tuple[Table[Any], NDArray[np.float64]]]:
         table = model.tables.get(kind.table)
         if table is not None and table.count and kind.points:
             yield table, np.stack([table.column(point) for point in kind.points], axis=1)
-
-
-def all_points(model: Model) -> NDArray[np.float64]:
-    """The points of all elements of mods' kinds (m), shape (n, 2)."""
-    return np.concatenate([np.zeros((0, 2)), *(points.reshape(-1, 2) for _, points in outlines(model))])

@@ -151,7 +151,7 @@ class Field(Generic[T]):
         return value
 
     def __set__(self, handle: Any, value: T | None) -> None:
-        handle.world.write(handle, self, value)
+        handle.world.assign([handle], self.name, [value])
 
     # --- storage ---------------------------------------------------------------------------------
 

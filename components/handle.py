@@ -13,8 +13,8 @@ from numpy.typing import NDArray
 
 from pinjoint.components.field import Column
 from pinjoint.components.language import tr
-from pinjoint.components.suggestions import missing
 from pinjoint.components.table import Store, Table, refuse_orphans
+from pinjoint.components.wording import missing
 
 
 class Handle:

@@ -447,11 +447,6 @@ def has_strength(world: World) -> bool:
     return bool(((rods.tension_limit < np.inf) | (rods.compression_limit < np.inf)).any())
 
 
-def has_plastic_strain(world: World) -> bool:
-    """True if plastic strain plays a part: some rod has it, or may get it."""
-    return can_yield(world) or bool(world.tables["rods"].plastic_strain.any())
-
-
 def utilisation(world: World, force: NDArray[np.float64] | None = None) -> NDArray[np.float64]:
     """|N| over the strength in that direction, of each rod (m,); NaN where it has none.
 

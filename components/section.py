@@ -16,8 +16,7 @@ from typing import Any
 
 from pinjoint.components.field import LARGEST, FieldError
 from pinjoint.components.language import joined, marked
-from pinjoint.components.suggestions import missing
-from pinjoint.components.wording import cut
+from pinjoint.components.wording import cut, missing
 
 USUAL_SECTION, USUAL_MATERIAL = "IPE 200", "S235"  # of members of which nothing else is known
 RECTANGLE = "rectangle 300×500"  # the form of such a name: width × depth in mm

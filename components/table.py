@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 from pinjoint.components.field import Column, Field, Role
 from pinjoint.components.language import tr
 from pinjoint.components.mistake import NotFound, WrongValue
-from pinjoint.components.suggestions import missing
+from pinjoint.components.wording import missing
 
 _SMALLEST_CAPACITY = 8
 
@@ -26,7 +26,6 @@ class Store(Protocol):
     structure: int
 
     def read(self, handle: Any, field: Field[Any]) -> Any: ...
-    def write(self, handle: Any, field: Field[Any], value: Any) -> None: ...
     def assign(self, handles: Sequence[Any], field_name: str, values: Any) -> None: ...
     def row(self, handle: Any) -> int: ...
     def describe(self, handle: Any, field: str = ...) -> str: ...

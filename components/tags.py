@@ -3,13 +3,7 @@
 from __future__ import annotations
 
 
-class Rare:
-    """A tag that few elements carry at a time: esper holds it, and its queries find them."""
-
-    __slots__ = ()
-
-
-class Hovered(Rare):
+class Hovered:
     """A click would hit it."""
 
     __slots__ = ()

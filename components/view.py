@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from pinjoint.components.additions import all_points
+from pinjoint.components.additions import outlines
 from pinjoint.components.bent import AXIAL, middles
 from pinjoint.components.camera import LEAST_MARGIN, Camera, Rectangle, Viewport
 from pinjoint.components.card import Card
@@ -379,4 +379,5 @@ def drawn_positions(model: Model) -> NDArray[np.float64]:
 
 def drawn_places(model: Model) -> NDArray[np.float64]:
     """All that a picture of a model is to show (m), (n, 2): drawn positions, bent rods, and points of other elements."""
-    return np.concatenate([drawn_positions(model), middles(model), all_points(model)])
+    others = (points.reshape(-1, 2) for _, points in outlines(model))
+    return np.concatenate([drawn_positions(model), middles(model), *others])

@@ -19,10 +19,8 @@ from pinjoint.components.field import MADE, Column, Field, FieldError, Role, sam
 from pinjoint.components.handle import Handle, set_entity
 from pinjoint.components.language import joined, tr
 from pinjoint.components.mistake import NotFound, WrongValue
-from pinjoint.components.suggestions import missing
 from pinjoint.components.table import Table, flags, grown
-from pinjoint.components.tags import Rare
-from pinjoint.components.wording import cut
+from pinjoint.components.wording import cut, missing
 
 H = TypeVar("H", bound=Handle)
 
@@ -61,7 +59,7 @@ class World:
         self.row_of_entity: NDArray[np.int64] = np.full(64, -1, dtype=np.int64)
         self.tables: dict[str, Table[Any]] = {}
         self.tags_revision = 0
-        self._tagged: dict[type, NDArray[np.intp]] = {}  # by tag that is not Rare: esper ids, ascending
+        self._tagged: dict[type, NDArray[np.intp]] = {}  # by tag: esper ids, ascending
         self._tagged_rows: dict[type, tuple[Any, dict[str, NDArray[np.intp]]]] = {}  # with their revisions
         self.changing = False
         self._naming: Callable[[int, str], str] | None = None
@@ -147,10 +145,6 @@ class World:
         if row < 0:
             row = self.row(handle)  # raises LookupError
         return column.item(row) if field.plain else field.loaded(column, row)
-
-    def write(self, handle: Handle, field: Field[Any], value: Any) -> None:
-        """Execute the command that gives one Field of one entity a value. Raises FieldError."""
-        self.assign([handle], field.name, [value])
 
     def assign(self, handles: Sequence[Handle], field_name: str, values: Any) -> None:
         """Give one Field of several entities of one kind new values, as one command. Raises FieldError.
@@ -501,8 +495,8 @@ class World:
 
     # --- tags ------------------------------------------------------------------------------------------
     #
-    # esper holds a tag that few elements carry at a time (Rare), and finds them. It takes a microsecond for each
-    # component, so that a tag which all elements of a large model may carry is an array of esper ids instead.
+    # A tag is an array of esper ids: esper takes a microsecond for each component, and all elements of a large model may
+    # carry one.
 
     def tag(self, handle: Handle, tag: type) -> None:
         """Let an existing entity carry a tag, such as Selected."""
@@ -523,25 +517,13 @@ class World:
 
     def _carriers(self, tag: type) -> NDArray[np.bool_]:
         """For each esper id, whether that entity, which may be deleted, carries a tag."""
-        ids: Any = self._tagged.get(tag, [])
-        if issubclass(tag, Rare):
-            self.activate()
-            ids = [entity for entity, _ in esper.get_component(tag)]
-        return flags(ids, len(self.row_of_entity))
+        return flags(self._tagged.get(tag, []), len(self.row_of_entity))
 
     def _carry(self, tag: type, wanted: NDArray[np.bool_]) -> None:
         """Let exactly the entities whose flags are true carry a tag."""
-        before = self._carriers(tag)
-        if (before == wanted).all():
-            return
-        if issubclass(tag, Rare):
-            for entity in np.flatnonzero(before & ~wanted).tolist():
-                esper.remove_component(entity, tag)
-            for entity in np.flatnonzero(wanted & ~before).tolist():
-                esper.add_component(entity, tag())
-        else:
+        if (self._carriers(tag) != wanted).any():
             self._tagged[tag] = np.flatnonzero(wanted)
-        self.tags_revision = self.next_revision()
+            self.tags_revision = self.next_revision()
 
     def tagged(self, tag: type) -> list[Handle]:
         """Handles of the existing entities with a tag, in order of creation."""

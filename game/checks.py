@@ -17,7 +17,7 @@ from pinjoint.components.language import joined, marked, tr
 from pinjoint.components.load import HISTORIES
 from pinjoint.components.mistake import Explained, WrongValue
 from pinjoint.components.model import Model
-from pinjoint.components.suggestions import missing
+from pinjoint.components.wording import missing
 from pinjoint.documents import models
 from pinjoint.documents.library import data_apart
 from pinjoint.editor.frame import Frame

@@ -40,7 +40,7 @@ from pinjoint.systems.program.compiler import (
     forget_unused,
     interpreted_here,
 )
-from pinjoint.systems.program.parallel import make_program
+from pinjoint.systems.program.reordered import make_program
 from pinjoint.systems.program.writer import read_sources
 from pinjoint.systems.render.raster import RASTER
 

@@ -20,9 +20,8 @@ from pinjoint.components.handle import Handle
 from pinjoint.components.language import joined, marked, tr
 from pinjoint.components.mistake import Mistake
 from pinjoint.components.model import Model
-from pinjoint.components.suggestions import missing, remedy
 from pinjoint.components.table import Table
-from pinjoint.components.wording import cut
+from pinjoint.components.wording import cut, missing, remedy
 from pinjoint.systems.run.energy import Energy
 
 EVERY = "*"  # in place of a name: all elements of the table

@@ -41,7 +41,7 @@ from pinjoint.systems.program.compiler import (
     GeneratedModule,
 )
 from pinjoint.systems.program.program import module_of
-from pinjoint.systems.program.writer import form_of, traits_of
+from pinjoint.systems.program.writer import kind_of
 from pinjoint.systems.render.raster import RASTER, Raster, load_raster
 from pinjoint.systems.run.simulation import Simulation
 
@@ -250,9 +250,7 @@ def _jobs_later(simulation: Simulation) -> Iterator[Job]:
 
 
 def _job(simulation: Simulation, plan: Sequence[StepSystem]) -> Job:
-    form = form_of(simulation.model, simulation.integrator, plan)
-    traits = " ".join(traits_of(simulation.model))
-    return simulation.integrator.key, form, traits, *(system.name for system in plan)
+    return kind_of(simulation.model, simulation.integrator, plan)
 
 
 def _module_of(job: Job, simulation: Simulation) -> GeneratedModule | None:

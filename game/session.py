@@ -23,10 +23,9 @@ from pinjoint.components.model import Model
 from pinjoint.components.particle import Particle
 from pinjoint.components.rod import Rod
 from pinjoint.components.settings import Environment
-from pinjoint.components.suggestions import missing
 from pinjoint.components.table import Table
 from pinjoint.components.view import View
-from pinjoint.components.wording import quoted
+from pinjoint.components.wording import missing, quoted
 from pinjoint.documents import models
 from pinjoint.documents.format import ModelError
 from pinjoint.documents.open_documents import ModelFile, Source, file_of

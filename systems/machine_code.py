@@ -88,9 +88,9 @@ def _dispatcher_of(kernel: Kernel) -> Any:
     if kernel.use is Use.ENTRY and not PLAIN:
         options["pipeline_class"] = _EntryCompiler
     dispatcher: Any = njit(**options)(function)
-    if kernel.use in (Use.KEPT, Use.ENTRY) and _is_compiled(dispatcher):
+    if kernel.use in (Use.KEPT, Use.ENTRY):
         dispatcher._cache = _MachineCode(function)
-    if kernel.signature and _is_compiled(dispatcher):
+    if kernel.signature:
         dispatcher.compile(kernel.signature)
         dispatcher.disable_compile()
     return dispatcher
@@ -108,8 +108,8 @@ def adopt(module: ModuleType, name: str, kernels: Iterable[Any]) -> None:
     A kernel of a mod with `cache=True` is compiled with its program only: numba trusts what it finds on disk.
     """
     for kernel in kernels:
-        if _is_compiled(kernel):
-            kernel._cache = NullCache()
+        if isinstance(kernel, CPUDispatcher):
+            kernel._cache = NullCache()  # type: ignore[attr-defined]
         if not is_ours(kernel.__module__):
             cpu_target.target_context.refresh()  # it may refer to anything of numba's
     module.__name__ = name
@@ -123,16 +123,14 @@ def adopt(module: ModuleType, name: str, kernels: Iterable[Any]) -> None:
 
 def types_of(machine: Mapping[str, Any]) -> dict[str, list[Any]]:
     """For which types of their arguments functions are compiled, by their names."""
-    made = {name: f.nopython_signatures for name, f in machine.items() if _is_compiled(f)}
-    return {name: [signature.args for signature in some] for name, some in made.items()}
+    return {name: [signature.args for signature in f.nopython_signatures] for name, f in machine.items()}
 
 
 def compile_for(function: Any, types: bytes, name: str) -> None:
     """Have machine code of a function, from the cache if it is there, for all types that were found to be needed."""
-    if _is_compiled(function):
-        for given in pickle.loads(types)[name]:
-            if given not in function.overloads:
-                function.compile(given)
+    for given in pickle.loads(types)[name]:
+        if given not in function.overloads:
+            function.compile(given)
 
 
 class _Addressed(WrapperAddressProtocol):
@@ -157,11 +155,6 @@ def addressed(function: Any) -> Any:
     import numba.experimental.function_type  # noqa: F401 - by which numba knows the type of it
 
     return _Addressed(function)
-
-
-def _is_compiled(function: Any) -> bool:
-    """False where NUMBA_DISABLE_JIT has functions interpreted."""
-    return isinstance(function, CPUDispatcher)
 
 
 class _MachineCode(NullCache):

@@ -22,7 +22,7 @@ from typing import Any
 from pinjoint.components.language import tr
 from pinjoint.components.mistake import Explained
 from pinjoint.components.model import Model
-from pinjoint.components.suggestions import remedy
+from pinjoint.components.wording import remedy
 from pinjoint.systems.base import Commit, Event, Integrator, Law, Phase, StepSystem, System
 
 

@@ -16,7 +16,7 @@ from pinjoint.paths import apply_override
 from pinjoint.session import DEFAULT_LIMIT, Session
 from pinjoint.streams import tell
 from pinjoint.systems.base import System
-from pinjoint.systems.program.parallel import VARIABLE
+from pinjoint.systems.program.reordered import VARIABLE
 
 ANSWERED, NOT_ANSWERED, NO_DISPLAY, STOPPED = 0, 1, 3, 130  # exit statuses; BAD_INPUT is 2
 

@@ -15,7 +15,7 @@ from pinjoint.commands.with_mods import in_use
 from pinjoint.components.extensions import EXTENSIONS
 from pinjoint.components.language import LANGUAGES, tr
 from pinjoint.components.model import Model
-from pinjoint.components.suggestions import nearest
+from pinjoint.components.wording import nearest
 from pinjoint.documents import models
 from pinjoint.documents.open_documents import ModelFile, file_of
 from pinjoint.scripts import script

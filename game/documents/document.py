@@ -22,9 +22,8 @@ from pinjoint.components.model import Model
 from pinjoint.components.rod import Rod
 from pinjoint.components.section import NAMES, given_by
 from pinjoint.components.snapshot import Snapshot
-from pinjoint.components.suggestions import missing, remedy
 from pinjoint.components.table import fields_of
-from pinjoint.components.wording import cut, is_broken, quoted
+from pinjoint.components.wording import cut, is_broken, missing, quoted, remedy
 from pinjoint.documents.facts import Gathered, gathered, spread
 from pinjoint.documents.format import (
     BY_COLUMNS,

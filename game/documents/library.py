@@ -12,7 +12,7 @@ from tempfile import TemporaryDirectory
 
 from platformdirs import user_data_path
 
-from pinjoint.components import suggestions
+from pinjoint.components import wording
 from pinjoint.components.form import fits_file_names
 from pinjoint.components.language import plural, tr
 from pinjoint.components.mistake import Explained
@@ -124,7 +124,7 @@ def find(name: str) -> Path | str | None:
 def nearest(name: str) -> str | None:
     """The name of a saved or bundled model that comes nearest, if one does."""
     known = [*map(models.name_of, saved()), *models.bundled()]
-    return suggestions.nearest(name.strip(), known)
+    return wording.nearest(name.strip(), known)
 
 
 def written_age(path: Path) -> str:

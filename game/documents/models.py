@@ -25,8 +25,7 @@ import msgspec
 from pinjoint.components.extensions import EXTENSIONS
 from pinjoint.components.language import joined, marked, tr
 from pinjoint.components.model import Model
-from pinjoint.components.suggestions import nearest
-from pinjoint.components.wording import quoted
+from pinjoint.components.wording import nearest, quoted
 from pinjoint.documents.document import document, parse
 from pinjoint.documents.format import ModelError
 from pinjoint.documents.locks import lock_file

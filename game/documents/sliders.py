@@ -10,8 +10,7 @@ from pinjoint.components.field import Field, FieldError
 from pinjoint.components.language import decimals, tr
 from pinjoint.components.model import Model
 from pinjoint.components.slider import Aim, Slider
-from pinjoint.components.suggestions import remedy
-from pinjoint.components.wording import cut, is_broken, quoted
+from pinjoint.components.wording import cut, is_broken, quoted, remedy
 from pinjoint.documents.format import ModelError, fail
 from pinjoint.paths import EVERY, PathError, Target, locate, settable
 

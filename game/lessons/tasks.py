@@ -8,8 +8,7 @@ from dataclasses import dataclass
 from typing import Any, NoReturn
 
 from pinjoint.components.language import tr
-from pinjoint.components.suggestions import remedy
-from pinjoint.components.wording import as_json, cut
+from pinjoint.components.wording import as_json, cut, remedy
 from pinjoint.mods.declared import fits
 from pinjoint.scripts.expectation import OVER_ALL
 from pinjoint.scripts.script import Script, ScriptError

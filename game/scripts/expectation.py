@@ -11,9 +11,8 @@ from typing import Any, Protocol
 from pinjoint.components.handle import Handle
 from pinjoint.components.language import english, listed, marked, tr
 from pinjoint.components.mistake import NotFound, WrongValue
-from pinjoint.components.suggestions import missing
 from pinjoint.components.view import View
-from pinjoint.components.wording import cut, quoted
+from pinjoint.components.wording import cut, missing, quoted
 from pinjoint.paths import PathError, Readable, locate, locate_one, readable
 
 _OF_SESSION = ("scene", "time", "message")

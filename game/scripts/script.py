@@ -40,8 +40,7 @@ from typing import Any
 
 from pinjoint.components.language import ENGLISH, LANGUAGES, tr
 from pinjoint.components.mistake import Mistake
-from pinjoint.components.suggestions import remedy
-from pinjoint.components.wording import as_json, cut
+from pinjoint.components.wording import as_json, cut, remedy
 
 HEADER = {"format": "pinjoint session", "version": 1}
 _HEADER_KEYS = (*HEADER, "model", "title", "description", "mods", "language")

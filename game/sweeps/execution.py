@@ -21,7 +21,7 @@ from pinjoint.paths import apply_override, locate, quoted, settable
 from pinjoint.sweeps.plan import Outcome, Plan, Record
 from pinjoint.sweeps.variation import INSTALL, SweepError, as_text
 from pinjoint.systems.catalogue import all_systems
-from pinjoint.systems.program.parallel import VARIABLE, cores
+from pinjoint.systems.program.reordered import VARIABLE, cores
 from pinjoint.systems.run.simulation import Simulation
 from pinjoint.systems.schedule import Schedule
 

@@ -9,7 +9,7 @@ from typing import Any, TypeVar
 
 from pinjoint.components.field import Vector
 from pinjoint.components.language import marked, tr
-from pinjoint.components.suggestions import missing
+from pinjoint.components.wording import missing
 
 SIMULATION, PAUSE = "simulation", "pause"
 PROPERTIES, SAVE, LOAD, FORCE_METHOD = "properties", "save", "load", "force method"

@@ -94,3 +94,16 @@ def deformations(model: Model) -> tuple[Array, NDArray[np.intp], NDArray[np.intp
         damping += [rods.end_damping[:, 0], rods.end_damping[:, 2] - share * rods.end_damping[:, 1]]
     found = map(np.concatenate, (entries, rows, columns, stiffness, damping))
     return tuple(found)  # type: ignore[return-value]
+
+
+def stiffness_matrix(model: Model, *, by_mass: bool = False) -> tuple[Array, float]:
+    """K of the free coordinates in the original geometry, or M^-½ K M^-½, and the largest stiffness in it."""
+    entries, rows, columns, stiffness, _ = deformations(model)
+    free = free_coordinates(model)
+    deformed = np.zeros((len(stiffness), free.size))
+    deformed[rows, columns] = entries
+    if by_mass:
+        mobility = np.column_stack([model.particles.mobility, model.particles.turning])
+        deformed *= np.sqrt(mobility[:, : free.shape[1]]).ravel()
+    deformed = deformed[:, free.ravel()]
+    return deformed.T @ (deformed * stiffness[:, None]), float(stiffness.max())

@@ -51,7 +51,7 @@ class SemiImplicitEuler(VelocityVerlet):
     guard = 2.0
     push = 1.0
     begins = f"{_FIXED_STEPS}:euler_begins"
-    ends = f"{_FIXED_STEPS}:euler_ends"
+    ends = ""
     order: ClassVar[int] = 1
 
 

@@ -12,7 +12,7 @@ from pinjoint.components.model import Model
 from pinjoint.components.numeric_range import incomputable
 from pinjoint.components.rod import bends
 from pinjoint.components.round_numbers import round_near
-from pinjoint.systems.physics.bending import deformations, free_coordinates
+from pinjoint.systems.physics.bending import deformations, free_coordinates, stiffness_matrix
 
 Array = NDArray[np.float64]
 
@@ -127,12 +127,9 @@ def _forces(model: Model) -> Array:
 
 def _solved_in_full(model: Model, free: NDArray[np.intp], force: Array) -> Array:
     """The displacements of free directions under forces, both (k,), by a full matrix."""
-    entries, rows, columns, stiffness, _ = deformations(model)
-    elongations = np.zeros((len(stiffness), free_coordinates(model).size))
-    elongations[rows, columns] = entries
-    elongations = elongations[:, free]
-    matrix = elongations.T @ (elongations * stiffness[:, None])
-    return np.linalg.solve(matrix + SLIGHTLY * stiffness.max() * np.eye(len(free)), force)
+    matrix, stiffest = stiffness_matrix(model)
+    held = matrix + SLIGHTLY * stiffest * np.eye(len(free))
+    return np.asarray(np.linalg.solve(held, force), dtype=np.float64)
 
 
 def _solved_sparsely(model: Model, free: NDArray[np.intp], force: Array) -> Array:

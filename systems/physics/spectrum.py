@@ -134,6 +134,13 @@ class FrameOperator(RodOperator):
         return float(np.maximum(worst * shifts, self._spin * turns).max(initial=0.0))
 
 
+def operator_of(model: Model, along: Array, ends: Array, tension: Array | None = None) -> RodOperator:
+    """The operator of a stiffness, or of dampers, of the rods and of the slopes of their ends: see FrameOperator."""
+    if bends(model):
+        return FrameOperator(model, along, ends, tension)
+    return RodOperator(model, along, None if tension is None else tension / model.rods.rest_length)
+
+
 def largest_eigenvalue(operator: Callable[[Array], Array], rows: int, bound: float, width: int = 2) -> float:
     """An upper bound of the largest eigenvalue of a symmetric operator by Lanczos' method: Ritz value plus residual.
 
@@ -177,17 +184,11 @@ def spectrum(model: Model, axial_force: Array, counts: NDArray[np.bool_] | None 
     share = np.ones(rods.count) if counts is None else counts.astype(np.float64)
     tension = share * np.maximum(axial_force, 0.0)
     along, damping = share * rods.stiffness / rods.rest_length, share * rods.damping
-    damped = bool((rods.damping > 0.0).any())
-    stiffness: RodOperator
-    dampers: RodOperator | None
-    if bends(model):
-        ends, of_ends = share[:, None] * rods.end_stiffness, share[:, None] * rods.end_damping
-        width, stiffness = 3, FrameOperator(model, along, ends, tension)
-        dampers = FrameOperator(model, damping, of_ends) if damped or of_ends.any() else None
-    else:
-        width, stiffness = 2, RodOperator(model, along, tension / rods.rest_length)
-        dampers = RodOperator(model, damping) if damped else None
-    if dampers is not None:
+    ends, of_ends = share[:, None] * rods.end_stiffness, share[:, None] * rods.end_damping
+    width = 3 if bends(model) else 2
+    if (rods.damping > 0.0).any() or of_ends.any():
+        dampers = operator_of(model, damping, of_ends)
         decay += 0.5 * largest_eigenvalue(dampers, dampers.rows, dampers.gershgorin(), width)
+    stiffness = operator_of(model, along, ends, tension)
     highest = largest_eigenvalue(stiffness, stiffness.rows, stiffness.gershgorin(), width)
     return Spectrum(math.sqrt(highest), decay)

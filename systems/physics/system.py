@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from pinjoint.components.language import marked
 from pinjoint.components.model import Model
-from pinjoint.components.rod import bends, has_cables, has_plastic_strain
+from pinjoint.components.rod import bends, can_yield, has_cables
 from pinjoint.systems.base import Law
 
 
@@ -19,7 +19,7 @@ class Elasticity(Law):
     adds = ("rods.axial_force",)
 
     def needs(self, model: Model) -> bool:
-        return bool(model.rods.count) and not has_plastic_strain(model)
+        return bool(model.rods.count) and not ElasticityAfterYielding().needs(model)
 
 
 class ElasticityAfterYielding(Law):
@@ -33,7 +33,7 @@ class ElasticityAfterYielding(Law):
     adds = ("rods.axial_force",)
 
     def needs(self, model: Model) -> bool:
-        return bool(model.rods.count) and has_plastic_strain(model)
+        return can_yield(model) or bool(model.rods.plastic_strain.any())
 
 
 class AxialDamping(Law):

@@ -58,12 +58,6 @@ class Tableau:
             "RESULT_X": np.array([row @ self.matrix for row in weights]),
         }
 
-    def growth(self, z: complex) -> complex:
-        """The stability function R(z): y' = λy is multiplied by R(hλ) in a step."""
-        identity = np.eye(len(self.stages))
-        inner = np.linalg.solve(identity - z * self.matrix, np.ones(len(self.stages)))
-        return complex(1.0 + z * (self._row(self.weights) @ inner))
-
 
 # W. Kutta, Zeitschrift für Mathematik und Physik 46 (1901).
 CLASSICAL = Tableau(

@@ -15,9 +15,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pinjoint.components.field import Role
-from pinjoint.components.language import marked, tr
+from pinjoint.components.language import tr
 from pinjoint.components.mistake import Explained
 from pinjoint.components.model import Model
+from pinjoint.components.table import read_only
 from pinjoint.components.wording import is_identifier
 from pinjoint.systems import is_ours
 from pinjoint.systems.base import Commit, Event, Law, StepSystem
@@ -65,20 +66,20 @@ class ProgramError(Explained, ValueError):
 class StepRole(Enum):
     """How the result of a kernel enters a step, in the order in which the kernels follow from each other."""
 
-    PARTICLE_FORCE = marked("adds to the force on a particle")
-    RESISTANCE = marked("adds to the force that resists a particle's motion")
-    PAIR_FORCE = marked("adds to the forces on two particles")
-    PAIR_RESISTANCE = marked("adds to the forces that resist the motion of two particles")
-    LOAD = marked("is the factor of a load")
-    HISTORY = marked("is the history of a rod")
-    SUMMED = marked("adds to the axial force of a rod")
-    REPLACING = marked("replaces the axial force of a rod, which it is given")
-    LATE_HISTORY = marked("is the history of a rod, by its axial force")
-    RATE = marked("adds to the force of a rod's dampers")
-    ENDS = marked("adds to the moments on the ends of a rod")
-    RATE_OF_ENDS = marked("adds to the moments of dampers on the ends of a rod")
-    TURNING = marked("adds to the moment that resists a particle's turning")
-    EVENT = marked("stops the run where it changes sign")
+    PARTICLE_FORCE = "adds to the force on a particle"
+    RESISTANCE = "adds to the force that resists a particle's motion"
+    PAIR_FORCE = "adds to the forces on two particles"
+    PAIR_RESISTANCE = "adds to the forces that resist the motion of two particles"
+    LOAD = "is the factor of a load"
+    HISTORY = "is the history of a rod"
+    SUMMED = "adds to the axial force of a rod"
+    REPLACING = "replaces the axial force of a rod, which it is given"
+    LATE_HISTORY = "is the history of a rod, by its axial force"
+    RATE = "adds to the force of a rod's dampers"
+    ENDS = "adds to the moments on the ends of a rod"
+    RATE_OF_ENDS = "adds to the moments of dampers on the ends of a rod"
+    TURNING = "adds to the moment that resists a particle's turning"
+    EVENT = "stops the run where it changes sign"
 
 
 HISTORIES = (StepRole.HISTORY, StepRole.LATE_HISTORY)
@@ -322,13 +323,6 @@ def shape_given(b: Bound, parameter: str, model: Model) -> tuple[int, ...]:
         table, _, column = parameter.partition("_")
         single, shape = model.tables[table].kind.single, model.tables[table].fields[column].shape
     return (2, *shape) if b.each == "pairs" and not single else shape
-
-
-def read_only(array: NDArray[Any]) -> NDArray[Any]:
-    """A view that kernels cannot write to; the system itself may write to the array between steps."""
-    view = array.view()
-    view.flags.writeable = False
-    return view
 
 
 def check_names(bound: Iterable[Bound]) -> None:

@@ -16,9 +16,6 @@ from pinjoint.systems.program.writer import NO_POWER, POWER_RETURNED, Writer, si
 _AHEAD = 1e-3  # of a step, over which the slope of a margin is taken
 _STEADY = 1e-8  # a margin that changes less in a step is not watched
 
-# Functions that locate events, and what each does with a row.
-LOCATING = (events.mark, events.note), (events.passed, events.look)
-
 
 class ControlledWriter(Writer):
     """Writes step programs whose integrator needs powers at every stage, events and tangents."""
@@ -49,7 +46,7 @@ class ControlledWriter(Writer):
     def _of_steps(self) -> list[str]:
         parts = [self._evaluate(), *([self._remember()] if self.commits else [])]
         if self.branches or self.events:
-            parts += [self._located(*templates) for templates in LOCATING]
+            parts += [self._located(events.mark, events.note), self._located(events.passed, events.look)]
         parts += self._happened()
         return [*parts, self._tangent()] if self.integrator.rod_rows else parts
 

@@ -13,19 +13,19 @@ from pinjoint.systems.interpreter import NoPlainForm, plain_function, rewrite
 from pinjoint.systems.program.binding import PROVIDED, Bound, ProgramError, shape_given
 from pinjoint.systems.program.compiler import Choice, Compile
 
-_RESULTS = {
-    "rods": marked("one number, the axial force (kN)"),
-    "particles": marked("a pair, the force (fx, fy) in kN"),
-    "pairs": marked("a pair, the force (fx, fy) on the first particle in kN"),
-    "potential": marked("one number, the energy of two particles, or of the ends of a rod (kN·m)"),
-    "ends": marked("a pair, the moments on the ends (M_start, M_end) in kN·m"),
-    "rotations": marked("one number, the moment on a particle in kN·m"),
-    "branch": marked("one number, the branch that the rod is on"),
-    "margin": marked("one number, positive while the rod stays on its branch"),
-    "loads": marked("one number, the factor of the load"),
-    "commit": marked("a pair, the new value of the column and the energy dissipated (kN·m)"),
-    "event of rods": marked("one number, whose sign counts"),
-    "event of particles": marked("one number, whose sign counts"),
+_RESULTS = {  # how many numbers, and which
+    "rods": (1, marked("one number, the axial force (kN)")),
+    "particles": (2, marked("a pair, the force (fx, fy) in kN")),
+    "pairs": (2, marked("a pair, the force (fx, fy) on the first particle in kN")),
+    "potential": (1, marked("one number, the energy of two particles, or of the ends of a rod (kN·m)")),
+    "ends": (2, marked("a pair, the moments on the ends (M_start, M_end) in kN·m")),
+    "rotations": (1, marked("one number, the moment on a particle in kN·m")),
+    "branch": (1, marked("one number, the branch that the rod is on")),
+    "margin": (1, marked("one number, positive while the rod stays on its branch")),
+    "loads": (1, marked("one number, the factor of the load")),
+    "commit": (2, marked("a pair, the new value of the column and the energy dissipated (kN·m)")),
+    "event of rods": (1, marked("one number, whose sign counts")),
+    "event of particles": (1, marked("one number, whose sign counts")),
 }
 
 
@@ -53,11 +53,6 @@ def check_plain_forms(bound: Iterable[Bound]) -> None:
                 system=b.system.name,
                 reason=str(reason),
             ) from reason
-
-
-def _count(b: Bound) -> int:
-    """How many numbers a kernel must return."""
-    return 2 if b.purpose in ("particles", "pairs", "commit", "ends") else 1
 
 
 def explain(
@@ -117,13 +112,14 @@ def problem_of(b: Bound, model: Model) -> str:
         )
     from numba import types
 
+    count, wanted = _RESULTS[b.purpose]
     numbers = tuple(getattr(made, "types", (made,)))
-    if len(numbers) != _count(b) or not all(isinstance(n, types.Number | types.Boolean) for n in numbers):
+    if len(numbers) != count or not all(isinstance(n, types.Number | types.Boolean) for n in numbers):
         return tr(
             "The kernel of {system} returns {made}; it must return {wanted}.",
             system=b.system.name,
             made=str(made),
-            wanted=tr(_RESULTS[b.purpose]),
+            wanted=tr(wanted),
         )
     return ""
 

@@ -39,7 +39,6 @@ OBSERVED = {
     "particles": ("applied_force", "reaction", "applied_moment", "reaction_moment"),
     "rods": ("axial_force", "length", "strain", "yielding", "end_moment"),
 }
-_OF_BENDING = "particles.applied_moment", "particles.reaction_moment", "rods.end_moment"
 _GIVEN = {
     "fixed": "particles.fixed",
     "tension": "rods.tension_limit",
@@ -168,7 +167,8 @@ class Program:
             "pair_reach": np.array([0.0, math.inf]),
             "pair_count": np.zeros(1, dtype=np.int64),
             "pair_grid": Grid.empty(0, 1),
-        }  # no list
+            **{name: np.zeros(2, dtype=np.int64) for name in self._writer.columns if name.startswith("block_")},
+        }  # no list, no block
         return [whole.get(name, column[:0]) for name, column in self.columns.items()]
 
     @property
@@ -205,6 +205,7 @@ class Program:
                 extra.update(bind(system, model).stored_arrays)
         written = {w.replace(".", "_", 1): w for b in self._writer.commits for w in b.system.writes}
         extra |= {name: self._storage(path) for name, path in written.items()}
+        extra |= self._arranged(extra)
         self._near = NearPairs(model, [b.cutoff for b in self._writer.pairs]) if self._writer.pairs else None
         extra |= self._near.arrays if self._near is not None else {}
         if self.between is not None:
@@ -342,6 +343,10 @@ class Program:
         """Number of elements of a table that the program holds."""
         return self.model.tables[table].count
 
+    def _arranged(self, given: Mapping[str, Any]) -> dict[str, Any]:
+        """What of the arrays of systems, and of columns, is another by which rows it holds, and in what order."""
+        return {}
+
     def _column(self, path: str) -> Any:
         """A column, "table.field", to read."""
         return self.model.column(path)
@@ -416,7 +421,7 @@ class Program:
 
     def _forget_moments(self) -> None:
         """Nothing bends: no moments are left of when something did."""
-        for path in _OF_BENDING:
+        for path in (*(turns for _, turns in _ACTING), "rods.end_moment"):
             table, _, name = path.partition(".")
             if self.model.tables[table].storage(name).any():
                 self.model.writable(path)[...] = 0.0

@@ -1,7 +1,9 @@
-"""Step programs that hold a part of their model, or all of it in another order."""
+"""Step programs that hold a part of their model, or all of it in blocks that cores share; and which kind a model gets."""
 
 from __future__ import annotations
 
+import os
+import re
 from collections.abc import Mapping, Sequence
 from typing import Any
 
@@ -10,11 +12,31 @@ from numpy.typing import NDArray
 
 from pinjoint.components.field import Column, Role
 from pinjoint.components.model import Model
+from pinjoint.components.table import read_only
 from pinjoint.systems.base import Integrator, StepSystem
-from pinjoint.systems.program.binding import bind, read_only
+from pinjoint.systems.program.binding import bind
 from pinjoint.systems.program.blocks import Layout, Numbers
 from pinjoint.systems.program.program import OBSERVED, Program
-from pinjoint.systems.program.writer import PUSHED
+from pinjoint.systems.program.writer import PUSHED, VERY_MANY, form_of
+
+VARIABLE = "PINJOINT_CORES"  # of the environment
+
+_QUICK = ("omp", "tbb")  # threading layers that start the cores in some microseconds
+_SPINS = "10000"  # some 0.1 ms that a core waits awake: waking it costs as much as a step of 10 000 rods
+_WORTHWHILE = 100_000  # rods from which a layer that takes 50 µs to start the cores is worth it
+_home = os.getpid()
+
+
+def cores() -> int:
+    """Number of cores that a computation may use: by PINJOINT_CORES, else as many as this process may.
+
+    One in a process that was forked, for the threads of its parent are not there.
+    """
+    if os.getpid() != _home:
+        return 1
+    there = len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
+    asked = os.environ.get(VARIABLE, "")
+    return min(max(int(asked), 1), there) if re.fullmatch("[0-9]{1,9}", asked) else there
 
 
 class ReorderedProgram(Program):
@@ -22,6 +44,8 @@ class ReorderedProgram(Program):
 
     moving: which particles it moves, shape (n,); it holds them, their rods and the other ends of these. None: all.
     """
+
+    _versions: tuple[int, int] | None = None
 
     def __init__(
         self,
@@ -40,7 +64,8 @@ class ReorderedProgram(Program):
         self.bind()
 
     def bind(self) -> None:
-        """Take hold of the model's columns: copy them in order."""
+        """Take hold of the model's columns: copy them in order, in blocks if that is its form."""
+        self._block_cores = np.ones(1, dtype=np.int64)
         whole = self._find_layout()
         self.layout = whole if self.moving is None else whole.part(self.moving)
         self._places = {"particles": self.layout.particles, "rods": self.layout.rods}
@@ -50,10 +75,9 @@ class ReorderedProgram(Program):
         self._of_state = [self._held[path] for path in (*self.motion, *written)]
         derived = (f"{table}.{name}" for table, names in OBSERVED.items() for name in names)
         self._derived = [self._held[path] for path in derived if path in self._held]
-        ordered = self.columns | self._of_layout()
-        ordered |= self._of_systems(ordered)
         to_write = {*PUSHED, *(path.replace(".", "_", 1) for path in written)}
-        self._columns = [array if name in to_write else read_only(array) for name, array in ordered.items()]
+        columns = self.columns.items()
+        self._columns = [array if name in to_write else read_only(array) for name, array in columns]
         self._bind_arguments()
         self._held_revision = -1
 
@@ -65,12 +89,14 @@ class ReorderedProgram(Program):
         return particles, rods
 
     def _find_layout(self) -> Layout:
-        """The layout of the whole model."""
-        return Layout.in_order(self.model)
-
-    def _of_layout(self) -> dict[str, Any]:
-        """The columns that follow from the layout."""
-        return {"rods_between": self.layout.ends}
+        """The layout of the whole model; that in blocks is found anew if positions or rods changed."""
+        model = self.model
+        if self.form != VERY_MANY:
+            return Layout.in_order(model)
+        versions = model.particles.version("position"), model.rods.version("between")
+        if versions != self._versions:
+            self._whole, self._versions = Layout.of(model), versions
+        return self._whole
 
     def _rows(self, table: str) -> int:
         return len(self._places[table])
@@ -84,30 +110,36 @@ class ReorderedProgram(Program):
         self._held[path] = own, rows, own[rows]
         return self._held[path][-1]
 
-    def _of_systems(self, columns: Mapping[str, Any]) -> dict[str, Any]:
-        """The arrays of the systems, in order."""
-        ordered: dict[str, Any] = {}
+    def _arranged(self, given: Mapping[str, Any]) -> dict[str, Any]:
+        """The arrays of systems, and what follows from the layout."""
+        arranged: dict[str, Any] = {
+            "rods_between": self.layout.ends,
+            "block_particles": self.layout.first_particle,
+            "block_rods": self.layout.first_rod,
+            "block_cores": self._block_cores,
+        }
         self._of_kernels: list[tuple[Column, Numbers, Column]] = []
         for system in self.systems:
             bound = bind(system, self.model)
             if bound.each == "loads":
-                ordered |= self._loads(bound.prefix, columns)
+                arranged |= self._loads(bound.prefix, given)
                 continue
             rows = self._places[bound.rows]
             for name, array in bound.stored_arrays.items():
-                if name in columns:
-                    ordered[name] = array[rows]
-                    self._of_kernels.append((array, rows, ordered[name]))
-        return ordered
+                if name in self._writer.columns:
+                    arranged[name] = array[rows]
+                    self._of_kernels.append((array, rows, arranged[name]))
+        return arranged
 
-    def _loads(self, prefix: str, ordered: Mapping[str, Any]) -> dict[str, Any]:
-        """The arrays of a law of loads on particles that it holds, in the order of these."""
-        on = self.layout.row[ordered[f"{prefix}_on"]]
+    def _loads(self, prefix: str, given: Mapping[str, Any]) -> dict[str, Any]:
+        """The arrays of a law of loads on particles that it holds, in the order of these; the first load of each block."""
+        on = self.layout.row[given[f"{prefix}_on"]]
         order = np.argsort(on, kind="stable")[np.count_nonzero(on < 0) :]
+        names = [name for part in ("force", "moment", "first") if (name := f"{prefix}_{part}") in given]
         return {
+            f"block_{prefix}": np.searchsorted(on[order], self.layout.first_particle),
             f"{prefix}_on": on[order].astype(np.uint32),
-            f"{prefix}_force": ordered[f"{prefix}_force"][order],
-            f"{prefix}_first": ordered[f"{prefix}_first"][order],
+            **{name: given[name][order] for name in names},
         }
 
     @property
@@ -132,10 +164,26 @@ class ReorderedProgram(Program):
         everywhere[self.layout.particles] = super().unbalanced_moment
         return everywhere
 
+    def _cores(self) -> int:
+        """Number of cores that are worth using; results do not depend on it."""
+        os.environ.setdefault("OMP_WAIT_POLICY", "passive")  # else idle threads spin for milliseconds
+        os.environ.setdefault("GOMP_SPINCOUNT", _SPINS)
+        import numba
+
+        available = min(cores(), int(numba.config.NUMBA_NUM_THREADS))  # type: ignore[attr-defined]
+        if available > 1:
+            numba.set_num_threads(available)
+            layer = numba.threading_layer()  # type: ignore[attr-defined]
+            if layer not in _QUICK and self._rows("rods") < _WORTHWHILE:
+                return 1
+        return available
+
     # --- the copies and the model's columns -----------------------------------------
 
     def _load(self) -> None:
-        """Copy the arrays of systems, and the state if anything but this program changed it."""
+        """Copy the arrays of systems, and the state if anything but this program changed it; see which cores are free."""
+        if self.form == VERY_MANY and self.module.is_loaded:
+            self._block_cores[0] = self._cores()
         changed = self._held_revision != self.model.newest(Role.STATE)
         for own, rows, held in (*self._of_kernels, *(self._of_state if changed else ())):
             np.take(own, rows, axis=0, out=held)
@@ -152,3 +200,20 @@ class ReorderedProgram(Program):
         super()._observe()
         for own, rows, held in self._derived:
             own[rows] = held
+
+
+def make_program(
+    model: Model,
+    systems: Sequence[StepSystem],
+    integrator: Integrator,
+    form: str = "",
+    moving: NDArray[np.bool_] | None = None,
+) -> Program:
+    """The step program of a plan, in the form that suits the model or in another one.
+
+    moving: which particles it moves, as in ReorderedProgram; None: all.
+    """
+    form = form or form_of(model, integrator, systems)
+    if form == VERY_MANY or moving is not None:
+        return ReorderedProgram(model, systems, integrator, form, moving)
+    return Program(model, systems, integrator, form)

@@ -45,7 +45,6 @@ from pinjoint.systems.program.templates import (
     fixed_steps,
     forces,
     observing,
-    pairs,
     rods,
     steps,
 )
@@ -119,16 +118,13 @@ entered = entry(_nrt={may_allocate})
 '''
 
 
-TRAITS = {
-    "warm": is_warm,
-    "bends": bends,
-    "loaded": bears_between,
-}  # of a whole model, that its program follows from
+_TRAITS = {"warm": is_warm, "bends": bends, "loaded": bears_between}  # of a whole model
 
 
-def traits_of(model: Model) -> list[str]:
-    """The traits that a model has."""
-    return [name for name, has in TRAITS.items() if has(model)]
+def kind_of(model: Model, integrator: Integrator, systems: Sequence[StepSystem]) -> tuple[str, ...]:
+    """What says which program a plan gets: integrator, form, traits of the model, systems."""
+    traits = " ".join(name for name, has in _TRAITS.items() if has(model))
+    return integrator.key, form_of(model, integrator, systems), traits, *(system.name for system in systems)
 
 
 def form_of(model: Model, integrator: Integrator, systems: Iterable[StepSystem] = ()) -> str:
@@ -154,8 +150,7 @@ class Writer:
         self.model = model
         self.form = form
         self.integrator = integrator
-        traits = traits_of(model)
-        self.warm, self.bends, self.loaded = (trait in traits for trait in TRAITS)
+        self.warm, self.bends, self.loaded = (has(model) for has in _TRAITS.values())
         self.coordinates = 3 if self.bends else 2
         self.collides = any(system.impulsive for system in systems)
         self.shift = {f"s{d}": f"displacement[b, {i}] - displacement[a, {i}]" for i, d in enumerate("xy")}
@@ -423,7 +418,7 @@ class Writer:
         laws: list[str] = []
         for b, own in lines:
             laws += [f"if squared < pair_reach[{2 + self.pairs.index(b)}]:", *indented(own)] if own else []
-        return self.lines(pairs.each_pair, laws=laws) if laws else []
+        return self.lines(forces.each_pair, laws=laws) if laws else []
 
     def _pair_forces(self, b: Bound, powers: bool) -> list[str]:
         """Lines that add the force of a law to those on both particles."""
@@ -655,9 +650,11 @@ class Writer:
         return []
 
     def _particles(self, where: str, span: str = EVERY) -> list[str]:
-        """A loop in which the integrator moves every particle."""
+        """A loop in which the integrator moves every particle; none where it has nothing to do."""
+        if not where:
+            return []
         lines = self.lines(find(where, self.integrator), total_force=self.lines(fixed_steps.total_force))
-        return [f"for i in range({span}):", *indented(lines)] if lines else []
+        return [f"for i in range({span}):", *indented(lines)]
 
     def _gains(self, resist: str, given: str) -> list[str]:
         """The lines by which each account gains in the step that ends here."""

@@ -122,7 +122,10 @@ class Canvas:
     # --- symbols and texts ---------------------------------------------------------------------------
 
     def _stamps(self, surface: pygame.Surface, mark: Stamps) -> None:
-        fine = np.floor(mark.at * _PHASES + 0.5).astype(np.int64)
+        at = np.clip(
+            mark.at, -1e6, 1e6
+        )  # pixels; so far away it is not seen, and can be counted in whole numbers
+        fine = np.floor(at * _PHASES + 0.5).astype(np.int64)
         whole, phase = np.divmod(fine, _PHASES)
         pairs = []
         for (x, y), (px, py) in zip(whole.tolist(), phase.tolist(), strict=True):

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import json
 import math
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from functools import cache, lru_cache
 from importlib.resources import files
 from typing import Any, TypeVar
@@ -74,7 +74,8 @@ def fitting(characters: Iterable[str], width: float, size: int, weight: str = "r
     return count
 
 
-def wrapped(text: str, width: float, size: int, weight: str = "regular") -> list[str]:
+@lru_cache(maxsize=2048)  # a form asks for the heights of all that it could explain, several times a frame
+def wrapped(text: str, width: float, size: int, weight: str = "regular") -> tuple[str, ...]:
     """The text in lines no wider than `width`, broken at spaces; a single longer word is shortened."""
     lines: list[str] = []
     for paragraph in text.split("\n"):
@@ -87,7 +88,7 @@ def wrapped(text: str, width: float, size: int, weight: str = "regular") -> list
             else:
                 line = longer
         lines.append(line)
-    return [shortened(line, width, size, weight) for line in lines]
+    return tuple(shortened(line, width, size, weight) for line in lines)
 
 
 def in_rows(items: list[T], each: int) -> list[list[T]]:
@@ -95,8 +96,8 @@ def in_rows(items: list[T], each: int) -> list[list[T]]:
     return [items[first : first + each] for first in range(0, len(items), each)]
 
 
-def at_most(lines: list[str], most: int, width: float, size: int, weight: str = "regular") -> list[str]:
+def at_most(lines: Sequence[str], most: int, width: float, size: int, weight: str = "regular") -> list[str]:
     """The first lines, the last of them ending in an ellipsis if there are more."""
     if len(lines) <= most:
-        return lines
+        return list(lines)
     return [*lines[: most - 1], shortened(" ".join(lines[most - 1 :]), width, size, weight)]

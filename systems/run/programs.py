@@ -7,7 +7,6 @@ from contextlib import ExitStack, contextmanager
 
 from pinjoint.components.language import joined, tr
 from pinjoint.components.model import Model
-from pinjoint.components.rod import bears_between, is_warm
 from pinjoint.components.settings import AUTOMATIC
 from pinjoint.systems.base import Integrator, Law, Phase, StepSystem
 from pinjoint.systems.collision.free.discs import Discs
@@ -18,14 +17,13 @@ from pinjoint.systems.physics.automatic import choose
 from pinjoint.systems.physics.integrators import INTEGRATORS
 from pinjoint.systems.program.binding import ProgramError
 from pinjoint.systems.program.faults import blame_mod
-from pinjoint.systems.program.parallel import make_program
 from pinjoint.systems.program.program import Program
-from pinjoint.systems.program.writer import form_of
+from pinjoint.systems.program.reordered import make_program
+from pinjoint.systems.program.writer import kind_of
 from pinjoint.systems.schedule import Plan, Schedule
 
 FREE_FLIGHT = FreeFlight()
 
-Key = tuple[str, ...]
 Dynamics = Program | Flight  # what moves a model: forces and energies by the systems of its plan
 
 
@@ -44,7 +42,7 @@ class Programs:
         self.collides = False
         self.bindings = 0
         self.compile_seconds = 0.0
-        self._made: dict[Key, Dynamics] = {}
+        self._made: dict[tuple[str, ...], Dynamics] = {}
         self._plan: list[StepSystem] | None = None
         self._integrator: Integrator | None = None
         self._bound: Dynamics | None = None
@@ -235,12 +233,8 @@ class Programs:
             )
             raise ProgramError(message, integrator) from error
 
-    def _key(self, plan: list[StepSystem]) -> Key:
-        # Written only where needed.
-        parts = {"rods.misfit": is_warm, "rods.distributed_force": bears_between}
-        written = (name for name, is_needed in parts.items() if is_needed(self._model))
-        names = (system.name for system in plan)
-        return (*names, self.integrator.name, form_of(self._model, self.integrator, plan), *written)
+    def _key(self, plan: list[StepSystem]) -> tuple[str, ...]:
+        return kind_of(self._model, self.integrator, plan)
 
 
 def _collides(plan: list[StepSystem]) -> bool:

@@ -19,9 +19,8 @@ from pinjoint.systems.collision.system import persistent_contacts
 from pinjoint.systems.entries import ASLEEP
 from pinjoint.systems.islands import IMMOVABLE, Rows, islands
 from pinjoint.systems.physics.rest import Array, Mask, RestMeasure
-from pinjoint.systems.program.parallel import make_program
 from pinjoint.systems.program.program import Program
-from pinjoint.systems.program.reordered import ReorderedProgram
+from pinjoint.systems.program.reordered import ReorderedProgram, make_program
 from pinjoint.systems.run.programs import Dynamics
 
 # Steps between reviews of islands; fewer: asleep sooner, but a review costs as much as ten steps.

@@ -166,15 +166,15 @@ class Sinking:
     """The motion of a structure and discs to rest under a load (n, 2), from a point without contacts.
 
     pairs (k, 2): the discs that are in contact or near it; way, axis, flat: the contacts, as by Discs.axes.
-    lengthened (k,): the share by which contacts are longer than the sum of their radii.
+    lengthened (k,): the share by which contacts are longer than the sum of their radii. scale: the largest load (kN).
     """
 
     def __init__(self, structure: Structure, discs: Discs, load: Array, start: Point, share: float) -> None:
-        scale = structure.largest(load) or 1.0
-        own = scale / CONTACT_STRAIN * discs.is_alone / np.where(discs.is_alone, discs.radius, 1.0)
+        self.scale = structure.largest(load) or 1.0
+        own = self.scale / CONTACT_STRAIN * discs.is_alone / np.where(discs.is_alone, discs.radius, 1.0)
         unknown = np.column_stack([discs.movable, structure.unknown[:, 2:]])
         self.bare = replace(structure, unknown=unknown, own_weight=own)
-        self.discs, self.load, self.stiffness = discs, load, scale / CONTACT_STRAIN
+        self.discs, self.load, self.stiffness = discs, load, self.scale / CONTACT_STRAIN
         self.pairs, self.lengthened = np.zeros((0, 2), dtype=np.intp), np.zeros(0)
         self.way, self.axis, self.flat = discs.axes(start.displacement, self.pairs)
         self.shares = share, share
@@ -196,6 +196,8 @@ class Sinking:
                 if gap <= TOUCHING or (gap >= 0.5 * worst and gap <= NEARLY_TOUCHING):
                     return rested
                 if gap > STIFF:
+                    if self.stiffness * TOUCHING > self.scale:  # what is stiffer is hardly less shortened
+                        break
                     self.stiffness *= STIFFER
                     self._use(self.lengthened)
                 else:

@@ -17,8 +17,7 @@ from numpy.typing import NDArray
 from pinjoint.components.language import joined, marked, tr
 from pinjoint.components.mistake import WrongValue
 from pinjoint.components.model import Model
-from pinjoint.components.suggestions import missing
-from pinjoint.components.wording import cut
+from pinjoint.components.wording import cut, missing
 from pinjoint.systems.statics.equations import AXES, Array, Structure, normalised, upright
 from pinjoint.systems.statics.events import Event
 from pinjoint.systems.statics.explain import describe_motion

@@ -14,7 +14,7 @@ from pinjoint.components.mistake import Explained
 from pinjoint.components.model import Model
 from pinjoint.components.particle import Particle
 from pinjoint.components.rod import Rod, bends, rigid_joints
-from pinjoint.components.suggestions import missing
+from pinjoint.components.wording import missing
 from pinjoint.systems.statics.equations import AXES, Array, Structure
 
 _KEPT = 1e6  # weight of supports against rods when redundants are chosen: rods are released first

@@ -13,7 +13,7 @@ from pinjoint.components.field import ENDS
 from pinjoint.components.language import begun, joined, marked, tr
 from pinjoint.components.model import Model
 from pinjoint.components.rod import rigid_joints
-from pinjoint.components.suggestions import missing
+from pinjoint.components.wording import missing
 from pinjoint.components.world import called
 from pinjoint.systems.statics.equations import ROUND_OFF, Array, Flags, largest
 from pinjoint.systems.statics.events import Event, NoEquilibrium

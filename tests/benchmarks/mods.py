@@ -19,8 +19,8 @@ from pinjoint.systems.base import StepSystem, System
 from pinjoint.systems.catalogue import step_systems
 from pinjoint.systems.physics.integrators import INTEGRATORS
 from pinjoint.systems.physics.system import Drag
-from pinjoint.systems.program.parallel import make_program
 from pinjoint.systems.program.program import Program
+from pinjoint.systems.program.reordered import make_program
 from pinjoint.systems.schedule import Schedule
 from tests.benchmarks.models import lattice
 

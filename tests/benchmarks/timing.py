@@ -10,7 +10,7 @@ import numpy as np
 from pinjoint.components.model import Model
 from pinjoint.systems.catalogue import step_systems
 from pinjoint.systems.physics.integrators import INTEGRATORS
-from pinjoint.systems.program.parallel import VARIABLE, make_program
+from pinjoint.systems.program.reordered import VARIABLE, make_program
 from pinjoint.systems.schedule import Schedule
 
 STEP = 1e-6  # s, stable in all models of benchmarks

@@ -88,6 +88,13 @@ def pressed(window: Window, *keys: str, source: object = "isostatic", theme: str
     return session
 
 
+def shown(session: Session) -> Session:
+    """The pictures that are looked for are read."""
+    while session.busy:
+        session.frame(0.0)
+    return session
+
+
 def _simulation_at_rest(window: Window) -> Session:
     session = opened(window)
     session.settings.displacement_scale = 50.0
@@ -114,9 +121,7 @@ def _load(window: Window) -> Session:
     """Narrowed down to few examples, so that a new one need not change the picture."""
     session = pressed(window, "d")
     session.type("hyperstatic")
-    for _ in session.scenes.active.stages(session)[0][0].tiles:  # type: ignore[union-attr]
-        session.frame(0.0)
-    return session
+    return shown(session)
 
 
 def _drawing_a_force(window: Window) -> Session:

@@ -7,26 +7,21 @@ from pinjoint import Session
 from pinjoint.components.view import Page, Status, View
 from pinjoint.documents import models
 from pinjoint.documents.autosave import Autosave, unkept
-from pinjoint.documents.library import data_apart, data_folder, models_folder
+from pinjoint.documents.library import data_folder, models_folder
 from pinjoint.editor.scenes.form import FormScene
 from pinjoint.editor.scenes.load import Load
 from pinjoint.editor.view_model import COMPILING
-from pinjoint.systems.render.marks import Picture
-from tests.golden.scenes import EMPTY, SCENES, Scene, Window, composed, opened, pictures, pressed
+from tests.golden.scenes import EMPTY, Scene, Window, opened, pressed, shown
+from tests.reference.models import model, particle, rod
 
 LONG_NAME = "a footbridge of the second term, with its handrail"
 SENTENCE = "Rod BC of the upper chord yields in compression at 96.3 % of the load."
 
 
-MEMBER = {
-    "format": "pinjoint model",
-    "version": 1,
-    "particles": [
-        {"name": "A", "position": [0, 0], "fixed": [True, True], "fixed_rotation": True},
-        {"name": "B", "position": [4, 0]},
-    ],
-    "rods": [{"name": "AB", "between": ["A", "B"], "section": "IPE 200", "distributed_force": [0, -5]}],
-}
+MEMBER = model(
+    [particle("A", 0, 0, fixed=[True, True], fixed_rotation=True), particle("B", 4, 0)],
+    [rod("A", "B", section="IPE 200", distributed_force=[0, -5])],
+)
 
 
 def _hinging(window: Window) -> Session:
@@ -50,13 +45,6 @@ def _saved(*names: str) -> None:
     models_folder().mkdir(parents=True, exist_ok=True)
     for name in names:
         models.save(models.load("isostatic"), models_folder() / f"{name}.json")
-
-
-def _shown(session: Session) -> Session:
-    """The pictures that are looked for are read."""
-    while session.busy:
-        session.frame(0.0)
-    return session
 
 
 def _welcome(window: Window) -> Session:
@@ -92,7 +80,7 @@ def _saving(*typed: str) -> Scene:
             session.press("ctrl+a")
             session.type(text)
             session.press("return")
-        return _shown(session)
+        return shown(session)
 
     return scene
 
@@ -103,7 +91,7 @@ def _loading(text: str) -> Scene:
         session = pressed(window, "d")
         session.type(text)
         session.press("return")
-        return _shown(session)
+        return shown(session)
 
     return scene
 
@@ -147,13 +135,6 @@ def _refused(source: object, *names: str) -> Scene:
         return session
 
     return scene
-
-
-def _scrolled(window: Window) -> Session:
-    session = pressed(window, "ctrl+a", "return", source="hyperstatic")
-    for _ in range(60):
-        session.press("wheel down")
-    return session
 
 
 def _noticed(text: str, *, problem: bool = False) -> Scene:
@@ -279,7 +260,6 @@ STATES: dict[str, Scene] = {
         "isostatic", "stiffness", "damping coefficient", "density", select="rods.AB", typed="-"
     ),
     "properties-refused-below": _properties("isostatic", "mass", select="particles.A", typed="-5"),
-    "properties-scrolled": _scrolled,
     "properties-all-refused": _refused("isostatic", "A", "AB"),
     "properties-member": _properties(MEMBER, "section", select="rods.AB", typed="IPE 205"),
     "properties-clamped": _properties(MEMBER, "applied moment", select="particles.A"),
@@ -321,11 +301,3 @@ STATES: dict[str, Scene] = {
         )
     },
 }
-
-
-def seen(name: str, window: Window) -> list[Picture]:
-    """A scene or a state by its name."""
-    if name in SCENES:
-        return pictures(name, window)
-    with data_apart():
-        return composed(STATES[name](window))

@@ -16,7 +16,7 @@ from pinjoint.systems.render.marks import Picture, Points, Strokes, Text
 from pinjoint.systems.render.picture import compose
 from pinjoint.systems.render.theme import faded, load_theme
 from tests.reference.boxes import Box, text_box
-from tests.reference.nearness import Part, distance, near, parts_of
+from tests.reference.nearness import Part, Parts, distance, near, parts_of
 from tests.systems.render.frame_models import FRAMES
 
 LIGHT = load_theme("light")
@@ -100,7 +100,7 @@ def leader(text: Text, picture: Picture) -> Points | None:
     return None
 
 
-def _astray(text: Text, line: Points, own: list[Part], parts: list[Part], within: float) -> Iterator[str]:
+def _astray(text: Text, line: Points, own: list[Part], parts: Parts, within: float) -> Iterator[str]:
     """What is wrong with a value that stands away: on something, or its line leads elsewhere, or across others."""
     end = (*line[1], *line[1])
     if min(distance(end, part) for part in own) > within:

@@ -165,11 +165,13 @@ def untranslated(shown: list[Picture], known: set[str]) -> Iterator[str]:
 
 
 def sizes(name: str, language: str) -> Iterable[str]:
-    """Those in which a scene is read in a language; in English in half of them, in turns, for it costs time."""
+    """Those in which a scene is read in a language; in English, the shortest, in half of the others, in turns."""
     if name in MODELS:
         return ["full HD"]
     if language == "en" and name not in TOOLS:
-        return [size for size in SIZES if size != "full HD"][[*ALL].index(name) % 2 :: 2]
+        return [size for size in SIZES if size not in ("small", "usual", "full HD")][
+            [*ALL].index(name) % 2 :: 2
+        ]
     if language == "pt":
         return ["small"] if name in TOOLS else ["small", "full HD"]
     # of hints a third longer the lower edge of a small window has no room

@@ -1,8 +1,6 @@
-"""Tags against brute force, through deletion and undo: in columns, and in esper where few elements carry them."""
+"""Tags against brute force, through deletion and undo."""
 
 import random
-
-import esper
 
 from pinjoint.components.handle import Handle
 from pinjoint.components.model import Model
@@ -33,9 +31,6 @@ def test_tags_of_a_model_agree_with_brute_force_through_deletion_and_undo() -> N
                 marks[tag].add(particle)
             for tag in tags:
                 assert model.tagged(tag) == [p for p in particles if p.exists and p in marks[tag]]
-            model.activate()
-            found = {handle for _, (handle, _) in esper.get_components(Particle, Hovered)}
-            assert found == {p for p in particles if p.exists and p in marks[Hovered]}
 
 
 def test_only_one_element_at_a_time_is_under_the_pointer() -> None:

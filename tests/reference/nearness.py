@@ -2,6 +2,7 @@
 
 from collections.abc import Iterator
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 
@@ -21,9 +22,20 @@ class Part:
     radius: float = 0.0
 
 
-def parts_of(picture: Picture, theme: Theme) -> list[Part]:
+class Parts(list[Part]):
+    """Several of them, of which those near many boxes are looked for."""
+
+    @cached_property
+    def boxes(self) -> tuple[Points, Points]:
+        """The corners of the boxes around them: the least and the largest x and y, shape (n, 2) each."""
+        low = [part.points.min(axis=0) - part.radius for part in self]
+        high = [part.points.max(axis=0) + part.radius for part in self]
+        return np.reshape(low, (-1, 2)), np.reshape(high, (-1, 2))
+
+
+def parts_of(picture: Picture, theme: Theme) -> Parts:
     """All that is drawn of elements, without ghosts, halos and other hints."""
-    return [part for mark in picture.marks for part in _parts(mark, theme)]
+    return Parts(part for mark in picture.marks for part in _parts(mark, theme))
 
 
 def _parts(mark: object, theme: Theme) -> Iterator[Part]:
@@ -85,12 +97,9 @@ def _meet(low: Points, high: Points, points: Points) -> bool:
     return not bool(parted.any())
 
 
-def near(box: Box, parts: list[Part], within: float) -> list[tuple[Part, float]]:
+def near(box: Box, parts: Parts, within: float) -> list[tuple[Part, float]]:
     """The parts at most that far away from a box, with their distances."""
-    if not parts:
-        return []
-    low = np.array([part.points.min(axis=0) - part.radius for part in parts]) - box[2:]
-    high = box[:2] - np.array([part.points.max(axis=0) + part.radius for part in parts])
-    close = np.flatnonzero((np.maximum(low, high) <= within).all(axis=1))
+    low, high = parts.boxes
+    close = np.flatnonzero((np.maximum(low - box[2:], box[:2] - high) <= within).all(axis=1))
     found = [(parts[index], distance(box, parts[index])) for index in close.tolist()]
     return [entry for entry in found if entry[1] <= within]

@@ -109,10 +109,15 @@ def case(number: int) -> Case:
     return Case(number, kind, document, _duration(lot, kind, document))
 
 
-def numbers_of(title: str, count: int, first: int = 0) -> list[int]:
+def numbers_of(title: str, count: int) -> list[int]:
     """The first so many numbers of the models of a kind."""
     row = next(row for row, kind in enumerate(KINDS) if kind.title == title)
-    return [row + len(KINDS) * turn for turn in range(first, first + count)]
+    return [row + len(KINDS) * turn for turn in range(count)]
+
+
+def drawn(title: str, turn: int) -> Case:
+    """One of the models of a kind."""
+    return case(numbers_of(title, turn + 1)[turn])
 
 
 # --- structures ------------------------------------------------------------------------------------------

@@ -7,7 +7,7 @@ import pytest
 from pinjoint import Session
 from pinjoint.components.field import FieldError
 from pinjoint.components.particle import Particle
-from pinjoint.components.wording import cut, printable, quoted
+from pinjoint.components.wording import cut, missing, nearest, printable, quoted
 
 
 def test_what_does_not_print_is_written_out() -> None:
@@ -48,3 +48,21 @@ def test_messages_name_elements_so() -> None:
     with pytest.raises(FieldError) as caught:
         particle.force = nested(900)
     assert len(str(caught.value)) < 300
+
+
+@pytest.mark.parametrize(
+    ("name", "names", "said"),
+    [
+        ("raduis", ["mass", "radius"], "did you mean 'radius'?"),
+        ("b", ["A", "B"], "did you mean 'B'?"),  # capitals do not count
+        ("Q", ["A", "B"], "choose one of A, B."),
+        ("Q", [f"node {n}" for n in range(51)], "there are 51 to choose from."),
+        ("Q", [], "there are none."),
+    ],
+)
+def test_what_is_meant_is_told(name: str, names: list[str], said: str) -> None:
+    assert missing("things", name, names) == f"There is no '{name}' among the things; {said}"
+
+
+def test_nothing_near_is_nothing() -> None:
+    assert nearest("Q", ["A"]) is None

@@ -2,14 +2,12 @@
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
-from hypothesis import strategies as st
 
 from pinjoint import Session
 from tests.benchmarks import differential
 from tests.reference.collisions import Scene, run
 from tests.reference.elements import read
-from tests.reference.random_models import KINDS, Case, case, numbers_of
+from tests.reference.random_models import KINDS, case, drawn, numbers_of
 from tests.reference.transients import Untraceable, follow
 
 IN_MOTION = (
@@ -21,22 +19,15 @@ IN_MOTION = (
 SETTLED = tuple(kind.title for kind in KINDS if not kind.moves)
 
 
-def drawn(title: str, turn: int) -> Case:
-    """A model of a kind."""
-    return case(numbers_of(title, 1, turn)[0])
-
-
+@pytest.mark.parametrize("turn", range(4))
 @pytest.mark.parametrize("title", IN_MOTION)
-@settings(max_examples=4)
-@given(turn=st.integers(0, 10_000))
 def test_default_runs_meet_what_is_promised_and_say_how_exact_they_are(title: str, turn: int) -> None:
     found = differential.examine(drawn(title, turn))
     assert not found.wrong, f"--seed {found.case.number}: {found.wrong}"
 
 
+@pytest.mark.parametrize("turn", range(2))
 @pytest.mark.parametrize("title", SETTLED)
-@settings(max_examples=2)
-@given(turn=st.integers(0, 10_000))
 def test_equilibria_and_curves_are_those_of_an_independent_method(title: str, turn: int) -> None:
     found = differential.examine(drawn(title, turn))
     assert not found.wrong, f"--seed {found.case.number}: {found.wrong}"

@@ -8,7 +8,7 @@ import pytest
 
 from pinjoint import Session
 from pinjoint.documents.document import parse
-from pinjoint.systems.physics.automatic import _of_frame
+from pinjoint.systems.physics.bending import stiffness_matrix
 from pinjoint.systems.physics.spectrum import spectrum
 from tests.reference import frames, models
 
@@ -39,7 +39,7 @@ def test_inertia_of_rotations_spoils_neither_the_first_mode_nor_the_step(
 ) -> None:
     """ω₁ = 1.8751² √(EI/ρL⁴): lumped masses make it less; the highest is hardly above that of the axes, 2 √(EA/ρ)/h."""
     made = parse(cantilever(count, slenderness))
-    values = np.linalg.eigvalsh(_of_frame(made))
+    values = np.linalg.eigvalsh(stiffness_matrix(made, by_mass=True)[0])
     first = 1.8751040687119611**2 * math.sqrt(1000.0 * 1e5 / slenderness**2 / 6.15)
     axial = 2.0 * math.sqrt(1000.0 * 1e5 / 6.15) * count
     assert math.sqrt(values[0]) / first - 1.0 == pytest.approx(error, rel=0.02)

@@ -323,3 +323,14 @@ def test_discs_that_overlap_are_parted() -> None:
     found = settled(model([particle("A", 0, 0), particle("B", 0.03, 0)], []))
     assert found.status == "equilibrium"
     assert found.final.displacement[:, 0] == pytest.approx([-0.035, 0.035], rel=1e-9)
+
+
+def test_a_disc_that_its_guide_holds_in_the_floor_is_in_no_equilibrium(
+    recwarn: pytest.WarningsRecorder,
+) -> None:
+    """However stiff contacts become, until they would be stiffer than numbers can be."""
+    guided = particle("guided", 0, 0.19, radius=0.2, mass=2.0, fixed=[False, True])
+    found = settled(walled([guided], [], ([-1, 0], [1, 0])))
+    assert found.status == "limit reached"
+    assert "No equilibrium of the particles was found" in found.message
+    assert not recwarn.list

@@ -10,7 +10,7 @@ from pinjoint.components.camera import Camera, Viewport
 from pinjoint.components.field import Vector
 from pinjoint.components.form import NAME, NUMBER, WORD, Box, Form, Tile
 from pinjoint.components.language import decimals, english, joined, marked, tr
-from pinjoint.components.suggestions import missing
+from pinjoint.components.wording import missing
 from pinjoint.editor.context import Context, Scene
 from pinjoint.systems.forms import typing
 from pinjoint.systems.render.form import FormLayout, lay_out

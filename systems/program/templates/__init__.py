@@ -43,8 +43,7 @@ rods has branches), COMMITS (something has a history) and those of its integrato
     fixed_steps.py   one step of integrators whose steps are all alike
     runge_kutta.py   one step of integrators that control their steps, by any tableau
     implicit.py      the stages of implicit ones
-    forces.py        forces, history, and what they do per second
-    pairs.py         pairs of particles that are near each other
+    forces.py        forces, also of pairs that are near each other, history, and what they do per second
     rods.py          what is computed of one rod
     events.py        where rods leave the branches of their laws
     observing.py     energies and derived columns of a state

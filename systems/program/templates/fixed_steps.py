@@ -61,10 +61,6 @@ def euler_begins(i, dt, state, predicted, *columns):
             predicted[i, d] = velocity[i, d]
 
 
-def euler_ends(i, dt, state, predicted, *columns):
-    """The step is complete."""
-
-
 def step():
     """A whole step, or the part of one that something ends or interrupts.
 

@@ -15,8 +15,8 @@ from pinjoint.documents.document import parse
 from pinjoint.systems.base import Law
 from pinjoint.systems.kernels import compiled
 from pinjoint.systems.physics.integrators import INTEGRATORS
-from pinjoint.systems.program.parallel import make_program
 from pinjoint.systems.program.program import Program
+from pinjoint.systems.program.reordered import make_program
 from pinjoint.systems.program.writer import FEW, MANY, VERY_MANY
 from tests.reference import frames, models
 

@@ -15,10 +15,10 @@ from pinjoint.commands.options import use_cores_as_asked
 from pinjoint.documents import models
 from pinjoint.systems.edit.pull import Hand
 from pinjoint.systems.program import blocks as layout
-from pinjoint.systems.program import parallel as in_blocks
+from pinjoint.systems.program import reordered as in_blocks
 from pinjoint.systems.program import writer
 from pinjoint.systems.program.blocks import Layout
-from pinjoint.systems.program.parallel import VARIABLE, cores
+from pinjoint.systems.program.reordered import VARIABLE, cores
 from tests.benchmarks.models import lattice
 from tests.reference import bits
 
@@ -165,7 +165,7 @@ def test_a_hand_that_moves_is_followed(small_blocks: None) -> None:
 
 APART = """
 import sys
-from pinjoint.systems.program import parallel as in_blocks
+from pinjoint.systems.program import reordered as in_blocks
 from pinjoint.systems.program import blocks as layout
 from pinjoint.systems.program import writer
 writer.SMALL, writer.BLOCKS_FROM, layout.BLOCK, in_blocks._WORTHWHILE = 0, 1, 12, 0

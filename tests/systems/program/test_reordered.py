@@ -8,10 +8,9 @@ from pinjoint.session import Session
 from pinjoint.systems.catalogue import step_systems
 from pinjoint.systems.physics.integrators import INTEGRATORS
 from pinjoint.systems.program import blocks as layout
-from pinjoint.systems.program import parallel as in_blocks
+from pinjoint.systems.program import reordered as in_blocks
 from pinjoint.systems.program import writer
-from pinjoint.systems.program.parallel import make_program
-from pinjoint.systems.program.reordered import ReorderedProgram
+from pinjoint.systems.program.reordered import ReorderedProgram, make_program
 from pinjoint.systems.schedule import Schedule
 from tests.reference.elements import Model
 from tests.systems.program.test_parallel import net
