@@ -41,6 +41,13 @@ class Rectangle:
         """Left, top, width and height."""
         return self.left, self.top, self.width, self.height
 
+    @property
+    def corners(self) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+        """The top left and the bottom right corner, each (2,)."""
+        return np.array([self.left, self.top], dtype=np.float64), np.array(
+            [self.right, self.bottom], dtype=np.float64
+        )
+
     def contains(self, pixel: Vector) -> bool:
         """True if the pixel lies inside."""
         x, y = pixel

@@ -4,24 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-WIDE, COLUMN, WIDEST, COLUMN_SHARE = (
-    860.0,
-    270.0,
-    380.0,
-    0.27,
-)  # points: from which width on it is a column; its width
-STRIP, HIGHEST, STRIP_SHARE = 132.0, 230.0, 0.38  # points, and share of the height: of a strip below the model
-
-
-@dataclass(frozen=True)
-class CardButton:
-    """A button: the action of a click, its title and the key that does the same. main: the next thing to do."""
-
-    action: str
-    title: str
-    key: str = ""
-    enabled: bool = True
-    main: bool = False
+from pinjoint.components.toolbar import Tool
 
 
 @dataclass(frozen=True)
@@ -31,7 +14,7 @@ class Card:
     title: of the lesson. progress: which task of how many, and done: those that were done. paragraphs: the task.
     choices: (text, chosen) of possible answers, with the action of each in `answers`. entry: what was typed, with its unit;
     None: nothing is to be typed. said: what is said of the last check, or a hint, and its `mood`: "right", "wrong", "hint".
-    first: by how many lines it is scrolled on, or back if negative.
+    buttons: the first is the next thing to do. first: by how many lines it is scrolled on, or back if negative.
     """
 
     title: str
@@ -44,12 +27,5 @@ class Card:
     entry: str | None = None
     said: tuple[str, ...] = ()
     mood: str = ""
-    buttons: tuple[CardButton, ...] = ()
+    buttons: tuple[Tool, ...] = ()
     first: int = 0
-
-
-def share_of(width: int, height: int, unit: float) -> tuple[int, int]:
-    """The pixels that a card takes of a window: of its width, at the right, or of its height, at the bottom."""
-    if width >= WIDE * unit:
-        return round(min(max(COLUMN * unit, COLUMN_SHARE * width), WIDEST * unit)), 0
-    return 0, round(min(max(STRIP * unit, STRIP_SHARE * height), HIGHEST * unit, 0.6 * height))

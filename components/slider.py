@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any, ClassVar
 
@@ -172,8 +171,3 @@ class SliderStack:
             )
             for n, control in enumerate(self.controls[:most])
         ]
-
-
-def under(places: Sequence[Place], pixel: tuple[float, float]) -> Place | None:
-    """The place under a pixel."""
-    return next((place for place in places if place.contains(pixel)), None)

@@ -24,8 +24,8 @@ class Tool:
 
     action: str
     title: str
-    key: str
-    icon: str
+    key: str = ""
+    icon: str = ""
     pressed: bool = False
     enabled: bool = True
 

@@ -17,7 +17,7 @@ from pinjoint.components.card import Card
 from pinjoint.components.field import Vector
 from pinjoint.components.model import Model
 from pinjoint.components.rod import bends
-from pinjoint.components.slider import ARROW, SUPPORT, Place, SliderStack, under
+from pinjoint.components.slider import ARROW, SUPPORT, Place, SliderStack
 from pinjoint.components.toolbar import Menu, Toolbar
 
 CONVENTIONS = TEXTBOOK, THESIS = ("textbook", "thesis")  # of the force method
@@ -30,10 +30,11 @@ BETWEEN = " " * 5  # the steps of a hint
 MARGIN = 110.0  # points around a fitted model, room for supports, diagrams and labels
 ABOVE = 102.0  # points above members that bend, for a legend in two rows and diagrams
 COVERED = 0.75  # of this margin, what arrows and the legend may take
-COLUMN, COLUMN_SHARE, WIDEST_COLUMN = 306.0, 0.34, 340.0  # points, share of the canvas: the column of panels
-SIDE, LEAST_SIDE, SIDE_SHARE = 332.0, 286.0, 0.54  # points, and share of the canvas: boxes to type into
-LEAST_MODEL = 240.0  # points that the model keeps beside them, or they take all
+COLUMN = 310.0  # points: the width of panels, boxes to type into, or a lesson, beside a model
+LEAST_MODEL = 230.0  # points that the model keeps beside boxes, or they take all
 LEAST_BESIDE, LEAST_ABOVE = 520.0, 300.0  # points of a canvas's width or height that is shared with panels
+LEAST_FOR_LESSON = 860.0  # points of a window's width from which on a lesson is a column, else a strip below
+STRIP, STRIP_SHARE = 230.0, 0.4  # points, and share of the height at most, of this strip
 
 
 def magnified(height: float, display: float, chosen: float) -> float:
@@ -45,6 +46,13 @@ def magnified(height: float, display: float, chosen: float) -> float:
     by_itself = max(factor for factor in MAGNIFICATIONS if factor <= fitting)
     by_itself = min(by_itself, max(height / COMFORTABLE_HEIGHT, 1.0))
     return min(by_itself * chosen, max(height / LEAST_HEIGHT, 1.0))
+
+
+def lesson_share(width: int, height: int, unit: float) -> tuple[int, int]:
+    """The pixels that a lesson takes of a window: of its width, at the right, or of its height, at the bottom."""
+    if width >= LEAST_FOR_LESSON * unit:
+        return round(COLUMN * unit), 0
+    return 0, round(min(STRIP_SHARE * height, STRIP * unit))
 
 
 @dataclass(frozen=True)
@@ -328,14 +336,14 @@ class View:
     def beside(self, *, at_left: bool) -> Viewport | None:
         """Where boxes to type into stand beside the model; None where they would leave too little of it."""
         c, u = self.canvas, self.pixel_ratio
-        width = round(min(max(SIDE_SHARE * c.width, LEAST_SIDE * u), SIDE * u))
-        if c.width - width < LEAST_MODEL * u:
+        if c.width < (COLUMN + LEAST_MODEL) * u:
             return None
+        width = round(COLUMN * u)
         return replace(c, left=c.left if at_left else c.left + c.width - width, width=width)
 
     def covers(self, pixel: Vector) -> bool:
         """True if the toolbar, a slider or boxes to type into are at a pixel of the window, not the model."""
-        taken = self.strip.contains(pixel) or under(self.slider_places, pixel) is not None
+        taken = self.strip.contains(pixel) or self.slider_at(pixel) is not None
         return taken or (self.aside is not None and self.aside.contains(pixel))
 
     @property
@@ -347,12 +355,16 @@ class View:
             c if beside else replace(c, height=c.height - panels.height), self.pixel_ratio
         )
 
+    def slider_at(self, pixel: Vector) -> Place | None:
+        """The slider under a pixel."""
+        return next((place for place in self.slider_places if place.contains(pixel)), None)
+
     @property
     def panels(self) -> Viewport:
         """Where panels stand: in a column at the right, if that is too narrow in the lower half, else anywhere."""
         c, u = self.canvas, self.pixel_ratio
         if c.width >= LEAST_BESIDE * u:
-            width = round(min(max(COLUMN * u, COLUMN_SHARE * c.width), WIDEST_COLUMN * u))
+            width = round(COLUMN * u)
             return replace(c, left=c.left + c.width - width, width=width)
         if c.height >= LEAST_ABOVE * u:
             return Viewport(c.left, c.top + c.height // 2, c.width, c.height - c.height // 2)

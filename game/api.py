@@ -100,11 +100,9 @@ from pinjoint.systems.render.marks import Fills as Fills
 from pinjoint.systems.render.marks import Mark as Mark
 from pinjoint.systems.render.marks import Panel as Panel
 from pinjoint.systems.render.marks import Points as Points
-from pinjoint.systems.render.marks import Rectangles as Rectangles
 from pinjoint.systems.render.marks import Stamps as Stamps
 from pinjoint.systems.render.marks import Strokes as Strokes
 from pinjoint.systems.render.marks import Text as Text
-from pinjoint.systems.render.marks import boxes as boxes
 from pinjoint.systems.render.sheet import Sheet as Sheet
 from pinjoint.systems.render.symbols import Part as Part
 from pinjoint.systems.render.theme import Colour as Colour

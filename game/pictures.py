@@ -11,7 +11,7 @@ from typing import Literal
 import numpy as np
 from numpy.typing import NDArray
 
-from pinjoint.components.camera import Camera, Viewport
+from pinjoint.components.camera import Camera, Rectangle, Viewport
 from pinjoint.components.model import Model
 from pinjoint.components.slider import SliderStack
 from pinjoint.components.toolbar import Toolbar
@@ -124,7 +124,7 @@ def frame(
 def plot_png(plot: Plot, path: Path, theme: str = "light", size: Size = (900, 560)) -> None:
     """Draw a plot to a PNG file, without a display. Raises OSError if it cannot be written."""
     colours, unit = load_theme(theme), 1.5
-    box = 16.0 * unit, 8.0 * unit, size[0] - 32.0 * unit, size[1] - 16.0 * unit
+    box = Rectangle(16.0 * unit, 8.0 * unit, size[0] - 32.0 * unit, size[1] - 16.0 * unit)
     marks = draw_plot(plot, box, colours, unit, None)
     picture = Picture(Viewport(0, 0, *size), colours.background, marks)
     models.replace(path, _as_image([picture], size, ".png", clear=False))

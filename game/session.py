@@ -13,7 +13,6 @@ import numpy as np
 import pinjoint.editor.actions
 import pinjoint.lessons.actions  # noqa: F401 (they register them)
 from pinjoint.components.camera import Viewport
-from pinjoint.components.card import share_of
 from pinjoint.components.extensions import EXTENSIONS
 from pinjoint.components.field import FieldError, Vector
 from pinjoint.components.language import begun, joined, listed, marked, tr
@@ -24,7 +23,7 @@ from pinjoint.components.particle import Particle
 from pinjoint.components.rod import Rod
 from pinjoint.components.settings import Environment
 from pinjoint.components.table import Table
-from pinjoint.components.view import View
+from pinjoint.components.view import View, lesson_share
 from pinjoint.components.wording import missing, quoted
 from pinjoint.documents import models
 from pinjoint.documents.format import ModelError
@@ -56,8 +55,6 @@ from pinjoint.systems.input.actions import (
     PAUSE,
     SIMULATION,
     TEXT,
-    help_lines,
-    key_named,
 )
 from pinjoint.systems.run.simulation import Simulation
 from pinjoint.systems.run.system import Time
@@ -389,7 +386,7 @@ class Session(Context):
 
     def offer_tools(self) -> None:
         """Let toolbar, sliders and help show what can be done now; what is not seen stays as it was."""
-        self.view.keys = tuple(help_lines(self.scene)) if self.view.help else ()
+        self.view.keys = tuple(ACTIONS.help_lines(self.scene)) if self.view.help else ()
         if not self.scenes.active.covers(self):
             self.view.toolbar, self.view.sliders = toolbar_of(self), slider_stack(self)
 
@@ -405,7 +402,7 @@ class Session(Context):
 
         Raises ValueError if no key is called so.
         """
-        self.press_named(key_named(key), pixel)
+        self.press_named(ACTIONS.key_named(key), pixel)
 
     def press_named(self, key: str, pixel: Vector | None) -> None:
         """Press a key or button by the name that bindings know it by, or type a text."""
@@ -509,7 +506,9 @@ class Session(Context):
                 largest=LARGEST_RATIO,
             )
         self.extent = width, height
-        taken_right, taken_below = share_of(width, height, pixel_ratio) if self.beside is not None else (0, 0)
+        taken_right, taken_below = (
+            lesson_share(width, height, pixel_ratio) if self.beside is not None else (0, 0)
+        )
         left, top = width - taken_right, height - taken_below
         self.view.camera.viewport, self.view.pixel_ratio = Viewport(0, 0, left, top), pixel_ratio
         if self.beside is not None:

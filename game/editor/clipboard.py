@@ -25,7 +25,7 @@ from pinjoint.documents.facts import document_of
 from pinjoint.documents.format import ModelError
 from pinjoint.documents.models import laid_out
 from pinjoint.systems.edit import Refusal
-from pinjoint.systems.edit.moving import moving_rows
+from pinjoint.systems.edit.placing import moving_rows
 
 
 @dataclass(frozen=True)

@@ -20,7 +20,7 @@ from pinjoint.components.mistake import NotFound, WrongValue
 from pinjoint.components.model import Model
 from pinjoint.components.rod import bends
 from pinjoint.components.settings import NO_DIAGRAMS, Settings
-from pinjoint.components.slider import Place, under
+from pinjoint.components.slider import Place
 from pinjoint.components.tags import Selected
 from pinjoint.components.view import Preview, Readout, View
 from pinjoint.documents import models
@@ -598,7 +598,7 @@ class Context:
     def slider_at(self, pixel: Vector) -> Place | None:
         """The slider at a pixel, of whichever model that the scene shows."""
         models = (view for shown, view in self.scenes.active.stages(self) if isinstance(shown, Model))
-        return next(filter(None, (under(view.slider_places, pixel) for view in models)), None)
+        return next(filter(None, (view.slider_at(pixel) for view in models)), None)
 
     @property
     def pointer(self) -> Vector:

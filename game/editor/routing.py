@@ -5,7 +5,7 @@ from __future__ import annotations
 from pinjoint.components.field import Vector
 from pinjoint.components.view import Hit, Readout
 from pinjoint.editor.context import Context
-from pinjoint.systems.input.actions import FORMS, LIVE, MENU, action_for
+from pinjoint.systems.input.actions import ACTIONS, FORMS, LIVE, MENU
 from pinjoint.systems.render.menu import pointed_at
 from pinjoint.systems.render.picture import hits_at
 from pinjoint.systems.render.sliders import SLIDER
@@ -44,16 +44,16 @@ def meaning(context: Context, key: str, pixel: Vector, hit: Hit | None) -> tuple
         return "close menu", pixel  # the pointer has not moved: what came to lie under it is not meant
     if hit is not None:
         return _pressed(context, key, hit), hit.at or pixel
-    if view.menu is not None and key not in AT_POINTER and (action := action_for(MENU, key)) is not None:
+    if view.menu is not None and key not in AT_POINTER and (action := ACTIONS.name_at(MENU, key)) is not None:
         number = pointed_at(view, load_theme(view.theme), pixel) if key == "return" else -1
         entry = view.menu.entries[number] if number >= 0 else None
         return (entry.action, view.menu.at) if entry is not None and entry.enabled else (action, pixel)
     if view.help and key == "escape":
         return "close help", pixel
     scene = LIVE[0] if for_tools(context, key, pixel) else context.scene
-    found = action_for(scene, key)
+    found = ACTIONS.name_at(scene, key)
     if found is None and key == "double click":  # where it means nothing special, it is another click
-        found = action_for(scene, "click")
+        found = ACTIONS.name_at(scene, "click")
     return found, pixel
 
 

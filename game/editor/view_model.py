@@ -17,7 +17,7 @@ from pinjoint.editor.readouts import own_readouts
 from pinjoint.systems.base import StopReason
 from pinjoint.systems.edit import Refusal
 from pinjoint.systems.forms.results import told
-from pinjoint.systems.input.actions import LIVE, help_lines
+from pinjoint.systems.input.actions import ACTIONS, LIVE
 from pinjoint.systems.render.help import help_pages
 from pinjoint.systems.render.overlays import BAR
 from pinjoint.systems.render.theme import load_theme
@@ -73,7 +73,9 @@ def count_of_pages(context: Context) -> int:
     """How many pages the keys of the active scene take; where view.help is more, the last one is shown."""
     scene, view = context.scenes.active, context.view
     theme = load_theme(view.theme)
-    return len(help_pages(tuple(help_lines(scene.name)), scene.helped(context), view.pixel_ratio, theme))
+    return len(
+        help_pages(tuple(ACTIONS.help_lines(scene.name)), scene.helped(context), view.pixel_ratio, theme)
+    )
 
 
 def _show_readouts(context: Context) -> None:

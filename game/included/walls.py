@@ -12,11 +12,11 @@ from pinjoint.components import CM, Field, FieldError, Handle, Pieces, Selected,
 from pinjoint.components.language import marked
 from pinjoint.components.tags import Hovered
 from pinjoint.mods import App
-from pinjoint.systems.render.clip import bounds, clip_segments
+from pinjoint.systems.render.clip import clip_segments
 from pinjoint.systems.render.labels import Label
-from pinjoint.systems.render.marks import Discs, Mark, Points, Strokes
+from pinjoint.systems.render.marks import Discs, Mark, Points, Rows, Strokes
 from pinjoint.systems.render.occupancy import STRONG
-from pinjoint.systems.render.sheet import Rows, Sheet
+from pinjoint.systems.render.sheet import Sheet
 from pinjoint.systems.render.structure import HALO_OPACITY
 from pinjoint.systems.render.theme import Colour, faded
 from pinjoint.systems.render.values import BACKING, beside, half_sizes
@@ -58,7 +58,7 @@ def draw(sheet: Sheet) -> Iterator[Mark]:
     """Every wall as a thick line, with its name while it is selected or pointed at."""
     walls = sheet.model.tables["walls"]
     ends = sheet.view.camera.to_pixels(np.stack([walls.start, walls.end], axis=1))
-    low, high = bounds(sheet.viewport)
+    low, high = sheet.viewport.corners
     width = WIDTH * sheet.unit
     start, end, rows = clip_segments(ends[:, 0], ends[:, 1], low - 2 * width, high + 2 * width)
     sheet.occupancy.line(start, end, STRONG)

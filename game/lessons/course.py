@@ -6,9 +6,10 @@ import math
 from collections.abc import Sequence
 from typing import Any
 
-from pinjoint.components.card import Card, CardButton
+from pinjoint.components.card import Card
 from pinjoint.components.language import decimals, joined, marked, tr
 from pinjoint.components.mistake import WrongValue
+from pinjoint.components.toolbar import Tool
 from pinjoint.components.view import Shape
 from pinjoint.documents.document import document
 from pinjoint.documents.models import ModelError, load
@@ -322,19 +323,13 @@ class Course:
             return None
         return f"{decimals(self.typed)}{'' if self.accepted else '|'} {self._unit}".rstrip()
 
-    def _buttons(self, *, last: bool) -> tuple[CardButton, ...]:
+    def _buttons(self, *, last: bool) -> tuple[Tool, ...]:
         onward = tr("Next lesson") if last else tr("Next")
-        main = (
-            CardButton("next task", onward, "F5", main=True)
-            if self.accepted
-            else CardButton("check answer", tr("Check"), "F5", main=True)
-        )
-        hint = CardButton("hint", tr("Hint"), "F6", bool(self.task.hints) and not self.accepted)
-        show = CardButton("show solution", tr("Show me"), "F7", not self.accepted)
+        main = ("next task", onward) if self.accepted else ("check answer", tr("Check"))
         return (
-            main,
-            hint,
-            show,
-            CardButton("task again", tr("Again"), "F8"),
-            CardButton("leave lesson", tr("Leave"), "F9"),
+            Tool(*main, "F5"),
+            Tool("hint", tr("Hint"), "F6", enabled=bool(self.task.hints) and not self.accepted),
+            Tool("show solution", tr("Show me"), "F7", enabled=not self.accepted),
+            Tool("task again", tr("Again"), "F8"),
+            Tool("leave lesson", tr("Leave"), "F9"),
         )

@@ -24,7 +24,7 @@ from pinjoint.mods.declared import check
 from pinjoint.mods.guard import Guard, Panel
 from pinjoint.mods.mod import INCLUDED, Mod, ModError
 from pinjoint.systems.base import Integrator, System
-from pinjoint.systems.input.actions import ACTIONS, LIVE, Action, Binding, Perform, key_named
+from pinjoint.systems.input.actions import ACTIONS, LIVE, Action, Binding, Perform
 from pinjoint.systems.physics.integrators import INTEGRATORS
 from pinjoint.systems.render.sheet import Layer
 from pinjoint.systems.render.symbols import Part, check_icon
@@ -294,7 +294,7 @@ class App:
 def _checked_key(key: str) -> str:
     """The name of a key in the bindings. Raises ModError."""
     try:
-        named = key_named(key)
+        named = ACTIONS.key_named(key)
     except ValueError as error:
         names = tr("Keys have names such as 'w', 'ctrl+w', 'page up' or 'f5'.")
         raise ModError(joined([str(error), names])) from None

@@ -16,8 +16,6 @@ from pinjoint.components.view import View
 from pinjoint.systems.base import Phase, System
 from pinjoint.systems.edit.picking import pick
 
-Picked = Callable[[Model, View, Vector], Handle | None]  # what lies under a pixel
-
 
 class Hover(System):
     """Marks the element under the pointer; beside all elements the one that `beside` finds there."""
@@ -30,7 +28,7 @@ class Hover(System):
     unneeded = marked("the model has nothing to point at")
     scenes = ("simulation", "pause", "properties", "force method")
 
-    def __init__(self, beside: Picked = lambda *where: None) -> None:
+    def __init__(self, beside: Callable[[Model, View, Vector], Handle | None] = lambda *where: None) -> None:
         self._beside = beside
         self._looked: Any = None  # context, revision, camera and pointer of the last frame
 

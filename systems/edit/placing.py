@@ -1,21 +1,27 @@
-"""Placing: where new and moved particles lie, on the grid if near it."""
+"""Placing: where new elements lie and others are moved to, on the grid if near it."""
 
 from __future__ import annotations
 
 import math
+from collections.abc import Iterable, Mapping, Sequence
+from typing import Any
 
 import numpy as np
+from numpy.typing import ArrayLike, NDArray
 
 from pinjoint.components.field import Vector
 from pinjoint.components.handle import Handle
 from pinjoint.components.language import begun
 from pinjoint.components.model import Model
 from pinjoint.components.particle import Particle
+from pinjoint.components.table import Table
 from pinjoint.components.view import View, drawn_positions
 from pinjoint.systems.edit import Refusal
 from pinjoint.systems.edit.picking import PARTICLE_REACH, pick_point
 
 SNAP_REACH = 5.0  # points from a grid line
+
+Points = NDArray[np.float64]
 
 
 def snapped(model: Model, view: View, point: Vector) -> Vector:
@@ -40,12 +46,8 @@ def snapped_to_points(model: Model, view: View, pixel: Vector, besides: Handle |
     return snapped(model, view, view.camera.to_model(pixel)) if grip is None else grip.place
 
 
-def resolution(view: View) -> float:
-    """The power of ten (m) that is nearest below a pixel."""
-    return float(10.0 ** -_digits(view))
-
-
 def _digits(view: View) -> int:
+    """Of a power of ten (m), that which is nearest below a pixel."""
     return math.ceil(math.log10(view.camera.scale) - 1e-9)
 
 
@@ -70,3 +72,81 @@ def check_free(model: Model, view: View, point: Vector, besides: list[Particle] 
     if distance[nearest] <= PARTICLE_REACH * view.pixel_ratio:
         name = model.describe(model.particles[nearest])
         raise Refusal("{particle} is here already; choose another place, or zoom in.", particle=begun(name))
+
+
+# --- moving: original positions change, displacements stay as they are ------------------------------------
+
+
+def moving_rows(model: Model, rows: Mapping[str, NDArray[np.intp]]) -> NDArray[np.intp]:
+    """Rows of the particles that move with elements in these rows, by table: those and the ends of rods, ascending."""
+    moves = np.zeros(model.particles.count, dtype=bool)
+    moves[rows["particles"]] = True
+    moves[model.rods.between[rows["rods"]]] = True
+    return np.flatnonzero(moves)
+
+
+class Movable:
+    """The movable parts of elements: particles by original positions, other elements by their points."""
+
+    def __init__(self, model: Model, handles: Iterable[Handle]) -> None:
+        chosen = list(handles)
+        self._model = model
+        self.particles = [model.particles[row] for row in moving_rows(model, model.rows_of(chosen)).tolist()]
+        self.others = [handle for handle in chosen if handle.points]
+        self._groups: list[tuple[Table[Any], Sequence[Handle], str]] = [
+            (model.particles, self.particles, "position")
+        ]
+        for kind in dict.fromkeys(type(handle) for handle in self.others):
+            those = [handle for handle in self.others if type(handle) is kind]
+            self._groups += [(model.tables[kind.table], those, point) for point in kind.points]
+
+    def __len__(self) -> int:
+        return len(self.particles) + len(self.others)
+
+    @property
+    def positions(self) -> Points:
+        """Original positions of the particles and then the points (m), shape (n, 2)."""
+        return np.concatenate(
+            [table.column(point)[rows_of(self._model, handles)] for table, handles, point in self._groups]
+        )
+
+    def index(self, handle: Handle) -> int:
+        """The row of an element (of its first point) in `positions`; 0 for elements that move with others."""
+        row = 0
+        for _, handles, _ in self._groups:
+            if handle in handles:
+                return row + handles.index(handle)
+            row += len(handles)
+        return 0
+
+    def place(self, positions: ArrayLike) -> None:
+        """Give all of them new positions (m), in the order of `positions`.
+
+        Raises FieldError, such as for a rod that would lose its length; then nothing has moved.
+        """
+        wanted = np.asarray(positions, dtype=np.float64)
+        with self._model.transaction("move"):
+            row = 0
+            for _, handles, point in self._groups:
+                self._model.assign(handles, point, wanted[row : row + len(handles)])
+                row += len(handles)
+
+
+def rows_of(model: Model, handles: Sequence[Handle]) -> NDArray[np.int64]:
+    """Rows of existing elements of one kind, each in its table."""
+    rows: NDArray[np.int64] = model.row_of_entity[[handle.entity for handle in handles]]
+    return rows
+
+
+def nudged(model: Model, view: View, positions: ArrayLike, direction: Vector, *, far: bool) -> Points:
+    """Positions (m), shape (n, 2), moved by about a pixel, or (far) by a spacing of the shown grid.
+
+    direction: such as (1, 0). Without a grid, far is ten times as far.
+    """
+    step = np.full(2, 10.0 ** -_digits(view))
+    if far:
+        shown = np.flatnonzero(model.grids.shown)
+        step = model.grids.spacing[shown[-1]] if len(shown) else 10.0 * step
+    moved = np.asarray(positions) + np.multiply(direction, step)
+    tidy: Points = np.array([float(f"{value:.12g}") for value in moved.ravel()]).reshape(moved.shape)
+    return tidy

@@ -19,7 +19,7 @@ from pinjoint.components.section import USUAL_SECTION
 from pinjoint.components.table import flags
 from pinjoint.components.view import drawn_positions
 from pinjoint.systems.edit import Refusal
-from pinjoint.systems.edit.moving import rows_of
+from pinjoint.systems.edit.placing import rows_of
 
 # What members have of their section and material.
 MADE_OF = (

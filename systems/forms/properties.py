@@ -21,7 +21,7 @@ from pinjoint.components.model import Model
 from pinjoint.components.particle import Particle
 from pinjoint.components.rod import Rod, rigid_joints
 from pinjoint.components.settings import Settings
-from pinjoint.systems.forms.typing import YES_NO, select
+from pinjoint.systems.forms.typing import YES_NO, Typing
 
 MIXED = marked("mixed")
 KIND = "kind"  # the part of a history that is its kind
@@ -49,8 +49,6 @@ _APART: Mapping[str, tuple[Field[Any], ...]] = {
 _OF_BENT_RODS = (Rod.hinged, Rod.temperature_gradient, Rod.bending_damping)  # that mean nothing to others
 _NUMBERS = (float, int)
 _EDITABLE = (*_NUMBERS, bool, str)
-
-Content = tuple[str, str]  # text and note of a box
 
 
 @dataclass(frozen=True)
@@ -164,7 +162,7 @@ def refresh(form: Form, model: Model, selected: Sequence[Handle]) -> None:
     if [box.target for box in wanted] != [box.target for box in form.boxes]:  # such as of another history
         form.boxes = wanted
         if before is not None:
-            select(form, next((box for box in wanted if box.target == before.target), None))
+            Typing(form).select(next((box for box in wanted if box.target == before.target), None))
         return
     for box, now in zip(form.boxes, wanted, strict=True):
         box.opened, box.note, box.section = now.opened, now.note, now.section
@@ -198,7 +196,7 @@ def _box(
     subject: Subject,
     field: Field[Any],
     part: str,
-    content: Content,
+    content: tuple[str, str],
     accepts: str,
     words: tuple[str, ...] = (),
 ) -> Box:
@@ -230,7 +228,7 @@ def _words(field: Field[Any]) -> tuple[str, ...]:
 # --- what they contain -------------------------------------------------------------------------------
 
 
-def _content(model: Model, subject: Subject, field: Field[Any], axis: str) -> Content:
+def _content(model: Model, subject: Subject, field: Field[Any], axis: str) -> tuple[str, str]:
     """The text of a box for some elements, and its note: that they differ, or that the value is automatic."""
     table = model.tables[subject.elements[0].table]
     column = table.column(field.name)

@@ -22,141 +22,137 @@ _WITH_UNIT_SO_FAR = re.compile(r"-?(\d+\.?\d*|\.\d+)([eE][+-]?\d+)?( ([^\d\s.,eE
 _IN_NUMBERS = {",": ".", "−": "-", "/": "-"}
 
 
-# --- selecting ---------------------------------------------------------------------------------------
+class Typing:
+    """Typing into the boxes of a form."""
 
+    def __init__(self, form: Form) -> None:
+        self.form = form
 
-def select(form: Form, box: Box | None) -> None:
-    """Select a box, all its text marked; None: select none."""
-    if form.selected is not None:
-        form.selected.marked = False
-    form.selected = box
-    if box is not None:
-        box.held = box.text
-        mark_all(form)
+    def select(self, box: Box | None) -> None:
+        """Select a box, all its text marked; None: select none."""
+        if self.form.selected is not None:
+            self.form.selected.marked = False
+        self.form.selected = box
+        if box is not None:
+            box.held = box.text
+            self.mark_all()
 
+    def restore(self) -> str:
+        """Restore the former text of the selected box, and deselect it; returns the sentence that says what was given up."""
+        box = self.form.selected
+        if box is None:
+            return ""
+        typed = box.text
+        self.put(box, box.held)
+        self.select(None)
+        if typed in ("", box.held):
+            return ""
+        if box.held:
+            told = tr(
+                "“{typed}” was discarded; {title} is still {value}.",
+                typed=typed,
+                title=box.said_title,
+                value=box.held,
+            )
+        else:
+            told = tr("“{typed}” was discarded; {title} is as before.", typed=typed, title=box.said_title)
+        return joined([told, tr("Press Return to accept what you typed.")])
 
-def restore(form: Form) -> str:
-    """Restore the former text of the selected box, and deselect it; returns the sentence that says what was given up."""
-    box = form.selected
-    if box is None:
-        return ""
-    typed = box.text
-    put(form, box, box.held)
-    select(form, None)
-    if typed in ("", box.held):
-        return ""
-    if box.held:
-        told = tr(
-            "“{typed}” was discarded; {title} is still {value}.",
-            typed=typed,
-            title=box.said_title,
-            value=box.held,
+    def accept(self) -> bool:
+        """Deselect the selected box; False if its text is refused, and then it stays selected."""
+        box = self.form.selected
+        if box is not None and box.problem:
+            return False
+        self.select(None)
+        return True
+
+    def move_on(self, by: int) -> None:
+        """Select the next (1) or previous (-1) box, around the ends."""
+        if self.form.boxes:
+            start = (
+                (-1 if by > 0 else 0)
+                if self.form.selected is None
+                else self.form.boxes.index(self.form.selected)
+            )
+            self.select(self.form.boxes[(start + by) % len(self.form.boxes)])
+
+    def write(self, text: str) -> str:
+        """Type characters into the selected box; those that it does not accept are passed over.
+
+        Returns the sentence that says which a box for a number passed over, such as a unit of another size; else "".
+        """
+        box, refused = self.form.selected, ""
+        if box is None:
+            return ""
+        for character in text:
+            entered = _entered(box, character)
+            if entered is not None and len(entered[0]) <= MOST_CHARACTERS:
+                self.put(box, *entered)
+            elif not character.isspace():
+                refused += character
+        if not refused or box.accepts != NUMBER:
+            return ""
+        if box.unit:
+            told = tr(
+                "Type a number in {unit}, such as 2.5 or 1e3, without “{refused}”.",
+                unit=box.unit,
+                refused=cut(refused),
+            )
+        else:
+            told = tr("Type a number, such as 2.5 or 1e3, without “{refused}”.", refused=cut(refused))
+        return joined(
+            [told, *(tr("“{word}” is possible, too.", word=box.said_word(word)) for word in box.words)]
         )
-    else:
-        told = tr("“{typed}” was discarded; {title} is as before.", typed=typed, title=box.said_title)
-    return joined([told, tr("Press Return to accept what you typed.")])
 
+    def erase(self, *, after: bool = False) -> None:
+        """Erase the marked text, or the character before (or after) the caret."""
+        box = self.form.selected
+        if box is None:
+            return
+        text, caret = box.text, box.caret
+        if box.marked or text in box.words:
+            self.put(box, "", 0)
+        elif after:
+            self.put(box, text[:caret] + text[caret + 1 :], caret)
+        elif caret:
+            self.put(box, text[: caret - 1] + text[caret:], caret - 1)
 
-def accept(form: Form) -> bool:
-    """Deselect the selected box; False if its text is refused, and then it stays selected."""
-    box = form.selected
-    if box is not None and box.problem:
-        return False
-    select(form, None)
-    return True
+    def place_caret(self, caret: int) -> None:
+        """Put the caret of the selected box behind a number of characters, and mark nothing."""
+        box = self.form.selected
+        if box is not None:
+            box.caret = min(max(caret, 0), len(box.said_text))
+            box.marked = False
 
+    def step_caret(self, by: int) -> None:
+        """Move the caret by one character, or to the end of the marked text."""
+        box = self.form.selected
+        if box is not None and box.marked:
+            self.place_caret(len(box.said_text) if by > 0 else 0)
+        elif box is not None:
+            self.place_caret(box.caret + by)
 
-def move_on(form: Form, by: int) -> None:
-    """Select the next (1) or previous (-1) box, around the ends."""
-    if form.boxes:
-        start = (-1 if by > 0 else 0) if form.selected is None else form.boxes.index(form.selected)
-        select(form, form.boxes[(start + by) % len(form.boxes)])
+    def mark_all(self) -> None:
+        """Mark all text of the selected box."""
+        box = self.form.selected
+        if box is not None:
+            box.caret = len(box.text)
+            box.marked = True
 
-
-# --- typing ------------------------------------------------------------------------------------------
-
-
-def write(form: Form, text: str) -> str:
-    """Type characters into the selected box; those that it does not accept are passed over.
-
-    Returns the sentence that says which a box for a number passed over, such as a unit of another size; else "".
-    """
-    box, refused = form.selected, ""
-    if box is None:
-        return ""
-    for character in text:
-        entered = _entered(box, character)
-        if entered is not None and len(entered[0]) <= MOST_CHARACTERS:
-            put(form, box, *entered)
-        elif not character.isspace():
-            refused += character
-    if not refused or box.accepts != NUMBER:
-        return ""
-    if box.unit:
-        told = tr(
-            "Type a number in {unit}, such as 2.5 or 1e3, without “{refused}”.",
-            unit=box.unit,
-            refused=cut(refused),
-        )
-    else:
-        told = tr("Type a number, such as 2.5 or 1e3, without “{refused}”.", refused=cut(refused))
-    return joined([told, *(tr("“{word}” is possible, too.", word=box.said_word(word)) for word in box.words)])
-
-
-def erase(form: Form, *, after: bool = False) -> None:
-    """Erase the marked text, or the character before (or after) the caret."""
-    box = form.selected
-    if box is None:
-        return
-    text, caret = box.text, box.caret
-    if box.marked or text in box.words:
-        put(form, box, "", 0)
-    elif after:
-        put(form, box, text[:caret] + text[caret + 1 :], caret)
-    elif caret:
-        put(form, box, text[: caret - 1] + text[caret:], caret - 1)
-
-
-def place_caret(form: Form, caret: int) -> None:
-    """Put the caret of the selected box behind a number of characters, and mark nothing."""
-    box = form.selected
-    if box is not None:
-        box.caret = min(max(caret, 0), len(box.said_text))
-        box.marked = False
-
-
-def step_caret(form: Form, by: int) -> None:
-    """Move the caret by one character, or to the end of the marked text."""
-    box = form.selected
-    if box is not None and box.marked:
-        place_caret(form, len(box.said_text) if by > 0 else 0)
-    elif box is not None:
-        place_caret(form, box.caret + by)
-
-
-def mark_all(form: Form) -> None:
-    """Mark all text of the selected box."""
-    box = form.selected
-    if box is not None:
-        box.caret = len(box.text)
+    def turn_word(self, box: Box, by: int = 1) -> None:
+        """Put the next (or previous) of its words into a box."""
+        words = box.words
+        at = words.index(box.text) if box.text in words else -1 if by > 0 else 0
+        word = words[(at + by) % len(words)]
+        self.put(box, word)
         box.marked = True
 
-
-def turn_word(form: Form, box: Box, by: int = 1) -> None:
-    """Put the next (or previous) of its words into a box."""
-    words = box.words
-    at = words.index(box.text) if box.text in words else -1 if by > 0 else 0
-    word = words[(at + by) % len(words)]
-    put(form, box, word)
-    box.marked = True
-
-
-def put(form: Form, box: Box, text: str, caret: int | None = None) -> None:
-    """Replace all text of a box; caret: behind how many characters it stands, if not at the end."""
-    box.text = text
-    box.caret = len(text) if caret is None else caret
-    box.marked = False
-    box.problem = form.check(box)
+    def put(self, box: Box, text: str, caret: int | None = None) -> None:
+        """Replace all text of a box; caret: behind how many characters it stands, if not at the end."""
+        box.text = text
+        box.caret = len(text) if caret is None else caret
+        box.marked = False
+        box.problem = self.form.check(box)
 
 
 # --- what is accepted --------------------------------------------------------------------------------

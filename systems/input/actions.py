@@ -151,6 +151,41 @@ class Actions(UserDict[str, Action]):
         titles = [binding.title for binding in self[name].bindings]
         self.bind(name, Binding(key, (scene,), (titles or [name])[0]))
 
+    def name_at(self, scene: str, key: str) -> str | None:
+        """The action that a key performs in a scene, or None."""
+        found = self.at(scene, key)
+        return found[0].name if found else None
+
+    def key_named(self, text: str) -> str:
+        """The name that bindings use for a key such as "K", "Esc" or "Ctrl+Z". Raises ValueError if there is no such key.
+
+        Shift with a character is the same key: on some keyboards "+" needs it, on others not.
+        """
+        if text.startswith((TEXT, FILES)):
+            return text
+        name, held = text.lower(), set()
+        while modifier := next((m for m in MODIFIERS if name.startswith(m) and len(name) > len(m)), None):
+            held.add(MODIFIERS[modifier])
+            name = name.removeprefix(modifier)
+        name = ALSO_CALLED.get(name, name)
+        keys = (binding.key for action in self.data.values() for binding in action.bindings if binding.key)
+        known = {key.removeprefix("ctrl+").removeprefix("shift+") for key in keys} | {*UNBOUND}
+        if len(name) != 1 and name not in known:
+            raise ValueError(missing(marked("keys"), text, sorted(key for key in known if len(key) > 1)))
+        if len(name) == 1 and "ctrl+" not in held:
+            held.clear()
+        return "".join(sorted(held)) + name  # ctrl comes before shift
+
+    def help_lines(self, scene: str) -> list[tuple[str, str]]:
+        """(key, title) of all keys of a scene by purpose, in the present language; before those of each, ("", purpose)."""
+        lines: dict[str, list[tuple[str, str]]] = {}
+        for action, binding in self.bound():
+            found = self.at(scene, binding.key)
+            if binding.title and found is not None and found[1] is binding:
+                heading = [("", tr(action.purpose))]
+                lines.setdefault(action.purpose, heading).append((binding.key, tr(binding.title)))
+        return [line for keys in lines.values() for line in keys]
+
 
 ACTIONS = Actions()
 
@@ -177,41 +212,3 @@ def actions_of(purpose: str, scenes: tuple[str, ...] = LIVE, **usual: Any) -> Ca
         return register
 
     return action
-
-
-def action_for(scene: str, key: str) -> str | None:
-    """The action that a key performs in a scene, or None."""
-    found = ACTIONS.at(scene, key)
-    return found[0].name if found else None
-
-
-def key_named(text: str) -> str:
-    """The name that bindings use for a key such as "K", "Esc" or "Ctrl+Z". Raises ValueError if there is no such key.
-
-    Shift with a character is the same key: on some keyboards "+" needs it, on others not.
-    """
-    if text.startswith((TEXT, FILES)):
-        return text
-    name, held = text.lower(), set()
-    while modifier := next((m for m in MODIFIERS if name.startswith(m) and len(name) > len(m)), None):
-        held.add(MODIFIERS[modifier])
-        name = name.removeprefix(modifier)
-    name = ALSO_CALLED.get(name, name)
-    keys = (binding.key for action in ACTIONS.data.values() for binding in action.bindings if binding.key)
-    known = {key.removeprefix("ctrl+").removeprefix("shift+") for key in keys} | {*UNBOUND}
-    if len(name) != 1 and name not in known:
-        raise ValueError(missing(marked("keys"), text, sorted(key for key in known if len(key) > 1)))
-    if len(name) == 1 and "ctrl+" not in held:
-        held.clear()
-    return "".join(sorted(held)) + name  # ctrl comes before shift
-
-
-def help_lines(scene: str) -> list[tuple[str, str]]:
-    """(key, title) of all keys of a scene by purpose, in the present language; before those of each, ("", purpose)."""
-    lines: dict[str, list[tuple[str, str]]] = {}
-    for action, binding in ACTIONS.bound():
-        found = ACTIONS.at(scene, binding.key)
-        if binding.title and found is not None and found[1] is binding:
-            heading = [("", tr(action.purpose))]
-            lines.setdefault(action.purpose, heading).append((binding.key, tr(binding.title)))
-    return [line for keys in lines.values() for line in keys]

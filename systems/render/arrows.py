@@ -14,15 +14,14 @@ from pinjoint.components.model import Model
 from pinjoint.components.rod import nodes
 from pinjoint.components.tags import DiagramShown
 from pinjoint.components.view import View
-from pinjoint.systems.render.clip import bounds, clip_segments
-from pinjoint.systems.render.marks import Fills, Owner, Owners, Points, Strokes
+from pinjoint.systems.render.clip import clip_segments
+from pinjoint.systems.render.marks import Fills, Owner, Owners, Points, Rows, Strokes, Truths, Values
 from pinjoint.systems.render.occupancy import STRONG
-from pinjoint.systems.render.sheet import DIRECTIONS, Rows, Sheet
+from pinjoint.systems.render.sheet import DIRECTIONS, Sheet
 from pinjoint.systems.render.supports import NO_SUPPORT, crowding
 from pinjoint.systems.render.symbols import SUPPORT_DEPTH
 from pinjoint.systems.render.theme import Colour
 from pinjoint.systems.render.values import (
-    BY_ARROW,
     FEW_VALUES,
     FIRST,
     SMALLEST,
@@ -47,9 +46,8 @@ _SHORT_HEAD = 0.65
 _FIELDS = {"load": "particles.applied_force", "reaction": "particles.reaction"}  # what arrows along axes show
 _MANY = 200  # such arrows of a kind, up to which all are drawn, though they may lie over each other
 _SQUARE = 20.0  # points, the side of squares of which each shows one of more arrows
+_BY_ARROW = 5.5  # points between an arrow in a diagram and its value
 _OFF_ARCS = 6.0  # points between the arrow of a moment and that of a force
-
-Values = NDArray[np.float64]
 
 
 def full_load(model: Model) -> Values:
@@ -150,7 +148,7 @@ def _draw_at_rims(
     length: Values,
     colour: Colour,
     name: str,
-    pushes: NDArray[np.bool_] | bool = False,
+    pushes: Truths | bool = False,
 ) -> None:
     """Arrows from the rims of particles outwards, or (pushes) ending there."""
     reach = (sheet.radii[rows] + OFF * sheet.unit)[:, None] * along
@@ -183,7 +181,7 @@ def draw_arrows(
     tip, across = tail + length[:, None] * along, along[:, ::-1] * [-1.0, 1.0]
     head = head_length(length, u)[:, None]
     neck = tip - head * along
-    low, high = bounds(sheet.viewport)
+    low, high = sheet.viewport.corners
     _, _, seen = clip_segments(tail, tip, low - HEAD * u, high + HEAD * u)  # rims may be beyond all pixels
     tail, tip, across, neck, head = tail[seen], tip[seen], across[seen], neck[seen], head[seen]
     sheet.occupancy.line(tail, tip, STRONG, (kind, which[seen]))
@@ -280,7 +278,7 @@ def _arrow_places(
     sheet: Sheet,
     rows: Rows,
     direction: NDArray[np.int64],
-    length: NDArray[np.float64],
+    length: Values,
     sides: NDArray[np.int64],
     taken: NDArray[np.int64],
 ) -> tuple[Points, NDArray[np.int64]]:
@@ -322,7 +320,7 @@ def _write_forces(
     texts = [said(sheet, size, "kN" if few else "") for size in np.abs(value[shown]).tolist()]
     font = sheet.font(12.0 if few else 11.0)
     half, start, end = half_sizes(sheet, texts, font), start[shown], end[shown]
-    places = by_arrows(half, start, end, BY_ARROW * sheet.unit)
+    places = by_arrows(half, start, end, _BY_ARROW * sheet.unit)
     out = (end - start) / np.hypot(*(end - start).T)[:, None]
     colour, ranks = getattr(sheet.theme, name), (FIRST - worth).tolist()
     for k, index in enumerate(shown.tolist()):

@@ -3,22 +3,11 @@
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import NDArray
 
-from pinjoint.components.camera import Viewport
-
-Points = NDArray[np.float64]
+from pinjoint.systems.render.marks import Points, Rows
 
 
-def bounds(viewport: Viewport) -> tuple[Points, Points]:
-    """Top left and bottom right corner in pixels, each (2,)."""
-    low = np.array([viewport.left, viewport.top], dtype=np.float64)
-    return low, low + np.array([viewport.width, viewport.height], dtype=np.float64)
-
-
-def clip_segments(
-    start: Points, end: Points, low: Points, high: Points
-) -> tuple[Points, Points, NDArray[np.intp]]:
+def clip_segments(start: Points, end: Points, low: Points, high: Points) -> tuple[Points, Points, Rows]:
     """The parts of segments, each (n, 2), inside the rectangle from `low` to `high`, and their rows.
 
     Liang and Barsky's method: along start + t (end − start) each side of the rectangle bounds t.
@@ -39,9 +28,7 @@ def clip_segments(
     return origin + t0 * step, origin + t1 * step, rows
 
 
-def clip_rods(
-    points: Points, ends: NDArray[np.intp], low: Points, high: Points
-) -> tuple[Points, Points, NDArray[np.intp]]:
+def clip_rods(points: Points, ends: Rows, low: Points, high: Points) -> tuple[Points, Points, Rows]:
     """clip_segments of the rods between rows `ends` (m, 2) of `points`, where most lie wholly inside or outside.
 
     A point is marked by the sides of the rectangle that it lies beyond. A rod is inside if neither end is

@@ -7,10 +7,10 @@ import numpy as np
 from pinjoint.components.view import Cut
 from pinjoint.systems.broad_phase import distance_to_segments
 from pinjoint.systems.render.arrows import draw_arrows
-from pinjoint.systems.render.marks import Points, Strokes
+from pinjoint.systems.render.marks import Points, Rows, Strokes
 from pinjoint.systems.render.members import draw_arcs
 from pinjoint.systems.render.occupancy import STRONG
-from pinjoint.systems.render.sheet import Rows, Sheet
+from pinjoint.systems.render.sheet import Sheet
 from pinjoint.systems.render.symbols import dashed
 from pinjoint.systems.render.theme import faded
 from pinjoint.systems.render.values import FIRST, half_sizes, off, write

@@ -10,7 +10,6 @@ from dataclasses import dataclass, replace
 from typing import Literal
 
 import numpy as np
-from numpy.typing import NDArray
 
 from pinjoint.components.bent import (
     AXIAL,
@@ -29,13 +28,13 @@ from pinjoint.components.model import Model
 from pinjoint.components.tags import DiagramShown, Selected
 from pinjoint.components.view import MARGIN
 from pinjoint.systems.render.arrows import steady
-from pinjoint.systems.render.clip import bounds, clip_rods
-from pinjoint.systems.render.leaders import ANCHORS
-from pinjoint.systems.render.marks import Bars, Discs, Fills, Points, Strokes
+from pinjoint.systems.render.clip import clip_rods
+from pinjoint.systems.render.labels import ANCHORS
+from pinjoint.systems.render.marks import Bars, Discs, Fills, Points, Rows, Strokes, Truths, Values
 from pinjoint.systems.render.nearness import ranges
 from pinjoint.systems.render.occupancy import FAINT
 from pinjoint.systems.render.overlays import heading_height
-from pinjoint.systems.render.sheet import Rows, Sheet, typical_length
+from pinjoint.systems.render.sheet import Sheet, typical_length
 from pinjoint.systems.render.theme import Colour, faded
 from pinjoint.systems.render.values import (
     FEW_VALUES,
@@ -86,9 +85,6 @@ _SLIDES = (
 )  # between ends, and at one
 _NEAR = 42.0  # points along a rod, or two steps: so far from its end stands a value, but for the last place
 _PLACES = 3  # of values of a rod: start, end, between
-
-Values = NDArray[np.float64]
-Truths = NDArray[np.bool_]
 
 
 @dataclass(frozen=True)
@@ -262,7 +258,7 @@ def _crowding(sheet: Sheet, every: Values, quantity: str, side: Values) -> float
     shares, names = np.linspace(0.0, 1.0, 5), _MEANT[quantity]
     points, normals = _stations(_baseline(sheet, np.arange(len(every))), shares, side)
     explained = (*names, *_BESIDE) if view.legend else ()
-    low, high = bounds(view.room)
+    low, high = view.room.corners
     low[1] += heading_height(view.heading, sheet.viewport.width, sheet.unit, sheet.theme, explained)
     above = normals * values(every, shares)[..., None]
     free = np.maximum(np.where(above < 0.0, points - low, high - points), _LEAST * sheet.unit)
@@ -387,7 +383,7 @@ def _write(sheet: Sheet, diagram: _Diagram) -> None:
     if diagram.is_straight:
         ends = np.arange(2 * len(diagram.rows)).reshape(2, -1).T
         points = np.concatenate([diagram.base.start, diagram.base.end])
-        start, end, seen = clip_rods(points, ends, *bounds(sheet.viewport))
+        start, end, seen = clip_rods(points, ends, *sheet.viewport.corners)
         diagram = diagram.some(seen)
         diagram = replace(diagram, base=replace(diagram.base, start=start, end=end))
     selected = sheet.chosen(sheet.tagged(Selected, "rods"), diagram.rows)
@@ -472,17 +468,17 @@ def _told(sheet: Sheet, diagram: _Diagram) -> tuple[Rows, Rows, Values, Values]:
     )
 
 
-def _continued(sheet: Sheet, rows: Rows, constant: Values, largest: float) -> NDArray[np.bool_]:
+def _continued(sheet: Sheet, rows: Rows, constant: Values, largest: float) -> Truths:
     """Which rods with constant values go on from another one with the same, by a joint of these two only."""
     start, end = sheet.ends[rows].T
     before = np.full(len(sheet.centres), np.nan)
     before[end] = np.abs(constant)
     joined = np.bincount(sheet.ends.ravel(), minlength=len(sheet.centres)) == 2
-    same: NDArray[np.bool_] = joined[start] & (np.abs(before[start] - np.abs(constant)) <= _ALIKE * largest)
+    same: Truths = joined[start] & (np.abs(before[start] - np.abs(constant)) <= _ALIKE * largest)
     return same
 
 
-def _repeated(sheet: Sheet, diagram: _Diagram, ends: Values, largest: float) -> NDArray[np.bool_]:
+def _repeated(sheet: Sheet, diagram: _Diagram, ends: Values, largest: float) -> Truths:
     """Ends of rods whose moment another end at the same joint tells, or that are no extreme of a member, (n, 2)."""
     rows, repeated = diagram.rows, np.zeros(ends.shape, dtype=bool)
     joints = sheet.ends[rows]

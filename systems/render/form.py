@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
 from functools import partial
 from itertools import groupby
 from typing import NamedTuple
@@ -20,7 +19,6 @@ from pinjoint.systems.render.buttons import button, closing
 from pinjoint.systems.render.form_box import bare_box, is_short, titled_box
 from pinjoint.systems.render.help import put_help
 from pinjoint.systems.render.layout import (
-    ALL,
     Column,
     Drawn,
     Gap,
@@ -31,17 +29,17 @@ from pinjoint.systems.render.layout import (
     Scroll,
     Text,
 )
-from pinjoint.systems.render.marks import Mark, Picture, Stamps, boxes
+from pinjoint.systems.render.marks import Mark, Panel, Picture, Stamps
 from pinjoint.systems.render.marks import Text as Written
 from pinjoint.systems.render.theme import Colour, Theme, faded
 from pinjoint.systems.render.thumbnails import thumbnail
-from pinjoint.systems.render.typography import font_size, in_rows, text_width
+from pinjoint.systems.render.typography import ALL, font_size, in_rows, text_width
 
 PROPERTIES = marked("Properties")  # the heading of an element's own boxes, where its results stand above them
 _WIDEST, _EDGE = 1500.0, 16.0  # points that tiles spread over, and around all
 _SECTION, _READING, _GAP = 28.0, 20.0, 10.0  # points: of a heading, of a result, between boxes
 _MOST_READINGS = 0.4  # share of the height that results take without being scrolled
-_NARROW, _NARROWEST = 140.0, 120.0  # points, a box less wide does not share its row; one of a vector
+_NARROW = 120.0  # points: a box less wide does not share its row
 _TILE, _TILE_GAP, _CAPTION, _PROPORTION = (
     172.0,
     16.0,
@@ -70,15 +68,32 @@ class _Line(NamedTuple):
     columns: int = 1
 
 
-@dataclass
-class FormLayout:
-    """Where the parts of a form are: boxes, readings, tiles, and the buttons "close" and "accept".
+def compose_form(form: Form, view: View, theme: Theme) -> Picture:
+    """A form as marks in the pixels of the view's viewport. Reads the form, changes nothing."""
+    v, window = view.aside or view.camera.viewport, view.camera.viewport
+    paper, thin = Paper(view.pixel_ratio, view.pointer), max(round(view.pixel_ratio), 1)
+    sides = [v.left] * (v.left > window.left) + [v.left + v.width - thin] * (v.right < window.right)
+    paper.marks += [Panel(x, v.top, thin, v.height, 0.0, theme.line) for x in sides]
+    FormLayout(form, v, paper, theme, view.status.hint)
+    put_help(paper, view, v, theme)
+    return Picture(v, theme.panel, paper.marks, hits=paper.hits)
 
-    rows: the items of all rows that are scrolled, in sight or not.
+
+class FormLayout:
+    """Places the parts of a form on a paper: what stays at the top, the rows that are scrolled, what stays at the bottom.
+
+    These are boxes, readings, tiles, and the buttons "close" and "accept". lines: all rows, in sight or not.
     """
 
-    paper: Paper
-    rows: list[Sequence[Item]]
+    def __init__(self, form: Form, viewport: Viewport, paper: Paper, theme: Theme, hint: str = "") -> None:
+        self.form, self.v, self.paper, self.theme, self.u = form, viewport, paper, theme, paper.unit
+        self.selected, self.chosen = form.selected, form.chosen
+        self.width = max(min(self.v.width - 2 * _EDGE * self.u, _WIDEST * self.u), 1.0)
+        # it stays, tiles are scrolled
+        self.files = next((box for box in form.boxes if box.target == "name"), None)
+        lines = _tile_lines(form, self.width / self.u) if self.files else _box_lines(form, self.width, self.u)
+        self.lines = list(lines)
+        self._put(hint)
 
     @property
     def places(self) -> list[Hit]:
@@ -93,39 +108,7 @@ class FormLayout:
         """Where a box, tile or button is; None if it is scrolled away."""
         return next((hit for hit in self.paper.hits if hit.item is item), None)
 
-
-def compose_form(form: Form, view: View, theme: Theme) -> Picture:
-    """A form as marks in the pixels of the view's viewport. Reads the form, changes nothing."""
-    v, window = view.aside or view.camera.viewport, view.camera.viewport
-    paper, thin = Paper(view.pixel_ratio, view.pointer), max(round(view.pixel_ratio), 1)
-    sides = [v.left] * (v.left > window.left) + [v.left + v.width - thin] * (v.right < window.right)
-    paper.marks += [boxes(theme.line, (x, v.top, thin, v.height)) for x in sides]
-    _Writer(form, v, paper, theme).put(view.status.hint)
-    put_help(paper, view, v, theme)
-    return Picture(v, theme.panel, paper.marks, hits=paper.hits)
-
-
-def lay_out(form: Form, viewport: Viewport, unit: float, theme: Theme) -> FormLayout:
-    """Where the parts of a form are; nothing is drawn."""
-    writer = _Writer(form, viewport, Paper(unit, draws=False), theme)
-    writer.put("")
-    return FormLayout(writer.paper, [line.items for line in writer.lines])
-
-
-class _Writer:
-    """Makes the trees of one form and places them: what stays at the top, the rows, and what stays at the bottom."""
-
-    def __init__(self, form: Form, viewport: Viewport, paper: Paper, theme: Theme) -> None:
-        self.form, self.v, self.paper, self.theme, self.u = form, viewport, paper, theme, paper.unit
-        self.selected, self.chosen = form.selected, form.chosen
-        self.width = max(min(self.v.width - 2 * _EDGE * self.u, _WIDEST * self.u), 1.0)
-        # it stays, tiles are scrolled
-        self.files = next((box for box in form.boxes if box.target == "name"), None)
-        lines = _tile_lines(form, self.width / self.u) if self.files else _box_lines(form, self.width, self.u)
-        self.lines = list(lines)
-
-    def put(self, hint: str) -> None:
-        """Place all of it."""
+    def _put(self, hint: str) -> None:
         paper, u, v, width, theme = self.paper, self.u, self.v, self.width, self.theme
         left = v.left + (v.width - width) / 2
         sections = [reading.section for reading in self.form.readings]
@@ -302,8 +285,8 @@ def _box_lines(form: Form, width: float, u: float) -> Iterator[_Line]:
     for section, those in groupby(form.boxes, lambda box: box.section):
         own = section == form.heading
         title = PROPERTIES if own and len(form.readings) else "" if own else section
-        for (vector, short), some in groupby(those, lambda box: (box.vector, is_short(box, half, u))):
-            columns = 2 if short and half >= (_NARROWEST if vector else _NARROW) * u else 1
+        for (_, short), some in groupby(those, lambda box: (box.vector, is_short(box, half, u))):
+            columns = 2 if short and half >= _NARROW * u else 1
             for row in in_rows(list(some), columns):
                 yield _Line(title, row, columns)
                 title = ""

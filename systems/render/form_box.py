@@ -9,11 +9,11 @@ import numpy as np
 from pinjoint.components.camera import Rectangle
 from pinjoint.components.form import NAME, NUMBER, WORD, Box, number_and_unit
 from pinjoint.components.language import tr, tr_in
-from pinjoint.systems.render.layout import ALL, Column, Drawn, Gap, Plate, Row, Text
+from pinjoint.systems.render.layout import Column, Drawn, Gap, Plate, Row, Text
 from pinjoint.systems.render.marks import Fills, Mark, Panel
 from pinjoint.systems.render.marks import Text as Written
 from pinjoint.systems.render.theme import Theme, faded
-from pinjoint.systems.render.typography import fitting, font_size, text_width
+from pinjoint.systems.render.typography import ALL, fitting, font_size, text_width
 
 TITLE = 11.5  # points, size of type above and below a box
 _TEXT, _SMALL, _HIGH = 13.0, 11.0, 26.0  # points: type in a box, of its unit and note; its height

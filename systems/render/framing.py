@@ -12,7 +12,7 @@ from pinjoint.components.camera import Viewport
 from pinjoint.components.language import listed, tr
 from pinjoint.components.mistake import WrongValue
 from pinjoint.components.wording import printable
-from pinjoint.systems.render.clip import bounds, clip_segments
+from pinjoint.systems.render.clip import clip_segments
 from pinjoint.systems.render.marks import (
     Bars,
     Discs,
@@ -21,14 +21,12 @@ from pinjoint.systems.render.marks import (
     Owners,
     Panel,
     Points,
-    Rectangles,
     Stamps,
     Strokes,
     Text,
     owners,
 )
 from pinjoint.systems.render.symbols import (
-    LARGEST_STAMP,
     SUPPORT_DEPTH,
     SYMBOLS,
     arc,
@@ -40,6 +38,7 @@ from pinjoint.systems.render.theme import Colour
 from pinjoint.systems.render.typography import WEIGHTS
 
 _MARGIN = 4.0  # pixels around the viewport within which cuts are not seen
+_LARGEST_STAMP = 64.0  # points, greatest radius of a circle drawn as a stamp
 _FAR = 1e7  # pixels; what is larger looks the same
 _FARTHEST = 1e9  # pixels; places beyond it are moved there
 _SHAPES: dict[type, dict[str, tuple[int | None, ...]]] = {  # of a mark's arrays; None: any number
@@ -48,7 +47,6 @@ _SHAPES: dict[type, dict[str, tuple[int | None, ...]]] = {  # of a mark's arrays
     Bars: {"start": (None, 2), "end": (None, 2), "rise": (None, 2)},
     Stamps: {"at": (None, 2)},
     Discs: {"at": (None, 2), "radius": (None,)},
-    Rectangles: {"boxes": (None, 4)},
 }
 _SIZES = {"width", "height", "radius", "size", "unit"}  # what cannot be negative
 _COLOURS = {"colour", "ink", "hollow", "fill", "outline"}
@@ -61,7 +59,7 @@ def framed(mark: Mark, viewport: Viewport, unit: float) -> Iterator[Mark]:
     Raises ValueError if its arrays have other shapes than they should, or a number, colour or symbol is none.
     """
     check_mark(mark)
-    low, high = bounds(viewport)
+    low, high = viewport.corners
     match mark:
         case Strokes():
             width = min(mark.width, 4.0 * float(np.hypot(*(high - low))))
@@ -77,8 +75,6 @@ def framed(mark: Mark, viewport: Viewport, unit: float) -> Iterator[Mark]:
             yield from _stamps(mark, viewport)
         case Discs():
             yield from cut_discs(mark, viewport, unit)
-        case Rectangles():
-            yield replace(mark, boxes=_boxes(mark.boxes, low, high))
         case Panel():
             yield from _panel(mark, low, high)
         case Text():
@@ -149,7 +145,7 @@ def _fills(corners: Points, colour: Colour, viewport: Viewport, of: Owners | Non
     """Polygons, those that stick out of the viewport cut to it."""
     if not corners.size:
         return
-    low, high = bounds(viewport)
+    low, high = viewport.corners
     low, high = low - _MARGIN, high + _MARGIN
     inside = np.asarray(((corners >= low) & (corners <= high)).all(axis=(1, 2)))
     if inside.any():
@@ -184,7 +180,7 @@ def _within(places: Points) -> Points:
 
 def _near(at: Points, reach: float, viewport: Viewport) -> Any:
     """Which of some places (n, 2) lie within a reach of the viewport."""
-    low, high = bounds(viewport)
+    low, high = viewport.corners
     return ((at >= low - reach) & (at <= high + reach)).all(axis=1)
 
 
@@ -197,7 +193,7 @@ def _stamps(mark: Stamps, viewport: Viewport) -> Iterator[Mark]:
     mark = replace(mark, at=mark.at[near], of=owners(mark.of, near))
     if not len(mark.at) or not mark.size or not mark.unit:
         return
-    if reach <= 4.0 * LARGEST_STAMP:
+    if reach <= 4.0 * _LARGEST_STAMP:
         yield mark
         return
     for role, corners in turned_parts(mark):
@@ -207,12 +203,12 @@ def _stamps(mark: Stamps, viewport: Viewport) -> Iterator[Mark]:
 
 def cut_discs(mark: Discs, viewport: Viewport, unit: float) -> Iterator[Mark]:
     """Discs near the viewport; large ones as polygons, of whose rims that part which may be seen."""
-    large = mark.radius > LARGEST_STAMP * unit
-    small = ~large & _near(mark.at, LARGEST_STAMP * unit, viewport)
-    rim = min(mark.rim, LARGEST_STAMP * unit)
+    large = mark.radius > _LARGEST_STAMP * unit
+    small = ~large & _near(mark.at, _LARGEST_STAMP * unit, viewport)
+    rim = min(mark.rim, _LARGEST_STAMP * unit)
     if small.any():
         yield replace(mark, at=mark.at[small], radius=mark.radius[small], rim=rim, of=owners(mark.of, small))
-    low, high = bounds(viewport)
+    low, high = viewport.corners
     for index in np.flatnonzero(large).tolist():
         place, radius, of = mark.at[index], float(mark.radius[index]), owners(mark.of, slice(index, index + 1))
         inner = radius - rim / 2
@@ -224,15 +220,6 @@ def cut_discs(mark: Discs, viewport: Viewport, unit: float) -> Iterator[Mark]:
             overlap = 0.5 * step / np.hypot(*step.T)[:, None]  # pixel, so that joints close
             start, end, _ = clip_segments(line[:-1] - overlap, line[1:] + overlap, low - rim, high + rim)
             yield Strokes(start, end, rim, mark.ink, of and (of[0], np.repeat(of[1], len(start))))
-
-
-def _boxes(boxes: Any, low: Points, high: Points) -> Any:
-    """Rectangles (n, 4), cut to the viewport; those outside are left out."""
-    given = boxes.reshape(-1, 4).astype(np.float64)
-    first = np.maximum(given[:, :2], low)
-    last = np.minimum(given[:, :2] + given[:, 2:], high)
-    seen = (last > first).all(axis=1)
-    return np.concatenate([first, last - first], axis=1)[seen].astype(np.int64)
 
 
 def _panel(mark: Panel, low: Points, high: Points) -> Iterator[Panel]:

@@ -6,7 +6,6 @@ import math
 from collections.abc import Callable
 
 import numpy as np
-from numpy.typing import NDArray
 
 from pinjoint.components import written
 from pinjoint.components.bent import axes
@@ -15,7 +14,7 @@ from pinjoint.components.language import tr
 from pinjoint.systems.broad_phase import distance_to_segments
 from pinjoint.systems.render.arrows import FORCES, OFF, draw_arrows, lengths
 from pinjoint.systems.render.labels import Key
-from pinjoint.systems.render.marks import Owner, Points, Strokes
+from pinjoint.systems.render.marks import Owner, Points, Strokes, Truths, Values
 from pinjoint.systems.render.members import draw_arcs, gaps, write_moment
 from pinjoint.systems.render.occupancy import STRONG
 from pinjoint.systems.render.sheet import Sheet
@@ -58,7 +57,7 @@ def draw_free_bodies(sheet: Sheet) -> None:
         _draw_others(sheet, row, others, largest)
 
 
-def _draw_rods(sheet: Sheet, known: Apart, long: NDArray[np.bool_], largest: float) -> None:
+def _draw_rods(sheet: Sheet, known: Apart, long: Truths, largest: float) -> None:
     """The rods, shortened where they are long enough, and the pairs of forces in the gaps."""
     u, rods, force = sheet.unit, sheet.rods, known.pull
     way = sheet.end - sheet.start
@@ -94,7 +93,7 @@ def _draw_rods(sheet: Sheet, known: Apart, long: NDArray[np.bool_], largest: flo
                 _write(sheet, text, beside, colour, key, ("rods", row), own)
 
 
-def _draw_bodies(sheet: Sheet, start: Points, end: Points, gap: NDArray[np.float64]) -> None:
+def _draw_bodies(sheet: Sheet, start: Points, end: Points, gap: Values) -> None:
     """Rods between points (n, 2), bent ones along their axes; gap: what is left out at both ends, of their length."""
     u, rods = sheet.unit, sheet.rods
     bent = np.zeros(len(rods), dtype=bool)
@@ -114,7 +113,7 @@ def _draw_bodies(sheet: Sheet, start: Points, end: Points, gap: NDArray[np.float
 def _draw_bending(
     sheet: Sheet,
     known: Apart,
-    bearing: NDArray[np.bool_],
+    bearing: Truths,
     rod_ends: tuple[Points, Points],
     along: Points,
     largest: float,

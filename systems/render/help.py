@@ -19,10 +19,10 @@ from pinjoint.components.camera import Rectangle, Viewport
 from pinjoint.components.language import language, tr
 from pinjoint.components.view import Hit, View
 from pinjoint.systems.render.buttons import closing, written_key
-from pinjoint.systems.render.layout import ALL, Column, Gap, Paper, Part, Plate, Row, Text, in_columns, rule
+from pinjoint.systems.render.layout import Column, Gap, Paper, Part, Plate, Row, Text, in_columns, rule
 from pinjoint.systems.render.marks import Fills
 from pinjoint.systems.render.theme import Theme, faded
-from pinjoint.systems.render.typography import in_rows
+from pinjoint.systems.render.typography import ALL, in_rows
 
 _SIZE, _APART = 12.0, 16.5  # points: of its type, and from line to line
 _SIDE, _HEAD, _GAP = 18.0, 46.0, 26.0  # points: around all, the heading, between columns

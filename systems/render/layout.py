@@ -20,9 +20,7 @@ from pinjoint.components.view import Hit
 from pinjoint.systems.render import marks
 from pinjoint.systems.render.marks import Mark, Panel, Stamps
 from pinjoint.systems.render.theme import Colour
-from pinjoint.systems.render.typography import at_most, font_size, line_height, shortened, text_width, wrapped
-
-ALL = 1_000  # lines: as many as a text takes
+from pinjoint.systems.render.typography import font_size, line_height, shortened, text_width, wrapped
 
 
 @dataclass
@@ -121,12 +119,12 @@ class Text(Part):
     def _apart(self, u: float) -> float:
         return self.apart * u or line_height(self.size(u))
 
-    def _lines(self, u: float, width: float) -> list[str]:
+    def _lines(self, u: float, width: float) -> Sequence[str]:
         size = self.size(u, width)
         width += 0.01  # pixels: what is as wide as its place is whole, whatever sums of widths were rounded to
         if self.lines == 1:
             return [shortened(self.text, width, size, self.weight)]
-        return at_most(wrapped(self.text, width, size, self.weight), self.lines, width, size, self.weight)
+        return wrapped(self.text, width, size, self.weight, self.lines)
 
 
 @dataclass(frozen=True)
@@ -152,7 +150,7 @@ def rule(colour: Colour, high: float) -> Drawn:
     """A hairline in the middle of so many points of height."""
     return Drawn(
         lambda at, u: [
-            marks.boxes(colour, (round(at.left), round(at.middle[1]), round(at.width), max(round(u), 1)))
+            Panel(round(at.left), round(at.middle[1]), round(at.width), max(round(u), 1), 0.0, colour)
         ],
         high=high,
         grow=1.0,
@@ -263,7 +261,7 @@ class Scroll(Column):
             width, length = max(round(3.0 * u), 2), max(place.height * shown / len(each), 16.0 * u)
             top = place.top + (place.height - length) * first / (len(each) - shown)
             left = round(place.right + self.beside * u) - width
-            paper.marks.append(marks.boxes(self.bar, (left, round(top), width, round(length))))
+            paper.marks.append(Panel(left, round(top), width, round(length), 0.0, self.bar))
 
 
 def _last_first(heights: Sequence[float], gap: float, room: float) -> int:

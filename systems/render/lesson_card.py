@@ -7,14 +7,15 @@ from functools import partial
 import numpy as np
 
 from pinjoint.components.camera import Rectangle
-from pinjoint.components.card import Card, CardButton
+from pinjoint.components.card import Card
+from pinjoint.components.toolbar import Tool
 from pinjoint.components.view import View
 from pinjoint.systems.render.buttons import button, ink_of
-from pinjoint.systems.render.layout import ALL, Column, Drawn, Gap, Paper, Part, Plate, Row, Scroll, Text
-from pinjoint.systems.render.marks import Mark, Picture, Stamps, Strokes, boxes
+from pinjoint.systems.render.layout import Column, Drawn, Gap, Paper, Part, Plate, Row, Scroll, Text
+from pinjoint.systems.render.marks import Mark, Panel, Picture, Stamps, Strokes
 from pinjoint.systems.render.marks import Text as Written
 from pinjoint.systems.render.theme import Theme, faded
-from pinjoint.systems.render.typography import font_size, wrapped
+from pinjoint.systems.render.typography import ALL, font_size, wrapped
 
 _EDGE, _GAP = 14.0, 8.0  # points: around all, between parts
 _TEXTS = (
@@ -34,12 +35,19 @@ def compose_lesson(card: Card, view: View, theme: Theme) -> Picture:
     v, paper = view.camera.viewport, Paper(view.pixel_ratio, view.pointer)
     u, strip = paper.unit, v.width > 2 * v.height
     thin = max(round(u), 1)
-    paper.marks.append(
-        boxes(theme.line, (v.left, v.top, v.width, thin) if v.left == 0 else (v.left, v.top, thin, v.height))
-    )
+    size = (v.width, thin) if v.left == 0 else (thin, v.height)
+    paper.marks.append(Panel(v.left, v.top, *size, 0.0, theme.line))
     in_rows = card.buttons[:1], card.buttons[1:3], card.buttons[3:]  # the main one alone
     rows = [
-        Row([_button(one, theme) for one in row], 6.0, even=True, high=24.0, grow=1.0) for row in in_rows if row
+        Row(
+            [_button(one, theme, main=one is card.buttons[0]) for one in row],
+            6.0,
+            even=True,
+            high=24.0,
+            grow=1.0,
+        )
+        for row in in_rows
+        if row
     ]
     buttons = Column(rows, 6.0, wide=_BESIDE if strip else 0.0, high=30.0 * len(rows) + 12.0)
     title = Text(card.title, 15.0, theme.text, "semibold", grow=1.0)
@@ -61,11 +69,11 @@ def compose_lesson(card: Card, view: View, theme: Theme) -> Picture:
     return Picture(v, theme.panel, paper.marks, hits=paper.hits)
 
 
-def _button(one: CardButton, theme: Theme) -> Plate:
-    ink = theme.panel if one.main else ink_of(theme, enabled=one.enabled)
+def _button(one: Tool, theme: Theme, *, main: bool) -> Plate:
+    ink = theme.panel if main else ink_of(theme, enabled=one.enabled)
     title = Text(one.title, (13.0, 12.0, 11.0), ink, "semibold", "centre", grow=1.0)
     inside = Row((title, Text(one.key, 11.0, faded(ink, 0.6))), 8.0, (8.0, 0.0, 0.0))
-    return button(inside, one.action, theme, enabled=one.enabled, stands_out=True, main=one.main, inset=0.0)
+    return button(inside, one.action, theme, enabled=one.enabled, stands_out=True, main=main, inset=0.0)
 
 
 def _lines(card: Card, theme: Theme, width: float, u: float, points: float, loose: float) -> list[Part]:

@@ -17,7 +17,10 @@ from pinjoint.components.camera import Rectangle, Viewport
 from pinjoint.components.view import Hit
 from pinjoint.systems.render.theme import Colour
 
-Points = NDArray[np.float64]
+Points = NDArray[np.float64]  # (…, 2)
+Values = NDArray[np.float64]
+Rows = NDArray[np.intp]
+Truths = NDArray[np.bool_]
 Owner = tuple[str, int]  # the table and row of an element
 Owners = tuple[str, NDArray[np.intp]]
 
@@ -96,21 +99,8 @@ class Discs:
     of: Owners | None = None
 
 
-@dataclass(frozen=True)
-class Rectangles:
-    """Upright filled rectangles (n, 4): left, top, width, height in whole pixels."""
-
-    boxes: NDArray[np.int64]
-    colour: Colour
-
-
-def boxes(colour: Colour, *places: tuple[float, float, float, float]) -> Rectangles:
-    """Some rectangles of one colour: left, top, width, height of each, in whole pixels."""
-    return Rectangles(np.array(places, dtype=np.int64), colour)
-
-
 class Panel(NamedTuple):
-    """An upright box with rounded corners and, perhaps, a hairline around it."""
+    """An upright box, perhaps with rounded corners and a hairline around it."""
 
     left: float
     top: float
@@ -147,7 +137,7 @@ def cross(place: Rectangle, unit: float, colour: Colour) -> Strokes:
     return Strokes(start, end, 1.6 * unit, colour)
 
 
-Mark = Strokes | Fills | Bars | Stamps | Discs | Rectangles | Panel | Text
+Mark = Strokes | Fills | Bars | Stamps | Discs | Panel | Text
 
 
 @dataclass

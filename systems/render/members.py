@@ -3,17 +3,16 @@
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import NDArray
 
 from pinjoint.components import written
 from pinjoint.components.bent import axes
 from pinjoint.components.rod import rigid_joints
 from pinjoint.components.tags import DiagramShown
 from pinjoint.systems.render.arrows import MOST, draw_arrows, full_load, head_length
-from pinjoint.systems.render.leaders import ANCHORS
-from pinjoint.systems.render.marks import Discs, Fills, Owners, Points, Strokes
+from pinjoint.systems.render.labels import ANCHORS
+from pinjoint.systems.render.marks import Discs, Fills, Owners, Points, Rows, Strokes, Values
 from pinjoint.systems.render.occupancy import STRONG
-from pinjoint.systems.render.sheet import Rows, Sheet
+from pinjoint.systems.render.sheet import Sheet
 from pinjoint.systems.render.symbols import RIM
 from pinjoint.systems.render.theme import Colour
 from pinjoint.systems.render.values import FIRST, SMALLEST, half_sizes, off, said, write
@@ -29,8 +28,6 @@ _WIDEST_GAP, _GAP_SHARE = 84.0, 0.36  # between a joint and its rod drawn apart:
 _ARC = {"load": 15.0, "reaction": 21.0}  # points, radii of the arrows of moments
 _SWEEP = np.radians(250.0)  # of these arrows
 _PIECES = 20
-
-Values = NDArray[np.float64]
 
 
 def draw_hinges(sheet: Sheet) -> None:

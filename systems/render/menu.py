@@ -13,29 +13,35 @@ from pinjoint.systems.render.layout import Column, Drawn, Gap, Paper, Part, Plat
 from pinjoint.systems.render.marks import Mark, Panel, Strokes
 from pinjoint.systems.render.theme import Colour, Theme, faded
 
-_SIZES = (12.5, 21.0), (11.5, 19.0), (10.0, 16.0), (9.0, 13.0)  # points: type, and from entry to entry
-_LEAST = 200.0  # points across a column where not all have room
+_SIZES = (12.5, 21.0), (11.5, 19.0), (10.0, 16.0)  # points: type, and from entry to entry
 _EDGE = 4.0  # points above, below, and to the edges of the window
 
 
 def put_menu(paper: Paper, view: View, theme: Theme) -> None:
     """The menu that is open in a view; a press beside it closes it.
 
-    Where not all columns have room, those are shown that end with the one that keys have come to.
+    Where not all columns have room, those are shown that end with the one that keys or the wheel have come to.
     """
     menu, window, u = view.menu, view.camera.viewport, view.pixel_ratio
     if menu is None:
         return
     parts, (points, row) = _columns(view, theme)
-    fits = Row([Column(column) for column in parts]).width(u) <= window.width - 2 * _EDGE * u
-    most = len(parts) if fits else max(int(window.width / (_LEAST * u)), 1)
+    widths = [Column(column).width(u) for column in parts]
+    fits = sum(widths) <= window.width - 2 * _EDGE * u
+    wheel = None if fits else ("menu left", "menu right")
+    most = len(parts) if fits else max(int(window.width / max(widths)), 1)
     last = next((n for n, column in enumerate(parts) if menu.chosen in numbers_in(column)), 0)
     first = max(min(last, len(parts) - 1) - most + 1, 0)
     columns = Row([Column(column, grow=1.0) for column in parts[first : first + most]])
     title = [Text(menu.title, points, theme.muted, "semibold")] if menu.title else []
     head = Row(title, around=(10.0, 0.0, 0.0), high=row if title else 0.0)
     whole = Plate(
-        Column((head, columns), around=(0.0, _EDGE, _EDGE)), theme.background, theme.line, radius=6.0, action=""
+        Column((head, columns), around=(0.0, _EDGE, _EDGE)),
+        theme.background,
+        theme.line,
+        radius=6.0,
+        action="",
+        wheel=wheel,
     )
     edge, (x, y) = _EDGE * u, menu.at
     wide = min(whole.width(u), window.width - 2 * edge)
@@ -47,7 +53,7 @@ def put_menu(paper: Paper, view: View, theme: Theme) -> None:
     top = min(max(top, window.top + edge), max(window.bottom - edge - high, window.top))
     placed = Paper(u)
     placed.put(whole, Rectangle(left, top, wide, high))
-    paper.hits += [Hit(*window.box, "close menu", again=True), *placed.hits]
+    paper.hits += [Hit(*window.box, "close menu", wheel=wheel, again=True), *placed.hits]
     now = _pointed_at(view, placed.hits, paper.pointer)
     lit = [
         Panel(hit.left + 3 * u, hit.top, hit.width - 6 * u, hit.height, 4.0 * u, faded(theme.text, opacity))

@@ -10,8 +10,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from pinjoint.components.camera import Viewport
 from pinjoint.systems.broad_phase import distance_to_segments
-from pinjoint.systems.render.clip import bounds
-from pinjoint.systems.render.marks import Owner, Owners, Points
+from pinjoint.systems.render.marks import Owner, Owners, Points, Rows, Truths, Values
 
 LINE, DIAGRAM, SYMBOL = range(3)  # kinds of parts
 NOBODY = -1  # code of what is not there
@@ -24,10 +23,7 @@ _ROWS = 40  # bits of a code that are left for rows
 _FACTOR, _MARGIN = 1.25, 2.0  # by how much, in points, all else is further away than the own element
 _LEAST_MARGIN = 0.1  # points
 
-Numbers = NDArray[np.float64]
 Codes = NDArray[np.int64]
-Indices = NDArray[np.intp]
-Truths = NDArray[np.bool_]
 
 
 @dataclass(frozen=True)
@@ -39,9 +35,9 @@ class Boxes:
 
     middle: Points
     half: Points
-    of: Indices
+    of: Rows
 
-    def some(self, which: Truths | Indices) -> Boxes:
+    def some(self, which: Truths | Rows) -> Boxes:
         return Boxes(self.middle[which], self.half[which], self.of[which])
 
 
@@ -68,12 +64,12 @@ class Parts:
         """Add rectangles on lines from `start` to `end`, `rise` high, each (n, 2)."""
         self._add(of, start, end, rise, np.zeros(len(start)), DIAGRAM)
 
-    def symbols(self, of: Owners, start: Points, end: Points, half: float | Numbers) -> None:
+    def symbols(self, of: Owners, start: Points, end: Points, half: float | Values) -> None:
         """Add arrows and the like, all within `half` of the line from `start` to `end`, a point for circles."""
         wide = np.broadcast_to(np.asarray(half, dtype=np.float64), len(start))
         self._add(of, start, end, np.zeros_like(start), wide, SYMBOL)
 
-    def _add(self, of: Owners, start: Points, end: Points, rise: Points, half: Numbers, kind: int) -> None:
+    def _add(self, of: Owners, start: Points, end: Points, rise: Points, half: Values, kind: int) -> None:
         codes = self.code((of[0], 0)) + np.asarray(of[1], dtype=np.int64)
         self._kept.append(_Bands(start, end, rise, half, codes, np.full(len(start), kind)))
 
@@ -103,7 +99,7 @@ class Parts:
         nearest[some[left[clear]]] = True
         return nearest
 
-    def are_clear(self, boxes: Boxes, own: Codes, kin: Codes, limits: Numbers) -> Truths:
+    def are_clear(self, boxes: Boxes, own: Codes, kin: Codes, limits: Values) -> Truths:
         """For each box whether nothing is as near as `limits` (3, n) in pixels, for lines, diagrams and symbols.
 
         What may be even on it has a negative limit. own, kin: by label, codes of what does not count.
@@ -139,7 +135,7 @@ class Parts:
             )
             near = (np.minimum.reduce(ends) - half <= high) & (np.maximum.reduce(ends) + half >= low)
             found.append(bands.some(finite & near.all(axis=1)))
-        self._squares = _Squares(*bounds(self.viewport), _SIDE * self.unit)
+        self._squares = _Squares(*self.viewport.corners, _SIDE * self.unit)
         if found:
             columns = ([getattr(bands, column.name) for bands in found] for column in fields(_Bands))
             seen = _Bands(*map(np.concatenate, columns))
@@ -148,7 +144,7 @@ class Parts:
             self._outlines = _cut(replace(self._seen, half=np.zeros(len(self._seen.of))), np.inf)
             self._squares.fill(self._pieces)
 
-    def _own_distances(self, boxes: Boxes, own: Codes) -> tuple[Numbers, Numbers]:
+    def _own_distances(self, boxes: Boxes, own: Codes) -> tuple[Values, Values]:
         """From each box to the line of its own element, and to any of its parts, at most; infinite without one."""
         to_any = np.full(len(boxes.of), np.inf)
         if not self._kept or not len(boxes.of):
@@ -175,11 +171,11 @@ class _Bands:
     start: Points
     end: Points
     rise: Points
-    half: Numbers
+    half: Values
     of: Codes
-    kind: Indices
+    kind: Rows
 
-    def some(self, which: Truths | Indices) -> _Bands:
+    def some(self, which: Truths | Rows) -> _Bands:
         return _Bands(*(getattr(self, column.name)[which] for column in fields(self)))
 
 
@@ -193,9 +189,9 @@ class _Pieces:
     middle: Points
     along: Points
     reach: Points
-    half: Numbers
+    half: Values
     of: Codes
-    kind: Indices
+    kind: Rows
     extent: Points
 
 
@@ -215,10 +211,10 @@ def _cut(bands: _Bands, longest: float) -> _Pieces:
     return _Pieces(middle, along, reach, half, bands.of[which], bands.kind[which], extent)
 
 
-def ranges(first: Indices, count: Indices) -> Indices:
+def ranges(first: Rows, count: Rows) -> Rows:
     """The numbers first, first + 1, …, `count` of them, for each of several, one after the other."""
     ends = np.cumsum(count)
-    found: Indices = np.arange(ends[-1] if len(ends) else 0) + np.repeat(first - (ends - count), count)
+    found: Rows = np.arange(ends[-1] if len(ends) else 0) + np.repeat(first - (ends - count), count)
     return found
 
 
@@ -238,11 +234,11 @@ class _Squares:
         self.pieces = np.empty(0, dtype=np.intp)
         self.full = np.zeros(len(self.first) - 1, dtype=bool)
 
-    def _cells(self, points: Points) -> Indices:
+    def _cells(self, points: Points) -> Rows:
         """Column and row of the squares that hold points (n, 2)."""
         return within((points - self.low) / self.side, 0.0, self.size - 1).astype(np.intp)
 
-    def _rows(self, low: Points, high: Points) -> tuple[Indices, Indices, Indices]:
+    def _rows(self, low: Points, high: Points) -> tuple[Rows, Rows, Rows]:
         """Of upright boxes, for each row of squares that they touch: which box, and the first and last square."""
         (left, top), (right, bottom) = self._cells(low).T, self._cells(high).T
         box = np.repeat(np.arange(len(low)), bottom - top + 1)
@@ -258,7 +254,7 @@ class _Squares:
         self.pieces = piece[np.argsort(square, kind="stable")]
         self.first[1:] = np.cumsum(np.bincount(square, minlength=len(self.full)))
 
-    def meeting(self, low: Points, high: Points) -> tuple[Indices, Indices, Truths]:
+    def meeting(self, low: Points, high: Points) -> tuple[Rows, Rows, Truths]:
         """Pairs of upright boxes and pieces that may meet, some more than once; and which boxes touch full squares."""
         box, first, last = self._rows(low, high)
         begin = self.first[first]
@@ -269,7 +265,7 @@ class _Squares:
         return np.repeat(box, count), self.pieces[ranges(begin, count)], full
 
 
-def _are_within(boxes: Boxes, box: Indices, pieces: _Pieces, piece: Indices, limit: Numbers) -> Truths:
+def _are_within(boxes: Boxes, box: Rows, pieces: _Pieces, piece: Rows, limit: Values) -> Truths:
     """For pairs of boxes and pieces, whether they may be no further apart than `limit`.
 
     Their distance is at least that of the rectangles around them, upright or along the piece, of which one is the box
@@ -290,12 +286,12 @@ def _are_within(boxes: Boxes, box: Indices, pieces: _Pieces, piece: Indices, lim
     return within
 
 
-def _to_segments(middle: Points, half: Points, start: Points, end: Points) -> Numbers:
+def _to_segments(middle: Points, half: Points, start: Points, end: Points) -> Values:
     """Distances of upright boxes that meet no segment from segments, pair by pair, (n,)."""
     start, end = start - middle, end - middle
     ends = (np.hypot(*np.maximum(np.abs(point) - half, 0.0).T) for point in (start, end))
     away = np.minimum(*ends)
     for corner in ((1.0, 1.0), (1.0, -1.0), (-1.0, 1.0), (-1.0, -1.0)):
         away = np.minimum(away, distance_to_segments(half * corner, start, end))
-    found: Numbers = away
+    found: Values = away
     return found

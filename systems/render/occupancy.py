@@ -2,12 +2,15 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
+
 import numpy as np
 from numpy.typing import NDArray
 
 from pinjoint.components.camera import Viewport
-from pinjoint.systems.render.marks import Owners, Points
+from pinjoint.systems.render.marks import Mark, Owners, Panel, Points, Rows, Text, Truths, Values
 from pinjoint.systems.render.nearness import NOBODY, Codes, Parts, within
+from pinjoint.systems.render.typography import text_width
 
 FAINT, STRONG = 1, 2  # lines that names never cover; lines that values cover only in need
 _FAR = 1e6  # pixels
@@ -23,7 +26,7 @@ class Occupancy:
         self.viewport = viewport
         self.cell = _CELL * unit
         shape = (int(viewport.height / self.cell) + 1, int(viewport.width / self.cell) + 1)
-        self.taken: NDArray[np.bool_] = np.zeros(shape, dtype=bool)
+        self.taken: Truths = np.zeros(shape, dtype=bool)
         self.lined: NDArray[np.uint8] = np.zeros(shape, dtype=np.uint8)
         self.owner: NDArray[np.int64] = np.full(shape, NOBODY)  # of the last line through each cell
         self.parts = Parts(viewport, unit)
@@ -32,7 +35,17 @@ class Occupancy:
         """Take a rectangle."""
         self.taken[self._cells(left, top, width, height)] = True
 
-    def block_squares(self, centres: Points, half: NDArray[np.float64]) -> None:
+    def block_marks(self, marks: Iterable[Mark]) -> None:
+        """Take the texts among some marks, and the plates on which they stand."""
+        for mark in marks:
+            if isinstance(mark, Panel) and mark.radius:
+                self.block(*mark[:4])
+            elif isinstance(mark, Text):
+                width = text_width(mark.text, mark.size, mark.weight)
+                left = mark.x - {"left": 0.0, "centre": 0.5, "right": 1.0}[mark.anchor] * width
+                self.block(left, mark.y - mark.size / 2, width, mark.size)
+
+    def block_squares(self, centres: Points, half: Values) -> None:
         """Take many squares of half width `half` (n,) about `centres` (n, 2)."""
         cells = self.cells_of(centres - half[:, None], 2.0 * half[:, None])
         for left, top, right, bottom in cells.tolist():
@@ -72,13 +85,13 @@ class Occupancy:
         """Whether a label, a panel or a symbol takes any of a rectangle."""
         return bool(self.taken[self._cells(left, top, width, height)].any())
 
-    def are_free(self, cells: NDArray[np.intp], covering: int) -> NDArray[np.bool_]:
+    def are_free(self, cells: Rows, covering: int) -> Truths:
         """For each box of `cells` (n, 4), whether nothing takes any and no line in it is stronger than `covering`.
 
         A box is covered by four whose sides are powers of two, and what is in those of one size is found by halves.
         """
         left, top, right, bottom = cells.T
-        free: NDArray[np.bool_] = np.ones(len(cells), dtype=bool)
+        free: Truths = np.ones(len(cells), dtype=bool)
         blocked = self.taken | (self.lined > covering)
         wide, tall = (np.frexp(size)[1] - 1 for size in (right - left, bottom - top))  # -1: it is not seen
         for columns in range(wide.max(initial=-1) + 1):
@@ -92,7 +105,7 @@ class Occupancy:
                 free[some] = ~(there[first, high] | there[last, high] | there[first, low] | there[last, low])
         return free
 
-    def may_be_of(self, cells: NDArray[np.intp], *owners: Codes) -> NDArray[np.bool_]:
+    def may_be_of(self, cells: Rows, *owners: Codes) -> Truths:
         """For each box of `cells` (n, 4), False where lines through it are seen to be of others than `owners`, each (n,).
 
         It is tested along the diagonals, which every line that parts the corners crosses.
@@ -111,14 +124,14 @@ class Occupancy:
             possible &= ~strange.any(axis=0)
         return possible
 
-    def cell_of(self, points: Points) -> NDArray[np.intp]:
+    def cell_of(self, points: Points) -> Rows:
         """Rows and columns of the cells that hold points (n, 2)."""
         height, width = self.taken.shape
         cells = (points - [self.viewport.left, self.viewport.top]) / self.cell
-        found: NDArray[np.intp] = within(cells, 0.0, [width - 1, height - 1]).astype(np.intp)[:, ::-1]
+        found: Rows = within(cells, 0.0, [width - 1, height - 1]).astype(np.intp)[:, ::-1]
         return found
 
-    def cells_of(self, corners: Points, sizes: Points) -> NDArray[np.intp]:
+    def cells_of(self, corners: Points, sizes: Points) -> Rows:
         """First column and row, and those after the last, that boxes touch, shape (n, 4), within the picture."""
         height, width = self.taken.shape
         corners = corners - [self.viewport.left, self.viewport.top]
@@ -134,7 +147,7 @@ class Occupancy:
         return slice(max(int(y / self.cell), 0), max(int((y + height) / self.cell) + 1, 0)), columns
 
 
-def _doubled(blocked: NDArray[np.bool_], power: int) -> NDArray[np.bool_]:
+def _doubled(blocked: Truths, power: int) -> Truths:
     """Whether something is in the 2 ** power cells of a row from each on, which is known of half as many."""
     half = 1 << power >> 1
     return blocked[:, :-half] | blocked[:, half:] if half else blocked

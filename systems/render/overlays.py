@@ -12,15 +12,15 @@ from pinjoint.components import written
 from pinjoint.components.camera import Rectangle, Viewport
 from pinjoint.components.language import begun, marked, plural, tr
 from pinjoint.components.round_numbers import round_down
-from pinjoint.components.view import BETWEEN
+from pinjoint.components.view import BETWEEN, LEAST_MODEL
 from pinjoint.systems.render import marks
-from pinjoint.systems.render.layout import ALL, Column, Drawn, Gap, Paper, Part, Plate, Row, Text, icon
-from pinjoint.systems.render.marks import Mark, Panel, Stamps, Strokes, boxes
+from pinjoint.systems.render.layout import Column, Drawn, Gap, Paper, Part, Plate, Row, Text, icon
+from pinjoint.systems.render.marks import Mark, Panel, Stamps, Strokes
 from pinjoint.systems.render.sheet import Sheet
 from pinjoint.systems.render.structure import HALO_OPACITY
 from pinjoint.systems.render.symbols import dashed
 from pinjoint.systems.render.theme import Colour, Theme, faded
-from pinjoint.systems.render.typography import font_size, line_height, text_width, wrapped
+from pinjoint.systems.render.typography import ALL, font_size, line_height, text_width, wrapped
 from pinjoint.systems.render.utilisation import scale_bar
 
 EDGE = 14.0  # points between overlays and the edges of the viewport
@@ -44,20 +44,10 @@ def draw_overlays(sheet: Sheet) -> tuple[list[Mark], tuple[float, float]]:
         lines = text.height(u, room)
         heading.put(text, Rectangle(v.left + EDGE * u, v.top + 9.0 * u, room, lines))
         right, top = v.left + EDGE * u + min(text.width(u), room), v.top + (EDGE - 4.0) * u + lines
-    _block(sheet, heading)
+    sheet.occupancy.block_marks(heading.marks)
     legend, below = _legend(sheet, right, top)
     caption, below = _caption(sheet, top, below)
     return status + heading.marks + legend + caption, (below, bottom)
-
-
-def _block(sheet: Sheet, paper: Paper) -> None:
-    """Keep labels off the texts and plates on a paper."""
-    for mark in paper.marks:
-        if isinstance(mark, Panel):
-            sheet.occupancy.block(mark.left, mark.top, mark.width, mark.height)
-        elif isinstance(mark, marks.Text):
-            width = text_width(mark.text, mark.size, mark.weight)
-            sheet.occupancy.block(mark.x, mark.y - mark.size / 2, width, mark.size)
 
 
 # --- the status bar --------------------------------------------------------------------------------
@@ -73,11 +63,11 @@ def _status_bar(sheet: Sheet) -> tuple[list[Mark], float]:
         return [], float(v.bottom)
     top, thin = round(v.bottom - BAR * u), max(round(u), 1)
     sheet.occupancy.block(v.left, top, v.width, BAR * u)
-    bar = (
-        boxes(theme.panel, (v.left, top, v.width, v.bottom - top)),
-        boxes(theme.line, (v.left, top, v.width, thin)),
-    )
-    paper, steps, parts = Paper(u, marks=[*bar]), status.hint.split(BETWEEN), list[Part]()
+    bar: list[Mark] = [
+        Panel(v.left, top, v.width, v.bottom - top, 0.0, theme.panel),
+        Panel(v.left, top, v.width, thin, 0.0, theme.line),
+    ]
+    paper, steps, parts = Paper(u, marks=bar), status.hint.split(BETWEEN), list[Part]()
     if status.state:
         state = Text(begun(tr(status.state)), 12.0, theme.text, "semibold")
         moods = {"running": theme.running, "paused": theme.halted, "halted": theme.halted}
@@ -129,7 +119,8 @@ def _caption(sheet: Sheet, heading_end: float, top: float) -> tuple[list[Mark], 
     paper, shape, thin = Paper(u), sheet.view.shape, max(round(u), 1)
     looks = [(line, "regular", theme.muted) for line in sheet.view.caption]
     if looks:
-        paper.marks.append(boxes(theme.line, (v.left, v.top, v.width, thin), (v.left, v.top, thin, v.height)))
+        sides = (v.width, thin), (thin, v.height)
+        paper.marks += [Panel(v.left, v.top, *size, 0.0, theme.line) for size in sides]
         looks[0] = looks[0][0], "semibold", theme.text
     if shape is not None:
         looks.append((shape.title, "semibold", theme.sketch))
@@ -153,7 +144,7 @@ def _caption(sheet: Sheet, heading_end: float, top: float) -> tuple[list[Mark], 
     if not sheet.view.caption and not sheet.occupancy.is_taken(left, heading_end + 8.0 * u, wide, high):
         upper = heading_end
     paper.put(column, Rectangle(left - 4.0 * u, upper + 8.0 * u, room + 8.0 * u, high))
-    _block(sheet, paper)
+    sheet.occupancy.block_marks(paper.marks)
     return paper.marks, max(top, upper + 8.0 * u + high)
 
 
@@ -271,7 +262,7 @@ def _legend(sheet: Sheet, right: float, heading_end: float) -> tuple[list[Mark],
     """
     v, u, theme = sheet.viewport, sheet.unit, sheet.theme
     meanings = meanings_of(sheet.legend) if sheet.view.legend else {}
-    if not meanings or v.width < 240.0 * u:
+    if not meanings or v.width < LEAST_MODEL * u:
         return [], heading_end
     plates, beside = _arranged(meanings, theme, v.width, right - v.left, u)
     top = v.top + _ABOVE * u if beside else heading_end + 8.0 * u
@@ -280,7 +271,7 @@ def _legend(sheet: Sheet, right: float, heading_end: float) -> tuple[list[Mark],
         width = plate.width(u)
         paper.put(plate, Rectangle(v.right - _ABOVE * u - width, top, width, 24.0 * u))
         top += _ROW * u
-    _block(sheet, paper)
+    sheet.occupancy.block_marks(paper.marks)
     return paper.marks, max(top - 4.0 * u, heading_end)
 
 
@@ -394,8 +385,8 @@ def _ruler(theme: Theme, at: Rectangle, u: float) -> list[Mark]:
     """A line with a tick at both ends."""
     x, y, length = round(at.left), round(at.top + 6.0 * u), round(at.width)
     thin, tick = max(round(1.5 * u), 1), round(7.0 * u)
-    ends = (x, y, thin, tick), (x + length - thin, y, thin, tick)
-    return [boxes(theme.muted, (x, y + tick, length, thin), *ends)]
+    line, ends = (x, y + tick, length, thin), ((x, y, thin, tick), (x + length - thin, y, thin, tick))
+    return [Panel(*box, 0.0, theme.muted) for box in (line, *ends)]
 
 
 def _freest(sheet: Sheet, width: float, room: tuple[float, float]) -> tuple[float, float]:

@@ -7,7 +7,7 @@ import math
 from pinjoint.components.camera import Rectangle
 from pinjoint.components.view import Page
 from pinjoint.systems.render.layout import Column, Paper, Row, Text
-from pinjoint.systems.render.marks import Mark, boxes
+from pinjoint.systems.render.marks import Mark, Panel
 from pinjoint.systems.render.overlays import BAR, EDGE, draw_notice, draw_overlays
 from pinjoint.systems.render.sheet import Sheet
 from pinjoint.systems.render.typography import font_size, line_height, text_width, wrapped
@@ -40,7 +40,7 @@ def draw_page(sheet: Sheet) -> list[Mark]:
         blocks += [Row(columns, layout.gap / u)] if rows else []
     lines = (Text(line, _SIZE, theme.text, "semibold", apart=step) for line in layout.lines)
     tree = Column((*lines, Row(blocks, _BLOCKS, top=True)), around=(EDGE, _AROUND, _AROUND))
-    paper = Paper(u, marks=[boxes(theme.line, (v.left, v.top, v.width, max(round(u), 1)))])
+    paper = Paper(u, marks=[Panel(v.left, v.top, v.width, max(round(u), 1), 0.0, theme.line)])
     paper.put(tree, Rectangle(v.left, v.top, v.width, tree.height(u, v.width)))
     return [*paper.marks, *overlays]
 

@@ -6,14 +6,14 @@ import itertools
 import math
 
 import numpy as np
-from numpy.typing import NDArray
 
 from pinjoint.components import written
+from pinjoint.components.camera import Rectangle
 from pinjoint.components.field import Vector
 from pinjoint.components.language import several
 from pinjoint.components.round_numbers import round_up
 from pinjoint.components.view import Plot
-from pinjoint.systems.render.marks import Mark, Panel, Points, Stamps, Strokes, Text
+from pinjoint.systems.render.marks import Mark, Panel, Points, Stamps, Strokes, Text, Truths, Values
 from pinjoint.systems.render.theme import Colour, Theme
 from pinjoint.systems.render.typography import font_size, text_width
 
@@ -22,11 +22,8 @@ _REACH = 30.0  # points from a curve, within which the pointer reads it
 _STEP = 2.0  # points along a curve between drawn samples
 _TICKS = 4  # on each axis, about
 
-Box = tuple[float, float, float, float]  # left, top, width, height in pixels
-Range = tuple[float, float]
 
-
-def draw_plot(plot: Plot, box: Box, theme: Theme, unit: float, pointer: Vector | None) -> list[Mark]:
+def draw_plot(plot: Plot, box: Rectangle, theme: Theme, unit: float, pointer: Vector | None) -> list[Mark]:
     """A plot within a box, as marks in pixels."""
     return _Drawing(plot, box, theme, unit).marks(pointer)
 
@@ -34,21 +31,20 @@ def draw_plot(plot: Plot, box: Box, theme: Theme, unit: float, pointer: Vector |
 class _Drawing:
     """Places one plot in a box: the axes' titles and ticks outside, the curves inside."""
 
-    def __init__(self, plot: Plot, box: Box, theme: Theme, unit: float) -> None:
+    def __init__(self, plot: Plot, box: Rectangle, theme: Theme, unit: float) -> None:
         self.plot, self.theme, self.unit = plot, theme, unit
         self.size = font_size(_TEXT, unit)
         self.x_range = _range([x for _, x, _ in plot.curves])
         low, high = _range([y for _, _, y in plot.curves])
         self.y_range = low - 0.06 * (high - low), high + 0.06 * (high - low)
         self.x_ticks, self.y_ticks = round_ticks(self.x_range), round_ticks(self.y_range)
-        left, top, width, height = box
         labels = max((text_width(text, self.size) for _, text in self.y_ticks), default=0.0)
-        self.left, self.right = left + labels + 6.0 * unit, left + width - 4.0 * unit
-        self.top, self.bottom = top + 16.0 * unit, top + height - 30.0 * unit
+        self.left, self.right = box.left + labels + 6.0 * unit, box.right - 4.0 * unit
+        self.top, self.bottom = box.top + 16.0 * unit, box.bottom - 30.0 * unit
         colours = theme.curve_1, theme.curve_2, theme.curve_3, theme.curve_4
         self.coloured = list(zip(plot.curves, itertools.cycle(colours), strict=False))
 
-    def pixels(self, x: NDArray[np.float64], y: NDArray[np.float64]) -> Points:
+    def pixels(self, x: Values, y: Values) -> Points:
         """Points of a curve in pixels, shape (n, 2)."""
         across = (x - self.x_range[0]) / (self.x_range[1] - self.x_range[0])
         up = (y - self.y_range[0]) / (self.y_range[1] - self.y_range[0])
@@ -95,7 +91,7 @@ class _Drawing:
 
     def _curve(self, points: Points, colour: Colour) -> list[Mark]:
         points = _thinned(points, _STEP * self.unit)
-        finite: NDArray[np.bool_] = np.asarray(np.isfinite(points).all(axis=1))
+        finite: Truths = np.asarray(np.isfinite(points).all(axis=1))
         whole = finite[1:] & finite[:-1]
         start, end = points[:-1][whole], points[1:][whole]
         length = np.maximum(np.hypot(*(end - start).T), 1e-9)[:, None]
@@ -137,13 +133,13 @@ def _thinned(points: Points, step: float) -> Points:
     if len(points) < 2:
         return points
     along = np.cumsum(np.nan_to_num(np.hypot(*np.diff(points, axis=0, prepend=points[:1]).T)))
-    kept: NDArray[np.bool_] = np.diff(np.floor(along / step), prepend=-1.0) > 0.0
+    kept: Truths = np.diff(np.floor(along / step), prepend=-1.0) > 0.0
     kept[-1] = True
     found: Points = points[kept | ~np.isfinite(points).all(axis=1)]
     return found
 
 
-def _range(columns: list[NDArray[np.float64]]) -> Range:
+def _range(columns: list[Values]) -> Vector:
     """The least and the largest finite value, widened if equal."""
     values = np.concatenate([*columns, np.empty(0)])
     values = values[np.isfinite(values)]
@@ -156,7 +152,7 @@ def _range(columns: list[NDArray[np.float64]]) -> Range:
     return low - room, high + room
 
 
-def round_ticks(values: Range, count: int = _TICKS) -> list[tuple[float, str]]:
+def round_ticks(values: Vector, count: int = _TICKS) -> list[tuple[float, str]]:
     """Round values within a range, 1, 2 or 5 times a power of ten apart, and how they are written."""
     step = round_up(values[1] / count - values[0] / count)
     first, last = math.ceil(values[0] / step), math.floor(values[1] / step)

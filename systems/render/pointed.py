@@ -9,7 +9,7 @@ from pinjoint.components.handle import Handle
 from pinjoint.components.particle import Particle
 from pinjoint.components.rod import Rod
 from pinjoint.components.tags import Hovered
-from pinjoint.systems.render.clip import bounds, clip_segments
+from pinjoint.systems.render.clip import clip_segments
 from pinjoint.systems.render.layout import Column, Paper, Plate, Row, Text
 from pinjoint.systems.render.marks import Mark, Points
 from pinjoint.systems.render.occupancy import STRONG
@@ -51,7 +51,7 @@ def draw_pointed(sheet: Sheet) -> list[Mark]:
 
 def _free_place(sheet: Sheet, handle: Handle, size: Points) -> Rectangle | None:
     """The place nearest to the pointer where a box covers no value, name or panel; near by one where it covers no line."""
-    (low, high), pointer, u = bounds(sheet.viewport), sheet.view.pointer or sheet.view.camera.middle, sheet.unit
+    (low, high), pointer, u = sheet.viewport.corners, sheet.view.pointer or sheet.view.camera.middle, sheet.unit
     x, y = (np.arange(low[axis], high[axis] - size[axis], _STEP * u) for axis in (0, 1))
     corners = np.stack(np.meshgrid(x, y), axis=-1).reshape(-1, 2)
     away = np.maximum(np.maximum(corners - pointer, pointer - corners - size), 0.0)

@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 from pinjoint.components.camera import Viewport
 from pinjoint.components.wording import UNPRINTABLE
 from pinjoint.systems.program.compiler import Choice, Compile
-from pinjoint.systems.render.marks import Bars, Discs, Fills, Panel, Picture, Rectangles, Stamps, Strokes, Text
+from pinjoint.systems.render.marks import Bars, Discs, Fills, Panel, Picture, Stamps, Strokes, Text
 from pinjoint.systems.render.raster import (
     Clip,
     Pixels,
@@ -29,9 +29,6 @@ from pinjoint.systems.render.raster import (
 from pinjoint.systems.render.symbols import RIM, turned_parts
 from pinjoint.systems.render.theme import Colour
 from pinjoint.systems.render.typography import WEIGHTS, capital_height
-
-Size = tuple[int, int]
-Colours = NDArray[np.uint8]
 
 _WHITE, _BLACK = (255, 255, 255, 255), (0, 0, 0, 255)
 _FINE = 8  # symbols and corners are drawn this much larger, then reduced
@@ -80,9 +77,6 @@ class Canvas:
                     _fill(surface, mark.corners, mark.colour)
                 case Bars():
                     self._bars(surface, mark)
-                case Rectangles():
-                    for box in mark.boxes.tolist():
-                        surface.fill(mark.colour, box)
                 case Panel():
                     self._panel(surface, mark)
         surface.set_clip(before)
@@ -115,6 +109,9 @@ class Canvas:
         left, top = round(mark.left), round(mark.top)
         size = round(mark.left + mark.width) - left, round(mark.top + mark.height) - top
         if min(size) <= 0:  # what a window of some pixels leaves of it
+            return
+        if not mark.radius and mark.outline is None and mark.fill[3] == 255:
+            surface.fill(mark.fill, (left, top, *size))
             return
         key = ("panel", size, mark.radius, mark.fill, mark.outline)
         surface.blit(self._kept(key, partial(_rounded, size, mark)), (left, top))
@@ -259,12 +256,12 @@ def _small_rounded(size: tuple[int, int], mark: Panel) -> pygame.Surface:
 # --- files, without a display ---------------------------------------------------------------------------
 
 
-def as_image(pictures: Sequence[Picture], size: Size, suffix: str) -> bytes:
+def as_image(pictures: Sequence[Picture], size: tuple[int, int], suffix: str) -> bytes:
     """Pictures, each in its viewport of an image of that size in pixels, as the contents of a file of that suffix."""
     return encoded(_drawn(pictures, size), suffix)
 
 
-def as_clear_png(pictures: Sequence[Picture], size: Size) -> bytes:
+def as_clear_png(pictures: Sequence[Picture], size: tuple[int, int]) -> bytes:
     """The same without a background, as colours with opacities.
 
     A pixel of a colour c and an opacity a shows a c over black and a c + 255 (1 − a) over white.
@@ -280,7 +277,7 @@ def as_clear_png(pictures: Sequence[Picture], size: Size) -> bytes:
     return encoded(pygame.image.frombuffer(pixels.tobytes(), size, "RGBA"), ".png")
 
 
-def as_colours(pictures: Sequence[Picture], size: Size) -> Colours:
+def as_colours(pictures: Sequence[Picture], size: tuple[int, int]) -> NDArray[np.uint8]:
     """Pictures as colours, shape (height, width, 3)."""
     return np.ascontiguousarray(pygame.surfarray.array3d(_drawn(pictures, size)).transpose(1, 0, 2))
 
@@ -292,7 +289,7 @@ def encoded(surface: pygame.Surface, suffix: str) -> bytes:
     return made.getvalue()
 
 
-def _drawn(pictures: Sequence[Picture], size: Size) -> pygame.Surface:
+def _drawn(pictures: Sequence[Picture], size: tuple[int, int]) -> pygame.Surface:
     surface, canvas = pygame.Surface(size, depth=32), Canvas(load_raster)
     for picture in pictures:
         canvas.draw(surface, picture)

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from functools import cache
 from typing import Any
 
 import pygame
@@ -40,11 +39,6 @@ class PygameRender(System):
         self.shown: Any = None
         self._placed: dict[str, Placed] = {}
 
-    def draw_on(self, surface: pygame.Surface, frame: Any) -> None:
-        """Draw on another surface, on which nothing is yet."""
-        self.surface, self.shown = surface, None
-        self.process(frame)
-
     def process(self, frame: Any) -> None:
         """Draw every stage of the scene, unless the picture would be the same as the last."""
         stages = frame.session.stages
@@ -61,12 +55,7 @@ class PygameRender(System):
 
 def draw_unseen(frame: Any, size: tuple[int, int]) -> None:
     """Draw a frame as in a window of that size in pixels, to find what cannot be drawn."""
-    _unseen().draw_on(pygame.Surface(size, depth=32), frame)
-
-
-@cache
-def _unseen() -> PygameRender:
-    return PygameRender(pygame.Surface((1, 1), depth=32))
+    PygameRender(pygame.Surface(size, depth=32)).process(frame)
 
 
 def _looked_at(shown: Model | Form | Toolbar, view: View) -> str:

@@ -9,10 +9,11 @@ from pinjoint.components.camera import Rectangle
 from pinjoint.components.language import english, tr
 from pinjoint.components.view import Readout
 from pinjoint.systems.render.buttons import closing
-from pinjoint.systems.render.layout import ALL, Column, Drawn, Paper, Part, Plate, Row, Text
+from pinjoint.systems.render.layout import Column, Drawn, Paper, Part, Plate, Row, Text
 from pinjoint.systems.render.plots import draw_plot
 from pinjoint.systems.render.sheet import Sheet
 from pinjoint.systems.render.theme import faded
+from pinjoint.systems.render.typography import ALL
 
 _EDGE, _PAD, _GAP, _BETWEEN = (
     10.0,
@@ -36,34 +37,30 @@ def put_readouts(paper: Paper, sheet: Sheet, room: tuple[float, float]) -> None:
     if not any(readout.is_large for readout in readouts):
         natural = (_panel(sheet, readout, float("inf"), 0.0).width(u) for readout in readouts)
         width = min(max(natural, default=0.0), width)
-    plots = _plots(sheet, readouts, width, bottom - top)
-    stack = [_panel(sheet, readouts[index], width, plots[index]) for index in sorted(plots)]
-    folded = [readout for index, readout in enumerate(readouts) if index not in plots]
-    column = Column([*stack, *([_folded(sheet, folded)] if folded else [])], _BETWEEN)
+    since = [view.since.get(english(readout.title), 0) for readout in readouts]
+    oldest = sorted(range(len(readouts)), key=since.__getitem__)
+    for count in range(len(readouts) + 1):
+        column = _stack(sheet, readouts, oldest[:count], width, _LEAST_PLOT)
+        spare = bottom - top - column.height(u, width)
+        if spare >= 0.0:
+            break
+    plots = sum(readouts[index].plot is not None for index in oldest[count:]) if readouts else 0
+    if plots:
+        plot = min(_LEAST_PLOT + max(spare, 0.0) / (plots * u), _PLOT)
+        column = _stack(sheet, readouts, oldest[:count], width, plot)
     begun = len(paper.hits)
     paper.put(column, Rectangle(place.right - _EDGE * u - width, top, width, column.height(u, width)))
     for hit in paper.hits[begun:]:
         sheet.occupancy.block(*hit.box)
 
 
-def _plots(sheet: Sheet, readouts: Sequence[Readout], width: float, room: float) -> dict[int, float]:
-    """By index of the panels for which there is room, the points of their plots; the newest panels come first."""
-    since = [sheet.view.since.get(english(readout.title), 0) for readout in readouts]
-    newest = sorted(range(len(readouts)), key=since.__getitem__, reverse=True)
-    shown, gap, left, spare = dict[int, float](), _BETWEEN * sheet.unit, room, 0.0
-    for index in newest:
-        height = _panel(sheet, readouts[index], width, _LEAST_PLOT).height(sheet.unit, width)
-        others = [readouts[0]] * (len(readouts) - len(shown) - 1)
-        folded = _folded(sheet, others).height(sheet.unit, width) + gap if others else 0.0
-        if height + folded <= left:
-            shown[index] = _LEAST_PLOT
-            left -= height + gap
-            spare = left - folded
-    for index in (index for index in shown if readouts[index].plot is not None):
-        more = max(min(_PLOT - _LEAST_PLOT, spare / sheet.unit), 0.0)
-        shown[index] += more
-        spare -= more * sheet.unit
-    return shown
+def _stack(
+    sheet: Sheet, readouts: Sequence[Readout], folded: Sequence[int], width: float, plot: float
+) -> Column:
+    """The panels, some of them folded into one."""
+    whole = [_panel(sheet, r, width, plot) for index, r in enumerate(readouts) if index not in folded]
+    rest = [_folded(sheet, [readouts[index] for index in sorted(folded)])] if folded else []
+    return Column([*whole, *rest], _BETWEEN)
 
 
 def _panel(sheet: Sheet, readout: Readout, width: float, plot: float) -> Plate:
@@ -79,7 +76,7 @@ def _panel(sheet: Sheet, readout: Readout, width: float, plot: float) -> Plate:
         beside = Row(there, _GAP)
         parts += [beside] if beside.width(sheet.unit) <= room else [replace(text, lines=ALL) for text in there]
     if (plotted := readout.plot) is not None:
-        parts.append(Drawn(lambda at, u: draw_plot(plotted, at.box, theme, u, sheet.view.pointer), high=plot))
+        parts.append(Drawn(lambda at, u: draw_plot(plotted, at, theme, u, sheet.view.pointer), high=plot))
     return _plate(sheet, Column(parts, around=(_PAD, _PAD, _PAD)), readout)
 
 

@@ -15,7 +15,6 @@ from pinjoint.systems.render.marks import (
     Panel,
     Picture,
     Points,
-    Rectangles,
     Stamps,
     Strokes,
     Text,
@@ -51,18 +50,13 @@ class Circle(NamedTuple):
 
 
 Shape = Line | Polygon | Circle | Panel | Text
-Parts = list[Shape]
-Whose = Owner | None
 
 
-def shapes(mark: Mark) -> Iterator[tuple[Whose, Shape]]:
+def shapes(mark: Mark) -> Iterator[tuple[Owner | None, Shape]]:
     """The shapes of a mark, and whose they are."""
     match mark:
         case Text() | Panel():
             yield mark.of, mark
-        case Rectangles():
-            for left, top, width, height in mark.boxes.tolist():
-                yield None, Panel(left, top, width, height, 0.0, mark.colour)
         case Strokes():
             ends = zip(mark.start.tolist(), mark.end.tolist(), strict=True)
             lines = (Line((x, y), (far_x, far_y), mark.width, mark.colour) for (x, y), (far_x, far_y) in ends)
@@ -81,13 +75,13 @@ def shapes(mark: Mark) -> Iterator[tuple[Whose, Shape]]:
                 yield from ((of, part) for part in _stamped(mark, at))
 
 
-def grouped(picture: Picture) -> list[tuple[Whose, Parts]]:
+def grouped(picture: Picture) -> list[tuple[Owner | None, list[Shape]]]:
     """All shapes of each element together, and those between of no element, in an order to paint them in.
 
     An element stands where the last of its lines and areas is painted: rods below particles, and both above the
     diagrams of all. Its texts move there with it.
     """
-    groups: dict[Owner | int, Parts] = {}
+    groups: dict[Owner | int, list[Shape]] = {}
     painted: dict[Owner | int, int] = {}
     for order, mark in enumerate(picture.marks):
         label = isinstance(mark, Text | Panel)
@@ -102,7 +96,7 @@ def grouped(picture: Picture) -> list[tuple[Whose, Parts]]:
     ]
 
 
-def _whose(of: Owners | None, count: int) -> list[Whose]:
+def _whose(of: Owners | None, count: int) -> list[Owner | None]:
     return [None] * count if of is None else [(of[0], row) for row in of[1].tolist()]
 
 

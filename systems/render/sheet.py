@@ -8,7 +8,6 @@ from dataclasses import dataclass, field
 from functools import cached_property
 
 import numpy as np
-from numpy.typing import NDArray
 
 from pinjoint.components.bent import FLAT, Lines, curved_lines, is_frame, largest_sag
 from pinjoint.components.camera import Viewport
@@ -16,14 +15,12 @@ from pinjoint.components.model import Model
 from pinjoint.components.rod import rigid_joints
 from pinjoint.components.tags import Hovered
 from pinjoint.components.view import View, drawn_positions
-from pinjoint.systems.render.clip import bounds, clip_rods, clip_segments
+from pinjoint.systems.render.clip import clip_rods, clip_segments
 from pinjoint.systems.render.labels import Label, Placed
-from pinjoint.systems.render.marks import Mark, Points
+from pinjoint.systems.render.marks import Mark, Points, Rows, Truths, Values
 from pinjoint.systems.render.occupancy import Occupancy
 from pinjoint.systems.render.theme import Colour, Theme
 from pinjoint.systems.render.typography import font_size
-
-Rows = NDArray[np.intp]
 
 FEW = 30  # elements, up to which each shows its name
 MANY = 2000  # rods, above which details of single elements are left out
@@ -58,8 +55,8 @@ class Sheet:
     theme: Theme
     unit: float
     centres: Points
-    radii: NDArray[np.float64]
-    ends: NDArray[np.intp]
+    radii: Values
+    ends: Rows
     rods: Rows
     start: Points
     end: Points
@@ -85,7 +82,7 @@ class Sheet:
         return typical_length(self.start, self.end)
 
     @cached_property
-    def arcs(self) -> NDArray[np.float64]:
+    def arcs(self) -> Values:
         """The radius in pixels of the arrow of a moment around each particle, where one is drawn; else 0."""
         return np.zeros(len(self.centres))
 
@@ -93,7 +90,7 @@ class Sheet:
     def viewport(self) -> Viewport:
         return self.occupancy.viewport
 
-    def lines(self, some: NDArray[np.bool_] | slice = slice(None)) -> tuple[Points, Points, Rows]:
+    def lines(self, some: Truths | slice = slice(None)) -> tuple[Points, Points, Rows]:
         """Straight lines along some of the visible rods, bent ones in pieces: from, to, and the row of each."""
         if self.curved is None:
             return self.start[some], self.end[some], self.rods[some]
@@ -121,9 +118,9 @@ class Sheet:
         """A font size in whole pixels."""
         return font_size(points, self.unit)
 
-    def sees(self, points: Points) -> NDArray[np.bool_]:
+    def sees(self, points: Points) -> Truths:
         """For each of `points` (n, 2), whether it lies in the viewport."""
-        low, high = bounds(self.viewport)
+        low, high = self.viewport.corners
         inside = np.ones(len(points), dtype=bool)
         for axis in (0, 1):
             inside &= (points[:, axis] >= low[axis]) & (points[:, axis] <= high[axis])
@@ -133,7 +130,7 @@ class Sheet:
         """Let the legend say what a colour means if any of the lines from `start` to `end`, each (n, 2), can be seen."""
         if name not in self.legend and len(start):
             seen = self.sees(start).any() or self.sees(end).any()
-            if seen or len(clip_segments(start, end, *bounds(self.viewport))[2]):
+            if seen or len(clip_segments(start, end, *self.viewport.corners)[2]):
                 self.legend.append(name)
 
     def tagged(self, tag: type, table: str) -> Rows:
@@ -142,7 +139,7 @@ class Sheet:
             return np.empty(0, dtype=np.intp)
         return self.model.rows_tagged(tag)[table]
 
-    def chosen(self, wanted: Rows, rows: Rows) -> NDArray[np.bool_]:
+    def chosen(self, wanted: Rows, rows: Rows) -> Truths:
         """For each of `rows`, whether it is among `wanted`."""
         marked = np.zeros(1 + max(rows.max(initial=-1), wanted.max(initial=-1)), dtype=bool)
         marked[wanted] = True
@@ -150,7 +147,7 @@ class Sheet:
 
     def colours_of(
         self, rows: Rows, layers: Iterable[tuple[Rows, Colour]], otherwise: Colour
-    ) -> list[tuple[Colour, NDArray[np.bool_] | slice]]:
+    ) -> list[tuple[Colour, Truths | slice]]:
         """Rows grouped by colour: each colour with the mask of its rows, or all; later layers win."""
         layers = [(wanted, colour) for wanted, colour in layers if len(wanted)]
         if not layers:
@@ -169,7 +166,7 @@ def measure(model: Model, view: View, theme: Theme, placed: Placed | None = None
     centres = camera.to_pixels(drawn_positions(model))
     ends = model.rods.between.astype(np.intp)
     viewport = view.canvas
-    low, high = bounds(viewport)
+    low, high = viewport.corners
     margin = 150.0 * unit  # so that the ends of a rod that leaves the viewport, and their labels, are not seen
     frame, reach, lines = is_frame(model), margin, None
     if frame:
@@ -180,7 +177,7 @@ def measure(model: Model, view: View, theme: Theme, placed: Placed | None = None
         lines = curved_lines(model, FLAT / camera.scale, rods)
     curved = _visible(lines, rods, view, (low - margin, high + margin)) if lines is not None else None
     smallest = float(np.clip(0.18 * typical_length(start, end), *np.array(_SMALLEST) * unit))
-    radii: NDArray[np.float64] = np.maximum(model.particles.radius * camera.scale, smallest)
+    radii: Values = np.maximum(model.particles.radius * camera.scale, smallest)
     if frame:
         radii[rigid_joints(model) & (radii == smallest)] = _JOINT * smallest
     around, seen = radii + 40.0 * unit, np.ones(len(centres), dtype=bool)

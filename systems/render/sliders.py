@@ -12,7 +12,7 @@ from pinjoint.components.slider import BUTTON, PAD, Place
 from pinjoint.components.view import View
 from pinjoint.systems.render.buttons import button
 from pinjoint.systems.render.layout import Column, Drawn, Paper, Plate, Row, Text
-from pinjoint.systems.render.marks import Mark, Stamps, boxes
+from pinjoint.systems.render.marks import Mark, Panel, Stamps
 from pinjoint.systems.render.theme import Theme, faded
 
 SLIDER = "slider"  # the last word of the actions of what hits one
@@ -42,7 +42,8 @@ def put_sliders(paper: Paper, view: View, theme: Theme) -> None:
 def _knob(place: Place, theme: Theme, hovered: bool, at: Rectangle, u: float) -> list[Mark]:
     """The line and the knob on it, if it is somewhere."""
     left, right, middle = place.track
-    track = boxes(theme.muted, (round(left), round(middle - u), round(right - left), max(round(2 * u), 1)))
+    thick = max(round(2 * u), 1)
+    track = Panel(round(left), round(middle - u), round(right - left), thick, 0.0, theme.muted)
     if place.control.share is None:
         return [track]
     knob = np.array([[left + place.control.share * (right - left), middle]])

@@ -5,19 +5,18 @@ from __future__ import annotations
 import math
 
 import numpy as np
-from numpy.typing import NDArray
 
 from pinjoint.components.bent import FLAT, moved_axes, pieces
 from pinjoint.components.rod import rigid_joints
 from pinjoint.components.round_numbers import round_up
 from pinjoint.components.tags import Hovered, Selected
 from pinjoint.components.view import Shape
-from pinjoint.systems.render.clip import bounds, clip_segments
+from pinjoint.systems.render.clip import clip_segments
 from pinjoint.systems.render.framing import cut_discs
 from pinjoint.systems.render.labels import Label, half_size
-from pinjoint.systems.render.marks import Discs, Points, Rectangles, Strokes
+from pinjoint.systems.render.marks import Discs, Panel, Points, Rows, Strokes, Truths, Values
 from pinjoint.systems.render.occupancy import FAINT, STRONG
-from pinjoint.systems.render.sheet import DIRECTIONS, FEW, MANY, Rows, Sheet
+from pinjoint.systems.render.sheet import DIRECTIONS, FEW, MANY, Sheet
 from pinjoint.systems.render.symbols import RIM, dashed
 from pinjoint.systems.render.theme import Colour, faded
 from pinjoint.systems.render.values import BACKING, reach
@@ -51,22 +50,20 @@ def draw_grid(sheet: Sheet) -> None:
         up = _grid_lines(bottom, top, float(spacing[1]), sheet)
         x = np.round(camera.to_pixels(np.stack([across, 0.0 * across], axis=1))[:, 0])
         y = np.round(camera.to_pixels(np.stack([0.0 * up, up], axis=1))[:, 1])
-        sheet.marks.append(Rectangles(_lines(sheet, x, y), colour))
+        thick = max(round(sheet.unit), 1)
+        sheet.marks += [
+            Panel(at - thick // 2, viewport.top, thick, viewport.height, 0.0, colour) for at in x.tolist()
+        ]
+        sheet.marks += [
+            Panel(viewport.left, at - thick // 2, viewport.width, thick, 0.0, colour) for at in y.tolist()
+        ]
 
 
-def _grid_lines(low: float, high: float, spacing: float, sheet: Sheet) -> NDArray[np.float64]:
+def _grid_lines(low: float, high: float, spacing: float, sheet: Sheet) -> Values:
     pixels = spacing * sheet.view.camera.scale
     step = spacing * max(round_up(_CLOSEST_LINES * sheet.unit / pixels), 1.0)
     first, last = math.ceil(low / step), math.floor(high / step)
     return step * (first + np.arange(last - first + 1, dtype=np.float64))
-
-
-def _lines(sheet: Sheet, x: NDArray[np.float64], y: NDArray[np.float64]) -> NDArray[np.int64]:
-    """Boxes of upright and level lines across the viewport, centred on x and y."""
-    v, thick = sheet.viewport, max(round(sheet.unit), 1)
-    upright = np.stack([x - thick // 2, 0 * x + v.top, 0 * x + thick, 0 * x + v.height], axis=1)
-    level = np.stack([0 * y + v.left, y - thick // 2, 0 * y + v.width, 0 * y + thick], axis=1)
-    return np.concatenate([upright, level]).astype(np.int64)
 
 
 def draw_ghost(sheet: Sheet) -> None:
@@ -79,7 +76,7 @@ def draw_ghost(sheet: Sheet) -> None:
     far[_sagging(sheet)] = True
     rows = np.flatnonzero(far)
     first, last = sheet.ends[rows].T
-    start, end, seen = clip_segments(original[first], original[last], *bounds(sheet.viewport))
+    start, end, seen = clip_segments(original[first], original[last], *sheet.viewport.corners)
     if len(start):
         sheet.occupancy.line(start, end, FAINT)
         sheet.explain("ghost", start, end)
@@ -142,7 +139,7 @@ def _rod_width(sheet: Sheet) -> float:
     return float(np.clip(0.12 * sheet.rod_length / sheet.unit, 0.5, 2.5)) * sheet.unit
 
 
-def _draw_lines(sheet: Sheet, mask: NDArray[np.bool_] | slice, width: float, colour: Colour) -> None:
+def _draw_lines(sheet: Sheet, mask: Truths | slice, width: float, colour: Colour) -> None:
     """The lines of some rods, of one colour; where some bend, those that bend less are thicker."""
     rods, (start, end, rows) = sheet.model.rods, sheet.lines(mask)
     cables = rods.tension_only[rows]
@@ -163,7 +160,7 @@ def _draw_lines(sheet: Sheet, mask: NDArray[np.bool_] | slice, width: float, col
             sheet.marks.append(Strokes(start[kind], end[kind], thick, colour, ("rods", rows[kind])))
 
 
-def _depths(sheet: Sheet, rows: Rows) -> list[tuple[float, NDArray[np.bool_] | slice]]:
+def _depths(sheet: Sheet, rows: Rows) -> list[tuple[float, Truths | slice]]:
     """Widths of the lines of rods, as the depths of sections with their bending stiffness, in steps; which have each."""
     if not sheet.is_frame:
         return [(1.0, slice(None))]
@@ -244,7 +241,7 @@ def _lines_of_shape(
             straight = ~sheet.chosen(lines.rods, rows)
             start = np.concatenate([start[straight], to_pixels(lines.start)])
             end = np.concatenate([end[straight], to_pixels(lines.end)])
-    return clip_segments(start, end, *bounds(sheet.viewport))[:2]
+    return clip_segments(start, end, *sheet.viewport.corners)[:2]
 
 
 def label_names(sheet: Sheet) -> None:

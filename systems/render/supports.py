@@ -7,8 +7,8 @@ from numpy.typing import NDArray
 
 from pinjoint.components.model import Model
 from pinjoint.components.rod import rigid_joints
-from pinjoint.systems.render.marks import Points, Stamps
-from pinjoint.systems.render.sheet import DIRECTIONS, MANY, Rows, Sheet
+from pinjoint.systems.render.marks import Points, Rows, Stamps, Truths, Values
+from pinjoint.systems.render.sheet import DIRECTIONS, MANY, Sheet
 from pinjoint.systems.render.symbols import SUPPORT_DEPTH
 
 RIGHT, DOWN, LEFT, UP = range(4)
@@ -16,7 +16,7 @@ NO_SUPPORT = -1
 _RELUCTANCE = np.array([0.5, 0.0, 0.45, 0.8])  # by side, to have a support there
 
 
-def crowding(sheet: Sheet, rows: Rows) -> NDArray[np.float64]:
+def crowding(sheet: Sheet, rows: Rows) -> Values:
     """How much the rods crowd each side of the particles in `rows`, shape (n, 4), sides as in DIRECTIONS.
 
     Of other particles it is 0. Σ cos² of the angle between the side and the attached rods, in the original
@@ -47,13 +47,13 @@ def support_sides(sheet: Sheet) -> NDArray[np.int64]:
     return sides
 
 
-def clamps(model: Model) -> NDArray[np.bool_]:
+def clamps(model: Model) -> Truths:
     """Which particles hold rigid rod ends so that these cannot turn, (particles,)."""
-    held: NDArray[np.bool_] = model.particles.fixed_rotation
+    held: Truths = model.particles.fixed_rotation
     return held & rigid_joints(model) if held.any() else held
 
 
-def freest_sides(fixed: NDArray[np.bool_], crowd: NDArray[np.float64]) -> NDArray[np.int64]:
+def freest_sides(fixed: Truths, crowd: Values) -> NDArray[np.int64]:
     """The side for the supports of particles fixed in x, y (n, 2) that are crowded so (n, 4).
 
     Below or to the left, or the opposite side where that is clearly freer; for both directions below

@@ -24,8 +24,6 @@ _WEIGHTS = {"regular": "400", "semibold": "600"}
 _ANCHORS = {"left": "start", "centre": "middle", "right": "end"}
 _NOT_IN_IDS = re.compile(r"[\s%]|" + UNPRINTABLE.pattern)
 
-Attributes = dict[str, str]
-
 
 def as_svg(pictures: Sequence[tuple[Picture, Name]], size: tuple[int, int], title: str) -> bytes:
     """Pictures, each in its viewport of a drawing of that size in pixels, as the contents of an SVG file.
@@ -124,24 +122,24 @@ def _write(into: ET.Element, text: Text) -> None:
     ET.SubElement(into, "text", place | look | _fill(text.colour) | spaces).text = said
 
 
-def _box(left: float, top: float, width: float, height: float) -> Attributes:
+def _box(left: float, top: float, width: float, height: float) -> dict[str, str]:
     return _numbers(x=left, y=top, width=max(width, 0.0), height=max(height, 0.0))
 
 
-def _fill(colour: Colour) -> Attributes:
+def _fill(colour: Colour) -> dict[str, str]:
     return _paint("fill", colour)
 
 
-def _stroke(colour: Colour, width: float) -> Attributes:
+def _stroke(colour: Colour, width: float) -> dict[str, str]:
     return _paint("stroke", colour) | {"stroke-width": _number(width)}
 
 
-def _paint(part: str, colour: Colour) -> Attributes:
+def _paint(part: str, colour: Colour) -> dict[str, str]:
     opacity = {f"{part}-opacity": f"{colour[3] / 255:.2g}"} if colour[3] < 255 else {}
     return {part: f"#{bytes(colour[:3]).hex()}", **opacity}
 
 
-def _numbers(**values: float) -> Attributes:
+def _numbers(**values: float) -> dict[str, str]:
     return {name: _number(value) for name, value in values.items()}
 
 

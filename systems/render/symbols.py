@@ -14,11 +14,10 @@ from functools import cache
 from importlib.resources import files
 
 import numpy as np
-from numpy.typing import NDArray
 
 from pinjoint.components.extensions import EXTENSIONS
 from pinjoint.components.mistake import WrongValue
-from pinjoint.systems.render.marks import Points, Stamps
+from pinjoint.systems.render.marks import Points, Rows, Stamps
 
 Part = tuple[str, tuple[float, ...]]
 Parts = list[tuple[str, Points]]  # ("ink" or "hollow", corners (k, 2)), in painter's order
@@ -27,7 +26,6 @@ STROKE = 1.8  # the width of lines of icons
 _NUMBERS = {"disc": 3, "arc": 5}  # of one part; lines and areas have two for each of their points
 SUPPORT_DEPTH = 25.0  # points from the particle's rim to the far side of the ground
 RIM = 1.75  # points
-LARGEST_STAMP = 64.0  # points, greatest radius of a circle drawn as a stamp
 _HALF_WIDTH, _HEIGHT = 9.5, 16.0  # points, of a support's triangle
 _GROUND = 13.0  # points, half the length of the ground under it
 _SQUARE = 9.5  # points, half the side of a square around a joint that cannot turn
@@ -193,7 +191,7 @@ SYMBOLS: dict[str, Callable[[float, float], Parts]] = {
 }
 
 
-def dashed(start: Points, end: Points, dash: float) -> tuple[Points, Points, NDArray[np.intp]]:
+def dashed(start: Points, end: Points, dash: float) -> tuple[Points, Points, Rows]:
     """Segments cut into dashes and gaps of about that length, a dash at both ends; and of which segment each dash is."""
     step = end - start
     count = np.maximum(np.round((np.hypot(*step.T) / dash - 1.0) / 2.0), 0.0).astype(np.int64) + 1

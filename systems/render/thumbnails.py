@@ -15,7 +15,7 @@ from pinjoint.components.model import Model
 from pinjoint.components.view import View, drawn_places
 from pinjoint.systems.render.arrows import draw_loads, draw_velocities
 from pinjoint.systems.render.diagrams import draw_diagrams
-from pinjoint.systems.render.marks import Bars, Discs, Fills, Mark, Points, Rectangles, Stamps, Strokes
+from pinjoint.systems.render.marks import Bars, Discs, Fills, Mark, Points, Stamps, Strokes
 from pinjoint.systems.render.members import draw_distributed_forces, draw_hinges, draw_moments
 from pinjoint.systems.render.sheet import measure
 from pinjoint.systems.render.structure import draw_particles, draw_rods
@@ -80,8 +80,6 @@ def _corners(mark: Mark) -> Points:
             shape = np.concatenate([polygon for _, polygon in turned_parts(mark)])
             placed: Points = (mark.at[:, None] + shape).reshape(-1, 2)
             return placed
-        case Rectangles():
-            return np.concatenate([mark.boxes[:, :2], mark.boxes[:, :2] + mark.boxes[:, 2:]]).astype(np.float64)
         case _:
             return np.zeros((0, 2))
 

@@ -12,11 +12,11 @@ from pinjoint.components.view import Hit, View
 from pinjoint.systems.render.buttons import button, titled, tool_icon, written_key
 from pinjoint.systems.render.help import put_help
 from pinjoint.systems.render.layout import Column, Gap, Paper, Part, Plate, Row, Text
-from pinjoint.systems.render.marks import Mark, Panel, Picture, boxes
-from pinjoint.systems.render.marks import Text as Written
+from pinjoint.systems.render.marks import Panel, Picture
 from pinjoint.systems.render.menu import put_menu
+from pinjoint.systems.render.occupancy import STRONG, Occupancy
 from pinjoint.systems.render.theme import Theme
-from pinjoint.systems.render.typography import in_rows, text_width
+from pinjoint.systems.render.typography import in_rows
 
 
 def compose_toolbar(toolbar: Toolbar, view: View, theme: Theme, below: Sequence[Picture] = ()) -> Picture:
@@ -35,7 +35,8 @@ def compose_toolbar(toolbar: Toolbar, view: View, theme: Theme, below: Sequence[
 def _put_strip(paper: Paper, toolbar: Toolbar, view: View, theme: Theme) -> None:
     """The bar with a hairline at its right edge, and its buttons, the last group at the bottom."""
     s, thin = view.strip, max(round(paper.unit), 1)
-    paper.marks += [boxes(theme.panel, s.box), boxes(theme.line, (s.right - thin, s.top, thin, s.height))]
+    paper.marks.append(Panel(*s.box, 0.0, theme.panel))
+    paper.marks.append(Panel(s.right - thin, s.top, thin, s.height, 0.0, theme.line))
     columns, high = toolbar.columns(view.camera.viewport, paper.unit)
     parts: list[Part] = []
     for number, group in enumerate(toolbar.groups):
@@ -72,21 +73,9 @@ def _free_place(
     nearest = view.strip.right + 6.0 * u, min(max(top, window.top + gap), window.bottom - height - gap)
     places = np.array([nearest, *((x, y) for x in lefts for y in tops)])
     places = places[np.argsort(np.hypot(*(places - nearest).T), kind="stable")]
-    size = np.array([width, height])
-    for box in np.array([box for picture in below for mark in picture.marks if (box := _box(mark))]):
-        apart = (places <= box[:2] - size - gap) | (places >= box[2:] + gap)
-        if len(places := places[apart.any(axis=1)]) == 0:
-            return nearest
-    left, upper = places[0].tolist()
+    size, taken = np.array([width, height]), Occupancy(window, u)
+    for picture in below:
+        taken.block_marks(picture.marks)
+    free = taken.are_free(taken.cells_of(places - gap, size + 2.0 * gap), STRONG)
+    left, upper = places[int(free.argmax())].tolist()
     return left, upper
-
-
-def _box(mark: Mark) -> tuple[float, float, float, float] | None:
-    """Left, top, right and bottom of a text, or of a panel on which something stands."""
-    if isinstance(mark, Panel) and mark.outline is not None:
-        return mark.left, mark.top, mark.left + mark.width, mark.top + mark.height
-    if not isinstance(mark, Written):
-        return None
-    width = text_width(mark.text, mark.size, mark.weight)
-    left = mark.x - {"left": 0.0, "centre": 0.5, "right": 1.0}[mark.anchor] * width
-    return left, mark.y - 0.6 * mark.size, left + width, mark.y + 0.6 * mark.size

@@ -6,10 +6,9 @@ from collections.abc import Callable
 from functools import partial
 
 import numpy as np
-from numpy.typing import NDArray
 
 from pinjoint.components.view import Preview
-from pinjoint.systems.render.clip import bounds, clip_segments
+from pinjoint.systems.render.clip import clip_segments
 from pinjoint.systems.render.marks import Fills, Mark, Panel, Points, Stamps, Strokes, Text
 from pinjoint.systems.render.sheet import DIRECTIONS, Sheet
 from pinjoint.systems.render.symbols import SUPPORT_DEPTH
@@ -20,9 +19,6 @@ _WIDTH = 2.5  # points, of lines
 _APART, _MOST_ARROWS = 26.0, 40  # points between arrows along a rod, and how many there are at most
 _ARC = 24.0  # points, radius of a moment's
 _COILS = 9  # of the spring that pulls
-
-Pixel = NDArray[np.float64]
-Drawn = Callable[[Sheet, Pixel, Pixel], list[Mark]]
 
 
 def draw_flashes(sheet: Sheet) -> list[Mark]:
@@ -49,13 +45,13 @@ def draw_preview(sheet: Sheet) -> list[Mark]:
     return [*drawn, *(_label(sheet, preview, end) if preview.label else [])]
 
 
-def _rod(sheet: Sheet, start: Pixel, end: Pixel) -> list[Mark]:
+def _rod(sheet: Sheet, start: Points, end: Points) -> list[Mark]:
     colour = sheet.theme.sketch
     dot = Stamps("disc", np.array([start, end]), 4.0 * sheet.unit, sheet.unit, colour, colour)
     return [*_lines(sheet, np.array([start, end]), colour), dot]
 
 
-def _pull(sheet: Sheet, start: Pixel, end: Pixel) -> list[Mark]:
+def _pull(sheet: Sheet, start: Points, end: Points) -> list[Mark]:
     """A spring to the pointer: straight at both ends, coils between."""
     colour, u = sheet.theme.load, sheet.unit
     along = end - start
@@ -70,7 +66,7 @@ def _pull(sheet: Sheet, start: Pixel, end: Pixel) -> list[Mark]:
     return [*_lines(sheet, start + share[:, None] * along + side[:, None] * normal, colour, 1.5), hook]
 
 
-def _support(symbol: str, sheet: Sheet, start: Pixel, end: Pixel) -> list[Mark]:
+def _support(symbol: str, sheet: Sheet, start: Points, end: Points) -> list[Mark]:
     """A support's symbol, turned to the side to which it was dragged."""
     theme, side = sheet.theme, int(np.argmax(DIRECTIONS @ (end - start)))
     return [
@@ -78,15 +74,15 @@ def _support(symbol: str, sheet: Sheet, start: Pixel, end: Pixel) -> list[Mark]:
     ]
 
 
-def _box(sheet: Sheet, start: Pixel, end: Pixel) -> list[Mark]:
-    low, high = bounds(sheet.viewport)
+def _box(sheet: Sheet, start: Points, end: Points) -> list[Mark]:
+    low, high = sheet.viewport.corners
     (x0, y0), (x1, y1) = np.clip([start, end], low - 10.0, high + 10.0)
     corners = np.array([[x0, y0], [x1, y0], [x1, y1], [x0, y1], [x0, y0]])
     colour = sheet.theme.sketch
     return [Fills(corners[None, :4], faded(colour, 0.1)), *_lines(sheet, corners, faded(colour, 0.8), 1.0)]
 
 
-def _arrow(sheet: Sheet, start: Pixel, end: Pixel, colour: Colour) -> list[Mark]:
+def _arrow(sheet: Sheet, start: Points, end: Points, colour: Colour) -> list[Mark]:
     along = end - start
     length = float(np.hypot(*along))
     if length < 1.0:
@@ -99,7 +95,7 @@ def _arrow(sheet: Sheet, start: Pixel, end: Pixel, colour: Colour) -> list[Mark]
     return [*_lines(sheet, np.array([start, neck + 0.2 * head * forward]), colour), Fills(point[None], colour)]
 
 
-def _along(sheet: Sheet, ends: Pixel, force: Pixel) -> list[Mark]:
+def _along(sheet: Sheet, ends: Points, force: Points) -> list[Mark]:
     """Arrows of one force all along a rod, which point to it, and the line from which they come."""
     colour, length = sheet.theme.load, float(np.hypot(*(ends[1] - ends[0])))
     size = float(np.hypot(*force))
@@ -112,7 +108,7 @@ def _along(sheet: Sheet, ends: Pixel, force: Pixel) -> list[Mark]:
     return [*_lines(sheet, ends - back, colour, 1.5), *arrows]
 
 
-def _moment(sheet: Sheet, start: Pixel, end: Pixel) -> list[Mark]:
+def _moment(sheet: Sheet, start: Points, end: Points) -> list[Mark]:
     """An arc around the particle, from above it to the side of the pointer; to the left counter-clockwise."""
     away = float(end[0] - start[0])
     if away == 0.0:
@@ -126,7 +122,7 @@ def _moment(sheet: Sheet, start: Pixel, end: Pixel) -> list[Mark]:
     ]
 
 
-def _hinge(sheet: Sheet, start: Pixel, end: Pixel) -> list[Mark]:
+def _hinge(sheet: Sheet, start: Points, end: Points) -> list[Mark]:
     """A ring where a click acts."""
     colour = sheet.theme.sketch
     return [Stamps("disc", start[None], 7.0 * sheet.unit, 2.0 * sheet.unit, faded(colour, 0.25), colour)]
@@ -134,11 +130,11 @@ def _hinge(sheet: Sheet, start: Pixel, end: Pixel) -> list[Mark]:
 
 def _lines(sheet: Sheet, points: Points, colour: Colour, width: float = _WIDTH) -> list[Mark]:
     """Lines through points (n, 2), as far as they can be seen."""
-    start, end, _ = clip_segments(points[:-1], points[1:], *bounds(sheet.viewport))
+    start, end, _ = clip_segments(points[:-1], points[1:], *sheet.viewport.corners)
     return [Strokes(start, end, width * sheet.unit, colour)] if len(start) else []
 
 
-def _label(sheet: Sheet, preview: Preview, at: Pixel) -> list[Mark]:
+def _label(sheet: Sheet, preview: Preview, at: Points) -> list[Mark]:
     """The value beside the end, inside the viewport."""
     u, v, theme = sheet.unit, sheet.viewport, sheet.theme
     text, size = preview.label.replace("-", "−"), sheet.font(13.0)
@@ -151,7 +147,7 @@ def _label(sheet: Sheet, preview: Preview, at: Pixel) -> list[Mark]:
     ]
 
 
-_KINDS: dict[str, Drawn] = {
+_KINDS: dict[str, Callable[[Sheet, Points, Points], list[Mark]]] = {
     "rod": _rod,
     "force": lambda sheet, start, end: _arrow(sheet, start, end, sheet.theme.load),
     "distributed force": lambda sheet, start, end: [],

@@ -4,12 +4,14 @@ from __future__ import annotations
 
 import json
 import math
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable
 from functools import cache, lru_cache
 from importlib.resources import files
 from typing import Any, TypeVar
 
 T = TypeVar("T")
+
+ALL = 1_000  # lines: as many as a text takes
 
 WEIGHTS = {"regular": "Inter-Regular.otf", "semibold": "Inter-SemiBold.otf"}
 
@@ -75,8 +77,8 @@ def fitting(characters: Iterable[str], width: float, size: int, weight: str = "r
 
 
 @lru_cache(maxsize=2048)  # a form asks for the heights of all that it could explain, several times a frame
-def wrapped(text: str, width: float, size: int, weight: str = "regular") -> tuple[str, ...]:
-    """The text in lines no wider than `width`, broken at spaces; a single longer word is shortened."""
+def wrapped(text: str, width: float, size: int, weight: str = "regular", most: int = ALL) -> tuple[str, ...]:
+    """The text in at most so many lines of a width, broken at spaces; a longer word, and what is left over, is shortened."""
     lines: list[str] = []
     for paragraph in text.split("\n"):
         line = ""
@@ -88,16 +90,11 @@ def wrapped(text: str, width: float, size: int, weight: str = "regular") -> tupl
             else:
                 line = longer
         lines.append(line)
+    if len(lines) > most:
+        lines[most - 1 :] = [" ".join(lines[most - 1 :])]
     return tuple(shortened(line, width, size, weight) for line in lines)
 
 
 def in_rows(items: list[T], each: int) -> list[list[T]]:
     """Items in rows of `each`; the last row may be shorter."""
     return [items[first : first + each] for first in range(0, len(items), each)]
-
-
-def at_most(lines: Sequence[str], most: int, width: float, size: int, weight: str = "regular") -> list[str]:
-    """The first lines, the last of them ending in an ellipsis if there are more."""
-    if len(lines) <= most:
-        return list(lines)
-    return [*lines[: most - 1], shortened(" ".join(lines[most - 1 :]), width, size, weight)]

@@ -5,14 +5,13 @@ from __future__ import annotations
 from itertools import pairwise
 
 import numpy as np
-from numpy.typing import NDArray
 
 from pinjoint.components import written
 from pinjoint.components.language import tr
 from pinjoint.components.model import Model
 from pinjoint.components.rod import has_strength, utilisation
-from pinjoint.systems.render.leaders import ANCHORS
-from pinjoint.systems.render.marks import Mark, Strokes, boxes
+from pinjoint.systems.render.labels import ANCHORS
+from pinjoint.systems.render.marks import Mark, Panel, Strokes, Values
 from pinjoint.systems.render.sheet import FEW, Sheet
 from pinjoint.systems.render.structure import HALO_OPACITY, places_by_rod
 from pinjoint.systems.render.theme import Colour, Theme, faded
@@ -21,8 +20,6 @@ from pinjoint.systems.render.values import half_sizes, write
 LEVELS = 10  # colours of the scale
 _HALO = 13.0  # points
 _LEAST_TOLD = 0.005  # smaller shares have no number
-
-Values = NDArray[np.float64]
 
 
 def first_at_limit(model: Model, share: Values) -> int:
@@ -99,6 +96,6 @@ def scale_bar(theme: Theme, x: float, y: float, width: float, unit: float) -> li
     edges = np.round(np.linspace(x, x + width, LEVELS + 1)).astype(int).tolist()
     top, height = round(y - 5.0 * unit), round(10.0 * unit)
     return [
-        boxes(shade(theme, step / (LEVELS - 1)), (left, top, right - left, height))
+        Panel(left, top, right - left, height, 0.0, shade(theme, step / (LEVELS - 1)))
         for step, (left, right) in enumerate(pairwise(edges))
     ]

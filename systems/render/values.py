@@ -6,23 +6,20 @@ from collections.abc import Iterable, Sequence
 from typing import Literal
 
 import numpy as np
-from numpy.typing import NDArray
 
 from pinjoint.components import written
 from pinjoint.systems.render.labels import Key, Label, half_size
-from pinjoint.systems.render.marks import Owner, Points
-from pinjoint.systems.render.sheet import Rows, Sheet
+from pinjoint.systems.render.marks import Owner, Points, Rows, Values
+from pinjoint.systems.render.sheet import Sheet
 from pinjoint.systems.render.theme import Colour, faded
 
 SMALLEST = 1e-4  # kN or kN·m; smaller forces and moments are drawn as none
 FEW_VALUES = 24  # values up to which each carries its unit and keeps clear of rods
-GAP, BY_ARROW = 1.0, 5.5  # points between a rod, or an arrow in a diagram, and a value beside it
+GAP = 1.0  # points between a rod and a value beside it
 BACKING = 0.86  # opacity behind a value
 FIRST = -1e9  # rank of values of arrows, which are few and say little without them: before those of rods
 _KEPT = 1.5  # factor by which a new value must be larger to replace one of the last picture
 _MOST_COVERED = 0.15  # of a picture, by values
-
-Values = NDArray[np.float64]
 
 
 def half_sizes(sheet: Sheet, texts: Iterable[str], size: int = 0) -> Points:

@@ -86,6 +86,15 @@ def test_a_right_click_selects_what_it_hits_and_opens_its_menu(session: Session)
     assert wanted <= {*actions(menu(session))}
 
 
+def test_a_menu_without_room_for_all_its_columns_goes_on_by_the_wheel(session: Session) -> None:
+    session.resize(320, 240)
+    session.press("right click", session.view.camera.middle)
+    first = {hit.item for hit in entries(session)}
+    assert first < {*range(len(menu(session).entries))}
+    session.press("wheel down", entries(session)[0].middle)
+    assert not first & {hit.item for hit in entries(session)}
+
+
 def test_a_right_click_on_one_of_several_selected_keeps_them(session: Session) -> None:
     session.press("ctrl+a")
     session.click(1.5, 1.5, "right click")

@@ -16,7 +16,7 @@ from pinjoint.components.language import spoken
 from pinjoint.documents.library import data_apart
 from pinjoint.documents.models import bundled
 from pinjoint.editor.scenes.form import FormScene
-from pinjoint.systems.input.actions import ACTIONS, help_lines
+from pinjoint.systems.input.actions import ACTIONS
 from pinjoint.systems.render.marks import Panel, Picture, Text
 from pinjoint.systems.render.typography import capital_height
 from tests.golden.scenes import SCENES, WINDOWS, Scene, Window, composed, opened, pressed
@@ -241,7 +241,7 @@ def test_every_key_is_explained_in_a_window_of_any_size(key: str, size: tuple[in
         card = [box for mark, box in shown if not mark.text.endswith("…")]
         assert all(left >= 0.0 and right <= size[0] and bottom <= size[1] for left, _, right, bottom in card)
     assert session.view.help == 0
-    assert not [title for _, title in help_lines(session.scene) if title not in told]
+    assert not [title for _, title in ACTIONS.help_lines(session.scene) if title not in told]
 
 
 def main() -> None:

@@ -11,7 +11,7 @@ from pinjoint import Session, mods
 from pinjoint.commands.command_line import main
 from pinjoint.components import Particle
 from pinjoint.components.extensions import EXTENSIONS
-from pinjoint.systems.input.actions import ACTIONS, action_for
+from pinjoint.systems.input.actions import ACTIONS
 from pinjoint.systems.physics.integrators import VelocityVerlet
 from pinjoint.systems.program.compiler import Choice
 from tests.mods.conftest import Write
@@ -215,8 +215,8 @@ def test_a_key_that_is_taken_stays_and_that_is_reported(tmp_path: Path, write_mo
     write_mod("pear", KEY.format("pear", FREE))
     write_mod("plum", KEY.format("plum", FREE))
     found = load(tmp_path)
-    assert action_for("pause", "s") == "save"
-    assert action_for("pause", FREE) == "pear.a"
+    assert ACTIONS.name_at("pause", "s") == "save"
+    assert ACTIONS.name_at("pause", FREE) == "pear.a"
     assert "already does 'save' in pause" in found["apple"].notes[0]
     assert "already does 'pear.a'" in found["plum"].notes[0]
     assert not any(mod.off for mod in found.values())
@@ -229,8 +229,8 @@ def test_the_key_that_a_person_chose_is_kept(tmp_path: Path, write_mod: Write) -
     write_mod("pear", KEY.format("pear", FREE))
     write_mod("plum", KEY.format("plum", FREE))
     load(tmp_path)
-    assert action_for("pause", FREE) == "plum.a"
-    assert action_for("simulation", FREE) is None
+    assert ACTIONS.name_at("pause", FREE) == "plum.a"
+    assert ACTIONS.name_at("simulation", FREE) is None
 
 
 # --- components ----------------------------------------------------------------------------------------------------

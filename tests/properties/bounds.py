@@ -1,8 +1,8 @@
 """Nothing reads or writes outside an array: code run in a process in which machine code checks every index.
 
-`python -m tests.properties.bounds editing windows --count 20` is `python -m tests.properties.fuzz` in such a process. It
-compiles all that it runs, in a cache folder of its own, for what was compiled without checks has none. A kernel called by an
-address cannot raise: numba prints the error and goes on with zero, so its process ends at once instead.
+`python -m tests.properties.bounds editing windows --count 20` is `python -m tests.properties.fuzz` in such a process. What
+it compiles is kept in a folder apart, for what was compiled without checks has none. A kernel called by an address cannot
+raise: numba prints the error and goes on with zero, so its process ends at once instead.
 """
 
 import os
@@ -24,25 +24,27 @@ sys.unraisablehook = end
 """
 
 
-def checked(code: str, timeout: float | None = None) -> subprocess.CompletedProcess[str]:
-    """Run this code with all indices of machine code checked."""
-    with tempfile.TemporaryDirectory() as folder:
-        (Path(folder) / "sitecustomize.py").write_text(_GUARD, encoding="utf-8")
-        own = {"NUMBA_BOUNDSCHECK": "1", "PINJOINT_COMPILE": "always", "XDG_CACHE_HOME": folder}
-        own["NUMBA_OPT"] = "0"  # compiling, which is what takes long here, takes a third; checks are the same
-        return subprocess.run(
-            [sys.executable, "-c", code],
-            env=os.environ | own | {"PYTHONPATH": os.pathsep.join([folder, str(Path(__file__).parents[2])])},
-            stdout=subprocess.PIPE,
-            stderr=subprocess.STDOUT,
-            text=True,
-            timeout=timeout,
-        )
+def checked(code: str, folder: Path, timeout: float | None = None) -> subprocess.CompletedProcess[str]:
+    """Run this code with all indices of machine code checked, which is kept in a folder."""
+    (folder / "sitecustomize.py").write_text(_GUARD, encoding="utf-8")
+    own = {"NUMBA_BOUNDSCHECK": "1", "PINJOINT_COMPILE": "always", "XDG_CACHE_HOME": str(folder)}
+    # Compiling, which is what takes long here, takes a third. Without any optimising it takes as long, and code that goes by
+    # addresses which would have been optimised away is not kept.
+    own["NUMBA_OPT"] = "1"
+    return subprocess.run(
+        [sys.executable, "-c", code],
+        env=os.environ | own | {"PYTHONPATH": os.pathsep.join([str(folder), str(Path(__file__).parents[2])])},
+        stdout=subprocess.PIPE,
+        stderr=subprocess.STDOUT,
+        text=True,
+        timeout=timeout,
+    )
 
 
 def main(words: Sequence[str] | None = None) -> int:
     """Fuzz with checked indices; returns the status of the process that did."""
-    done = checked(fuzzing(*(sys.argv[1:] if words is None else words)))
+    with tempfile.TemporaryDirectory() as folder:
+        done = checked(fuzzing(*(sys.argv[1:] if words is None else words)), Path(folder))
     print(done.stdout, end="")
     return done.returncode
 

@@ -12,7 +12,7 @@ from pinjoint.editor.context import Context
 from pinjoint.editor.scenes.form import FormScene
 from pinjoint.editor.sliders import add_slider
 from pinjoint.systems.edit import Refusal
-from pinjoint.systems.forms import typing
+from pinjoint.systems.forms.typing import MOST_CHARACTERS
 from pinjoint.systems.input.actions import ACTIONS, FORMS, LOAD, PROPERTIES, SAVE, Perform, actions_of
 
 action = actions_of("Boxes", FORMS)
@@ -60,13 +60,13 @@ for _way, _title in (
     _act = _on_form(lambda s, context, way=_way: s.move(context, way))  # type: ignore[misc]
     action(f"go {_way}", _way, _title, (PROPERTIES,), repeats=True)(_act)
     action(f"go {_way}", _way, "choose a picture", FILES)(_act)
-action("to the beginning", "home")(_on_form(lambda s, context: typing.place_caret(s.form, 0)))
-action("to the end", "end")(_on_form(lambda s, context: typing.place_caret(s.form, typing.MOST_CHARACTERS)))
+action("to the beginning", "home")(_on_form(lambda s, context: s.typing.place_caret(0)))
+action("to the end", "end")(_on_form(lambda s, context: s.typing.place_caret(MOST_CHARACTERS)))
 action("erase", "backspace", "erase", repeats=True)(_on_form(lambda s, context: s.erase(context)))
 action("erase after", "delete", "erase after the cursor", repeats=True)(
     _on_form(lambda s, context: s.erase(context, after=True))
 )
-action("mark all", "ctrl+a", "select all text")(_on_form(lambda s, context: typing.mark_all(s.form)))
+action("mark all", "ctrl+a", "select all text")(_on_form(lambda s, context: s.typing.mark_all()))
 action("copy text", "ctrl+c", "copy")(_on_form(lambda s, context: s.copy(context)))
 action("cut text", "ctrl+x", "cut")(_on_form(lambda s, context: s.cut(context)))
 action("paste text", "ctrl+v", "paste")(_on_form(lambda s, context: s.paste(context)))

@@ -19,9 +19,8 @@ from pinjoint.editor.gestures.moving import BoxSelect, Move, MovePoint, PullPart
 from pinjoint.editor.scenes.properties import Properties
 from pinjoint.editor.toolbar import menu_at
 from pinjoint.systems.edit import Refusal
-from pinjoint.systems.edit.moving import Movable, nudged
 from pinjoint.systems.edit.picking import everything, pick, pick_grid, pick_line, pick_particle, pick_point
-from pinjoint.systems.edit.placing import snapped
+from pinjoint.systems.edit.placing import Movable, nudged, snapped
 from pinjoint.systems.edit.rods import delete
 from pinjoint.systems.forms.properties import counted, heading
 from pinjoint.systems.input.actions import (

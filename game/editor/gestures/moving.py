@@ -15,9 +15,8 @@ from pinjoint.components.particle import Particle
 from pinjoint.components.view import Preview, drawn_positions
 from pinjoint.editor.context import Context, Gesture
 from pinjoint.systems.edit import Refusal
-from pinjoint.systems.edit.moving import Movable
 from pinjoint.systems.edit.picking import Grip, inside
-from pinjoint.systems.edit.placing import check_free, snapped, snapped_to_points
+from pinjoint.systems.edit.placing import Movable, check_free, snapped, snapped_to_points
 from pinjoint.systems.edit.pull import hand_on
 
 

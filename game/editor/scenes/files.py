@@ -14,7 +14,6 @@ from pinjoint.documents.previews import LARGEST_SOLVED, has_moved, preview, solv
 from pinjoint.editor.context import Context
 from pinjoint.editor.scenes.form import FormScene
 from pinjoint.systems.base import Phase, System
-from pinjoint.systems.forms import typing
 
 LARGEST_PICTURED = 4 * 2**20  # bytes; larger files get no picture
 READING = 0.005  # s of each frame spent on reading pictures; one picture at least
@@ -51,7 +50,7 @@ class FileScene(FormScene):
 
     def type(self, context: Context, text: str) -> None:
         if self.form.selected is None:
-            typing.select(self.form, self.box)
+            self.typing.select(self.box)
         super().type(context, text)
 
     def changed(self, context: Context) -> None:
@@ -71,7 +70,7 @@ class FileScene(FormScene):
     def _neighbour(self, context: Context, direction: str) -> Tile | None:
         """The tile next to the chosen one in a direction; the first visible tile if none is chosen yet."""
         layout, chosen = self.layout(context), self.form.chosen
-        rows = [[item for item in row if isinstance(item, Tile)] for row in layout.rows]
+        rows = [[item for item in line.items if isinstance(item, Tile)] for line in layout.lines]
         at = next(((row, row.index(chosen)) for row in rows if chosen in row), None)
         if at is None:
             return next((place.item for place in layout.places if isinstance(place.item, Tile)), None)
@@ -86,7 +85,7 @@ class FileScene(FormScene):
 
     def next_box(self, context: Context, by: int) -> None:
         """Tab: select the only box, or accept it if it is selected."""
-        typing.select(self.form, self.box if self.form.selected is None else None)
+        self.typing.select(self.box if self.form.selected is None else None)
 
     # --- pictures ----------------------------------------------------------------------------------
 
@@ -182,15 +181,15 @@ class Save(FileScene):
     def choose(self, context: Context, tile: Tile) -> None:
         """Take the name of a tile, to use it again or change it a little."""
         self.form.chosen = None
-        typing.select(self.form, self.box)
-        typing.put(self.form, self.box, tile.file)
+        self.typing.select(self.box)
+        self.typing.put(self.box, tile.file)
         self.changed(context)
 
     def move(self, context: Context, direction: str) -> None:
         super().move(context, direction)
         chosen = self.form.chosen
         if chosen is not None and self.box.text != chosen.file:
-            typing.put(self.form, self.box, chosen.file)
+            self.typing.put(self.box, chosen.file)
             self.say("")
 
     def accept(self, context: Context) -> None:

@@ -12,9 +12,10 @@ from pinjoint.components.form import NAME, NUMBER, WORD, Box, Form, Tile
 from pinjoint.components.language import decimals, english, joined, marked, tr
 from pinjoint.components.wording import missing
 from pinjoint.editor.context import Context, Scene
-from pinjoint.systems.forms import typing
-from pinjoint.systems.render.form import FormLayout, lay_out
+from pinjoint.systems.forms.typing import YES_NO, Typing
+from pinjoint.systems.render.form import FormLayout
 from pinjoint.systems.render.form_box import caret_at
+from pinjoint.systems.render.layout import Paper
 from pinjoint.systems.render.picture import Stage
 from pinjoint.systems.render.theme import load_theme
 
@@ -26,6 +27,11 @@ class FormScene(Scene):
 
     def __init__(self) -> None:
         self.form = Form("")
+
+    @property
+    def typing(self) -> Typing:
+        """Typing into its boxes."""
+        return Typing(self.form)
 
     @property
     def message(self) -> str:
@@ -50,7 +56,7 @@ class FormScene(Scene):
 
     def accept(self, context: Context) -> None:
         """Return: accept the selected box."""
-        typing.accept(self.form)
+        self.typing.accept()
 
     def changed(self, context: Context) -> None:
         """The text of a box was changed."""
@@ -74,12 +80,12 @@ class FormScene(Scene):
         if direction in ("up", "down"):
             by = 1 if direction == "down" else -1
             if box is not None and box.accepts in (WORD, NAME):
-                typing.turn_word(self.form, box, by)
+                self.typing.turn_word(box, by)
                 self.changed(context)
             else:
                 self.next_box(context, by)
         else:
-            typing.step_caret(self.form, 1 if direction == "right" else -1)
+            self.typing.step_caret(1 if direction == "right" else -1)
             self._reveal_selected(context)
 
     def say_again(self, context: Context) -> None:
@@ -90,9 +96,9 @@ class FormScene(Scene):
         for box in self.form.boxes:
             old = olds.get(box.target, box)
             if old is before.selected:
-                typing.select(self.form, box)
+                self.typing.select(box)
             if old.text != box.text:
-                typing.put(self.form, box, old.text)
+                self.typing.put(box, old.text)
                 typed = True
         if typed:
             self.changed(context)
@@ -106,7 +112,8 @@ class FormScene(Scene):
     def layout(self, context: Context) -> FormLayout:
         """Where its boxes and tiles are now."""
         view = context.view
-        return lay_out(self.form, self.viewport(context), view.pixel_ratio, load_theme(view.theme))
+        paper = Paper(view.pixel_ratio, draws=False)
+        return FormLayout(self.form, self.viewport(context), paper, load_theme(view.theme))
 
     def resized(self, context: Context) -> None:
         """Keep the selected box in sight."""
@@ -115,7 +122,7 @@ class FormScene(Scene):
     # --- input -------------------------------------------------------------------------------------
 
     def type(self, context: Context, text: str) -> None:
-        refused = typing.write(self.form, text)
+        refused = self.typing.write(text)
         self.form.message = ""
         self._reveal_selected(context)
         self.changed(context)
@@ -124,7 +131,7 @@ class FormScene(Scene):
     def erase(self, context: Context, *, after: bool = False) -> None:
         """Backspace, or Delete."""
         self.form.message = ""
-        typing.erase(self.form, after=after)
+        self.typing.erase(after=after)
         self._reveal_selected(context)
         self.changed(context)
 
@@ -133,13 +140,13 @@ class FormScene(Scene):
         if self.form.selected is None:
             self.leave(context)
         else:
-            given_up = typing.restore(self.form)
+            given_up = self.typing.restore()
             self.changed(context)
             self.form.message = given_up
 
     def next_box(self, context: Context, by: int) -> None:
         """Tab: select the next box, or the previous one."""
-        typing.move_on(self.form, by)
+        self.typing.move_on(by)
         self._reveal_selected(context)
 
     def click(self, context: Context, pixel: Vector) -> None:
@@ -147,19 +154,19 @@ class FormScene(Scene):
         place = self.layout(context).at(pixel)
         match place.item if place is not None else None:
             case "close":
-                typing.accept(self.form)
+                self.typing.accept()
                 self.leave(context)
             case "accept":
                 self.accept(context)
             case Box() as box:
                 again = box is self.form.selected
                 if not again:
-                    typing.select(self.form, box)
-                if box.accepts in (WORD, NAME) and (again or box.words == typing.YES_NO):
-                    typing.turn_word(self.form, box)
+                    self.typing.select(box)
+                if box.accepts in (WORD, NAME) and (again or box.words == YES_NO):
+                    self.typing.turn_word(box)
                     self.changed(context)
                 elif again and place is not None:
-                    typing.place_caret(self.form, caret_at(place, box, pixel[0], context.view.pixel_ratio))
+                    self.typing.place_caret(caret_at(place, box, pixel[0], context.view.pixel_ratio))
             case Tile() as tile:
                 self.choose(context, tile)
             case _:
@@ -167,7 +174,7 @@ class FormScene(Scene):
 
     def click_beside(self, context: Context, pixel: Vector) -> None:
         """A click that hit neither a box nor a tile."""
-        typing.accept(self.form)
+        self.typing.accept()
 
     @property
     def boxes(self) -> dict[str, str]:
@@ -179,7 +186,7 @@ class FormScene(Scene):
         for box in self.form.boxes:
             if wanted in (english(box.title).lower(), tr(box.title).lower()):
                 self.reveal(context, box)
-                typing.select(self.form, box)
+                self.typing.select(box)
                 return
         titles = [english(box.title) for box in self.form.boxes]
         raise LookupError(missing(marked("boxes"), title, titles))
@@ -198,7 +205,7 @@ class FormScene(Scene):
         layout, form = self.layout(context), self.form
         if layout.place_of(item) is not None:
             return
-        row = next(number for number, row in enumerate(layout.rows) if item in row)
+        row = next(number for number, line in enumerate(layout.lines) if item in line.items)
         form.first = min(layout.paper.scrolled[0], row)
         while form.first < row and self.layout(context).place_of(item) is None:
             form.first += 1
@@ -218,7 +225,7 @@ class FormScene(Scene):
     def cut(self, context: Context) -> None:
         """Copy, then empty the box."""
         self.copy(context)
-        typing.mark_all(self.form)
+        self.typing.mark_all()
         self.erase(context)
 
     def paste(self, context: Context) -> None:

@@ -17,7 +17,7 @@ from pinjoint.components.view import LEAST_BESIDE, View, drawn_positions
 from pinjoint.editor.context import Context
 from pinjoint.editor.scenes.form import FormScene
 from pinjoint.systems.edit.picking import pick
-from pinjoint.systems.forms import answers, properties, results, typing
+from pinjoint.systems.forms import answers, properties, results
 from pinjoint.systems.render.form import FormLayout
 from pinjoint.systems.render.picture import Stage
 
@@ -97,7 +97,7 @@ class Properties(FormScene):
         """Return: accept the selected box; without one, leave."""
         if self.form.selected is None:
             self.leave(context)
-        elif typing.accept(self.form):
+        elif self.typing.accept():
             self._apply(context)
         else:
             self.form.selected.marked = True
@@ -180,7 +180,7 @@ class Properties(FormScene):
 
     def click_beside(self, context: Context, pixel: Vector) -> None:
         """A click on another element applies these boxes and shows those of that element."""
-        if not typing.accept(self.form) or self.viewport(context).contains(pixel):
+        if not self.typing.accept() or self.viewport(context).contains(pixel):
             return
         hit = pick(*self.focus(context), pixel)
         if hit is not None and [hit] != context.selected:

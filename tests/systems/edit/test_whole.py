@@ -1,7 +1,7 @@
 """What holds for every action, and for several in a row."""
 
 from pinjoint import Session
-from pinjoint.systems.input.actions import ACTIONS, EVERY, MENU, action_for, help_lines
+from pinjoint.systems.input.actions import ACTIONS, EVERY, MENU
 from tests.systems.edit.hand import press_at
 
 
@@ -12,9 +12,9 @@ def test_no_key_leads_to_two_actions() -> None:
             assert scene in (*EVERY, MENU)
             assert (scene, binding.key) not in seen, binding
             seen.add((scene, binding.key))
-            assert action_for(scene, binding.key) == action.name
+            assert ACTIONS.name_at(scene, binding.key) == action.name
             if binding.title:
-                assert (binding.key, binding.title) in help_lines(scene)
+                assert (binding.key, binding.title) in ACTIONS.help_lines(scene)
 
 
 def test_another_action_ends_a_drag_but_a_look_does_not(triangle: Session) -> None:

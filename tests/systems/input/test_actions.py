@@ -23,7 +23,6 @@ from pinjoint.systems.input.actions import (
     SIMULATION,
     Action,
     Binding,
-    key_named,
 )
 from tests.properties.soundness import contents
 from tests.reference.hits import hits_in
@@ -279,12 +278,12 @@ def test_every_key_does_something_in_every_scene_that_it_names(
     ],
 )
 def test_keys_are_known_by_the_names_that_people_use(said: str, meant: str) -> None:
-    assert key_named(said) == meant
+    assert ACTIONS.key_named(said) == meant
 
 
 def test_every_bound_key_is_called_as_it_is() -> None:
     keys = [binding.key for _, binding in ACTIONS.bound()]
-    assert keys == list(map(key_named, keys))
+    assert keys == list(map(ACTIONS.key_named, keys))
 
 
 @pytest.mark.parametrize("text", ["", "spacebarr", "ctrl+", "alt+x", "undo"])

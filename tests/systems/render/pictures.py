@@ -8,7 +8,7 @@ from pinjoint.components.particle import Particle
 from pinjoint.components.rod import spawn_rods
 from pinjoint.components.view import View
 from pinjoint.components.world import Derivation
-from pinjoint.systems.render.marks import Picture
+from pinjoint.systems.render.marks import Panel, Picture
 from pinjoint.systems.render.picture import compose
 from pinjoint.systems.render.theme import load_theme
 
@@ -50,4 +50,5 @@ def picture_of(model: Model, **options: object) -> Picture:
 
 def marks_of(picture: Picture, kind: type, colour: tuple[int, ...] | None = None) -> list:
     marks = [mark for mark in picture.marks if isinstance(mark, kind)]
-    return [mark for mark in marks if colour is None or mark.colour[:3] == colour[:3]]
+    colours = [mark.fill if isinstance(mark, Panel) else mark.colour for mark in marks] if colour else []
+    return [m for m, own in zip(marks, colours, strict=True) if own[:3] == colour[:3]] if colour else marks

@@ -11,18 +11,7 @@ from hypothesis import strategies as st
 
 from pinjoint.components.camera import Viewport
 from pinjoint.systems.render.framing import framed
-from pinjoint.systems.render.marks import (
-    Bars,
-    Discs,
-    Fills,
-    Mark,
-    Panel,
-    Picture,
-    Rectangles,
-    Stamps,
-    Strokes,
-    Text,
-)
+from pinjoint.systems.render.marks import Bars, Discs, Fills, Mark, Panel, Picture, Stamps, Strokes, Text
 from pinjoint.systems.render.pygame_canvas import Canvas
 from pinjoint.systems.render.symbols import SYMBOLS
 
@@ -48,7 +37,7 @@ INSIDE: list[Mark] = [
     Stamps("arrow", at(50, 40), 20.0, 1.0, INK, PALE, turns=3),
     Stamps("pinned", at(50, 40), 5.0, 1.0, INK, PALE, turns=1),
     Discs(at(30, 30, 80, 50), np.array([10.0, 20.0]), INK, PALE, 2.0),
-    Rectangles(np.array([[5, 5, 20, 30]]), INK),
+    Panel(5, 5, 20, 30, 0.0, INK),
     Panel(10, 10, 80, 50, 6.0, PALE, INK),
     Text("hello", 60, 40, 14, INK, "semibold", "centre"),
 ]
@@ -65,7 +54,7 @@ def test_what_lies_inside_is_drawn_as_it_is(mark: Mark) -> None:
         Strokes(at(-500, 40), at(600, 40), 6.0, INK),
         Fills(at(-300, -300, 400, -300, 60, 400)[None], INK),
         Bars(at(-300, 30), at(300, 30), at(0, 20), INK),
-        Rectangles(np.array([[-500, 20, 1000, 30]]), INK),
+        Panel(-500, 20, 1000, 30, 0.0, INK),
         Panel(-400, 10, 700, 500, 12.0, PALE, INK),
         Text("a long line of text that does not fit", -20, 40, 14, INK),
     ],
@@ -105,7 +94,6 @@ MARKS = st.one_of(
         OF,
     ),
     st.builds(lambda p, r, rim: Discs(p, np.array([r]), INK, PALE, rim), PLACES, SIZES, SIZES),
-    st.builds(lambda *box: Rectangles(np.array([box]), INK), *[st.integers(-(2**62), 2**62)] * 4),
     st.builds(Panel, LENGTHS, LENGTHS, SIZES, SIZES, SIZES, st.just(INK), st.none(), st.just(("rods", 3))),
     st.builds(
         Text,

@@ -7,7 +7,7 @@ import pytest
 from pinjoint import Session
 from pinjoint.components.model import Model
 from pinjoint.components.view import Status, drawn_positions
-from pinjoint.systems.render.marks import Panel, Rectangles, Stamps, Text
+from pinjoint.systems.render.marks import Panel, Stamps, Text
 from pinjoint.systems.render.picture import compose
 from tests.reference.hits import hits_in
 from tests.systems.render.pictures import LIGHT, fill, marks_of, picture_of, triangle, view_of
@@ -79,8 +79,8 @@ def test_heading_and_displacement_scale_are_written() -> None:
 def test_scale_bar_is_as_long_as_it_says() -> None:
     model = triangle()
     view = view_of(model)
-    ruler = marks_of(compose(model, view, LIGHT), Rectangles, LIGHT.muted)[-1]
-    assert ruler.boxes[0, 2] == round(0.5 * view.camera.scale)
+    ruler, *_ = marks_of(compose(model, view, LIGHT), Panel, LIGHT.muted)[-3:]
+    assert ruler.width == round(0.5 * view.camera.scale)
     assert "50 cm" in compose(model, view, LIGHT).texts
 
 
@@ -131,7 +131,11 @@ def test_a_long_notice_stands_beside_a_structure_that_fills_the_height(size: tup
     session.view.status = Status(notice=said)
     marks = compose(session.model, session.view, LIGHT).marks
     pairs = itertools.pairwise(marks)
-    [box] = [a for a, b in pairs if isinstance(a, Panel) and isinstance(b, Stamps) and b.symbol == "disc"]
+    [box] = [
+        a
+        for a, b in pairs
+        if isinstance(a, Panel) and a.radius and isinstance(b, Stamps) and b.symbol == "disc"
+    ]
     x, y = session.view.camera.to_pixels(drawn_positions(session.model)).T
     reach = 8.0
     covered = (x > box.left - reach) & (x < box.left + box.width + reach)

@@ -11,7 +11,7 @@ from pinjoint.components.camera import Viewport
 from pinjoint.components.model import Model
 from pinjoint.components.tags import Selected
 from pinjoint.pictures import path_of
-from pinjoint.systems.render.marks import Discs, Mark, Panel, Picture, Stamps, Strokes, Text, boxes
+from pinjoint.systems.render.marks import Discs, Mark, Panel, Picture, Stamps, Strokes, Text
 from pinjoint.systems.render.pdf import as_pdf
 from pinjoint.systems.render.shapes import Circle, Line, grouped
 from pinjoint.systems.render.svg import as_svg
@@ -96,7 +96,7 @@ def test_shapes_are_what_marks_say() -> None:
         Strokes(at, at + 5.0, 2.0, RED, ("rods", np.array([3]))),
         Discs(at, np.array([4.0]), RED, WHITE, 1.5, ("particles", np.array([0]))),
         Stamps("disc", at, 6.0, 1.0, RED, RED),
-        boxes(WHITE, (0, 0, 5, 5)),
+        Panel(0, 0, 5, 5, 0.0, WHITE),
         Panel(1.0, 2.0, 30.0, 10.0, 3.0, WHITE, RED),
         Text("A  B", 5.0, 5.0, 12, RED, of=("rods", 3)),
     ]

@@ -5,11 +5,9 @@ import itertools
 import numpy as np
 import pytest
 
-from pinjoint.systems.render.theme import load_theme, theme_from, theme_names
+from pinjoint.systems.render.theme import load_theme, theme_names
 from pinjoint.systems.render.utilisation import LEVELS, shade
-from tests.systems.render.pictures import (
-    LIGHT,
-)
+from tests.systems.render.pictures import LIGHT
 
 
 def test_themes_load_and_the_default_is_the_thesis() -> None:
@@ -19,17 +17,9 @@ def test_themes_load_and_the_default_is_the_thesis() -> None:
     assert LIGHT.yielding[:3] == (255, 0, 255)
 
 
-def test_wrong_themes_are_refused_by_name() -> None:
-    entries = {"title": "T"} | dict.fromkeys(LIGHT.__dataclass_fields__, "#102030") | {"title": "T"}
-    assert theme_from(entries, "theme t").load == (16, 32, 48, 255)
+def test_an_unknown_theme_is_refused_by_name() -> None:
     with pytest.raises(ValueError, match="no theme 'pink'; choose one of"):
         load_theme("pink")
-    with pytest.raises(ValueError, match="theme t lacks the colour 'load'"):
-        theme_from({k: v for k, v in entries.items() if k != "load"}, "theme t")
-    with pytest.raises(ValueError, match="theme t has an unknown colour 'glow'"):
-        theme_from(entries | {"glow": "#000000"}, "theme t")
-    with pytest.raises(ValueError, match="theme t, load: 'blue' is not a colour"):
-        theme_from(entries | {"load": "blue"}, "theme t")
 
 
 # Linear RGB as people without red, green or blue cones see it: Machado, Oliveira, Fernandes (2009), severity 1.

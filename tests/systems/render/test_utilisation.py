@@ -7,7 +7,7 @@ from pinjoint.components.model import Model
 from pinjoint.components.rod import utilisation
 from pinjoint.components.tags import Selected
 from pinjoint.session import Session
-from pinjoint.systems.render.marks import Rectangles, Strokes
+from pinjoint.systems.render.marks import Panel, Strokes
 from pinjoint.systems.render.theme import load_theme, theme_names
 from pinjoint.systems.render.utilisation import LEVELS, first_at_limit, shade
 from tests.systems.render.pictures import LIGHT, fill, marks_of, picture_of, triangle
@@ -43,8 +43,7 @@ def test_rods_take_its_colours_only_where_they_are_asked_for() -> None:
     [free] = [m for m in marks_of(picture, Strokes, LIGHT.ghost) if m.of is not None]
     assert free.of[1].tolist() == [2]
     assert {"14.2 %", "BC 99.0 %: closest to yielding", "utilisation 0 to 100 %"} <= set(picture.texts)
-    bar = [m for m in picture.marks if isinstance(m, Rectangles) and m.colour == shade(LIGHT, 1.0)]
-    assert len(bar) == 1
+    assert len(marks_of(picture, Panel, shade(LIGHT, 1.0))) == 1
     model.tag(model.rods["BC"], Selected)
     assert marks_of(picture_of(model, utilisation=True), Strokes, shade(LIGHT, 1.0)), (
         "a selection hides nothing"
