@@ -3,7 +3,8 @@
 __main__.py                 `pinjoint` and `python -m pinjoint`; interrupts.py lets Ctrl+C end it while it loads
 commands/                   the command line and its reports
 app.py                      the window: pygame around a session
-session.py                  Session: a context that scripts and tests drive
+headless.py                 Headless: a context in which scripts and commands let time pass
+session.py                  Session: the same with scenes and a picture, as scripts and tests drive it
 editor/                     Context, and what changes it: scenes, actions, gestures; what the view says of it
 documents/                  models in files, open documents, undo and stepping back, autosave, preferences
 scripts/                    scripted sessions and lessons: written, recorded, played

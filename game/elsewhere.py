@@ -26,9 +26,9 @@ from pinjoint.components.model import Model
 from pinjoint.documents.document import parse
 from pinjoint.documents.facts import gathered
 from pinjoint.mods.loading import load
-from pinjoint.session import Session
 from pinjoint.systems import cache
 from pinjoint.systems.base import Integrator, StepSystem
+from pinjoint.systems.catalogue import all_systems
 from pinjoint.systems.collision.driven.compiled import DRIVEN
 from pinjoint.systems.collision.free.discs import EVENTS, HORIZONS, PILES
 from pinjoint.systems.collision.overlaps import PARTING
@@ -43,6 +43,7 @@ from pinjoint.systems.program.compiler import (
 from pinjoint.systems.program.reordered import make_program
 from pinjoint.systems.program.writer import read_sources
 from pinjoint.systems.render.raster import RASTER
+from pinjoint.systems.schedule import Schedule
 
 UNITS = {unit.name: unit for unit in (RASTER, PARTING, EVENTS, HORIZONS, PILES, DRIVEN)}
 # Of `python -P -c`.
@@ -285,4 +286,4 @@ def parts_of(job: Job, document: bytes) -> tuple[Model, Sequence[StepSystem], In
     """What the step program of a job is made of, for the very model that asks for it."""
     integrator, form, _, *systems = job
     model = parse(msgspec.json.decode(document))
-    return model, Session(model).schedule.named(systems), INTEGRATORS[integrator], form
+    return model, Schedule(all_systems()).named(systems), INTEGRATORS[integrator], form

@@ -11,7 +11,7 @@ import re
 from collections.abc import Callable, Collection, Container, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass
-from typing import Any, Protocol
+from typing import Any
 
 import msgspec
 
@@ -22,7 +22,6 @@ from pinjoint.components.mistake import Mistake
 from pinjoint.components.model import Model
 from pinjoint.components.table import Table
 from pinjoint.components.wording import cut, missing, remedy
-from pinjoint.systems.run.energy import Energy
 
 EVERY = "*"  # in place of a name: all elements of the table
 TIME = "time"  # the path of the simulated time
@@ -251,17 +250,6 @@ def _scalar(field: Field[Any], text: str) -> Any:
 # --- reading -------------------------------------------------------------------------------------------
 
 
-class Readable(Protocol):
-    """The part of a session that quantities read."""
-
-    @property
-    def model(self) -> Model: ...
-    @property
-    def time(self) -> float: ...
-    @property
-    def energy(self) -> Energy: ...
-
-
 @dataclass(frozen=True)
 class Quantity:
     """A number that can be read at any moment.
@@ -272,7 +260,7 @@ class Quantity:
     path: str
     name: str
     unit: str
-    read: Callable[[Readable], float]
+    read: Callable[[Any], float]  # of a session
 
     @property
     def title(self) -> str:
@@ -301,7 +289,7 @@ def quantity(model: Model, path: str) -> Quantity:
     told = {"quantity": tr(field.title), "axis": target.axis, "element": handle.world.describe(handle)}
     title = marked("{quantity} {axis} of {element}") if target.axis else marked("{quantity} of {element}")
 
-    def read(session: Readable) -> float:
+    def read(session: Any) -> float:
         if not handle.exists or handle.world is not session.model:
             return math.nan
         value = session.model.column(f"{handle.table}.{field.name}")[handle.row]

@@ -3,12 +3,9 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterable, Iterator, Sequence
-from contextlib import contextmanager
+from collections.abc import Callable, Iterable, Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, NoReturn
-
-import numpy as np
+from typing import Any, NoReturn
 
 import pinjoint.editor.actions
 import pinjoint.lessons.actions  # noqa: F401 (they register them)
@@ -16,37 +13,30 @@ from pinjoint.components.camera import Viewport
 from pinjoint.components.extensions import EXTENSIONS
 from pinjoint.components.field import FieldError, Vector
 from pinjoint.components.language import begun, joined, listed, marked, tr
-from pinjoint.components.load import Load
 from pinjoint.components.mistake import WrongValue
 from pinjoint.components.model import Model
-from pinjoint.components.particle import Particle
 from pinjoint.components.rod import Rod
-from pinjoint.components.settings import Environment
-from pinjoint.components.table import Table
 from pinjoint.components.view import View, lesson_share
-from pinjoint.components.wording import missing, quoted
+from pinjoint.components.wording import missing
 from pinjoint.documents import models
 from pinjoint.documents.format import ModelError
-from pinjoint.documents.open_documents import ModelFile, Source, file_of
-from pinjoint.editor.context import Context
-from pinjoint.editor.frame import Actions, Exaggerate, Frame, HeadlessFrame, ShowView
+from pinjoint.documents.open_documents import ModelFile, file_of
+from pinjoint.editor.frame import Actions, Exaggerate, Frame, ShowView
 from pinjoint.editor.routing import for_tools, hit_at, meaning
 from pinjoint.editor.scenes import all_scenes, scene_systems
 from pinjoint.editor.scenes.files import FileScene
 from pinjoint.editor.sliders import slider_stack, sliders_of
 from pinjoint.editor.toolbar import toolbar_of
 from pinjoint.editor.view_model import follows, show
+from pinjoint.headless import Headless, forward
 from pinjoint.lessons.course import Course
 from pinjoint.lessons.tasks import Lesson
-from pinjoint.mods import load_all
-from pinjoint.mods.mod import blamed_on_mod, heeding_mods
-from pinjoint.scripts.expectation import expect
+from pinjoint.mods.mod import blamed_on_mod
+from pinjoint.scripts.expectation import check
 from pinjoint.scripts.script import Script, ScriptError
-from pinjoint.systems.base import EVENT_INTERVAL, Phase, StopReason, System
-from pinjoint.systems.catalogue import step_systems
+from pinjoint.systems.base import Phase, System
 from pinjoint.systems.edit import Refusal
 from pinjoint.systems.edit.dividing import divide
-from pinjoint.systems.edit.pull import Pull
 from pinjoint.systems.input.actions import (
     ACTIONS,
     FILES,
@@ -56,23 +46,15 @@ from pinjoint.systems.input.actions import (
     SIMULATION,
     TEXT,
 )
-from pinjoint.systems.run.simulation import Simulation
 from pinjoint.systems.run.system import Time
-from pinjoint.systems.run.watch import watched
-from pinjoint.systems.schedule import Plan, Schedule
-
-if TYPE_CHECKING:  # they import scipy
-    from pinjoint.systems.statics.buckling import Buckling
-    from pinjoint.systems.statics.path import Curve
-    from pinjoint.systems.statics.verify import Comparison
+from pinjoint.systems.schedule import Plan
 
 MODEL, SCRIPT = ".json", ".jsonl"  # files that a person may drop on the window
 FARTHEST = 1e9  # pixels from the corner of the window to which a click may be
 LARGEST_SIDE, LARGEST_RATIO = 65_536, 64.0  # of a window, in pixels, and in pixels per point
-DEFAULT_LIMIT = 60.0  # s of simulated time in which a model is expected to come to rest
 
 
-class Session(Context):
+class Session(Headless):
     """The program as scripts drive it, with or without a window: open documents with their runs, scenes and undo logs.
 
     >>> s = Session.open("isostatic")
@@ -91,13 +73,8 @@ class Session(Context):
         view: View | None = None,
         file: ModelFile = ModelFile(),  # noqa: B008 (it cannot be changed)
     ) -> None:
-        pull, scenes = Pull(), all_scenes()
-        ours = [Exaggerate(), Actions(), ShowView(), Time(), *scene_systems(), *step_systems(), pull]
-        schedule = Schedule(
-            [*ours, *(make() for make in EXTENSIONS.systems), *systems],
-            wanted={scene.name: scene.systems for scene in scenes},
-        )
-        super().__init__(model, schedule, pull, scenes, view or View(), file)
+        seen = [Exaggerate(), Actions(), ShowView(), Time(), *scene_systems()]
+        super().__init__(model, systems, view, file, all_scenes(), seen)
         # Called with every press and after every change of size; set by a recorder.
         self.on_press: Callable[[str, Vector | None], None] | None = None
         self.on_resize: Callable[[], None] | None = None
@@ -109,17 +86,6 @@ class Session(Context):
         self.offer_tools()
         self.begin_document()
 
-    @classmethod
-    def open(cls, source: Source, systems: Iterable[System] = (), mods: Iterable[str | Path] = ()) -> Session:
-        """Open a model file, a bundled model by name, or a document. Raises ModelError.
-
-        systems: further ones for this session. mods: folders of mods to load first, for the whole program;
-        raises ModError if one of them cannot be used.
-        """
-        if folders := list(mods):
-            load_all(folders)
-        return cls(models.load(source), systems, file=file_of(source))
-
     def __reduce_ex__(self, protocol: object) -> NoReturn:
         raise TypeError(
             tr("A session cannot be copied or pickled. Save its model, and open that in another session.")
@@ -129,160 +95,6 @@ class Session(Context):
         name, model = self.document.file.name or "untitled", self.model
         size = f"{model.particles.count} particles, {model.rods.count} rods"
         return f"<Session '{name}': {size}, {self.scene}, t = {self.time:.6g} s>"
-
-    # --- the model ---------------------------------------------------------------------------------
-
-    @property
-    def particles(self) -> Table[Particle]:
-        """Particles by name."""
-        return self.model.particles
-
-    @property
-    def rods(self) -> Table[Rod]:
-        """Rods by name."""
-        return self.model.rods
-
-    @property
-    def loads(self) -> Table[Load]:
-        """Loads by name."""
-        return self.model.loads
-
-    def table(self, name: str) -> Table[Any]:
-        """The elements of any kind by name, those that mods add included: session.table("walls")["floor"]."""
-        if name not in self.model.tables:
-            raise KeyError(missing(marked("tables"), name, self.model.tables))
-        return self.model.tables[name]
-
-    @property
-    def environment(self) -> Environment:
-        """Force, acceleration and drag on all particles."""
-        return self.model.environment
-
-    @property
-    def message(self) -> str:
-        """What the window says now; "" if nothing.
-
-        The fault of a mod, the question or refusal of the scene, why the run stopped, a warning or a notice, then the
-        remarks on a run at rest.
-        """
-        said = self.fault or self.scenes.active.message or self.simulation.said or self.notice
-        return joined([said, *(remark.message for remark in self.document.assessment.remarks)])
-
-    # --- time --------------------------------------------------------------------------------------
-
-    def run(
-        self,
-        until: str | None = None,
-        *,
-        time: float | None = None,
-        steps: int | None = None,
-        limit: float = DEFAULT_LIMIT,
-    ) -> str:
-        """Let time pass: until "rest" (at most `limit` s of simulated time), by `time` s, or by `steps`.
-
-        Exactly so many steps are taken unless the run ends; the part of one up to an impact counts as a step.
-
-        Returns "at rest", "time reached", "limit reached" or "diverged"; `message` says more. Raises ValueError, and
-        ModError if a mod fails meanwhile: the run stops where it did, and a further one goes on without the mod. An
-        interrupt (Ctrl+C) leaves the state after a step shortly before, from which a further run goes on.
-        """
-        if sum(option is not None for option in (until, time, steps)) != 1 or until not in (None, "rest"):
-            raise WrongValue('Say how far to run: until="rest", time=SECONDS or steps=NUMBER, one of them.')
-        limit = _forward("limit", limit)
-        time = None if time is None else _forward("time", time)
-        steps = None if steps is None else int(_forward("steps", steps, whole=True))
-        reached = "time reached" if until is None else "limit reached"
-        with self._time_passing() as simulation:
-            if until is not None:
-                simulation.run_until_rest(self.time + limit)
-            elif time is not None:
-                simulation.run_to(self.time + time)
-            elif steps is not None:
-                simulation.advance(steps)
-        ended = {StopReason.REST: "at rest", StopReason.DIVERGED: "diverged"}
-        return ended.get(simulation.reason, reached)
-
-    def go_to(self, steps: int, within: float | None = None) -> None:
-        """Let time pass to a moment of a recorded run: so many whole steps, and perhaps a time (s) within the next."""
-        if (steps, within) != self.simulation.moment:
-            with self._time_passing() as simulation:
-                simulation.go_to(steps, within)
-
-    @contextmanager
-    def _time_passing(self) -> Iterator[Simulation]:
-        """Time passes inside: it is one run in the log, which stops, by ModError, where a mod fails."""
-        self.act_in_scene()
-        document, simulation = self.document, self.simulation
-        document.note_beginning()
-        document.history.begin_run()
-        document.timeline.begin()
-        try:
-            with heeding_mods(simulation), self.without_frames(), watched(simulation):
-                yield simulation
-                document.chronicle.look()
-        finally:
-            if not self.time_passes:
-                document.history.end_run()
-
-    @contextmanager
-    def without_frames(self) -> Iterator[None]:
-        """While time passes inside, systems of phase EVENTS run every EVENT_INTERVAL steps, and when it has passed."""
-        simulation, frame = self.simulation, HeadlessFrame(self, 0.0)
-        if self.performing or not self.schedule.runs_headless(Phase.EVENTS, frame.scene, self.model):
-            yield
-            return
-
-        def follow() -> int:
-            beyond = self.model.clock.steps % EVENT_INTERVAL
-            if beyond == 0:
-                self.schedule.run(Phase.EVENTS, frame, headless=True)
-            return EVENT_INTERVAL - beyond
-
-        simulation.before_steps.append(follow)
-        try:
-            yield
-        finally:
-            simulation.before_steps.remove(follow)
-        self.schedule.run(Phase.EVENTS, frame, headless=True)
-
-    def compare(self) -> Comparison:
-        """The run as it is now beside linear and exact theory: `rows` of every element, and the `worst`.
-
-        >>> s = Session.open("isostatic")
-        >>> s.compare().worst("linear").title
-        'displacement y of particle B'
-        """
-        return self.document.assessment.comparison()
-
-    def load_path(
-        self, factor: float = 1.0, *, until: str | None = None, points: int = 500, branch: int = 0
-    ) -> Curve:
-        """The load–displacement curve, through limit points, up to a load factor, or "B.y=-2.5" or "B.rotation=1".
-
-        branch: number of the bifurcation from which on it follows the other branch, along the mode; negative: against it.
-
-        Changes nothing. Its arrays are load_factor (k,), displacement (k, particles, 2) in m, rotation (k, particles) in
-        rad, axial_force (k, rods) in kN, bending_moment (k, rods, 2) in kN·m and stable (k,); its events are limit points
-        and bifurcations; complete: False if it could not be followed so far. Raises ValueError.
-        """
-        from pinjoint.systems.statics.path import Curve, Goal
-
-        if points < 2:
-            raise WrongValue("points is {points}; a curve has at least 2.", points=points)
-        return Curve.of(self.model, Goal.of(self.model, factor, until), points=points, branch=branch)
-
-    def buckling(self, modes: int = 5) -> Buckling:
-        """Critical load factors by linear buckling, ascending, with their modes; changes nothing.
-
-        Its arrays are factors (k,), modes (k, particles, 2), where members bend with rotations (k, particles, 3), and
-        effective_length (rods,) in m, NaN of rods that are not compressed; message: why there is none. Raises
-        ValueError, and NoEquilibrium without a state that could lose its stability.
-        """
-        from pinjoint.systems.statics.buckling import Buckling
-
-        if modes < 1:
-            raise WrongValue("modes is {modes}; ask for at least 1.", modes=modes)
-        return Buckling.of(self.model, modes)
 
     # --- editing -----------------------------------------------------------------------------------
 
@@ -535,7 +347,8 @@ class Session(Context):
 
         Also "rods.AB.axial_force ≈ -28.34 ± 0.01", "energy.imbalance < 1"; see game/scripts/script.py.
         """
-        expect(self, text)
+        for expected, got in check(self, text):
+            raise AssertionError(tr("expected {expected}, got {got}", expected=expected, got=str(got)))
 
     def click_box(self, title: str) -> None:
         """Select the box with that title. Raises LookupError if there is none."""
@@ -582,7 +395,7 @@ class Session(Context):
 
     def frame(self, elapsed: float) -> Frame:
         """One frame, `elapsed` s after the last: input, edit, step, events and render. Raises ValueError."""
-        frame = Frame(self, _forward("elapsed", elapsed))
+        frame = Frame(self, forward("elapsed", elapsed))
         try:
             for phase in Phase:
                 self.schedule.run(phase, frame)
@@ -606,22 +419,3 @@ def _near(pixel: Sequence[float]) -> Vector:
             "The pixel ({x:g}, {y:g}) is too far from what is shown; take a nearer place.", x=x, y=y
         )
     return x, y
-
-
-def _forward(name: str, value: float, *, whole: bool = False) -> float:
-    """A time or a number of steps given by a script, checked. Raises ValueError."""
-    number = isinstance(value, int | np.integer | (np.integer if whole else float | np.floating))
-    if not number or isinstance(value, bool) or not math.isfinite(value):
-        given = quoted(value)
-        raise ValueError(
-            tr("{name} is {value}; it must be a whole number.", name=name, value=given)
-            if whole
-            else tr("{name} is {value}; it must be a finite number.", name=name, value=given)
-        )
-    if value >= 2**63:
-        raise WrongValue("{name} is {value}; it must be below 2^63.", name=name, value=value)
-    if value < 0:
-        raise WrongValue(
-            "{name} is {value}; time only runs forward: undo or restart goes back.", name=name, value=value
-        )
-    return float(value)

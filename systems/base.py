@@ -34,6 +34,8 @@ from pinjoint.systems.entries import ACCOUNTS
 
 __all__ = [
     "ACCOUNTS",
+    "CORES",
+    "DEFAULT_LIMIT",
     "EVENT_INTERVAL",
     "REVIEW_INTERVAL",
     "Commit",
@@ -84,6 +86,8 @@ class Mod(Protocol):
         """As if it were switched off, inside the `with`."""
 
 
+CORES = "PINJOINT_CORES"  # of the environment: how many threads and processes compute
+DEFAULT_LIMIT = 60.0  # s of simulated time in which a model is expected to come to rest
 REVIEW_INTERVAL = 8192  # steps between reviews of the step size, and between safe states
 EVENT_INTERVAL = 16  # steps, at multiples of which systems of phase EVENTS run where there are no frames
 

@@ -3,8 +3,10 @@
 from __future__ import annotations
 
 from pinjoint.components.extensions import EXTENSIONS
-from pinjoint.systems.base import StepSystem, System
+from pinjoint.components.model import Model
+from pinjoint.systems.base import Law, StepSystem, System
 from pinjoint.systems.collision.system import Collision
+from pinjoint.systems.edit.pull import Pull
 from pinjoint.systems.loads.system import varying_loads
 from pinjoint.systems.physics.system import (
     AxialDamping,
@@ -18,6 +20,7 @@ from pinjoint.systems.physics.system import (
     TurningDrag,
 )
 from pinjoint.systems.plasticity.system import FirstYield, Strength, Yielding
+from pinjoint.systems.schedule import Schedule
 
 
 def step_systems() -> list[StepSystem]:
@@ -40,6 +43,13 @@ def step_systems() -> list[StepSystem]:
     ]
 
 
-def all_systems() -> list[System]:
-    """The step systems of Pinjoint, then the systems of mods, frame systems among them."""
-    return [*step_systems(), *(make() for make in EXTENSIONS.systems)]
+def all_systems(pull: Pull | None = None) -> list[System]:
+    """The step systems of Pinjoint, with the pull of a hand, then the systems of mods, frame systems among them."""
+    return [*step_systems(), pull or Pull(), *(make() for make in EXTENSIONS.systems)]
+
+
+def left_out_of_statics(model: Model) -> list[str]:
+    """The laws of mods, by name, that a model needs and statics does not know."""
+    plan = Schedule(all_systems()).step_plan("simulation", model)
+    laws = (law for law in plan if isinstance(law, Law) and law.mod is not None)
+    return [law.name for law in laws if law.each != "loads"]

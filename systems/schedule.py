@@ -237,12 +237,6 @@ class Schedule:
             and self.acts(system, scene, model)
         ]
 
-    def left_out_of_statics(self, model: Model) -> list[str]:
-        """The laws of mods, by name, that a model needs and statics does not know."""
-        plan = self.step_plan("simulation", model)
-        laws = (law for law in plan if isinstance(law, Law) and law.mod is not None)
-        return [law.name for law in laws if law.each != "loads"]
-
     def named(self, names: Iterable[str]) -> list[StepSystem]:
         """The step systems with these names, in order. Raises KeyError if one is not there."""
         by_name = {s.name: s for s in self._ordered[Phase.STEP] if isinstance(s, StepSystem)}

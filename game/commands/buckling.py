@@ -9,11 +9,12 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from pinjoint.commands.arguments import Parser, UsageError, count
-from pinjoint.commands.options import ANSWERED, NOT_ANSWERED, add_model, session_of
+from pinjoint.commands.options import ANSWERED, NOT_ANSWERED, add_model, model_of
 from pinjoint.commands.output import Row, add_output, aligned, write_result
 from pinjoint.components.language import joined, tr
 from pinjoint.components.model import Model
 from pinjoint.streams import tell
+from pinjoint.systems.catalogue import left_out_of_statics
 
 if TYPE_CHECKING:  # it imports scipy
     from pinjoint.systems.statics.buckling import Buckling
@@ -37,15 +38,16 @@ def command(words: Sequence[str]) -> int:
     )
     add_output(parser)
     options = parser.parse_args(words)
-    session = session_of(options)
+    model = model_of(options)
+    from pinjoint.systems.statics.buckling import Buckling
     from pinjoint.systems.statics.events import NoEquilibrium
 
     try:
-        found = session.buckling(options.modes)
+        found = Buckling.of(model, options.modes)
     except NoEquilibrium as error:
         raise UsageError(str(error), NOT_ANSWERED) from None
-    laws = session.schedule.left_out_of_statics(session.model)
-    write_result(options, _data(session.model, found) | {"left_out": laws}, _rows, _lines)
+    laws = left_out_of_statics(model)
+    write_result(options, _data(model, found) | {"left_out": laws}, _rows, _lines)
     if laws:
         tell(tr("Buckling leaves out the laws of mods: {laws}.", laws=", ".join(laws)))
     if options.format != "table":

@@ -8,13 +8,14 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from pinjoint.commands.arguments import Parser, UsageError, count, finite
-from pinjoint.commands.options import ANSWERED, NOT_ANSWERED, add_model, session_of
+from pinjoint.commands.options import ANSWERED, NOT_ANSWERED, add_model, model_of
 from pinjoint.commands.output import Row, add_output, write_result
 from pinjoint.components.field import ENDS
 from pinjoint.components.language import joined, marked, plural, tr
 from pinjoint.components.model import Model
 from pinjoint.components.rod import bends
 from pinjoint.streams import tell
+from pinjoint.systems.catalogue import left_out_of_statics
 
 if TYPE_CHECKING:  # it imports scipy
     from pinjoint.systems.statics.path import Curve
@@ -56,18 +57,19 @@ def command(words: Sequence[str]) -> int:
     )
     add_output(parser, default="csv")
     options = parser.parse_args(words)
-    session = session_of(options)
+    model = model_of(options)
+    from pinjoint.systems.statics.path import Curve, Goal
+
     try:
-        found = session.load_path(
-            options.factor, until=options.until, points=options.points, branch=options.branch
-        )
+        end = Goal.of(model, options.factor, options.until)
+        found = Curve.of(model, end, points=options.points, branch=options.branch)
     except ValueError as error:
         raise UsageError(str(error)) from None
-    laws = session.schedule.left_out_of_statics(session.model)
-    message = "" if found.complete else _why_it_ends(session.model, found, options.points)
+    laws = left_out_of_statics(model)
+    message = "" if found.complete else _why_it_ends(model, found, options.points)
     message = joined([_what_is_missing(found, options.branch), message])
     said = {"complete": found.complete, "message": message, "left_out": laws}
-    write_result(options, said | _data(session.model, found), _rows)
+    write_result(options, said | _data(model, found), _rows)
     if laws:
         tell(tr("The curve leaves out the laws of mods: {laws}.", laws=", ".join(laws)))
     for event in found.events:

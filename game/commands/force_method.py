@@ -9,12 +9,13 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from pinjoint.commands.arguments import Parser, UsageError
-from pinjoint.commands.options import ANSWERED, NOT_ANSWERED, session_of
+from pinjoint.commands.options import ANSWERED, NOT_ANSWERED, model_of
 from pinjoint.commands.output import Row, add_output, aligned, writable, write_result, writing
 from pinjoint.components.language import tr
 from pinjoint.components.view import CONVENTIONS, THESIS
 from pinjoint.documents.models import replace
 from pinjoint.streams import tell
+from pinjoint.systems.catalogue import left_out_of_statics
 
 if TYPE_CHECKING:  # they import scipy
     from pinjoint.force_method.tables import Tables
@@ -66,12 +67,11 @@ def command(words: Sequence[str]) -> int:
     options = parser.parse_args(words)
     if options.report is not None and not options.report.lower().endswith(".pdf"):
         raise UsageError("--report {file}: write a file that ends with .pdf.", file=options.report)
-    session = session_of(options)
+    model, names = model_of(options), dict.fromkeys(options.release or ())
     from pinjoint.force_method.tables import Tables
     from pinjoint.systems.statics.force_method import solve
     from pinjoint.systems.statics.unknowns import ForceMethodError, Unknown, redundants
 
-    model, names = session.model, dict.fromkeys(options.release or ())
     try:
         solution = solve(model, [Unknown.named(model, one) for one in names] if names else redundants(model))
     except ForceMethodError as error:
@@ -82,8 +82,8 @@ def command(words: Sequence[str]) -> int:
             " gives its forces: pinjoint run {model} --static.",
             model=options.model,
         )
-    tables = Tables(session.model, solution)
-    laws = session.schedule.left_out_of_statics(session.model)
+    tables = Tables(model, solution)
+    laws = left_out_of_statics(model)
     single, sets = options.release is not None and len(options.release) == 1, options.sets
     found = _data(tables, single=single, sets=sets or len(solution.unknowns) <= MOST_SETS)
     write_result(options, found | {"left_out": laws}, _rows, partial(_lines, tables, options.convention))

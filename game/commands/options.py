@@ -6,17 +6,27 @@ import argparse
 import os
 from collections.abc import Iterable, Sequence
 from functools import partial
+from typing import TYPE_CHECKING, TypeVar
 
 from pinjoint.commands.arguments import Parser, UsageError, count, numbers, positive, times
 from pinjoint.commands.progress import follow
 from pinjoint.commands.reports.report import Analysis
+from pinjoint.components.extensions import EXTENSIONS
 from pinjoint.components.language import tr
+from pinjoint.components.model import Model
 from pinjoint.components.settings import INTEGRATORS
+from pinjoint.documents import models
+from pinjoint.documents.format import missing_mods
+from pinjoint.mods.mod import INCLUDED
 from pinjoint.paths import apply_override
-from pinjoint.session import DEFAULT_LIMIT, Session
 from pinjoint.streams import tell
-from pinjoint.systems.base import System
-from pinjoint.systems.program.reordered import VARIABLE
+from pinjoint.systems.base import CORES, DEFAULT_LIMIT, System
+
+if TYPE_CHECKING:  # statics needs no session
+    from pinjoint.headless import Headless
+    from pinjoint.session import Session
+
+H = TypeVar("H", bound="Headless")
 
 ANSWERED, NOT_ANSWERED, NO_DISPLAY, STOPPED = 0, 1, 3, 130  # exit statuses; BAD_INPUT is 2
 
@@ -27,7 +37,7 @@ def use_cores_as_asked(words: Sequence[str]) -> list[str]:
     parser.add_argument("--cores", type=partial(count, least=1), metavar="N")
     options, others = parser.parse_known_args(list(words))
     if options.cores is not None:
-        os.environ[VARIABLE] = str(options.cores)  # for this process and those that it starts
+        os.environ[CORES] = str(options.cores)  # for this process and those that it starts
     return others
 
 
@@ -59,11 +69,38 @@ def add_model(parser: argparse.ArgumentParser) -> None:
 
 def session_of(options: argparse.Namespace, systems: Iterable[System] = ()) -> Session:
     """A session with the model of `add_model`, and further systems. Raises ModelError, PathError, FieldError."""
-    session = follow(Session.open(options.model, systems))
-    tell(session.notice)  # about data of mods that are not loaded, which would change the result
-    for override in options.set:
-        apply_override(session.model, override)
+    from pinjoint.session import Session
+
+    return _prepared(Session.open(options.model, systems), options)
+
+
+def headless_of(options: argparse.Namespace) -> Headless:
+    """Likewise without scenes, for which only systems of mods may ask."""
+    if any(mod.loaded and mod.source != INCLUDED for mod in EXTENSIONS.mods):
+        return session_of(options)
+    from pinjoint.headless import Headless
+
+    return _prepared(Headless.open(options.model), options)
+
+
+def _prepared(session: H, options: argparse.Namespace) -> H:
+    follow(session.simulation.progress)
+    _change(session.model, options)
     return session
+
+
+def model_of(options: argparse.Namespace) -> Model:
+    """The model of `add_model`, for what no time passes in. Raises ModelError, PathError, FieldError."""
+    model = models.load(options.model)
+    follow()
+    _change(model, options)
+    return model
+
+
+def _change(model: Model, options: argparse.Namespace) -> None:
+    tell(missing_mods(model))  # which would change the result
+    for override in options.set:
+        apply_override(model, override)
 
 
 def add_analysis(parser: argparse.ArgumentParser) -> None:

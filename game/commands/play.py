@@ -64,7 +64,8 @@ def command(words: Sequence[str]) -> int:
             kept.enter_context(library.data_apart())
             failures = check_lesson(loaded, lambda: Session(Model()))
         else:
-            session = follow(playing.session_of(loaded))
+            session = playing.session_of(loaded)
+            follow(session.simulation.progress)
             tell(session.notice)
             if not loaded.has_data:  # so that it ends alike however often it is played
                 kept.enter_context(library.data_apart())

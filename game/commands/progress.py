@@ -4,24 +4,22 @@ from __future__ import annotations
 
 import threading
 import time
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 
 from pinjoint.components.language import tr
-from pinjoint.session import Session
 from pinjoint.streams import tell
-from pinjoint.systems.run.simulation import Simulation
 
 SILENT = 5.0  # s; what takes less says nothing
 FURTHER = 10.0  # s between two sentences
 
-_followed: list[Simulation] = []  # the runs of the command, the last one being told of
+# Of the runs of the command, the last one being told of: up to which time (s) it is, steps and impacts.
+_followed: list[Callable[[], tuple[float, int, int]]] = []
 
 
-def follow(session: Session) -> Session:
-    """Tell how far the run of this session is from now on; returns it."""
-    _followed.append(session.simulation)
-    return session
+def follow(progress: Callable[[], tuple[float, int, int]] = lambda: (0.0, 0, 0)) -> None:
+    """From now on tell how far a run is; by default that it takes no steps."""
+    _followed.append(progress)
 
 
 @contextmanager
@@ -49,13 +47,13 @@ def told() -> Iterator[None]:
 
 def how_far(seconds: float) -> str:
     """How far the command is after some seconds."""
-    progress = _followed[-1].progress
-    if progress.steps == 0 and progress.impacts == 0:
+    passed, steps, impacts = _followed[-1]()
+    if steps == 0 and impacts == 0:
         return tr("after {seconds:.0f} s: preparing, no step was made yet. Ctrl+C stops it.", seconds=seconds)
     return tr(
         "after {seconds:.0f} s: t = {time:.9g} s, {steps} steps, {impacts} impacts. Ctrl+C stops it.",
         seconds=seconds,
-        time=progress.time,
-        steps=progress.steps,
-        impacts=progress.impacts,
+        time=passed,
+        steps=steps,
+        impacts=impacts,
     )

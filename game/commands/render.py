@@ -15,7 +15,8 @@ from pinjoint.commands.reports.report import FOUND
 from pinjoint.components.bent import QUANTITIES
 from pinjoint.components.language import tr
 from pinjoint.documents.shapes import numbered
-from pinjoint.session import DEFAULT_LIMIT, Session
+from pinjoint.session import Session
+from pinjoint.systems.base import DEFAULT_LIMIT
 from pinjoint.systems.render.theme import load_theme, theme_names
 
 _PICTURES = (".png", ".svg", ".pdf", ".gif", ".jpg", ".bmp")

@@ -13,12 +13,14 @@ from pinjoint.commands.options import (
     add_analysis,
     add_model,
     analysis_of,
-    session_of,
+    headless_of,
+    model_of,
 )
 from pinjoint.commands.output import add_output, writable, write, write_result
 from pinjoint.commands.reports.report import FOUND, INTERRUPTED
 from pinjoint.commands.reports.results import run_lines, run_rows
 from pinjoint.components.language import tr
+from pinjoint.systems.collision.impacts import Impacts
 
 
 def command(words: Sequence[str]) -> int:
@@ -38,11 +40,16 @@ def command(words: Sequence[str]) -> int:
         help=tr("measure the error by a second run with finer steps, even if that takes long"),
     )
     options = parser.parse_args(words)
-    session = session_of(options)
-    run = replace(analysis_of(options), measures_error=options.measure_error).run_in(session, options.model)
+    analysis = replace(analysis_of(options), measures_error=options.measure_error)
+    if analysis.load_factors is not None:
+        model = model_of(options)
+        run, impacts = analysis.settled_in(model, options.model), Impacts(model)
+    else:
+        session = headless_of(options)
+        run, impacts = analysis.run_in(session, options.model), session.impacts
     write_result(options, run, run_rows, run_lines)
     if options.events is not None:
-        write(session.simulation.impacts.as_csv(), options.events)
+        write(impacts.as_csv(), options.events)
     if run["status"] == INTERRUPTED:
         return STOPPED
     return ANSWERED if run["status"] in FOUND else NOT_ANSWERED

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from pinjoint.commands.arguments import BAD_INPUT, Parser, UsageError, positive
-from pinjoint.commands.options import ANSWERED, NOT_ANSWERED, add_model, session_of
+from pinjoint.commands.options import ANSWERED, NOT_ANSWERED, add_model, headless_of
 from pinjoint.commands.output import add_output, write_result
 from pinjoint.components.language import tr
 
@@ -39,7 +39,7 @@ def command(words: Sequence[str]) -> int:
     )
     add_output(parser)
     options = parser.parse_args(words)
-    session = session_of(options)
+    session = headless_of(options)
     from pinjoint.commands.reports import verify
     from pinjoint.systems.statics.events import NoEquilibrium
     from pinjoint.systems.statics.unknowns import ForceMethodError

@@ -12,7 +12,7 @@ from pinjoint.components.extensions import EXTENSIONS
 from pinjoint.components.field import SAVED, Field
 from pinjoint.components.grid import Grid
 from pinjoint.components.handle import Handle
-from pinjoint.components.language import joined, tr
+from pinjoint.components.language import joined, listed, tr
 from pinjoint.components.load import Load
 from pinjoint.components.mistake import Mistake
 from pinjoint.components.model import Model
@@ -73,7 +73,12 @@ def copied(value: Any, where: str) -> Any:
     fail(where, "a model file cannot hold {value}.", value=quoted(value))
 
 
-def missing_mods(model: Model) -> list[str]:
-    """Names of the mods, not loaded, whose data a model keeps."""
+def missing_mods(model: Model) -> str:
+    """The sentence about mods, not loaded, whose data a model keeps; "" if there are none."""
     kept = [*model.foreign.values(), model.foreign_kinds]
-    return sorted({name.partition(".")[0] for part in kept for name in part})
+    names = sorted({name.partition(".")[0] for part in kept for name in part})
+    said = tr(
+        "This model uses mods that are not loaded: {mods}. Their data is kept and saved again, but has no effect.",
+        mods=listed(names),
+    )
+    return said if names else ""

@@ -25,6 +25,7 @@ from pinjoint.documents.history.history import History
 from pinjoint.documents.history.log import Edit, Entry
 from pinjoint.documents.history.timeline import Timeline
 from pinjoint.documents.shapes import Shapes
+from pinjoint.systems.catalogue import left_out_of_statics
 from pinjoint.systems.edit.pull import Pull
 from pinjoint.systems.run.real_time import RealTimeRunner
 from pinjoint.systems.run.simulation import Simulation
@@ -34,8 +35,6 @@ Source = str | Path | Mapping[str, Any]  # of a model: a file, the name of a bun
 Stamp = tuple[int, ...]
 
 SETTLED = ("particles.displacement", "particles.rotation", "rods.plastic_strain")  # what settling changes
-
-EQUILIBRIUM_WITHOUT_MODS = "equilibrium without mods"  # the status of statics that does not know all laws
 
 
 @dataclass(frozen=True)
@@ -62,14 +61,6 @@ def stamp_of(path: Path) -> Stamp:
     except OSError:
         return ()
     return found.st_ino, found.st_mtime_ns, found.st_size
-
-
-def without_mods(status: str, left_out: Sequence[str]) -> tuple[str, str]:
-    """A status of statics where laws of mods were left out, by name, and the sentence that names them; "" if none were."""
-    if not left_out:
-        return status, ""
-    status = EQUILIBRIUM_WITHOUT_MODS if status == "equilibrium" else status
-    return status, tr("The equilibrium leaves out the laws of mods: {laws}.", laws=", ".join(left_out))
 
 
 class OpenDocument:
@@ -200,7 +191,7 @@ class OpenDocument:
                 rod=rod,
             )
             account.append(said)
-        status, note = without_mods(found.status, self._schedule.left_out_of_statics(model))
+        status, note = found.beside(left_out_of_statics(model))
         return status, joined([*account, note, idle_moment(model)])
 
     # --- edits and the file ------------------------------------------------------------------------

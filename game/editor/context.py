@@ -9,13 +9,13 @@ import operator
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any, ClassVar, Protocol, TypeVar
+from typing import TYPE_CHECKING, Any, ClassVar, TypeVar
 
 from pinjoint.components.camera import Viewport
 from pinjoint.components.extensions import EXTENSIONS
 from pinjoint.components.field import Vector
 from pinjoint.components.handle import Handle
-from pinjoint.components.language import begun, listed, marked, tr
+from pinjoint.components.language import begun, marked, tr
 from pinjoint.components.mistake import NotFound, WrongValue
 from pinjoint.components.model import Model
 from pinjoint.components.rod import bends
@@ -24,7 +24,6 @@ from pinjoint.components.slider import Place
 from pinjoint.components.tags import Selected
 from pinjoint.components.view import Preview, Readout, View
 from pinjoint.documents import models
-from pinjoint.documents.autosave import Autosave
 from pinjoint.documents.chronicle import Happening
 from pinjoint.documents.format import missing_mods
 from pinjoint.documents.open_documents import ModelFile, OpenDocument, OpenDocuments, Source, file_of
@@ -33,35 +32,14 @@ from pinjoint.systems.base import Mod
 from pinjoint.systems.collision.impacts import Impacts
 from pinjoint.systems.edit.pull import Pull
 from pinjoint.systems.physics.pace import natural_pace
-from pinjoint.systems.render.picture import Stage
+from pinjoint.systems.render.sheet import Stage
 from pinjoint.systems.run.energy import Energy
 from pinjoint.systems.run.simulation import Simulation
 from pinjoint.systems.run.system import Time
 from pinjoint.systems.schedule import Schedule
 
-# --- what a window gives ---------------------------------------------------------------------------------
-
-
-class Window(Protocol):
-    """The window, for actions that only make sense in one."""
-
-    def toggle_full_screen(self) -> None:
-        """Fill the screen, or stop doing so."""
-
-    def magnify(self, by: int) -> str:
-        """Draw type and symbols a step larger or smaller; 0: as they suit the window. Returns which it is."""
-
-    def screenshot(self, suffix: str) -> str:
-        """Save a picture in the format of that suffix; returns where. Raises OSError."""
-
-    def save(self, name: str, contents: bytes) -> str:
-        """Save a file under this name, or one like it that is free; returns where. Raises OSError."""
-
-    def copied(self) -> str:
-        """The text on the system's clipboard."""
-
-    def copy(self, text: str) -> None:
-        """Put a text on the system's clipboard."""
+if TYPE_CHECKING:  # of a window
+    from pinjoint.documents.autosave import Autosave
 
 
 @dataclass(frozen=True)
@@ -271,7 +249,7 @@ H = TypeVar("H", bound=Handle)
 class Context:
     """The open documents with their runs, logs and files, what is seen of them, and what a person is doing with them.
 
-    schedule: all systems. notice: the last sentence said. window, autosave: what a window gives; None without one.
+    schedule: all systems. notice: the last sentence said. window, autosave: of a window; None without one.
     waits_for: what a simulation waits for, None if it can go on. awaited: the one that is too large to go on before its
     step program is compiled.
     scenes: the mode, and its transitions. gesture: what is being drawn or dragged. performing: a script is shown in the
@@ -288,7 +266,7 @@ class Context:
         self.documents = OpenDocuments(model, schedule, pull, file)
         self._clipboard = ""
         self.notice = ""
-        self.window: Window | None = None
+        self.window: Any = None  # pinjoint.app.App
         self.autosave: Autosave | None = None
         self.waits_for: Callable[[Simulation], Waiting | None] = lambda simulation: None
         self.awaited: Simulation | None = None
@@ -380,11 +358,7 @@ class Context:
             self.view.all_diagrams, self.view.quantity = True, self.model.settings.diagrams
         if self.model.rods.count:
             self.view.rigid = bends(self.model)
-        if missing := missing_mods(self.model):
-            self.notice = tr(
-                "This model uses mods that are not loaded: {mods}. Their data is kept and saved again, but has no effect.",
-                mods=listed(missing),
-            )
+        self.notice = missing_mods(self.model) or self.notice
         self._go_on()
 
     @property
@@ -516,7 +490,9 @@ class Context:
     @property
     def clipboard(self) -> str:
         """The text that was copied last, here or, with a window, in any program."""
-        return self.window.copied() if self.window is not None else self._clipboard
+        if self.window is not None:
+            self._clipboard = self.window.copied()
+        return self._clipboard
 
     @clipboard.setter
     def clipboard(self, text: str) -> None:

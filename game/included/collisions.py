@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import weakref
 from collections.abc import Sequence
+from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
@@ -11,8 +12,10 @@ from numpy.typing import NDArray
 from pinjoint.components import Model, Plot, Readout, Vector, written
 from pinjoint.components.language import marked, tr
 from pinjoint.components.rod import nodes
-from pinjoint.editor.context import Context
 from pinjoint.mods import App
+
+if TYPE_CHECKING:  # a command needs no editor
+    from pinjoint.editor.context import Context
 
 MANY = 100  # particles without rods from which on their speeds are shown by default
 BINS = 16

@@ -7,7 +7,7 @@ from array import array
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -15,11 +15,13 @@ from pinjoint.components import Model, Particle, Plot, Readout, Rod, Vector, wri
 from pinjoint.components.field import ENDS
 from pinjoint.components.language import english, joined, listed, marked, tr
 from pinjoint.documents.models import replace
-from pinjoint.editor.context import Context
 from pinjoint.mods import App
 from pinjoint.paths import TIME, Quantity, quantity
 from pinjoint.systems.base import Phase, System
 from pinjoint.systems.edit import Refusal
+
+if TYPE_CHECKING:  # a command needs no editor
+    from pinjoint.editor.context import Context
 
 MOST = 20_000  # samples; beyond, every second one is dropped
 FEW = 3  # plots at a time
@@ -252,7 +254,7 @@ def _heading(probe: Probe) -> str:
 def run(words: list[str]) -> int:
     """`pinjoint plot MODEL --of QUANTITY --until T --output FILE`."""
     from pinjoint.commands.arguments import Parser, UsageError, count, positive
-    from pinjoint.commands.options import add_model, session_of
+    from pinjoint.commands.options import add_model, headless_of
     from pinjoint.commands.output import writable, writing
 
     parser = Parser(
@@ -268,7 +270,7 @@ def run(words: list[str]) -> int:
     parser.add_argument("--samples", type=count, default=500, metavar="N", help=tr("at least; default 500"))
     parser.add_argument("--output", type=writable, required=True, metavar="FILE", help=tr(".csv or .png"))
     options = parser.parse_args(words)
-    session = session_of(options)
+    session = headless_of(options)
     probe = probes_of(session).add(session, options.of, options.against)
     output = Path(options.output)
     if output.suffix not in (".csv", ".png"):

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Container, MutableMapping, Sequence
 from functools import partial
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from pinjoint.commands import Command
 from pinjoint.components.additions import Component, add_component, checked_kind
@@ -18,8 +18,6 @@ from pinjoint.components.obstacles import Shape
 from pinjoint.components.table import fields_of
 from pinjoint.documents import models
 from pinjoint.documents.mod_data import Upgrade
-from pinjoint.editor.gestures.drawing import drawing_of
-from pinjoint.editor.scenes import Scene, all_scenes
 from pinjoint.mods.declared import check
 from pinjoint.mods.guard import Guard, Panel
 from pinjoint.mods.mod import INCLUDED, Mod, ModError
@@ -28,6 +26,9 @@ from pinjoint.systems.input.actions import ACTIONS, LIVE, Action, Binding, Perfo
 from pinjoint.systems.physics.integrators import INTEGRATORS
 from pinjoint.systems.render.sheet import Layer
 from pinjoint.systems.render.symbols import Part, check_icon
+
+if TYPE_CHECKING:  # a command needs no editor
+    from pinjoint.editor.context import Scene
 
 
 class App:
@@ -95,14 +96,27 @@ class App:
                 count=len(kind.points),
             )
         name = f"{self.name}.{kind.noun}"
-        drawing = drawing_of(kind, name, key)
+
+        def drawing() -> Any:
+            from pinjoint.editor.gestures.drawing import drawing_of
+
+            return drawing_of(kind, name, key)
+
         hint = tr(
             "{table}: click two points, or drag from one to the other     {key} or Esc done",
             table=tr(kind.table),
             key=key.upper(),
         )
-        act = self._guard.action(name, drawing.use)
-        self._act(Action(name, act, while_drawing=True, draws=drawing, hint=hint))
+        act = self._guard.action(name, lambda context, pixel: drawing().use(context, pixel))
+        self._act(
+            Action(
+                name,
+                act,
+                while_drawing=True,
+                draws=lambda context, pixel: drawing().begin_anywhere(context, pixel),
+                hint=hint,
+            )
+        )
         self.key(key, name, title=title or tr("{kind}, from point to point", kind=tr(kind.noun)))
         self._icon(name, icon)
 
@@ -144,8 +158,10 @@ class App:
 
     def scene(self, scene: type[Scene]) -> None:
         """Add a mode. Its `sources` are the scenes from which it can be reached; "pause" must be a target."""
-        self._check_free(marked("a scene"), scene.name, {other.name for other in all_scenes()})
-        made = self._guard.scene(scene)
+        from pinjoint.editor import scenes
+
+        self._check_free(marked("a scene"), scene.name, {other.name for other in scenes.all_scenes()})
+        made = self._guard.scene(scene, scenes.Scene)
         if "pause" not in scene.targets:
             raise ModError(
                 "The scene '{name}' must lead to pause; add 'pause' to its targets.", name=scene.name

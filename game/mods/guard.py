@@ -10,7 +10,7 @@ from dataclasses import replace
 from functools import partial
 from inspect import getattr_static
 from itertools import islice
-from typing import Any, ClassVar, get_args, get_origin, get_type_hints
+from typing import TYPE_CHECKING, Any, ClassVar, get_args, get_origin, get_type_hints
 
 import numpy as np
 
@@ -27,7 +27,6 @@ from pinjoint.components.table import Table
 from pinjoint.components.view import Plot, Readout, View
 from pinjoint.components.wording import printable
 from pinjoint.documents import models
-from pinjoint.editor.context import Context, Scene
 from pinjoint.mods.declared import check, check_fields, check_has_run, result_of
 from pinjoint.mods.limit import T, check_limit
 from pinjoint.mods.mod import INCLUDED, LONGEST, Mod, ModError
@@ -40,13 +39,15 @@ from pinjoint.systems.render.framing import framed
 from pinjoint.systems.render.marks import Mark
 from pinjoint.systems.render.sheet import Layer, Sheet
 
+if TYPE_CHECKING:  # a command needs no editor
+    from pinjoint.editor.context import Context, Scene
+
 PATIENCE = 2.0  # s that a frame system may take; a longer one is interrupted
 
 _ROLES = (Law, Commit, Event, Integrator, StepSystem, System)
 _QUESTIONS = ("needs", "arrays", "leaves_flight_exact", "cutoff", "held_forces")  # that systems answer
-Panel = Callable[[Context], Readout | Sequence[Readout] | None]
+Panel = Callable[[Any], Readout | Sequence[Readout] | None]  # is given the context
 MOST_MARKS = 1_000_000  # of a layer: an iterator may have no end, in code that nothing interrupts
-_METHODS = {name for name, method in vars(Scene).items() if callable(method) and name[0] != "_"}
 _READ = {"heading": str, "message": str, "boxes": dict[str, str]}  # as attributes or properties
 
 
@@ -271,18 +272,19 @@ class Guard:
 
         return self.mod.guarded(tr("its panel"), readouts, otherwise=())
 
-    def scene(self, kind: type[Scene]) -> Callable[[], Scene]:
+    def scene(self, kind: type[Scene], usual: type[Scene]) -> Callable[[], Scene]:
         """What makes the scene of a mod for every session; once the mod is switched off it does nothing and leads to pause.
 
-        Where a method of it fails, that of all scenes takes its place; what cannot be shown is empty.
+        Where a method of it fails, that of all scenes (`usual`) takes its place; what cannot be shown is empty.
         """
-        check_declarations(kind, Scene)
+        check_declarations(kind, usual)
+        methods = {name for name, method in vars(usual).items() if callable(method) and name[0] != "_"}
         kind()  # raises here what it would raise in every session
         what = tr("the scene '{name}'", name=kind.name)
 
         def asked(scene: Scene, name: str, *arguments: Any) -> Any:
             own = super(guarded, scene).__getattribute__(name)
-            declared = _READ.get(name) or result_of(getattr(Scene, name))
+            declared = _READ.get(name) or result_of(getattr(usual, name))
             made = own if name in _READ else own(*arguments)
             called = name if name in _READ else tr("what {function} returned", function=name)
             if declared is None:
@@ -294,10 +296,10 @@ class Guard:
         def answer(scene: Scene, name: str, *arguments: Any) -> Any:
             mistakes = (LookupError,) if name == "click_box" else ()
             made = self.mod.call(what, asked, scene, name, *arguments, otherwise=self.mod, mistakes=mistakes)
-            return getattr(Scene, name)(scene, *arguments) if made is self.mod else made
+            return getattr(usual, name)(scene, *arguments) if made is self.mod else made
 
         def read(scene: Scene, name: str) -> Any:
-            if name in _METHODS:
+            if name in methods:
                 return partial(answer, scene, name)
             if name in _READ:
                 return self.mod.call(what, asked, scene, name, otherwise={} if name == "boxes" else "")
@@ -305,7 +307,7 @@ class Guard:
 
         guarded: type[Scene] = type(kind.__name__, (kind,), {"__getattribute__": read, "mod": self.mod})
         plain: type[Scene] = type(
-            kind.__name__, (Scene,), {"name": kind.name, "sources": kind.sources, "mod": self.mod}
+            kind.__name__, (usual,), {"name": kind.name, "sources": kind.sources, "mod": self.mod}
         )
         return self._made_anew(tr("making the scene '{name}'", name=kind.name), guarded, plain)
 

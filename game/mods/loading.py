@@ -46,6 +46,7 @@ def load(folders: Iterable[str | Path] = (), *, installed: bool = False) -> list
     ordered = in_order(new, __version__, [mod for mod in EXTENSIONS.mods if mod.loaded])
     EXTENSIONS.mods.extend(new)
     if ordered:
+        importlib.import_module("pinjoint.api")  # what they rely on; our keys come before theirs
         mark_interrupts()
     for mod in ordered:
         _load(mod)

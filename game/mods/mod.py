@@ -11,7 +11,7 @@ from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from pinjoint.components import written
 from pinjoint.components.extensions import EXTENSIONS
@@ -21,7 +21,9 @@ from pinjoint.components.wording import is_identifier, printable, quoted
 from pinjoint.interrupts import is_persons
 from pinjoint.mods.declared import check, check_has_run, fits
 from pinjoint.mods.limit import T, within
-from pinjoint.systems.run.simulation import Simulation
+
+if TYPE_CHECKING:  # a command without a run does not need it
+    from pinjoint.systems.run.simulation import Simulation
 
 LOG = logging.getLogger("pinjoint.mods")
 LOG.setLevel(logging.DEBUG)  # tracebacks are for those who listen, such as mods.log

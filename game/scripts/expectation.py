@@ -6,14 +6,14 @@ import math
 import operator
 import re
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from typing import Any, Protocol
+from typing import Any
 
 from pinjoint.components.handle import Handle
-from pinjoint.components.language import english, listed, marked, tr
+from pinjoint.components.language import english, listed, marked
 from pinjoint.components.mistake import NotFound, WrongValue
 from pinjoint.components.view import View
 from pinjoint.components.wording import cut, missing, quoted
-from pinjoint.paths import PathError, Readable, locate, locate_one, readable
+from pinjoint.paths import PathError, locate, locate_one, readable
 
 _OF_SESSION = ("scene", "time", "message")
 _SECTIONS = ("energy", "force_method", "count", "statics", "view")
@@ -28,26 +28,7 @@ _SAMENESS = ("=", "≈", "~")
 _NOTHING = ("none", "null")  # texts for no value
 
 
-class Shown(Readable, Protocol):
-    """The part of a session that expectations read."""
-
-    @property
-    def scene(self) -> str: ...
-    @property
-    def message(self) -> str: ...
-    @property
-    def scenes(self) -> Any: ...
-    @property
-    def view(self) -> View: ...
-
-
-def expect(session: Shown, text: str) -> None:
-    """Raise AssertionError unless a text holds; ValueError or LookupError if it cannot be tested."""
-    for expected, got in check(session, text):
-        raise AssertionError(tr("expected {expected}, got {got}", expected=expected, got=str(got)))
-
-
-def check(session: Shown, text: str) -> Iterator[tuple[str, Any]]:
+def check(session: Any, text: str) -> Iterator[tuple[str, Any]]:
     """(expected, got) if a text does not hold. Raises ValueError, LookupError."""
     path, relation, value, slack = parts_of(text)
     got = english(read(session, path))  # a script is the same in every language
@@ -105,7 +86,7 @@ def compared(got: Any, relation: str, value: str, slack: str | None) -> bool:
     return math.isfinite(got) and abs(got - wanted) <= tolerance
 
 
-def read(session: Shown, path: str) -> Any:
+def read(session: Any, path: str) -> Any:
     """A quantity by its path: rods.AB.axial_force, max rods.*.axial_force, statics.degree, energy.imbalance, scene."""
     word, _, of_all = path.strip().partition(" ")
     if word in OVER_ALL and of_all:
@@ -132,7 +113,7 @@ def read(session: Shown, path: str) -> Any:
     return target.part(getattr(target.handles[0], target.field.name))
 
 
-def each(session: Shown, path: str) -> list[tuple[Handle, float]]:
+def each(session: Any, path: str) -> list[tuple[Handle, float]]:
     """The elements that a path such as rods.*.axial_force names, with their numbers; without those that have none."""
     target, rest = locate(session.model, path.strip(), readable)
     if rest:
@@ -193,7 +174,7 @@ def _one_of(found: Mapping[str, Any], name: str, what: str) -> Any:
     return found[name]
 
 
-def _of_force_method(session: Shown, quantity: str) -> Any:
+def _of_force_method(session: Any, quantity: str) -> Any:
     """A quantity of the force method: part, unknown, force, delta_real, … of the last unknown; force in a set.
 
     real.AC is the axial force of rod AC in set 1, base.AC in set 2, superposed.AC in set 2 + set 3.

@@ -20,8 +20,9 @@ from pinjoint.documents import models
 from pinjoint.paths import apply_override, locate, quoted, settable
 from pinjoint.sweeps.plan import Outcome, Plan, Record
 from pinjoint.sweeps.variation import INSTALL, SweepError, as_text
+from pinjoint.systems.base import CORES
 from pinjoint.systems.catalogue import all_systems
-from pinjoint.systems.program.reordered import VARIABLE, cores
+from pinjoint.systems.program.reordered import cores
 from pinjoint.systems.run.simulation import Simulation
 from pinjoint.systems.schedule import Schedule
 
@@ -143,7 +144,7 @@ def _local_client(distributed: Any, workers: int) -> Iterator[Any]:
         with distributed.Client(
             n_workers=workers,
             threads_per_worker=1,
-            env={VARIABLE: "1"},
+            env={CORES: "1"},
             processes=True,
             dashboard_address="127.0.0.1:0",  # any port: several sweeps may run at once
             silence_logs=logging.CRITICAL,

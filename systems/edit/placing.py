@@ -51,12 +51,7 @@ def _digits(view: View) -> int:
     return math.ceil(math.log10(view.camera.scale) - 1e-9)
 
 
-def place(model: Model, view: View, pixel: Vector) -> Particle:
-    """A new particle under a pixel, on the grid if near it. Raises Refusal if one is there already."""
-    return place_at(model, view, snapped(model, view, view.camera.to_model(pixel)))
-
-
-def place_at(model: Model, view: View, point: Vector) -> Particle:
+def place(model: Model, view: View, point: Vector) -> Particle:
     """A new particle at a point (m). Raises Refusal if one is there already."""
     check_free(model, view, point)
     return model.create(Particle, position=[point])[0]

@@ -61,7 +61,7 @@ class Action:
     bindings: the keys by which it is done, where, and what it is called there. purpose: under which the help lists it.
     repeats: while its key is held. while_drawing: it belongs to a gesture or only looks; all others end the gesture first.
     in_menu: it keeps an open menu open. enabled: whether it would do something now. pressed: whether what it shows is on.
-    pressed_as: icon and title of its button while it is on; "": as ever. draws: the gesture that it begins, of tools.
+    pressed_as: icon and title of its button while it is on; "": as ever. draws: of tools, begins the gesture.
     hint: the status line while clicks use it as a tool.
     """
 
@@ -75,7 +75,7 @@ class Action:
     enabled: Condition = lambda context: True
     pressed: Condition = lambda context: False
     pressed_as: Callable[[Any], tuple[str, str]] = lambda context: ("", "")
-    draws: Any = None
+    draws: Callable[[Any, Vector], Any] | None = None
     hint: str = ""
 
 

@@ -13,13 +13,11 @@ from numpy.typing import NDArray
 from pinjoint.components.field import Column, Role
 from pinjoint.components.model import Model
 from pinjoint.components.table import read_only
-from pinjoint.systems.base import Integrator, StepSystem
+from pinjoint.systems.base import CORES, Integrator, StepSystem
 from pinjoint.systems.program.binding import bind
 from pinjoint.systems.program.blocks import Layout, Numbers
 from pinjoint.systems.program.program import OBSERVED, Program
 from pinjoint.systems.program.writer import PUSHED, VERY_MANY, form_of
-
-VARIABLE = "PINJOINT_CORES"  # of the environment
 
 _QUICK = ("omp", "tbb")  # threading layers that start the cores in some microseconds
 _SPINS = "10000"  # some 0.1 ms that a core waits awake: waking it costs as much as a step of 10 000 rods
@@ -35,7 +33,7 @@ def cores() -> int:
     if os.getpid() != _home:
         return 1
     there = len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
-    asked = os.environ.get(VARIABLE, "")
+    asked = os.environ.get(CORES, "")
     return min(max(int(asked), 1), there) if re.fullmatch("[0-9]{1,9}", asked) else there
 
 

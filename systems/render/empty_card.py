@@ -26,14 +26,11 @@ _FIRST = (
 _ROOMY = 420.0  # points: a canvas high enough for an emblem
 
 
-def shows_card(model: Model, view: View) -> bool:
-    """True where a model is empty, nothing is being drawn, and its picture has the room of the window."""
+def put_card(paper: Paper, model: Model, view: View, theme: Theme) -> None:
+    """The card in the middle of the canvas, where a model is empty, nothing is drawn, and its picture has all the room."""
     drawing = bool(view.tool) or view.preview is not None
-    return model.particles.count == 0 and view.page is None and view.aside is None and not drawing
-
-
-def put_card(paper: Paper, view: View, theme: Theme) -> None:
-    """The card in the middle of the canvas."""
+    if model.particles.count or drawing or view.page is not None or view.aside is not None:
+        return
     v, u = view.canvas, view.pixel_ratio
     known = {tool.action: tool for group in view.toolbar.groups for tool in group}
     there = view.strip.left, view.strip.top  # as by the toolbar

@@ -19,7 +19,7 @@ from pinjoint.systems.broad_phase import distance_to_segments
 from pinjoint.systems.render.arrows import draw_loads, draw_particle_diagrams, draw_velocities
 from pinjoint.systems.render.cuts import draw_cuts
 from pinjoint.systems.render.diagrams import draw_diagrams
-from pinjoint.systems.render.empty_card import put_card, shows_card
+from pinjoint.systems.render.empty_card import put_card
 from pinjoint.systems.render.form import compose_form
 from pinjoint.systems.render.free_bodies import draw_free_bodies
 from pinjoint.systems.render.labels import Placed, place_labels
@@ -31,7 +31,7 @@ from pinjoint.systems.render.overlays import BAR, draw_notice, draw_overlays, dr
 from pinjoint.systems.render.page import draw_page
 from pinjoint.systems.render.pointed import draw_pointed
 from pinjoint.systems.render.readouts import put_readouts
-from pinjoint.systems.render.sheet import DIRECTIONS, MANY, Sheet, measure
+from pinjoint.systems.render.sheet import DIRECTIONS, MANY, Sheet, Stage, measure
 from pinjoint.systems.render.sliders import SLIDER, put_sliders
 from pinjoint.systems.render.structure import (
     draw_ghost,
@@ -51,7 +51,6 @@ from pinjoint.systems.render.utilisation import shade_rods
 REACH = 6.0  # points from the lines of an arrow
 
 _Lines = tuple[Points, Points, float, Owners]  # from, to, reach in pixels beside them, and whose each is
-Stage = tuple[Model | Form | Toolbar, View]  # what is shown, and how
 
 
 def compose_all(
@@ -122,8 +121,7 @@ def _put_controls(paper: Paper, model: Model, view: View, theme: Theme) -> None:
             paper.hits.append(Hit(v.left, v.bottom - high, v.width, high, ""))
         wheel, places = ("slider up", "slider down"), view.slider_places  # a slider knows its button
         paper.hits += [Hit(*place.box, SLIDER, item=place, wheel=wheel, again=True) for place in places]
-    if shows_card(model, view):
-        put_card(paper, view, theme)
+    put_card(paper, model, view, theme)
 
 
 def _draw_structure(sheet: Sheet) -> None:

@@ -11,9 +11,11 @@ import numpy as np
 
 from pinjoint.components.bent import FLAT, Lines, curved_lines, is_frame, largest_sag
 from pinjoint.components.camera import Viewport
+from pinjoint.components.form import Form
 from pinjoint.components.model import Model
 from pinjoint.components.rod import rigid_joints
 from pinjoint.components.tags import Hovered
+from pinjoint.components.toolbar import Toolbar
 from pinjoint.components.view import View, drawn_positions
 from pinjoint.systems.render.clip import clip_rods, clip_segments
 from pinjoint.systems.render.labels import Label, Placed
@@ -21,6 +23,8 @@ from pinjoint.systems.render.marks import Mark, Points, Rows, Truths, Values
 from pinjoint.systems.render.occupancy import Occupancy
 from pinjoint.systems.render.theme import Colour, Theme
 from pinjoint.systems.render.typography import font_size
+
+Stage = tuple[Model | Form | Toolbar, View]  # what is shown, and how
 
 FEW = 30  # elements, up to which each shows its name
 MANY = 2000  # rods, above which details of single elements are left out

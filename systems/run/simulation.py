@@ -8,6 +8,7 @@ import time
 from collections.abc import Callable, Generator, Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass, replace
+from time import monotonic
 from typing import Any
 
 from pinjoint.components.extensions import EXTENSIONS
@@ -60,6 +61,8 @@ STUCK = marked(
     " steps damped the motion: it jumps between the same states, or is lost in rounding. Choose another time step."
 )
 
+KEPT_EVERY = 0.5  # s; as much of a run an interrupt loses
+WORK_AT_ONCE = 2**22  # steps × elements, after which a run that is watched looks up
 ENDS = (StopReason.REST, StopReason.DIVERGED)  # of a run
 
 
@@ -71,15 +74,6 @@ class EventRecord:
     time: float
     fallen: tuple[str, ...]
     risen: tuple[str, ...]
-
-
-@dataclass(frozen=True)
-class Progress:
-    """How far a run is: everything has happened up to a time (s)."""
-
-    time: float
-    steps: int
-    impacts: int
 
 
 class Simulation:
@@ -503,6 +497,32 @@ class Simulation:
         if within is not None and whole == steps and now != within:  # also from another moment of the same step
             self.run_to(within)
 
+    @contextmanager
+    def watched(self) -> Iterator[None]:
+        """Where a run inside the `with` is interrupted, it goes back to the last state that was kept.
+
+        The present one may be in the midst of a step, or ahead of the clock.
+        """
+        model, kept, when = self.model, list[Checkpoint](), 0.0
+
+        def look() -> int:
+            nonlocal when
+            if not kept or monotonic() - when > KEPT_EVERY:
+                kept[:], when = [self.checkpoint()], monotonic()
+            return max(WORK_AT_ONCE // (model.particles.count + model.rods.count + 1), 1)
+
+        self.before_steps.append(look)
+        try:
+            yield
+        except Exception:  # such as a mod's, which comes between two steps
+            raise
+        except BaseException:
+            if kept:
+                self.resume(kept[0])
+            raise
+        finally:
+            self.before_steps.remove(look)
+
     def passed_since(self, then: Snapshot) -> bool:
         """True if the run has gone on since a state, by steps or within the one that is under way."""
         clock = self.model.clock
@@ -526,13 +546,15 @@ class Simulation:
 
     # --- reading -------------------------------------------------------------------------------------
 
-    @property
-    def progress(self) -> Progress:
-        """How far the run is, also in the midst of a step; changes nothing, so that it can be asked at any moment."""
+    def progress(self) -> tuple[float, int, int]:
+        """The time (s) up to which everything has happened, steps and impacts; also in the midst of a step.
+
+        It changes nothing, so that it can be asked at any moment.
+        """
         clock, flying = self.model.clock, self.programs.flying
         if flying is None:
-            return Progress(clock.time, clock.steps, clock.collisions)
-        return Progress(max(clock.time, flying.now), clock.steps, max(clock.collisions, flying.impacts))
+            return clock.time, clock.steps, clock.collisions
+        return max(clock.time, flying.now), clock.steps, max(clock.collisions, flying.impacts)
 
     @property
     def warning(self) -> str:

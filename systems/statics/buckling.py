@@ -11,6 +11,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from pinjoint.components.language import plural, tr
+from pinjoint.components.mistake import WrongValue
 from pinjoint.components.model import Model
 from pinjoint.systems.statics.assembly import Matrix
 from pinjoint.systems.statics.bending import needed_parts
@@ -72,6 +73,8 @@ class Buckling:
         start: as in first-order theory. Raises NoEquilibrium where that has no answer, where what acts in full is too much
         already, or where nothing but its stiffness under no load resists a motion.
         """
+        if count < 1:
+            raise WrongValue("modes is {modes}; ask for at least 1.", modes=count)
         dead, whole = (linear(model, start, factor).axial_force for factor in (0.0, 1.0))
         live = whole - dead
         live[np.abs(live) <= NOTHING * np.abs(whole).max(initial=0.0)] = 0.0

@@ -39,7 +39,7 @@ class Discs:
 
     start: original positions, of obstacles their first end, (N, 2). span: from there to the other end of obstacles,
     0 for discs, (N, 2). movable: free directions (N, 2). is_alone:
-    movable and without rods (N,). apart: sorted keys of the pairs that never touch: those that a rod joins, and
+    movable and without rods (N,). apart: keys of the pairs that never touch: those that a rod joins, and
     nodes of structures that overlap another node or an obstacle at the beginning.
     """
 
@@ -66,11 +66,11 @@ class Discs:
             radius=np.concatenate([particles.radius, others.radius]),
             movable=~fixed,
             is_alone=~fixed.all(axis=1) & ~is_node,
-            apart=np.unique(ends[:, 0] * len(fixed) + ends[:, 1]),
+            apart=ends[:, 0] * len(fixed) + ends[:, 1],
         )
         overlapping = discs.touching(displacement)
         nodes = overlapping[is_node[overlapping].all(axis=1)]
-        return replace(discs, apart=np.union1d(discs.apart, discs.keys(nodes)))
+        return replace(discs, apart=np.concatenate([discs.apart, discs.keys(nodes)]))
 
     @property
     def smallest(self) -> float:

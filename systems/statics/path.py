@@ -118,6 +118,8 @@ class Curve:
         along the mode instead, or, if negative, against it. Raises ValueError without a force or load to
         scale, or without an equilibrium at the factor 0.
         """
+        if points < 2:
+            raise WrongValue("points is {points}; a curve has at least 2.", points=points)
         unloaded = settle(model, (0.0,)).final
         if not unloaded.balanced:
             raise ValueError(joined([tr("There is no equilibrium to start from."), unloaded.message]))

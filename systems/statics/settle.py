@@ -84,6 +84,13 @@ class Settlement:
         """The events of all states, in order."""
         return tuple(event for state in self.states for event in state.events)
 
+    def beside(self, left_out: Sequence[str]) -> tuple[str, str]:
+        """The status where laws of mods, these by name, are left out, and the sentence that names them; "" if none are."""
+        if not left_out:
+            return self.status, ""
+        status = "equilibrium without mods" if self.status == "equilibrium" else self.status
+        return status, tr("The equilibrium leaves out the laws of mods: {laws}.", laws=", ".join(left_out))
+
 
 def settle(
     model: Model,

@@ -8,6 +8,8 @@ import pytest
 
 ROOT = Path(__file__).parents[2]
 REST_OF_SCIPY = ("scipy.linalg.blas", "scipy.sparse", "scipy.spatial")  # that takes 0.15 s
+SCENES = ("pinjoint.session", "pinjoint.editor.scenes", "pinjoint.lessons.course")
+SESSION = ("pinjoint.session", "pinjoint.editor.context", "pinjoint.systems.run.simulation")
 WINDOW = ("pygame", "pinjoint.app", "pinjoint.preparation")
 OTHER_COMMANDS = (
     "pinjoint.sweeps",
@@ -47,13 +49,19 @@ def test_the_version_is_told_before_anything_is_loaded() -> None:
 @pytest.mark.parametrize("model", ["isostatic", "hyperstatic_yield"])
 def test_small_structures_settle_without_the_rest_of_scipy(model: str) -> None:
     loaded = loaded_by_command(f"run {model} --static --format json")
-    unwanted = {*WINDOW, *OTHER_COMMANDS, *REST_OF_SCIPY, "numba", "numpy.random"}
+    unwanted = {*WINDOW, *OTHER_COMMANDS, *REST_OF_SCIPY, *SESSION, "numba", "numpy.random", "numpy.ma"}
     assert not loaded & unwanted
 
 
 def test_collisions_are_computed_without_statics() -> None:
     loaded = loaded_by_command("run collision_iii --at 0.2 --format json")
-    assert not loaded & {*WINDOW, *OTHER_COMMANDS, "scipy.sparse", "pinjoint.systems.statics.equations"}
+    assert not loaded & {
+        *WINDOW,
+        *OTHER_COMMANDS,
+        *SCENES,
+        "scipy.sparse",
+        "pinjoint.systems.statics.equations",
+    }
 
 
 def test_a_command_loads_no_other() -> None:

@@ -8,9 +8,10 @@ from contextlib import contextmanager
 import numpy as np
 
 from pinjoint.components.model import Model
+from pinjoint.systems.base import CORES
 from pinjoint.systems.catalogue import step_systems
 from pinjoint.systems.physics.integrators import INTEGRATORS
-from pinjoint.systems.program.reordered import VARIABLE, make_program
+from pinjoint.systems.program.reordered import make_program
 from pinjoint.systems.schedule import Schedule
 
 STEP = 1e-6  # s, stable in all models of benchmarks
@@ -34,12 +35,12 @@ def program_runner(model: Model, steps: int, *, on: int = 1, form: str = "") -> 
 
 @contextmanager
 def _cores(count: int) -> Iterator[None]:
-    before = os.environ.get(VARIABLE)
-    os.environ[VARIABLE] = str(count)
+    before = os.environ.get(CORES)
+    os.environ[CORES] = str(count)
     yield
-    del os.environ[VARIABLE]
+    del os.environ[CORES]
     if before is not None:
-        os.environ[VARIABLE] = before
+        os.environ[CORES] = before
 
 
 def best_of_each(

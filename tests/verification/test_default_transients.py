@@ -158,9 +158,8 @@ def test_a_lattice_of_several_hundred_rods_is_exact_in_forces_and_speeds_too(cab
 def test_a_run_too_large_for_error_control_says_so(
     monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    for module in ("pinjoint.systems.physics.automatic", "pinjoint.commands.reports.report"):
-        monkeypatch.setattr(f"{module}.AFFORDABLE", 2)
-    monkeypatch.setattr("pinjoint.commands.reports.report.IN_A_COMMAND", 0)
+    monkeypatch.setattr("pinjoint.systems.physics.automatic.AFFORDABLE", 2)
+    monkeypatch.setattr("pinjoint.systems.run.measured_error.IN_A_COMMAND", 0)
     words = ["run", "isostatic", "--at", "0.001", "--format", "json"]
     main(words)
     found = json.loads(capsys.readouterr().out)

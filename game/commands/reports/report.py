@@ -15,18 +15,16 @@ from pinjoint.components.mistake import Mistake
 from pinjoint.components.model import Model
 from pinjoint.components.rod import bends
 from pinjoint.components.settings import AUTOMATIC
-from pinjoint.documents.open_documents import without_mods
 from pinjoint.mods.mod import ModError, check_mods, heeding_mods
 from pinjoint.paths import ENERGIES
-from pinjoint.session import DEFAULT_LIMIT, Session
-from pinjoint.systems.base import StopReason
-from pinjoint.systems.physics.automatic import AFFORDABLE
-from pinjoint.systems.run.measured_error import IN_A_COMMAND
-from pinjoint.systems.run.simulation import Simulation
-from pinjoint.systems.run.watch import watched
+from pinjoint.systems.base import DEFAULT_LIMIT, StopReason
+from pinjoint.systems.catalogue import all_systems, left_out_of_statics
+from pinjoint.systems.schedule import Schedule
 from pinjoint.systems.statics.events import Event
 
-if TYPE_CHECKING:  # it imports scipy
+if TYPE_CHECKING:  # statics needs no session, and a run no scipy
+    from pinjoint.headless import Headless
+    from pinjoint.systems.run.simulation import Simulation
     from pinjoint.systems.statics.state import StaticState
 
 INTERRUPTED = marked("interrupted")  # the status of a run that Ctrl+C ended
@@ -59,9 +57,9 @@ class Analysis:
         read: makes a state. Raises Mistake, ResultError, FieldError, and ModError if a mod has failed or fails meanwhile.
         """
         check_mods()
+        if self.load_factors is not None:
+            return self.settled(simulation.model, name, read)
         with heeding_mods(simulation):
-            if self.load_factors is not None:
-                return self._settled(simulation, name, self.load_factors, read)
             return self._through_time(simulation, name, [] if reported is None else reported, read)
 
     def _through_time(self, simulation: Simulation, name: str, states: list[State], read: Read) -> Run:
@@ -83,36 +81,47 @@ class Analysis:
                 return _run(simulation, name, "diverged", states)
         return _run(simulation, name, "time reached", states)
 
-    @staticmethod
-    def _settled(simulation: Simulation, name: str, factors: Sequence[float], read: Read) -> Run:
-        """The equilibrium at each load factor in turn, with the yielding of those before."""
+    def settled(self, model: Model, name: str, read: Read = state) -> Run:
+        """The equilibrium of a model at each load factor in turn, with the yielding of those before.
+
+        Raises ModError if a mod has failed or fails meanwhile.
+        """
         from pinjoint.systems.statics.settle import settle
 
-        left_out = simulation.schedule.left_out_of_statics(simulation.model)
+        check_mods()
+        left_out = left_out_of_statics(model)
         started = time.perf_counter()
-        settlement = settle(simulation.model, factors)
+        settlement = settle(model, self.load_factors or (1.0,))
         seconds = time.perf_counter() - started
-        states = [static_state(simulation.model, found, read) for found in settlement.states]
-        status, note = without_mods(settlement.status, left_out)
-        return _run(simulation, name, status, states, moves=False) | {
+        states = [static_state(model, found, read) for found in settlement.states]
+        status, note = settlement.beside(left_out)
+        check_mods(time=model.clock.time)
+        return _result(model, name, status, states) | {
             "message": joined([settlement.message, note]),
             "left_out": left_out,
             "wall_seconds": seconds,
-            "events": _records(simulation.model, settlement.events),
+            "events": _records(model, settlement.events),
         }
 
-    def run_in(self, session: Session, name: str) -> Run:
-        """The same in a session, which adds remarks of theory on a run through time and its measured error."""
+    def settled_in(self, model: Model, name: str) -> Run:
+        """The same, also where a mod fails."""
+        try:
+            return self.settled(model, name)
+        except ModError as failure:
+            from pinjoint.systems.run.simulation import Simulation
+
+            return _failed(Simulation(model, Schedule(all_systems())), name, failure)
+
+    def run_in(self, session: Headless, name: str) -> Run:
+        """A run through time in a session, which adds remarks of theory and its measured error."""
+        from pinjoint.systems.run.measured_error import IN_A_COMMAND
+
         reported: list[State] = []
         try:
-            if self.load_factors is not None:
-                return self.run(session.simulation, name)
             session.run(steps=0)  # records the beginning, for theory beside the run
-            with session.without_frames(), watched(session.simulation):
+            with session.without_frames(), session.simulation.watched():
                 found = self.run(session.simulation, name, reported)
         except KeyboardInterrupt:
-            if self.load_factors is not None:
-                raise
             return _interrupted(session.simulation, name, reported)
         except ModError as failure:
             return _failed(session.simulation, name, failure)
@@ -145,6 +154,8 @@ def _failed(simulation: Simulation, name: str, error: ModError) -> Run:
 
 def _uncontrolled(simulation: Simulation) -> str:
     """What is to be said of a run whose error is neither controlled, though a person left that choice, nor measured."""
+    from pinjoint.systems.physics.automatic import AFFORDABLE
+
     model = simulation.model
     automatic = model.settings.integrator == AUTOMATIC and model.settings.time_step is None
     if not automatic or model.rods.count <= AFFORDABLE or simulation.integrator.exact:
@@ -177,24 +188,29 @@ def _records(model: Model, events: Sequence[Event]) -> list[dict[str, Any]]:
     return [event.record(model) for event in events]
 
 
-def _run(
-    simulation: Simulation, name: str, status: str, states: list[State], *, moves: bool = True
-) -> dict[str, Any]:
-    """A result without events. moves: the run went through time, by an integrator; False in statics.
+def _run(simulation: Simulation, name: str, status: str, states: list[State]) -> dict[str, Any]:
+    """The result of a run through time, without events."""
+    return _result(simulation.model, name, status, states) | {
+        "message": simulation.said,
+        "time_step": simulation.model.clock.step_size,
+        "integrator": simulation.integrator.key,
+        "wall_seconds": simulation.compute_seconds,
+        "compile_seconds": simulation.programs.compile_seconds,
+    }
 
-    left_out: the laws of mods that act in the model and are not in the result.
-    """
-    clock = simulation.model.clock
+
+def _result(model: Model, name: str, status: str, states: list[State]) -> dict[str, Any]:
+    """What every result has. left_out: the laws of mods that act in the model and are not in the result."""
     return {
         "model": name,
         "status": status,
-        "message": simulation.said,
-        "time": clock.time,
-        "steps": clock.steps,
-        "time_step": clock.step_size if moves else None,
-        "integrator": simulation.integrator.key if moves else None,
-        "wall_seconds": simulation.compute_seconds,
-        "compile_seconds": simulation.programs.compile_seconds,
+        "message": "",
+        "time": model.clock.time,
+        "steps": model.clock.steps,
+        "time_step": None,
+        "integrator": None,
+        "wall_seconds": 0.0,
+        "compile_seconds": 0.0,
         "left_out": [],
         "events": [],
         "states": states,

@@ -14,7 +14,9 @@ from pinjoint.commands.reports.report import static_state
 from pinjoint.components.field import ENDS
 from pinjoint.components.language import decimals, joined, marked, plural, tr
 from pinjoint.components.model import Model
-from pinjoint.session import DEFAULT_LIMIT, Session
+from pinjoint.headless import Headless
+from pinjoint.systems.base import DEFAULT_LIMIT
+from pinjoint.systems.catalogue import left_out_of_statics
 from pinjoint.systems.statics.counting import Count
 from pinjoint.systems.statics.equations import AXES
 from pinjoint.systems.statics.events import NoEquilibrium
@@ -63,7 +65,7 @@ _VALUES = ("simulation", "linear", "exact", "simulation_error", "linear_error")
 Found = dict[str, Any]
 
 
-def verify(session: Session, name: str, limit: float | None, *, simulate: bool = True) -> Found:
+def verify(session: Headless, name: str, limit: float | None, *, simulate: bool = True) -> Found:
     """Theory beside the simulation run to rest (at most `limit` s of simulated time), as plain data.
 
     limit: None: DEFAULT_LIMIT, and the simulation is left out where it takes more than MOST_WORK.
@@ -100,7 +102,7 @@ def verify(session: Session, name: str, limit: float | None, *, simulate: bool =
     return found
 
 
-def _run_to_rest(session: Session, limit: float | None) -> str:
+def _run_to_rest(session: Headless, limit: float | None) -> str:
     """The status of a run until at rest, or LEFT_OUT."""
     if limit is not None:
         return session.run(until="rest", limit=limit)
@@ -114,9 +116,9 @@ def _run_to_rest(session: Session, limit: float | None) -> str:
     return LEFT_OUT
 
 
-def _left_out(session: Session) -> Iterator[str]:
+def _left_out(session: Headless) -> Iterator[str]:
     """A sentence about the laws of mods that act in the simulation and not in theory, if there are some."""
-    if laws := session.schedule.left_out_of_statics(session.model):
+    if laws := left_out_of_statics(session.model):
         yield tr("Theory leaves out the laws of mods: {laws}.", laws=", ".join(laws))
 
 

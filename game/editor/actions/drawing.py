@@ -15,7 +15,7 @@ from pinjoint.editor.context import Context
 from pinjoint.editor.gestures.drawing import DrawForce, DrawMoment, DrawRod, DrawVelocity, tool_in_hand
 from pinjoint.systems.edit import Refusal
 from pinjoint.systems.edit.picking import End, pick_end, pick_particle, pick_rod
-from pinjoint.systems.edit.placing import place
+from pinjoint.systems.edit.placing import place, snapped
 from pinjoint.systems.edit.rods import is_rigid, set_rigid, share_at, toggle_hinge, toggle_joint
 from pinjoint.systems.edit.supports import next_support
 from pinjoint.systems.input.actions import PAUSE, actions_of
@@ -35,7 +35,8 @@ def _place(context: Context, pixel: Vector) -> None:
     if context.view.strip.contains(pixel):
         context.take_up("place")
         return
-    particle = place(context.model, context.view, pixel)
+    model, view = context.model, context.view
+    particle = place(model, view, snapped(model, view, view.camera.to_model(pixel)))
     context.notice = tr(
         "{element}: {value}",
         element=context.name(particle),
@@ -44,7 +45,9 @@ def _place(context: Context, pixel: Vector) -> None:
 
 
 # The status line names the kind of rods, too.
-action("rod", "l", "draw a rod between two particles", while_drawing=True, draws=DrawRod)(DrawRod.use)
+action("rod", "l", "draw a rod between two particles", while_drawing=True, draws=DrawRod.begin_anywhere)(
+    DrawRod.use
+)
 
 
 def _are_rigid(context: Context) -> bool:
@@ -147,7 +150,7 @@ action(
     "f",
     "draw a load on a particle or a rod",
     while_drawing=True,
-    draws=DrawForce,
+    draws=DrawForce.begin_anywhere,
     enabled=attrgetter("model.particles.count"),
     hint=marked("loads: drag an arrow from a particle     from a rod: a distributed load     F or Esc done"),
 )(DrawForce.use)
@@ -156,7 +159,7 @@ action(
     "ctrl+m",
     "draw a moment on a particle",
     while_drawing=True,
-    draws=DrawMoment,
+    draws=DrawMoment.begin_anywhere,
     enabled=attrgetter("model.particles.count"),
     hint=marked("moments: drag from a particle, to the left for counter-clockwise     Esc done"),
 )(DrawMoment.use)
@@ -165,7 +168,7 @@ action(
     "v",
     "draw the velocity of a particle",
     while_drawing=True,
-    draws=DrawVelocity,
+    draws=DrawVelocity.begin_anywhere,
     enabled=attrgetter("model.particles.count"),
     hint=marked("velocities: drag an arrow from a particle     V or Esc done"),
 )(DrawVelocity.use)

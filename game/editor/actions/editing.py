@@ -145,7 +145,7 @@ def _draw(context: Context, tool: str, pixel: Vector) -> None:
     if action.draws is None:
         action.perform(context, pixel)
         return
-    begun = action.draws.begin_anywhere(context, pixel)
+    begun = action.draws(context, pixel)
     if begun is not None:
         context.gesture = begun
     elif context.gesture is None:

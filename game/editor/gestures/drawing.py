@@ -21,7 +21,7 @@ from pinjoint.systems.edit.arrows import (
     usual,
 )
 from pinjoint.systems.edit.picking import PARTICLE_REACH, pick_end, pick_particle, pick_rod, ring_of
-from pinjoint.systems.edit.placing import place, place_at, snapped, snapped_to_points
+from pinjoint.systems.edit.placing import place, snapped, snapped_to_points
 from pinjoint.systems.edit.rods import check_ends, distance, is_rigid, join
 from pinjoint.systems.edit.supports import SUPPORTS, Held, next_support, support, support_towards
 from pinjoint.systems.forms.properties import heading
@@ -118,8 +118,9 @@ class DrawRod(Drawing):
         self.start(context)
         before = model.particles.count
         with model.transaction(marked("new rod")):
-            first = begin if isinstance(begin, Particle) else place_at(model, view, begin)
-            self._end = pick_particle(model, view, pixel) or place(model, view, pixel)
+            first = begin if isinstance(begin, Particle) else place(model, view, begin)
+            point = snapped(model, view, view.camera.to_model(pixel))
+            self._end = pick_particle(model, view, pixel) or place(model, view, point)
             rod = join(model, first, self._end, rigid=view.rigid)
         made = model.particles.count - before
         with_new = plural("with one new particle", "with {count} new particles", made) if made else ""

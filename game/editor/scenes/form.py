@@ -16,7 +16,7 @@ from pinjoint.systems.forms.typing import YES_NO, Typing
 from pinjoint.systems.render.form import FormLayout
 from pinjoint.systems.render.form_box import caret_at
 from pinjoint.systems.render.layout import Paper
-from pinjoint.systems.render.picture import Stage
+from pinjoint.systems.render.sheet import Stage
 from pinjoint.systems.render.theme import load_theme
 
 

@@ -19,7 +19,7 @@ from pinjoint.editor.scenes.form import FormScene
 from pinjoint.systems.edit.picking import pick
 from pinjoint.systems.forms import answers, properties, results
 from pinjoint.systems.render.form import FormLayout
-from pinjoint.systems.render.picture import Stage
+from pinjoint.systems.render.sheet import Stage
 
 
 class Properties(FormScene):

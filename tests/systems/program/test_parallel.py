@@ -13,12 +13,13 @@ from pinjoint import Session
 from pinjoint.commands.arguments import UsageError
 from pinjoint.commands.options import use_cores_as_asked
 from pinjoint.documents import models
+from pinjoint.systems.base import CORES
 from pinjoint.systems.edit.pull import Hand
 from pinjoint.systems.program import blocks as layout
 from pinjoint.systems.program import reordered as in_blocks
 from pinjoint.systems.program import writer
 from pinjoint.systems.program.blocks import Layout
-from pinjoint.systems.program.reordered import VARIABLE, cores
+from pinjoint.systems.program.reordered import cores
 from tests.benchmarks.models import lattice
 from tests.reference import bits
 
@@ -70,7 +71,7 @@ def small_blocks(monkeypatch: pytest.MonkeyPatch) -> None:
 def run(on: int, steps: int = 700, *, compiled: bool = False) -> Session:
     """The net after some steps, on so many cores, which share the blocks of machine code alone."""
     with pytest.MonkeyPatch.context() as patch:
-        patch.setenv(VARIABLE, str(on))
+        patch.setenv(CORES, str(on))
         session = Session.open(net())
         if compiled:
             session.simulation.program.load()
@@ -195,7 +196,7 @@ def test_a_forked_process_goes_on_alone(small_blocks: None) -> None:
 
 
 def test_the_command_line_says_how_many_cores(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setenv(VARIABLE, "2")
+    monkeypatch.setenv(CORES, "2")
     assert use_cores_as_asked(["run", "--cores", "1", "isostatic"]) == ["run", "isostatic"]
     assert cores() == 1
     with pytest.raises(UsageError, match="0 is not a whole number of at least 1"):

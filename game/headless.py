@@ -1,0 +1,245 @@
+"""Headless: a context in which scripts and commands let time pass, without scenes or a picture; the base of Session."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable, Iterator, Sequence
+from contextlib import contextmanager
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, Self
+
+import numpy as np
+
+from pinjoint.components.language import joined, marked, tr
+from pinjoint.components.load import Load
+from pinjoint.components.mistake import WrongValue
+from pinjoint.components.model import Model
+from pinjoint.components.particle import Particle
+from pinjoint.components.rod import Rod
+from pinjoint.components.settings import Environment
+from pinjoint.components.table import Table
+from pinjoint.components.view import View
+from pinjoint.components.wording import missing, quoted
+from pinjoint.documents import models
+from pinjoint.documents.open_documents import ModelFile, Source, file_of
+from pinjoint.editor.context import Context, Scene
+from pinjoint.editor.frame import HeadlessFrame
+from pinjoint.mods import load_all
+from pinjoint.mods.mod import heeding_mods
+from pinjoint.systems.base import DEFAULT_LIMIT, EVENT_INTERVAL, Phase, StopReason, System
+from pinjoint.systems.catalogue import all_systems
+from pinjoint.systems.edit.pull import Pull
+from pinjoint.systems.run.simulation import Simulation
+from pinjoint.systems.schedule import Schedule
+
+if TYPE_CHECKING:  # they import scipy
+    from pinjoint.systems.statics.buckling import Buckling
+    from pinjoint.systems.statics.path import Curve
+    from pinjoint.systems.statics.verify import Comparison
+
+
+class Still(Scene):
+    """The only scene where nobody looks."""
+
+    name = "pause"
+
+
+class Headless(Context):
+    """The open documents of a script or a command.
+
+    scenes, seen: the modes of a program that is seen, and its further systems, which come before ours.
+    """
+
+    def __init__(
+        self,
+        model: Model,
+        systems: Iterable[System] = (),
+        view: View | None = None,
+        file: ModelFile = ModelFile(),  # noqa: B008 (it cannot be changed)
+        scenes: Sequence[Scene] = (Still(),),
+        seen: Iterable[System] = (),
+    ) -> None:
+        pull = Pull()
+        wanted = {scene.name: scene.systems for scene in scenes}
+        schedule = Schedule([*seen, *all_systems(pull), *systems], wanted)
+        super().__init__(model, schedule, pull, scenes, view or View(), file)
+
+    @classmethod
+    def open(cls, source: Source, systems: Iterable[System] = (), mods: Iterable[str | Path] = ()) -> Self:
+        """Open a model file, a bundled model by name, or a document. Raises ModelError.
+
+        systems: further ones for this session. mods: folders of mods to load first, for the whole program;
+        raises ModError if one of them cannot be used.
+        """
+        if folders := list(mods):
+            load_all(folders)
+        return cls(models.load(source), systems, file=file_of(source))
+
+    # --- the model ---------------------------------------------------------------------------------
+
+    @property
+    def particles(self) -> Table[Particle]:
+        """Particles by name."""
+        return self.model.particles
+
+    @property
+    def rods(self) -> Table[Rod]:
+        """Rods by name."""
+        return self.model.rods
+
+    @property
+    def loads(self) -> Table[Load]:
+        """Loads by name."""
+        return self.model.loads
+
+    def table(self, name: str) -> Table[Any]:
+        """The elements of any kind by name, those that mods add included: session.table("walls")["floor"]."""
+        if name not in self.model.tables:
+            raise KeyError(missing(marked("tables"), name, self.model.tables))
+        return self.model.tables[name]
+
+    @property
+    def environment(self) -> Environment:
+        """Force, acceleration and drag on all particles."""
+        return self.model.environment
+
+    @property
+    def message(self) -> str:
+        """What the window says now; "" if nothing.
+
+        The fault of a mod, the question or refusal of the scene, why the run stopped, a warning or a notice, then the
+        remarks on a run at rest.
+        """
+        said = self.fault or self.scenes.active.message or self.simulation.said or self.notice
+        return joined([said, *(remark.message for remark in self.document.assessment.remarks)])
+
+    # --- time --------------------------------------------------------------------------------------
+
+    def run(
+        self,
+        until: str | None = None,
+        *,
+        time: float | None = None,
+        steps: int | None = None,
+        limit: float = DEFAULT_LIMIT,
+    ) -> str:
+        """Let time pass: until "rest" (at most `limit` s of simulated time), by `time` s, or by `steps`.
+
+        Exactly so many steps are taken unless the run ends; the part of one up to an impact counts as a step.
+
+        Returns "at rest", "time reached", "limit reached" or "diverged"; `message` says more. Raises ValueError, and
+        ModError if a mod fails meanwhile: the run stops where it did, and a further one goes on without the mod. An
+        interrupt (Ctrl+C) leaves the state after a step shortly before, from which a further run goes on.
+        """
+        if sum(option is not None for option in (until, time, steps)) != 1 or until not in (None, "rest"):
+            raise WrongValue('Say how far to run: until="rest", time=SECONDS or steps=NUMBER, one of them.')
+        limit = forward("limit", limit)
+        time = None if time is None else forward("time", time)
+        steps = None if steps is None else int(forward("steps", steps, whole=True))
+        reached = "time reached" if until is None else "limit reached"
+        with self._time_passing() as simulation:
+            if until is not None:
+                simulation.run_until_rest(self.time + limit)
+            elif time is not None:
+                simulation.run_to(self.time + time)
+            elif steps is not None:
+                simulation.advance(steps)
+        ended = {StopReason.REST: "at rest", StopReason.DIVERGED: "diverged"}
+        return ended.get(simulation.reason, reached)
+
+    def go_to(self, steps: int, within: float | None = None) -> None:
+        """Let time pass to a moment of a recorded run: so many whole steps, and perhaps a time (s) within the next."""
+        if (steps, within) != self.simulation.moment:
+            with self._time_passing() as simulation:
+                simulation.go_to(steps, within)
+
+    @contextmanager
+    def _time_passing(self) -> Iterator[Simulation]:
+        """Time passes inside: it is one run in the log, which stops, by ModError, where a mod fails."""
+        self.act_in_scene()
+        document, simulation = self.document, self.simulation
+        document.note_beginning()
+        document.history.begin_run()
+        document.timeline.begin()
+        try:
+            with heeding_mods(simulation), self.without_frames(), simulation.watched():
+                yield simulation
+                document.chronicle.look()
+        finally:
+            if not self.time_passes:
+                document.history.end_run()
+
+    @contextmanager
+    def without_frames(self) -> Iterator[None]:
+        """While time passes inside, systems of phase EVENTS run every EVENT_INTERVAL steps, and when it has passed."""
+        simulation, frame = self.simulation, HeadlessFrame(self, 0.0)
+        if self.performing or not self.schedule.runs_headless(Phase.EVENTS, frame.scene, self.model):
+            yield
+            return
+
+        def follow() -> int:
+            beyond = self.model.clock.steps % EVENT_INTERVAL
+            if beyond == 0:
+                self.schedule.run(Phase.EVENTS, frame, headless=True)
+            return EVENT_INTERVAL - beyond
+
+        simulation.before_steps.append(follow)
+        try:
+            yield
+        finally:
+            simulation.before_steps.remove(follow)
+        self.schedule.run(Phase.EVENTS, frame, headless=True)
+
+    def compare(self) -> Comparison:
+        """The run as it is now beside linear and exact theory: `rows` of every element, and the `worst`.
+
+        >>> s = Session.open("isostatic")
+        >>> s.compare().worst("linear").title
+        'displacement y of particle B'
+        """
+        return self.document.assessment.comparison()
+
+    def load_path(
+        self, factor: float = 1.0, *, until: str | None = None, points: int = 500, branch: int = 0
+    ) -> Curve:
+        """The load–displacement curve, through limit points, up to a load factor, or "B.y=-2.5" or "B.rotation=1".
+
+        branch: number of the bifurcation from which on it follows the other branch, along the mode; negative: against it.
+
+        Changes nothing. Its arrays are load_factor (k,), displacement (k, particles, 2) in m, rotation (k, particles) in
+        rad, axial_force (k, rods) in kN, bending_moment (k, rods, 2) in kN·m and stable (k,); its events are limit points
+        and bifurcations; complete: False if it could not be followed so far. Raises ValueError.
+        """
+        from pinjoint.systems.statics.path import Curve, Goal
+
+        return Curve.of(self.model, Goal.of(self.model, factor, until), points=points, branch=branch)
+
+    def buckling(self, modes: int = 5) -> Buckling:
+        """Critical load factors by linear buckling, ascending, with their modes; changes nothing.
+
+        Its arrays are factors (k,), modes (k, particles, 2), where members bend with rotations (k, particles, 3), and
+        effective_length (rods,) in m, NaN of rods that are not compressed; message: why there is none. Raises
+        ValueError, and NoEquilibrium without a state that could lose its stability.
+        """
+        from pinjoint.systems.statics.buckling import Buckling
+
+        return Buckling.of(self.model, modes)
+
+
+def forward(name: str, value: float, *, whole: bool = False) -> float:
+    """A time or a number of steps given by a script, checked. Raises ValueError."""
+    number = isinstance(value, int | np.integer | (np.integer if whole else float | np.floating))
+    if not number or isinstance(value, bool) or not math.isfinite(value):
+        given = quoted(value)
+        raise ValueError(
+            tr("{name} is {value}; it must be a whole number.", name=name, value=given)
+            if whole
+            else tr("{name} is {value}; it must be a finite number.", name=name, value=given)
+        )
+    if value >= 2**63:
+        raise WrongValue("{name} is {value}; it must be below 2^63.", name=name, value=value)
+    if value < 0:
+        raise WrongValue(
+            "{name} is {value}; time only runs forward: undo or restart goes back.", name=name, value=value
+        )
+    return float(value)
