@@ -236,7 +236,7 @@ def forward(name: str, value: float, *, whole: bool = False) -> float:
             if whole
             else tr("{name} is {value}; it must be a finite number.", name=name, value=given)
         )
-    if value >= 2**63:
+    if whole and value >= 2**63:
         raise WrongValue("{name} is {value}; it must be below 2^63.", name=name, value=value)
     if value < 0:
         raise WrongValue(

@@ -1,6 +1,7 @@
 """What several test folders share."""
 
 import os
+import signal
 import subprocess
 import sys
 from collections.abc import Callable, Iterator, Mapping
@@ -61,6 +62,28 @@ def in_english() -> Iterator[None]:
     """Tests that speak another language do so for themselves only."""
     with spoken(ENGLISH):
         yield
+
+
+@pytest.fixture
+def data(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+    """The folder of the person's own models and recovery files, which is made when it is needed."""
+    monkeypatch.setenv(library.DATA_VARIABLE, str(tmp_path / "data"))
+    return tmp_path / "data"
+
+
+@pytest.fixture
+def config(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+    """The folder of the person's choices, which is made when it is needed."""
+    monkeypatch.setenv(preferences.CONFIG_VARIABLE, str(tmp_path / "config"))
+    return tmp_path / "config"
+
+
+@pytest.fixture
+def hears_interrupts() -> Iterator[None]:
+    """Processes that the test starts hear Ctrl+C, even if it was started where that is ignored, by "&" above all."""
+    before = signal.signal(signal.SIGINT, signal.default_int_handler)
+    yield
+    signal.signal(signal.SIGINT, before)
 
 
 @pytest.fixture

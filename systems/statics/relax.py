@@ -61,8 +61,8 @@ def relax(path: Path, start: Point, nudge: Array | None = None, steps: int = STE
 
 def has_run_away(structure: Structure, displacement: Array, start: Array) -> bool:
     """True if a motion to these displacements has no end, be it that it goes far or round and round."""
-    far = largest(displacement[:, :2]) > RUNAWAY * structure.extent
-    return far or largest((displacement - start)[:, 2:]) > ROUND_AND_ROUND
+    moved = displacement - start
+    return largest(moved[:, :2]) > RUNAWAY * structure.extent or largest(moved[:, 2:]) > ROUND_AND_ROUND
 
 
 def _travel(structure: Structure, point: Point, displacement: Array) -> float:

@@ -5,13 +5,12 @@ from pathlib import Path
 
 import pytest
 
-from pinjoint.documents import library
 from tests.benchmarks import editing
 from tests.benchmarks.editing import ANNOUNCED, SESSION, Hand
 
 
-def test_every_action_is_seen(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setenv(library.DATA_VARIABLE, str(tmp_path))
+@pytest.mark.usefixtures("data")
+def test_every_action_is_seen(tmp_path: Path) -> None:
     with closing(Hand(200)) as hand:
         hand.session.save_as(tmp_path / "lattice.json")
         rods = hand.session.rods.count

@@ -24,6 +24,8 @@ from tests.benchmarks.models import lattice
 from tests.reference.lines import lines_run
 from tests.reference.models import triangle
 
+pytestmark = pytest.mark.usefixtures("data")
+
 ROOT = Path(__file__).parents[2]
 INTERVAL = 0.2  # s between recovery files in these tests
 
@@ -42,12 +44,6 @@ while not app.input.closed:
     app.frame(0.01)
     print(value, flush=True)
 """
-
-
-@pytest.fixture(autouse=True)
-def data(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
-    monkeypatch.setenv(library.DATA_VARIABLE, str(tmp_path / "data"))
-    return tmp_path / "data"
 
 
 @contextmanager

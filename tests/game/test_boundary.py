@@ -12,7 +12,7 @@ import pytest
 from pinjoint import boundary
 from pinjoint.app import App
 from pinjoint.boundary import FAULTS
-from pinjoint.documents import library, models
+from pinjoint.documents import models
 from pinjoint.documents.autosave import Autosave
 from pinjoint.documents.open_documents import ModelFile
 from pinjoint.systems.input.actions import ACTIONS, FILES
@@ -23,9 +23,8 @@ ERRORS = (np.linalg.LinAlgError("singular"), MemoryError(), RecursionError("too 
 
 
 @pytest.fixture
-def app(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> App:
+def app(data: Path) -> App:
     """A window with a model that nobody saved."""
-    monkeypatch.setenv(library.DATA_VARIABLE, str(tmp_path))
     app = App(models.parse(triangle()), ModelFile(None, "work"), Autosave(interval=0.0))
     app.session.rods[0].stiffness = 5.0
     return app
@@ -69,18 +68,18 @@ def test_an_action_that_raises_is_told_of_and_the_next_ones_act(
     app: App,
     monkeypatch: pytest.MonkeyPatch,
     caplog: pytest.LogCaptureFixture,
-    tmp_path: Path,
+    data: Path,
     error: Exception,
 ) -> None:
     monkeypatch.setitem(ACTIONS, "next shape", replace(ACTIONS["next shape"], perform=failing(error)))
     said = shown_to(app, monkeypatch, "b", "b", "ctrl+z", "b", "ctrl+y")
     assert type(error).__name__ in said[1]
-    assert str(tmp_path / FAULTS) in said[1]
+    assert str(data / FAULTS) in said[1]
     assert said[1] == said[2] == said[4] != said[3], "undo says something else"
     assert [record.exc_info is not None for record in caplog.records if record.name == "pinjoint.window"] == [
         True
     ]
-    assert (tmp_path / FAULTS).read_text(encoding="utf-8").count("Traceback") == 1
+    assert (data / FAULTS).read_text(encoding="utf-8").count("Traceback") == 1
     assert app.session.rods[0].stiffness == 5.0
     (left,) = Autosave().left()
     recovered = models.load(left)

@@ -7,7 +7,6 @@ import signal
 import subprocess
 import sys
 import time
-from collections.abc import Iterator
 from contextlib import suppress
 from pathlib import Path
 
@@ -19,16 +18,9 @@ from pinjoint.documents.library import DATA_VARIABLE
 from pinjoint.interrupts import CLOSING, closed_by_signals, quietly_interrupted
 from pinjoint.systems.program.writer import FEW
 
+pytestmark = pytest.mark.usefixtures("hears_interrupts")
 ROOT = Path(pinjoint.__file__).parents[1]
 PROGRAM = ["/usr/bin/pinjoint", "-m", str(Path(pinjoint.__file__).parent / "__main__.py")]
-
-
-@pytest.fixture(autouse=True)
-def heard() -> Iterator[None]:
-    """As in a process started in the foreground; one in the background may be told to ignore Ctrl+C."""
-    before = signal.signal(signal.SIGINT, signal.default_int_handler)
-    yield
-    signal.signal(signal.SIGINT, before)
 
 
 @pytest.mark.parametrize("called", PROGRAM)

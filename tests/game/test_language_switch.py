@@ -4,7 +4,7 @@ import pytest
 
 from pinjoint.components.language import language, spoken
 from pinjoint.components.particle import Particle
-from pinjoint.documents.preferences import CONFIG_VARIABLE, preferred_language
+from pinjoint.documents.preferences import preferred_language
 from pinjoint.editor.scenes.form import FormScene
 from pinjoint.session import Session
 from pinjoint.systems.render.picture import compose_all
@@ -42,11 +42,11 @@ def test_what_was_typed_into_a_form_stays(scene):
     )
 
 
-def test_a_window_remembers_the_choice(monkeypatch, tmp_path):
+@pytest.mark.usefixtures("config")
+def test_a_window_remembers_the_choice():
     from pinjoint.app import App
     from pinjoint.documents import models
 
-    monkeypatch.setenv(CONFIG_VARIABLE, str(tmp_path))
     app = App(models.load("isostatic"))
     app.frame(0.0)
     assert preferred_language() == ""

@@ -1,5 +1,6 @@
 """Lessons with tasks: every bundled one as its author meant it, other right answers, and wrong ones."""
 
+import itertools
 import re
 from pathlib import Path
 from typing import Any
@@ -11,8 +12,6 @@ from hypothesis import strategies as st
 from pinjoint import Session
 from pinjoint.components.language import spoken
 from pinjoint.components.model import Model
-from pinjoint.documents import preferences
-from pinjoint.documents.library import DATA_VARIABLE
 from pinjoint.lessons import progress
 from pinjoint.lessons.checking import check_lesson
 from pinjoint.lessons.course import Course
@@ -25,12 +24,7 @@ from tests.golden.scenes import Window
 from tests.golden.test_texts import problems
 from tests.reference.hits import hits_for, push
 
-
-@pytest.fixture(autouse=True)
-def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
-    """An empty folder for what is kept."""
-    monkeypatch.setenv(preferences.CONFIG_VARIABLE, str(tmp_path / "config"))
-    return tmp_path / "config"
+pytestmark = pytest.mark.usefixtures("config")
 
 
 @pytest.fixture
@@ -436,14 +430,11 @@ def test_what_is_wrong_with_a_lesson_is_found(tmp_path: Path, line: str, said: s
     assert said in failures[0]
 
 
-def test_own_lessons_stand_on_the_start_page(
-    session: Session, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    monkeypatch.setenv(DATA_VARIABLE, str(tmp_path))
-    (tmp_path / "lessons").mkdir()
+def test_own_lessons_stand_on_the_start_page(session: Session, data: Path) -> None:
+    (data / "lessons").mkdir(parents=True)
     task = '{"task": "x", "until": "time > 1", "right": "", "solution": [{"run": 2}], "model": "isostatic"}'
-    (tmp_path / "lessons" / "mine.jsonl").write_text(f"{HEADER}\n{task}\n", encoding="utf-8")
-    (tmp_path / "lessons" / "broken.jsonl").write_text("{", encoding="utf-8")
+    (data / "lessons" / "mine.jsonl").write_text(f"{HEADER}\n{task}\n", encoding="utf-8")
+    (data / "lessons" / "broken.jsonl").write_text("{", encoding="utf-8")
     session.press("d")
     assert "Mine" in [tile.title for tile in session.scenes.active.form.tiles]  # type: ignore[attr-defined]
     session.type("mine")
@@ -473,16 +464,14 @@ def test_the_start_page_offers_to_continue_what_was_begun(session: Session) -> N
 # --- the card --------------------------------------------------------------------------------------------
 
 
-@pytest.mark.parametrize("size", [(640, 480), (1280, 800)])
 @pytest.mark.parametrize("name", lessons_with_tasks())
-def test_every_task_is_legible_in_windows_of_all_sizes(
-    session: Session, size: tuple[int, int], name: str
-) -> None:
-    session.resize(*size)
-    course = begun(session, name)
-    for task in range(len(course.lesson.tasks)):
-        course.begin(task)
-        session.press("f6")
+def test_every_task_is_legible_in_windows_of_all_sizes(session: Session, name: str) -> None:
+    course, sizes = begun(session, name), ((640, 480), (1280, 800))
+    for task, size in itertools.product(range(len(course.lesson.tasks)), sizes):
+        session.resize(*size)
+        if size == sizes[0]:
+            course.begin(task)
+            session.press("f6")
         session.update_view()
         assert session.beside is not None
         main, card = session.view.camera.viewport, session.beside.camera.viewport

@@ -9,7 +9,7 @@ import pytest
 from pinjoint import Session
 from pinjoint.app import App
 from pinjoint.components.model import Model
-from pinjoint.documents import library, models, preferences
+from pinjoint.documents import models
 from pinjoint.documents.open_documents import ModelFile
 from pinjoint.editor.scenes.load import LESSONS
 from pinjoint.scripts.performance import FOOTER, Performance
@@ -96,11 +96,8 @@ SAVES = """{"format": "pinjoint session", "version": 1, "model": "isostatic"}
 """
 
 
-def test_what_a_script_saves_replaces_nothing_of_the_persons(
-    app: App, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    monkeypatch.setenv(library.DATA_VARIABLE, str(tmp_path / "data"))
-    mine = library.models_folder() / "mine.json"
+def test_what_a_script_saves_replaces_nothing_of_the_persons(app: App, tmp_path: Path, data: Path) -> None:
+    mine = data / "models" / "mine.json"
     mine.parent.mkdir(parents=True)
     mine.write_text("what I made")
     (tmp_path / "saves.jsonl").write_text(SAVES)
@@ -136,10 +133,8 @@ def test_a_lesson_is_chosen_from_the_pictures() -> None:
     assert session.particles.count == models.load("newtons_cradle").particles.count
 
 
-def test_after_a_task_was_shown_only_its_card_says_what_to_do(
-    app: App, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    monkeypatch.setenv(preferences.CONFIG_VARIABLE, str(tmp_path))
+@pytest.mark.usefixtures("config")
+def test_after_a_task_was_shown_only_its_card_says_what_to_do(app: App) -> None:
     session = app.session
     session.begin_lesson(Script("03_stable_or_mechanism"))
     assert session.course is not None

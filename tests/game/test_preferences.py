@@ -12,12 +12,7 @@ from pinjoint.documents import preferences
 from pinjoint.editor.actions.view import THEMES
 from pinjoint.systems.render.theme import theme_names
 
-
-@pytest.fixture(autouse=True)
-def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
-    """An empty folder for the settings, which is made when it is needed."""
-    monkeypatch.setenv(preferences.CONFIG_VARIABLE, str(tmp_path / "config"))
-    return tmp_path / "config"
+pytestmark = pytest.mark.usefixtures("config")
 
 
 def test_t_goes_through_all_themes_and_back() -> None:
@@ -30,18 +25,18 @@ def test_t_goes_through_all_themes_and_back() -> None:
     assert sorted(THEMES) == theme_names()
 
 
-def test_a_theme_is_remembered_and_other_entries_stay(folder: Path) -> None:
+def test_a_theme_is_remembered_and_other_entries_stay(config: Path) -> None:
     assert preferences.preferred_theme() == "light"
     preferences.remember("theme", "dark")
     assert preferences.preferred_theme() == "dark"
-    path = folder / "settings.json"
+    path = config / "settings.json"
     path.write_text('{"theme": "dark", "other": 1}', encoding="utf-8")
     preferences.remember("theme", "colour-blind")
     assert json.loads(path.read_text(encoding="utf-8")) == {"theme": "colour-blind", "other": 1}
-    assert [entry.name for entry in folder.iterdir()] == ["settings.json"]
+    assert [entry.name for entry in config.iterdir()] == ["settings.json"]
 
 
-def test_the_convention_of_the_force_method_is_remembered(folder: Path) -> None:
+def test_the_convention_of_the_force_method_is_remembered(config: Path) -> None:
     assert preferences.preferred_convention() == "textbook"
     preferences.remember("convention", "thesis")
     assert preferences.preferred_convention() == "thesis"
@@ -56,36 +51,36 @@ def test_the_convention_of_the_force_method_is_remembered(folder: Path) -> None:
         *('{"magnification": "large"}', '{"magnification": 1e9}', '{"magnification": [2]}'),
     ],
 )
-def test_a_damaged_file_is_no_choice_and_can_be_written_again(folder: Path, text: str) -> None:
-    folder.mkdir()
-    (folder / "settings.json").write_bytes(text.encode("latin-1"))
+def test_a_damaged_file_is_no_choice_and_can_be_written_again(config: Path, text: str) -> None:
+    config.mkdir()
+    (config / "settings.json").write_bytes(text.encode("latin-1"))
     assert (preferences.preferred_theme(), preferences.preferred_magnification()) == ("light", 1.0)
     preferences.remember("theme", "dark")
     assert preferences.preferred_theme() == "dark"
 
 
-def test_what_cannot_be_read_is_put_aside(folder: Path) -> None:
+def test_what_cannot_be_read_is_put_aside(config: Path) -> None:
     """A comma too many in keys that somebody chose would cost them all."""
     slip = b'{"keys": {"pause": {"w": "undo"},}}'
-    folder.mkdir()
-    (folder / "settings.json").write_bytes(slip)
+    config.mkdir()
+    (config / "settings.json").write_bytes(slip)
     preferences.remember("theme", "dark")
     assert preferences.preferred_theme() == "dark"
-    assert (folder / "settings-unreadable.json").read_bytes() == slip
+    assert (config / "settings-unreadable.json").read_bytes() == slip
 
 
-def test_where_nothing_can_be_written_nothing_is_kept(folder: Path) -> None:
-    folder.write_text("a file where the folder should be", encoding="utf-8")
+def test_where_nothing_can_be_written_nothing_is_kept(config: Path) -> None:
+    config.write_text("a file where the folder should be", encoding="utf-8")
     preferences.remember("theme", "dark")
     assert preferences.preferred_theme() == "light"
 
 
-def test_a_session_without_a_window_writes_no_settings(folder: Path) -> None:
+def test_a_session_without_a_window_writes_no_settings(config: Path) -> None:
     Session.open("isostatic").press("t")
-    assert not folder.exists()
+    assert not config.exists()
 
 
-def test_the_magnification_is_kept_beside_the_theme(folder: Path) -> None:
+def test_the_magnification_is_kept_beside_the_theme(config: Path) -> None:
     preferences.remember("theme", "dark")
     preferences.remember("magnification", 1.5)
     assert preferences.preferred_magnification() == 1.5

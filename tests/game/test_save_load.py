@@ -25,11 +25,7 @@ from pinjoint.systems.render.picture import compose
 from pinjoint.systems.render.theme import load_theme
 from tests.reference.models import triangle
 
-
-@pytest.fixture(autouse=True)
-def data(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
-    monkeypatch.setenv(library.DATA_VARIABLE, str(tmp_path / "data"))
-    return tmp_path / "data"
+pytestmark = pytest.mark.usefixtures("data")
 
 
 @pytest.fixture

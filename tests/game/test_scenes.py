@@ -12,9 +12,9 @@ from pinjoint.editor.view_model import count_of_pages
 from pinjoint.systems.render.picture import compose
 from pinjoint.systems.render.theme import load_theme
 from tests.reference import bits
+from tests.systems.edit.hand import FRAME, run_frames
 
 SCENES = ["pause", "simulation", "properties", "save", "load", "force method"]
-FRAME = 1.0 / 60.0
 
 
 @pytest.fixture
@@ -28,12 +28,6 @@ def go(session: Session, scene: str) -> None:
         session.scenes.request(scene)
         session.scenes.apply(session)
     assert session.scene == scene
-
-
-def run_frames(session: Session, frames: int = 30) -> None:
-    """Let time pass in the window's way; the first frame may only announce that it compiles."""
-    for _ in range(frames):
-        session.frame(FRAME)
 
 
 # --- the state machine -----------------------------------------------------------------------------------

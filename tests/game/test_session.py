@@ -195,3 +195,10 @@ def test_a_window_of_another_size_shows_the_whole_model_until_somebody_looks_clo
     centre = session.view.camera.centre
     session.resize(640, 480)
     assert session.view.camera.centre == centre
+
+
+def test_any_time_may_be_given_for_a_run() -> None:
+    session = Session.open("isostatic")
+    assert session.run(time=1e91) == "at rest"
+    with pytest.raises(ValueError, match=r"steps is 1\d+; it must be below 2\^63"):
+        session.run(steps=10**91)

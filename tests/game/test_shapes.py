@@ -17,7 +17,7 @@ from pinjoint.documents.shapes import DRAWN_SHARE, NoShape, mechanism_shapes, mo
 from pinjoint.systems.render.marks import Discs
 from pinjoint.systems.render.picture import compose
 from pinjoint.systems.render.theme import load_theme
-from tests.reference.models import pendulum
+from tests.reference.models import model, particle, pendulum, rod
 
 GOLDEN = (1.0 + math.sqrt(5.0)) / 2.0
 STIFFNESS = 1.0  # kN, of rods 1 m long between masses of 1 kg
@@ -25,13 +25,8 @@ STIFFNESS = 1.0  # kN, of rods 1 m long between masses of 1 kg
 
 def chain() -> dict[str, Any]:
     """Two equal masses on equal springs in a row; ω² = (k/m)(3 ∓ √5)/2, motions 1 : φ and φ : −1."""
-    particles = [
-        {"name": name, "position": [x, 0], "fixed": [x == 0, True], "mass": 1} for x, name in enumerate("OAB")
-    ]
-    rods = [
-        {"name": a + b, "between": [a, b], "stiffness": STIFFNESS, "density": 0} for a, b in pairwise("OAB")
-    ]
-    return {"format": "pinjoint model", "version": 1, "particles": particles, "rods": rods}
+    particles = [particle(name, x, 0, fixed=[x == 0, True], mass=1) for x, name in enumerate("OAB")]
+    return model(particles, [rod(a, b, stiffness=STIFFNESS, density=0) for a, b in pairwise("OAB")])
 
 
 def session_of(source: Any) -> Session:

@@ -27,10 +27,8 @@ def compiling(interpreted: None, monkeypatch: pytest.MonkeyPatch) -> None:
 
 
 @pytest.fixture
-def unloaded(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> Iterator[None]:
+def unloaded(data: Path, config: Path) -> Iterator[None]:
     """A program without a person's files; the mods that a test loads are unloaded after it."""
-    monkeypatch.setenv("PINJOINT_DATA", str(tmp_path / "data"))
-    monkeypatch.setenv("PINJOINT_CONFIG", str(tmp_path / "config"))
     before, keys = len(mods.MODS), dict(ACTIONS)
     yield
     mods.unload(mods.MODS[before:])

@@ -21,6 +21,7 @@ from pinjoint.systems.render.theme import load_theme
 from tests.mods.conftest import Write
 from tests.mods.test_isolation import TRUSS
 from tests.reference.hits import hits_for
+from tests.reference.models import model, particle
 
 
 def opened(write_mod: Write, body: str, head: str = "") -> Session:
@@ -173,13 +174,12 @@ class Gate(Handle):
     top: Field[tuple] = Field("m", shape=(2,), title="top", doc=".")
     swung: Field[float] = Field("rad", title="swung", doc=".", role=Role.STATE)
 """
-FALLING = {
-    "format": "pinjoint model",
-    "version": 1,
-    "environment": {"acceleration": [0, -10]},
-    "particles": [{"name": "A", "position": [0, 1.05]}],
-    "components": {"apple.Gate": [{"name": "g", "foot": [-1, 0], "top": [1, 0], "swung": 0.5}]},
-}
+FALLING = model(
+    [particle("A", 0, 1.05)],
+    [],
+    environment={"acceleration": [0, -10]},
+    components={"apple.Gate": [{"name": "g", "foot": [-1, 0], "top": [1, 0], "swung": 0.5}]},
+)
 
 
 def test_a_kind_of_a_mod_has_a_table_a_section_and_properties(write_mod: Write) -> None:

@@ -6,7 +6,7 @@ import signal
 import subprocess
 import sys
 import time
-from collections.abc import Callable, Iterator
+from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
@@ -184,16 +184,10 @@ def test_threads_of_mods_do_not_keep_the_program_from_ending(
 # --- Ctrl+C ------------------------------------------------------------------------------------------------------
 
 
-@pytest.fixture
-def heard() -> Iterator[None]:
-    """Processes that the test starts hear Ctrl+C, even if it was started where that is ignored, by "&" above all."""
-    before = signal.signal(signal.SIGINT, signal.default_int_handler)
-    yield
-    signal.signal(signal.SIGINT, before)
-
-
 @pytest.mark.skipif(sys.platform == "win32", reason="SIGINT")
-def test_ctrl_c_ends_the_program_whatever_a_mod_does(write_mod: Write, truss: str, heard: None) -> None:
+def test_ctrl_c_ends_the_program_whatever_a_mod_does(
+    write_mod: Write, truss: str, hears_interrupts: None
+) -> None:
     code = "def plugin(app):\n    print('here', flush=True)\n    while True:\n        pass"
     running = subprocess.Popen(
         [sys.executable, "-m", "pinjoint", "run", truss, "--mods", str(write_mod("apple", code))],
@@ -211,7 +205,7 @@ def test_ctrl_c_ends_the_program_whatever_a_mod_does(write_mod: Write, truss: st
 
 
 @pytest.mark.skipif(sys.platform == "win32", reason="SIGINT")
-def test_where_ctrl_c_is_ignored_an_interrupt_is_of_a_mod(heard: None) -> None:
+def test_where_ctrl_c_is_ignored_an_interrupt_is_of_a_mod(hears_interrupts: None) -> None:
     signal.signal(signal.SIGINT, signal.SIG_IGN)
     assert not is_persons(KeyboardInterrupt())
 

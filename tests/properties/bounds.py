@@ -26,8 +26,10 @@ sys.unraisablehook = end
 
 def checked(code: str, folder: Path, timeout: float | None = None) -> subprocess.CompletedProcess[str]:
     """Run this code with all indices of machine code checked, which is kept in a folder."""
+    cache = folder / "cache"  # apart: it comes to hold a folder "pinjoint", which Python would import
+    cache.mkdir(exist_ok=True)
     (folder / "sitecustomize.py").write_text(_GUARD, encoding="utf-8")
-    own = {"NUMBA_BOUNDSCHECK": "1", "PINJOINT_COMPILE": "always", "XDG_CACHE_HOME": str(folder)}
+    own = {"NUMBA_BOUNDSCHECK": "1", "PINJOINT_COMPILE": "always", "XDG_CACHE_HOME": str(cache)}
     # Compiling, which is what takes long here, takes a third. Without any optimising it takes as long, and code that goes by
     # addresses which would have been optimised away is not kept.
     own["NUMBA_OPT"] = "1"

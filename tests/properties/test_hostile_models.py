@@ -4,13 +4,12 @@ from pathlib import Path
 
 import pytest
 
-from pinjoint.documents import library
 from tests.properties.hostile_models import Hostile, attempt
 
 
+@pytest.mark.usefixtures("data")
 @pytest.mark.parametrize("seed", range(24))
-def test_every_command_answers_every_model(seed: int, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setenv(library.DATA_VARIABLE, str(tmp_path))
+def test_every_command_answers_every_model(seed: int, tmp_path: Path) -> None:
     assert attempt(seed, tmp_path, patience=60.0) == ""
 
 

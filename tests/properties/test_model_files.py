@@ -1,7 +1,6 @@
 """Any model survives its file bit for bit; no file, however wrong, gives more than a ModelError."""
 
 import copy
-import json
 import struct
 import tempfile
 from pathlib import Path
@@ -126,7 +125,7 @@ def bits(value: Any) -> bytes:
 
 @settings(max_examples=150, deadline=None)
 @given(documents())
-def test_a_model_survives_its_file_bit_for_bit(document: dict[str, Any]) -> None:
+def test_a_model_holds_the_bits_of_its_document_and_survives_its_file(document: dict[str, Any]) -> None:
     model = models.parse(document)
     again = written_and_read(model)
     assert (again.title, again.description) == (document.get("title", ""), document.get("description", ""))
@@ -136,13 +135,7 @@ def test_a_model_survives_its_file_bit_for_bit(document: dict[str, Any]) -> None
             assert same(table.column(field.name), again.tables[name].column(field.name)), field.name
         kept = [model.foreign.get(handle.entity) for handle in table.handles]
         assert kept == [again.foreign.get(handle.entity) for handle in again.tables[name].handles]
-
-
-@settings(max_examples=150, deadline=None)
-@given(documents())
-def test_a_model_holds_the_bits_of_its_document(document: dict[str, Any]) -> None:
-    model = models.parse(document)
-    written = models.document(written_and_read(model))
+    written = models.document(again)
     for section in ("particles", "rods", "loads", "grids"):
         table = model.tables[section]
         for element, handle, after in zip(
@@ -235,22 +228,7 @@ def assert_model_or_message(result: Model | str, start: str) -> None:
         assert models.document(written_and_read(result)) == models.document(result)
 
 
-@settings(max_examples=400, deadline=None)
+@settings(max_examples=200, deadline=None)
 @given(mutated_documents())
 def test_a_mutated_document_is_a_model_or_a_model_error(document: dict[str, Any]) -> None:
     assert_model_or_message(outcome(document, "mutated"), "mutated: $")
-
-
-@settings(max_examples=200, deadline=None)
-@given(documents(), st.data())
-def test_a_damaged_file_is_a_model_or_a_model_error(document: dict[str, Any], data: st.DataObject) -> None:
-    content = bytearray(json.dumps(document, ensure_ascii=False).encode())
-    for _ in range(data.draw(st.integers(1, 3))):
-        at = data.draw(st.integers(0, len(content) - 1))
-        content[at : at + data.draw(st.integers(0, 3))] = data.draw(
-            st.binary(max_size=2) | st.sampled_from([b'"', b"{", b"]", b",", b"\\", b"NaN"])
-        )
-    with tempfile.TemporaryDirectory() as folder:
-        path = Path(folder) / "damaged.json"
-        path.write_bytes(content)
-        assert_model_or_message(outcome(path, ""), str(path))

@@ -10,7 +10,6 @@ import pytest
 from pinjoint import Session
 from pinjoint.commands.command_line import main
 from pinjoint.components.field import Role
-from pinjoint.documents.library import DATA_VARIABLE
 from pinjoint.scripts.playing import Recorder, play, session_of
 from pinjoint.scripts.script import Script, ScriptError, lessons
 
@@ -18,8 +17,8 @@ SCRIPTS = sorted(Path(__file__).parent.glob("*.jsonl"))
 
 
 @pytest.mark.parametrize("path", SCRIPTS, ids=lambda path: path.stem)
-def test_session(path: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setenv(DATA_VARIABLE, str(tmp_path))
+@pytest.mark.usefixtures("data")
+def test_session(path: Path) -> None:
     script = Script(path)
     assert [str(failure) for failure in play(script)] == []
 
@@ -32,13 +31,10 @@ def test_lesson(name: str) -> None:
     assert lesson.description
 
 
-def test_a_script_that_saves_can_be_played_again_and_leaves_nothing_behind(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    monkeypatch.setenv(DATA_VARIABLE, str(tmp_path / "mine"))
+def test_a_script_that_saves_can_be_played_again_and_leaves_nothing_behind(tmp_path: Path, data: Path) -> None:
     saving = next(path for path in SCRIPTS if path.stem == "every_scene")
     assert [main(["play", str(saving)]) for _ in range(2)] == [0, 0]
-    assert not (tmp_path / "mine").exists()
+    assert not data.exists()
     assert main(["play", str(saving), "--data", str(tmp_path / "kept")]) == 0
     assert list((tmp_path / "kept").rglob("*.json"))
 
@@ -69,8 +65,8 @@ def test_a_session_expects_the_same_in_python() -> None:
         session.expect("rods.ABX.strain = 0")
 
 
-def test_a_part_of_a_text_is_expected_too(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setenv(DATA_VARIABLE, str(tmp_path))
+@pytest.mark.usefixtures("data")
+def test_a_part_of_a_text_is_expected_too() -> None:
     session = Session.open("isostatic")
     session.press("r")
     session.expect("message ≈ no time has passed")

@@ -288,8 +288,10 @@ def test_no_alarm_for_rods_prestressed_beyond_their_strength() -> None:
 
 @pytest.mark.parametrize("name", models.bundled())
 def test_no_alarm_in_bundled_models(name: str) -> None:
+    """Far enough for slow growth in small ones; in large ones, as far as an unstable step would be seen."""
     session = Session.open(name)
-    assert session.run(steps=3_000) in ("time reached", "at rest"), session.message
+    steps = 3_000 if session.model.particles.count <= 20 else 500
+    assert session.run(steps=steps) in ("time reached", "at rest"), session.message
     assert session.message.startswith("At rest") or session.message == ""
     assert_finite(session)
 

@@ -14,12 +14,12 @@ from pinjoint.components.field import Field, FieldError, Role, same
 from pinjoint.components.handle import Handle
 from pinjoint.components.language import english, spoken
 from pinjoint.components.load import Load
-from pinjoint.components.model import KINDS, Model
-from pinjoint.components.particle import Particle
-from pinjoint.components.rod import Rod, spawn_rods
+from pinjoint.components.model import KINDS
+from pinjoint.components.rod import Rod
 from pinjoint.components.settings import Settings
 from pinjoint.components.table import fields_of
 from pinjoint.components.world import World
+from tests.unit.test_world import triangle
 
 
 def number(**options: Any) -> Field[Any]:
@@ -315,13 +315,6 @@ def test_columns_are_compared_bit_for_bit() -> None:
 
 
 # --- as an attribute -----------------------------------------------------------------------------------
-
-
-def triangle() -> Model:
-    model = Model()
-    model.create(Particle, 3, name=["A", "B", "C"], position=[(0, 0), (1, 1), (2, 0)])
-    spawn_rods(model, [(0, 1), (1, 2), (2, 0)], name=["AB", "BC", "CA"])
-    return model
 
 
 def test_a_field_of_the_class_is_the_field_itself() -> None:

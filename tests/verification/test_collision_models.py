@@ -1,11 +1,13 @@
 """The bundled models of collisions against the formulas that their descriptions promise."""
 
+import json
 import math
 
 import numpy as np
 import pytest
 
 from pinjoint import Session
+from pinjoint.commands.command_line import main
 from pinjoint.components.obstacles import obstacles
 from pinjoint.documents import models
 from pinjoint.included.collisions import panels
@@ -139,3 +141,26 @@ def test_the_pile_is_told_to_be_at_rest() -> None:
     session = Session.open("pile")
     assert session.run(until="rest") == "at rest"
     assert not session.particles.velocity.any()
+
+
+ROOT = 3.0**0.5  # of offset centres: the line of centres is at 30° to the motion
+
+SIX = {  # velocities after the impact, exact
+    "i": ((2.5, 0.0), (2.5, 0.0)),
+    "ii": ((1.25, 0.0), (3.75, 0.0)),
+    "iii": ((0.0, 0.0), (5.0, 0.0)),
+    "iv": ((5.0 * (1 - 10000) / 10001, 0.0), (10.0 / 10001, 0.0)),
+    "v": ((5.0 * (10000 - 1) / 10001, 0.0), (5.0 * 20000 / 10001, 0.0)),
+    "vi": ((1.25, -1.25 * ROOT), (3.75, 1.25 * ROOT)),
+}
+
+
+@pytest.mark.parametrize("case", SIX)
+def test_velocities_after_the_thesis_impacts(case: str, capsys: pytest.CaptureFixture[str]) -> None:
+    """By `pinjoint run`."""
+    assert main(["run", f"collision_{case}", "--at", "0.2", "--format", "json"]) == 0
+    final = json.loads(capsys.readouterr().out)["states"][-1]
+    assert final["collisions"] == 1
+    for particle, expected in zip(final["particles"].values(), SIX[case], strict=True):
+        assert particle["velocity"] == pytest.approx(expected, rel=1e-12, abs=1e-12)
+    assert final["energy"]["imbalance"] == pytest.approx(0.0, abs=1e-12)

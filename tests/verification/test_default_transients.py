@@ -14,6 +14,7 @@ from pinjoint.documents import document as documents
 from pinjoint.systems.physics.spectrum import spectrum
 from tests.benchmarks.models import lattice
 from tests.reference.elements import Document
+from tests.reference.models import model, particle, rod
 from tests.reference.transients import Motion, Untraceable, follow
 from tests.verification.test_against_reference import SHORTEST, decimals, trusses
 
@@ -88,18 +89,14 @@ def test_the_shown_error_of_verlet_is_within_a_factor_3_of_the_true_one(
 def test_the_reference_knows_what_yields_from_the_start_on() -> None:
     """One bar, stretched beyond its strength and flying apart: its force stays at the strength, so that
     m Δv = −2 F t for equal ends, exactly."""
-    document: Document = {
-        "format": "pinjoint model",
-        "version": 1,
-        "particles": [
-            {"name": "A", "position": [0, 0], "displacement": [-0.01, 0], "velocity": [-3, 0], "mass": 1},
-            {"name": "B", "position": [1, 0], "displacement": [0.01, 0], "velocity": [3, 0], "mass": 1},
+    document = model(
+        [
+            particle("A", 0, 0, displacement=[-0.01, 0], velocity=[-3, 0], mass=1),
+            particle("B", 1, 0, displacement=[0.01, 0], velocity=[3, 0], mass=1),
         ],
-        "rods": [
-            {"name": "AB", "between": ["A", "B"], "stiffness": 1000, "damping": 0, "tensile_strength": 0.2}
-        ],
-        "settings": {"collisions": False},
-    }
+        [rod("A", "B", stiffness=1000, damping=0, tensile_strength=0.2)],
+        settings={"collisions": False},
+    )
     expected = follow(document, 0.01).displacement
     exact = 0.01 + 3 * 0.01 - 0.5 * 200.0 * 0.01**2
     assert abs(expected[1, 0] - exact) < 1e-14
@@ -108,19 +105,14 @@ def test_the_reference_knows_what_yields_from_the_start_on() -> None:
 
 def test_the_reference_ends_with_a_rod_that_yields_between_two_held_particles() -> None:
     """Its elongation never changes: it neither goes on yielding nor unloads, and stays as it is."""
-    document: Document = {
-        "format": "pinjoint model",
-        "version": 1,
-        "particles": [
-            {"name": "A", "position": [0, 0], "displacement": [-0.01, 0], "fixed": [True, True]},
-            {"name": "B", "position": [1, 0], "fixed": [True, True]},
-            {"name": "C", "position": [2, 0], "velocity": [1, 0], "mass": 1},
+    document = model(
+        [
+            particle("A", 0, 0, displacement=[-0.01, 0], fixed=[True, True]),
+            particle("B", 1, 0, fixed=[True, True]),
+            particle("C", 2, 0, velocity=[1, 0], mass=1),
         ],
-        "rods": [
-            {"name": "AB", "between": ["A", "B"], "stiffness": 1000, "damping": 0, "tensile_strength": 2},
-            {"name": "BC", "between": ["B", "C"], "stiffness": 1000, "damping": 0, "tensile_strength": 2},
-        ],
-    }
+        [rod(*ends, stiffness=1000, damping=0, tensile_strength=2) for ends in ("AB", "BC")],
+    )
     displacement = follow(document, 1e-4).displacement
     assert displacement[:2].tolist() == [[-0.01, 0.0], [0.0, 0.0]]
     assert displacement[2, 0] == pytest.approx(1e-4, rel=1e-2)
@@ -129,8 +121,7 @@ def test_the_reference_ends_with_a_rod_that_yields_between_two_held_particles() 
 @pytest.mark.parametrize("cables", [0, 5], ids=["rods", "some cables"])
 def test_a_lattice_of_several_hundred_rods_is_exact_in_forces_and_speeds_too(cables: int) -> None:
     """Jittered, of rods of very different stiffness, under sudden forces, undamped."""
-    model = lattice(400, damping=0.0)
-    made, random = documents.document(model), np.random.default_rng(3)
+    made, random = documents.document(lattice(400, damping=0.0)), np.random.default_rng(3)
     for one in made["particles"]:
         one["position"] = (np.array(one["position"]) + random.uniform(-0.2, 0.2, 2)).tolist()
         if not any(one.get("fixed", [])):

@@ -1,7 +1,6 @@
 """The force method: hyperstatic forces, superposition, and unknowns that are none."""
 
 import math
-from typing import Any
 
 import numpy as np
 import pytest
@@ -17,16 +16,16 @@ from pinjoint.force_method.copies import exact_forces
 from pinjoint.systems.statics.force_method import solve
 from pinjoint.systems.statics.theory import linear
 from pinjoint.systems.statics.unknowns import ForceMethodError, Unknown, redundants
-from tests.reference.models import panel_truss
+from tests.reference.models import model, panel_truss, particle, rod
 from tests.reference.statics import direct_stiffness
 
 
 def test_each_rod_of_the_square_has_the_force_of_linear_theory() -> None:
     model = models.load("hyperstatic")
     linear = direct_stiffness(models.document(model))["axial_force"]
-    for rod in model.rods:
-        solution = solve(model, [Unknown.named(model, rod.name)])
-        assert solution.force[0] == pytest.approx(linear[rod.name], rel=1e-12, abs=1e-11)
+    for name in model.rods.names:
+        solution = solve(model, [Unknown.named(model, name)])
+        assert solution.force[0] == pytest.approx(linear[name], rel=1e-12, abs=1e-11)
         assert solution.delta_unit[0, 0] < 0.0  # the unit pair pulls the ends together
 
 
@@ -117,17 +116,15 @@ def test_lack_of_fit_counts() -> None:
     assert solution.force[0] < 0.0
 
 
-THREE_BARS: dict[str, Any] = {
-    "format": "pinjoint model",
-    "version": 1,
-    "particles": [
-        {"name": "A", "position": [0, 0], "fixed": [True, True]},
-        {"name": "B", "position": [1, 0], "fixed": [True, True], "displacement": [1e-3, -5e-3]},
-        {"name": "C", "position": [2, 0], "fixed": [True, True]},
-        {"name": "D", "position": [1, 1], "force": [3, -7]},
+THREE_BARS = model(
+    [
+        particle("A", 0, 0, fixed=[True, True]),
+        particle("B", 1, 0, fixed=[True, True], displacement=[1e-3, -5e-3]),
+        particle("C", 2, 0, fixed=[True, True]),
+        particle("D", 1, 1, force=[3, -7]),
     ],
-    "rods": [{"name": f"{end}D", "between": [end, "D"]} for end in "ABC"],
-}
+    [rod(end, "D") for end in "ABC"],
+)
 
 
 @pytest.mark.parametrize("name", ["AD", "BD", "CD", "B.y"])

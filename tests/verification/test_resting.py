@@ -334,3 +334,9 @@ def test_a_disc_that_its_guide_holds_in_the_floor_is_in_no_equilibrium(
     assert found.status == "limit reached"
     assert "No equilibrium of the particles was found" in found.message
     assert not recwarn.list
+
+
+def test_a_ball_that_is_too_far_away_to_move_does_not_fall(recwarn: pytest.WarningsRecorder) -> None:
+    found = settled(model([particle("ball", 0, 0, displacement=[-1e30, 0])], [], **WEIGHT))
+    assert found.status in ("mechanism", "limit reached")
+    assert not recwarn.list

@@ -18,6 +18,7 @@ from pinjoint.commands.command_line import main
 from pinjoint.commands.output import FORMATS
 from pinjoint.components.extensions import EXTENSIONS
 from pinjoint.systems.program.compiler import Choice, Compile
+from tests.reference.models import model, particle, rod
 
 ROOT = Path(__file__).parents[3]
 
@@ -47,15 +48,10 @@ def test_without_a_display_one_line_says_so(environment: dict[str, str]) -> None
     assert found.stdout == ""
 
 
-MODEL = {
-    "format": "pinjoint model",
-    "version": 1,
-    "particles": [
-        {"name": "A", "position": [0, 0], "fixed": [True, True]},
-        {"name": "B", "position": [1, 0], "fixed": [False, True], "force": [10, 0]},
-    ],
-    "rods": [{"name": "AB", "between": ["A", "B"]}],
-}
+MODEL = model(
+    [particle("A", 0, 0, fixed=[True, True]), particle("B", 1, 0, fixed=[False, True], force=[10, 0])],
+    [rod("A", "B")],
+)
 
 
 @pytest.mark.parametrize(

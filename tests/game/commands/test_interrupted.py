@@ -11,26 +11,22 @@ import pytest
 from pinjoint.commands import progress
 from pinjoint.commands.command_line import main
 from tests.properties.limits import interrupted_after
+from tests.reference.models import model, particle, rod
 
 pytestmark = pytest.mark.skipif(not hasattr(signal, "setitimer"), reason="nothing would interrupt it")
-HEAD = {"format": "pinjoint model", "version": 1}
-CABLE = {"tension_only": True}
 FIXED = {"fixed": [True, True], "radius": 0.1}
-BILLION_IMPACTS = HEAD | {
-    "particles": [
-        {"name": "A", "position": [0, 0], "velocity": [1e9, 0], "radius": 0.1},
-        {"name": "L", "position": [-1, 0], **FIXED},
-        {"name": "R", "position": [1, 0], **FIXED},
-    ]
-}
-STIFF_DAMPER = HEAD | {
-    "particles": [
-        {"name": "A", "position": [0, 0], "fixed": [True, True]},
-        {"name": "B", "position": [1, 0], "force": [1, 0]},
+BILLION_IMPACTS = model(
+    [
+        particle("A", 0, 0, velocity=[1e9, 0], radius=0.1),
+        *(particle(name, x, 0, **FIXED) for name, x in (("L", -1), ("R", 1))),
     ],
-    "rods": [{"name": "AB", "between": ["A", "B"], "damping": 1e9}],
-    "settings": {"integrator": "velocity_verlet"},
-}
+    [],
+)
+STIFF_DAMPER = model(
+    [particle("A", 0, 0, fixed=[True, True]), particle("B", 1, 0, force=[1, 0])],
+    [rod("A", "B", damping=1e9)],
+    settings={"integrator": "velocity_verlet"},
+)
 ENDLESS = {"impacts": BILLION_IMPACTS, "a stiff damper": STIFF_DAMPER}
 
 
@@ -98,46 +94,38 @@ def test_what_lasts_says_how_far_it_is(
 @pytest.mark.parametrize(
     "given",
     [
-        {
-            "particles": [
-                BILLION_IMPACTS["particles"][0],
-                {"name": "B", "position": [0.5, 1], "velocity": [1e16, 1e19]},
-            ]
-        },
-        {
-            "particles": [
-                {"name": "A", "position": [0, 0], "velocity": [1, 0]},
-                {"name": "B", "position": [1, 0.05]},
+        model([BILLION_IMPACTS["particles"][0], particle("B", 0.5, 1, velocity=[1e16, 1e19])], []),
+        model(
+            [particle("A", 0, 0, velocity=[1, 0]), particle("B", 1, 0.05)],
+            [],
+            components={"walls.Wall": [{"start": [-1e11, -1], "end": [1e11, -1]}]},
+        ),
+        model(  # a rod of 1.4e9 m leaves its branch between two times that are next to each other
+            [
+                particle("P0", 0, 0, displacement=[0.016, 1e9], mass=2, **FIXED),
+                particle(
+                    *("P1", -1e9, 0.3),
+                    velocity=[1.3211215257974307, -1.1614779683649394],
+                    acceleration=[1, -9.81],
+                    mass=2,
+                    radius=0.2,
+                ),
+                particle("P2", 2, 0, displacement=[0.016, -0.01]),
+                particle("P3", 0, 1.3, velocity=[0.28764957300111266, 1.3866213842230934]),
             ],
-            "components": {"walls.Wall": [{"start": [-1e11, -1], "end": [1e11, -1]}]},
-        },
-        {  # a rod of 1.4e9 m leaves its branch between two times that are next to each other
-            "particles": [
-                {"name": "P0", "position": [0, 0], "displacement": [0.016, 1e9], **FIXED, "mass": 2},
-                {
-                    "name": "P1",
-                    "position": [-1e9, 0.3],
-                    "velocity": [1.3211215257974307, -1.1614779683649394],
-                    "acceleration": [1, -9.81],
-                    "mass": 2,
-                    "radius": 0.2,
-                },
-                {"name": "P2", "position": [2, 0], "displacement": [0.016, -0.01]},
-                {"name": "P3", "position": [0, 1.3], "velocity": [0.28764957300111266, 1.3866213842230934]},
+            [
+                rod("P1", "P0", temperature_change=30, tension_only=True),
+                rod("P2", "P0", rest_length=1, temperature_change=30, tension_only=True),
+                rod("P3", "P0", tensile_strength=100, plastic_strain=0.001),
+                rod("P3", "P1", temperature_change=30),
             ],
-            "rods": [
-                {"name": "P1P0", "between": ["P1", "P0"], "temperature_change": 30, "tension_only": True},
-                {"name": "P2P0", "between": ["P2", "P0"], "rest_length": 1, "temperature_change": 30} | CABLE,
-                {"name": "P3P0", "between": ["P3", "P0"], "tensile_strength": 100, "plastic_strain": 0.001},
-                {"name": "P3P1", "between": ["P3", "P1"], "temperature_change": 30},
-            ],
-        },
+        ),
     ],
     ids=["speeds", "a wall", "cables"],
 )
 def test_numbers_of_very_different_sizes_do_not_make_work(given: dict[str, Any], tmp_path: Path) -> None:
     path = tmp_path / "sizes.json"
-    path.write_text(json.dumps(HEAD | given), encoding="utf-8")
+    path.write_text(json.dumps(given), encoding="utf-8")
     main(["run", str(path), "--at", "1e-9"])  # compiles
     with interrupted_after(5.0):
         assert main(["run", str(path), "--at", "0.01", "--output", str(tmp_path / "out")]) == 0

@@ -9,18 +9,17 @@ import pytest
 from pinjoint import __main__ as program
 from pinjoint.commands import language as choice
 from pinjoint.components.language import language
-from pinjoint.documents.preferences import CONFIG_VARIABLE, preferred_language, remember
+from pinjoint.documents.preferences import preferred_language, remember
 
 OF_SYSTEM = ("LANGUAGE", "LC_ALL", "LC_MESSAGES", "LANG")
 
 
 @pytest.fixture
-def person(tmp_path, monkeypatch):
+def person(config, monkeypatch):
     """Somebody who has asked for nothing yet, on a system without a language."""
     for variable in (*OF_SYSTEM, choice.VARIABLE):
         monkeypatch.setenv(variable, "")
     monkeypatch.setattr(locale, "getlocale", lambda: (None, None))
-    monkeypatch.setenv(CONFIG_VARIABLE, str(tmp_path))
     # the next signal would end the process of the tests
     monkeypatch.setattr(program, "end_in_time", lambda: None)
     return monkeypatch

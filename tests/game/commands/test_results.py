@@ -1,4 +1,4 @@
-"""Results as data, JSON, table and CSV."""
+"""Results of runs as data, JSON, table and CSV: the states at the times that were asked for."""
 
 import csv
 import io
@@ -9,7 +9,9 @@ from typing import Any
 import numpy as np
 import pytest
 
+from pinjoint import Session
 from pinjoint.commands.output import FORMATS, Format, ResultError, formatted
+from pinjoint.commands.reports.report import Analysis
 from pinjoint.commands.reports.results import run_lines, run_rows, state
 from pinjoint.components.model import Model
 from pinjoint.documents import models
@@ -171,3 +173,25 @@ def test_csv_has_one_number_a_line(solved: Model) -> None:
     assert values["", "run", "", "residual"] == ("", "")
     assert values["2.0", "run", "", "residual"] == ("0.5", "")
     assert {r["time"] for r in rows} == {repr(0.1 + 0.2)}
+
+
+# --- at the times that were asked for -----------------------------------------------------------------
+
+DAMPED = triangle(damping=100, density=6.15)
+
+
+def test_states_are_reported_at_exactly_the_times_asked_for() -> None:
+    times = (0.0, 1e-4, 3e-4, 0.3, 0.7)
+    run = Analysis(times=times).run(Session.open(DAMPED).simulation, "triangle")
+    assert run["status"] == "time reached"
+    assert [made["time"] for made in run["states"]] == list(times)
+    forces = [made["rods"]["AB"]["axial_force"] for made in run["states"]]
+    assert forces[0] == 0.0
+    assert forces[1] != forces[2] != forces[3]
+    assert forces[3] == forces[4]  # at rest before 0.3 s; from then on time passes without steps
+
+
+def test_a_report_on_the_way_does_not_change_the_run() -> None:
+    direct = Analysis(times=(3e-4,)).run(Session.open(DAMPED).simulation, "triangle")
+    reported = Analysis(times=(1.2345e-4, 3e-4)).run(Session.open(DAMPED).simulation, "triangle")
+    assert reported["states"][-1] == direct["states"][-1]

@@ -30,27 +30,24 @@ from pinjoint.systems.program.program import Program
 from tests.benchmarks.models import touching
 from tests.reference import bits
 from tests.reference.forms import programs
-from tests.reference.models import portal_in_wind, struck
+from tests.reference.models import model, particle, portal_in_wind, rod, struck
 
 GRAVITY = {"acceleration": [0.0, -9.81]}
 
 
 def truss(ball: dict[str, Any], restitution: float = 0.5, **settings: Any) -> dict[str, Any]:
     """Two rods to two pins, and a ball above the node that they carry."""
-    rod = {"stiffness": 200, "damping": 0.2, "density": 3}
-    return {
-        "format": "pinjoint model",
-        "version": 1,
-        "environment": GRAVITY,
-        "settings": {"restitution": restitution, **settings},
-        "particles": [
-            {"name": "A", "position": [0.0, 0.0], "fixed": [True, True]},
-            {"name": "B", "position": [1.0, 0.5]},
-            {"name": "C", "position": [2.0, 0.0], "fixed": [True, True]},
-            {"name": "ball", "position": [1.0, 0.65], "mass": 2.0} | ball,
+    return model(
+        [
+            particle("A", 0.0, 0.0, fixed=[True, True]),
+            particle("B", 1.0, 0.5),
+            particle("C", 2.0, 0.0, fixed=[True, True]),
+            particle("ball", 1.0, 0.65, mass=2.0) | ball,
         ],
-        "rods": [rod | {"name": "AB", "between": ["A", "B"]}, rod | {"name": "BC", "between": ["B", "C"]}],
-    }
+        [rod(*ends, stiffness=200, damping=0.2, density=3) for ends in ("AB", "BC")],
+        environment=GRAVITY,
+        settings={"restitution": restitution, **settings},
+    )
 
 
 def test_what_a_window_loads_ahead_of_need_can_be_called() -> None:
@@ -211,19 +208,13 @@ def test_nodes_that_overlap_are_left_alone() -> None:
 def test_what_is_pressed_together_from_rest_is_in_contact_at_once() -> None:
     """A compressed rod is let go against a disc that touches it and parts by round-off: they meet before a moment
     that can be told from the present one, which once let no time pass for ever."""
-    session = Session.open(
-        {
-            "format": "pinjoint model",
-            "version": 1,
-            "particles": [
-                {"name": "A", "position": [0, 0], "fixed": [True, True]},
-                {"name": "B", "position": [1, 0], "radius": 0.0625, "fixed": [False, True]},
-                {"name": "C", "position": [1.125, 0], "radius": 0.0625, "velocity": [1e-17, 0]},
-            ],
-            "rods": [{"name": "AB", "between": ["A", "B"], "rest_length": 1.001}],
-            "state": {"time": 0.5, "origin": 0.5},
-        }
-    )
+    particles = [
+        particle("A", 0, 0, fixed=[True, True]),
+        particle("B", 1, 0, radius=0.0625, fixed=[False, True]),
+        particle("C", 1.125, 0, radius=0.0625, velocity=[1e-17, 0]),
+    ]
+    rods = [rod("A", "B", rest_length=1.001)]
+    session = Session.open(model(particles, rods, state={"time": 0.5, "origin": 0.5}))
     session.run(steps=40)
     assert session.model.clock.steps == 40
     assert session.particles["C"].velocity[0] > 1.0
@@ -232,16 +223,8 @@ def test_what_is_pressed_together_from_rest_is_in_contact_at_once() -> None:
 
 def test_drag_slows_particles_between_impacts() -> None:
     """v = v₀ exp(−c t): distance to the impact v₀ (1 − exp(−c t))/c = 0.9 m."""
-    document = {
-        "format": "pinjoint model",
-        "version": 1,
-        "environment": {"drag": 1.0},
-        "particles": [
-            {"name": "p", "position": [0.0, 0.0], "velocity": [2.0, 0.0]},
-            {"name": "q", "position": [1.0, 0.0]},
-        ],
-    }
-    session = Session.open(document)
+    particles = [particle("p", 0.0, 0.0, velocity=[2.0, 0.0]), particle("q", 1.0, 0.0)]
+    session = Session.open(model(particles, [], environment={"drag": 1.0}))
     session.run(time=1.0)
     assert session.impacts.time[0] == pytest.approx(-np.log(1.0 - 0.45), rel=1e-9)
     assert session.particles["q"].velocity[0] == pytest.approx(2.0 * np.exp(-1.0), rel=1e-8)
@@ -259,16 +242,11 @@ def test_a_structure_without_anything_near_it_takes_the_same_steps() -> None:
 @pytest.mark.parametrize("below", ["floor", "disc"])
 def test_a_particle_under_drag_that_begins_in_contact_lies_there(below: str) -> None:
     """Nothing moves at first, so that no speed tells that it is about to meet what it touches."""
-    document: dict[str, Any] = {
-        "format": "pinjoint model",
-        "version": 1,
-        "environment": GRAVITY | {"drag": 1.0},
-        "particles": [{"name": "p", "position": [0.0, 0.05]}],
-    }
+    document = model([particle("p", 0.0, 0.05)], [], environment=GRAVITY | {"drag": 1.0})
     if below == "floor":
         document["components"] = {"walls.Wall": [{"name": "w", "start": [-1.0, 0.0], "end": [1.0, 0.0]}]}
     else:
-        document["particles"].append({"name": "q", "position": [0.0, -0.05], "fixed": [True, True]})
+        document["particles"].append(particle("q", 0.0, -0.05, fixed=[True, True]))
     session = Session.open(document)
     session.run(time=0.1)
     assert session.particles["p"].displacement == pytest.approx((0.0, 0.0), abs=1e-12)
@@ -286,13 +264,8 @@ def box(discs: list[dict[str, Any]], half: float = 0.3, **sections: Any) -> dict
         "right": ([half, 0.0], [half, 3.0]),
     }
     walls = [{"name": name, "start": start, "end": end} for name, (start, end) in ends.items()]
-    return {
-        "format": "pinjoint model",
-        "version": 1,
-        "environment": GRAVITY,
-        "particles": [{"name": f"p{k}", **disc} for k, disc in enumerate(discs)],
-        "components": {"walls.Wall": walls},
-    } | sections
+    named = [{"name": f"p{k}", **disc} for k, disc in enumerate(discs)]
+    return model(named, [], components={"walls.Wall": walls}, **({"environment": GRAVITY} | sections))
 
 
 @pytest.mark.parametrize(("count", "restitution"), [(8, 0.5), (12, 0.0), (16, 0.0)])
@@ -412,19 +385,12 @@ def test_a_ball_rests_on_a_cable() -> None:
 def test_elastic_bounces_that_a_damper_calms_end() -> None:
     """A spring presses a node onto a rock: its bounces become ever shorter, without end, and lose nothing themselves."""
     particles = [
-        {"name": "pin", "position": [0.0, 1.0], "fixed": [True, True]},
-        {"name": "node", "position": [0.0, 0.5], "fixed": [True, False], "radius": 0.02},
-        {"name": "rock", "position": [0.0, 0.25], "fixed": [True, True], "radius": 0.2},
+        particle("pin", 0.0, 1.0, fixed=[True, True]),
+        particle("node", 0.0, 0.5, fixed=[True, False], radius=0.02),
+        particle("rock", 0.0, 0.25, fixed=[True, True], radius=0.2),
     ]
-    spring = {
-        "name": "spring",
-        "between": ["pin", "node"],
-        "stiffness": 1.0,
-        "damping": 0.01,
-        "rest_length": 0.6,
-    }
-    document = {"format": "pinjoint model", "version": 1, "environment": GRAVITY, "rods": [spring]}
-    session = Session.open(document | {"particles": particles, "settings": {"restitution": 1.0}})
+    spring = rod("pin", "node", stiffness=1.0, damping=0.01, rest_length=0.6)
+    session = Session.open(model(particles, [spring], environment=GRAVITY, settings={"restitution": 1.0}))
     assert session.run(until="rest", limit=10.0) == "at rest"
     assert 100 < len(session.impacts) < 2000
     contacts = persistent_contacts(session.model)
@@ -437,8 +403,8 @@ def test_elastic_bounces_that_a_damper_calms_end() -> None:
 def test_a_ball_that_makes_a_truss_yield_rests_on_what_is_left() -> None:
     """Its energy goes into impacts, dampers and plastic strain; afterwards no rod exceeds its strength."""
     document = truss({"mass": 20.0}, restitution=0.5)
-    for rod in document["rods"]:
-        rod |= {"tensile_strength": 0.3, "compressive_strength": 0.3, "damping": 2.0}
+    for each in document["rods"]:
+        each |= {"tensile_strength": 0.3, "compressive_strength": 0.3, "damping": 2.0}
     session = Session.open(document)
     assert session.run(until="rest") == "at rest"
     assert_lies(session)
@@ -591,8 +557,9 @@ def test_an_impact_along_a_row_of_discs_ends(count: int) -> None:
 
 def test_contacts_that_no_forces_close_are_counted_and_told() -> None:
     """A disc that is pressed into another while its step cannot be cut any more."""
-    discs = [{"name": name, "position": [x, 0.0], "radius": 0.05} for name, x in (("A", 0.0), ("B", 0.1))]
-    session = Session.open({"format": "pinjoint model", "version": 1, "particles": discs})
+    session = Session.open(
+        model([particle(name, x, 0.0, radius=0.05) for name, x in (("A", 0.0), ("B", 0.1))], [])
+    )
     near = NeighbourList(session.model)
     near.look_up()
     near.list_within(0.0)
@@ -615,23 +582,15 @@ def test_a_step_that_time_cannot_halve_ends() -> None:
     """Two discs that go on together for 3e14 s, where neither their gap nor a part of the step can be told."""
     far = {"A": (0.0, 786302574516043.8), "B": (0.5, 786302574516043.4)}
     discs = [
-        {
-            "name": name,
-            "position": [x, 0.0],
-            "displacement": [far_away, 0.0],
-            "velocity": [2.5, 0.0],
-            "mass": 1.0,
-        }
+        particle(name, x, 0.0, displacement=[far_away, 0.0], velocity=[2.5, 0.0], mass=1.0)
         for name, (x, far_away) in far.items()
     ]
-    document = {
-        "format": "pinjoint model",
-        "version": 1,
-        "settings": {"restitution": 0.0, "tolerance": 1e-9},
-        "particles": [*discs, *({"name": name, "position": [0.0, y]} for name, y in (("C", 2.0), ("D", -1.5)))],
-        "rods": [{"name": "CD", "between": ["C", "D"]}],
-        "state": {"time": 314521029806417.44, "step_size": 811667173693980.5, "steps": 4},
-    }
+    document = model(
+        [*discs, particle("C", 0.0, 2.0), particle("D", 0.0, -1.5)],
+        [rod("C", "D")],
+        settings={"restitution": 0.0, "tolerance": 1e-9},
+        state={"time": 314521029806417.44, "step_size": 811667173693980.5, "steps": 4},
+    )
     session = Session.open(document)
     session.step(3)
     assert session.model.clock.time > 314521029806417.44

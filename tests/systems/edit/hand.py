@@ -25,7 +25,8 @@ def press_at(session: Session, key: str, x: float, y: float) -> None:
     session.press(key)
 
 
-def run_frames(session: Session, frames: int) -> None:
+def run_frames(session: Session, frames: int = 30) -> None:
+    """Let time pass in the window's way; the first frame may only announce that it compiles."""
     for _ in range(frames):
         session.frame(FRAME)
 

@@ -6,7 +6,7 @@ import pytest
 
 from pinjoint import Session
 from pinjoint.components.camera import Viewport
-from pinjoint.documents import library, models
+from pinjoint.documents import models
 from pinjoint.documents.previews import preview, solved
 from pinjoint.systems.render.marks import Bars
 from pinjoint.systems.render.theme import load_theme
@@ -48,13 +48,10 @@ def test_a_model_that_was_run_shows_the_forces_with_which_it_was_saved(tmp_path:
     assert solved(tmp_path / "mine.json") is None
 
 
-def test_pictures_are_there_before_forces_that_take_longer(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    monkeypatch.setenv(library.DATA_VARIABLE, str(tmp_path))
+def test_pictures_are_there_before_forces_that_take_longer(data: Path) -> None:
     session = Session.open(triangle())
-    (tmp_path / "models").mkdir()
-    session.save(tmp_path / "models" / "mine.json")
+    (data / "models").mkdir(parents=True)
+    session.save(data / "models" / "mine.json")
     session.press("d")
     tiles = session.scenes.active.form.tiles  # type: ignore[attr-defined]
     seen = []

@@ -12,7 +12,7 @@ from pinjoint.commands.command_line import main
 from pinjoint.documents import models
 from pinjoint.systems.base import Law
 from pinjoint.systems.statics.settle import settle
-from tests.reference.models import von_mises_truss
+from tests.reference.models import model, particle, rod, von_mises_truss
 
 
 def at_rest(source: str | dict[str, Any]) -> Session:
@@ -68,8 +68,8 @@ def test_run_prints_it_and_lists_it_among_the_events(capsys: pytest.CaptureFixtu
 
 def test_a_rod_that_yielded_further_than_under_a_slow_ramp() -> None:
     document = models.document(models.load("hyperstatic_yield"))
-    for rod in document["rods"]:
-        rod["damping"] = 2.0
+    for each in document["rods"]:
+        each["damping"] = 2.0
     assert "CD yielded more because the sudden load overshot" in at_rest(document).message
 
 
@@ -131,13 +131,9 @@ def test_nothing_is_said_where_a_law_acts_that_statics_does_not_know() -> None:
 def test_the_collapse_load_of_textbooks_is_not_that_of_the_changed_shape() -> None:
     """Two bars in a shallow V: limit analysis knows their original slope, 0.1; they bear until they hang straight down."""
     strength = {"stiffness": 1e6, "tensile_strength": 10.0}
-    particles = [
-        {"name": "A", "position": [-1.0, 0.1], "fixed": [True, True]},
-        {"name": "B", "position": [0.0, 0.0], "force": [0.0, -40.0]},
-        {"name": "C", "position": [1.0, 0.1], "fixed": [True, True]},
-    ]
-    rods = [{"name": pair, "between": list(pair), **strength} for pair in ("AB", "BC")]
-    session = Session.open({"format": "pinjoint model", "version": 1, "particles": particles, "rods": rods})
+    ends = [particle(name, x, 0.1, fixed=[True, True]) for name, x in (("A", -1.0), ("C", 1.0))]
+    middle = particle("B", 0.0, 0.0, force=[0.0, -40.0])
+    session = Session.open(model([*ends, middle], [rod(*pair, **strength) for pair in ("AB", "BC")]))
     found = settle(session.model)
     (limit,) = (e for e in found.events if e.kind == "plastic mechanism")
     (lost,) = (e for e in found.events if e.kind == "collapse")
