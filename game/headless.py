@@ -210,9 +210,9 @@ class Headless(Context):
         rad, axial_force (k, rods) in kN, bending_moment (k, rods, 2) in kN·m and stable (k,); its events are limit points
         and bifurcations; complete: False if it could not be followed so far. Raises ValueError.
         """
-        from pinjoint.systems.statics.path import Goal, load_path
+        from pinjoint.systems.statics.path import Curve, Goal
 
-        return load_path(self.model, Goal.of(self.model, factor, until), points=points, branch=branch)
+        return Curve.of(self.model, Goal.of(self.model, factor, until), points=points, branch=branch)
 
     def buckling(self, modes: int = 5) -> Buckling:
         """Critical load factors by linear buckling, ascending, with their modes; changes nothing.

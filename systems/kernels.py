@@ -6,7 +6,7 @@ A kernel is declared by one of these decorators; declaring needs no compiler.
     part       a kernel that only other kernels call
     kept       a function of a generated module, that calls kernels, whose machine code is kept on disk
     entry      one by which Python enters a program that consists of parts
-    shared     one with a loop that cores share
+    shared     one whose loops over a `prange` are shared among cores
 
 All of them: IEEE division (no exceptions), no fastmath, so that the same input gives the same bits. The plain form is
 in systems/interpreter.py, machine code in systems/machine_code.py.
@@ -66,7 +66,7 @@ def _declared(use: Use, signature: str = "", **options: Any) -> Callable[[Callab
     return partial(Kernel, use=use, signature=signature, error_model="numpy", **options)
 
 
-compiled = _declared(Use.BY_ITSELF)
+compiled, shared = _declared(Use.BY_ITSELF), _declared(Use.SHARED)
 
 
 def part(**options: Any) -> Callable[[Callable[..., Any]], Kernel]:
@@ -85,11 +85,6 @@ def kept(signature: str = "", **options: Any) -> Callable[[Callable[..., Any]], 
 def entry(**options: Any) -> Callable[[Callable[..., Any]], Kernel]:
     """A decorator like `compiled`, with further options, for functions by which Python enters a program of parts."""
     return _declared(Use.ENTRY, **options)
-
-
-def shared() -> Callable[[Callable[..., Any]], Kernel]:
-    """A decorator like `compiled`, for functions whose loops over a `prange` are shared among cores."""
-    return _declared(Use.SHARED)
 
 
 prange = range

@@ -58,11 +58,11 @@ def command(words: Sequence[str]) -> int:
     add_output(parser, default="csv")
     options = parser.parse_args(words)
     model = model_of(options)
-    from pinjoint.systems.statics.path import Goal, load_path
+    from pinjoint.systems.statics.path import Curve, Goal
 
     try:
         end = Goal.of(model, options.factor, options.until)
-        found = load_path(model, end, points=options.points, branch=options.branch)
+        found = Curve.of(model, end, points=options.points, branch=options.branch)
     except ValueError as error:
         raise UsageError(str(error)) from None
     laws = left_out_of_statics(model)

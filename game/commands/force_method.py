@@ -209,7 +209,7 @@ def _lines(tables: Tables, convention: str, found: Mapping[str, Any]) -> Iterato
     works.append(tables.virtual_work(every))
     parts = [*(works if len(every) <= PRODUCTS else [tables.forces(every)]), tables.settlements()]
     yield ""
-    yield words.formulas(tables.bends, "₁" if len(every) == 1 else "ᵢ")
+    yield ",  ".join(words.formulas(tables.bends, "₁" if len(every) == 1 else "ᵢ"))
     for table in parts:
         if table:
             yield ""

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from dataclasses import dataclass
 from typing import Any
 
 import msgspec
@@ -26,80 +27,81 @@ from pinjoint.documents.models import laid_out
 from pinjoint.systems.edit import Refusal
 from pinjoint.systems.edit.placing import moving_rows
 
-# particles first, then rods and loads, then kinds of mods
-RowsByKind = Mapping[type[Handle], NDArray[np.int64]]
-REFERENCES = {"between", "on"}  # Fields that refer to particles
 
+@dataclass(frozen=True)
+class Part:
+    """Some elements of a model: rows by kind, particles first, then rods and loads, then kinds of mods."""
 
-def selected_rows(model: Model) -> RowsByKind:
-    """Rows of the selected particles and rods, of the ends of those rods, and of the loads on them.
+    model: Model
+    rows: Mapping[type[Handle], NDArray[np.int64]]
 
-    And of the selected elements of mods. Raises Refusal if there are none.
-    """
-    rows = model.rows_tagged(Selected)
-    particles = moving_rows(model, rows)
-    others = {kind: rows[kind.table] for kind in _added() if len(rows[kind.table])}
-    if not len(particles) and not others:
-        raise Refusal("Nothing that can be copied is selected; click a particle or a rod first.")
-    loads = np.flatnonzero(np.isin(model.loads.on, particles))
-    return {Particle: particles, Rod: rows["rods"], Load: loads, **others}
+    @classmethod
+    def selected(cls, model: Model) -> Part:
+        """The selected particles and rods, the ends of those rods, and the loads on them; and selected elements of mods.
 
+        Raises Refusal if there are none.
+        """
+        rows = model.rows_tagged(Selected)
+        particles = moving_rows(model, rows)
+        others = {kind: rows[kind.table] for kind in _added() if len(rows[kind.table])}
+        if not len(particles) and not others:
+            raise Refusal("Nothing that can be copied is selected; click a particle or a rod first.")
+        loads = np.flatnonzero(np.isin(model.loads.on, particles))
+        return cls(model, {Particle: particles, Rod: rows["rods"], Load: loads, **others})
 
-def as_text(model: Model, rows: RowsByKind) -> str:
-    """Rows of a model as the text of a document. Raises Refusal if they cannot be written."""
-    try:
-        return laid_out(document_of(model, rows), depth=2, spaced=False)
-    except ModelError as error:
-        raise Refusal("This cannot be copied: {error}", error=error) from None
+    @classmethod
+    def described(cls, text: str) -> Part:
+        """All that the text of a document describes. Raises Refusal if it describes nothing."""
+        try:
+            source = parse(msgspec.json.decode(text))
+        except (ModelError, ValueError, RecursionError):
+            source = Model()
+        kinds: list[type[Handle]] = [Particle, Rod, Load, *_added()]
+        found = cls(source, {kind: np.arange(source.tables[kind.table].count) for kind in kinds})
+        if not len(found.places):
+            raise Refusal("The clipboard holds no particles or rods; select some and copy them with Ctrl+C.")
+        return found
 
+    @property
+    def text(self) -> str:
+        """It as the text of a document. Raises Refusal if it cannot be written."""
+        try:
+            return laid_out(document_of(self.model, self.rows), depth=2, spaced=False)
+        except ModelError as error:
+            raise Refusal("This cannot be copied: {error}", error=error) from None
 
-def source_in(text: str) -> tuple[Model, RowsByKind]:
-    """The model that the text of a document describes, and the rows of all that is in it. Raises Refusal if it is none."""
-    try:
-        source = parse(msgspec.json.decode(text))
-    except (ModelError, ValueError, RecursionError):
-        source = Model()
-    kinds: list[type[Handle]] = [Particle, Rod, Load, *_added()]
-    rows = {kind: np.arange(source.tables[kind.table].count) for kind in kinds}
-    if not len(places(source, rows)):
-        raise Refusal("The clipboard holds no particles or rods; select some and copy them with Ctrl+C.")
-    return source, rows
+    @property
+    def places(self) -> NDArray[np.float64]:
+        """Original positions of its particles, and the points of its other elements (m), shape (n, 2)."""
+        points = [(kind, point) for kind in self.rows for point in _points(kind)]
+        tables = self.model.tables
+        return np.concatenate([tables[kind.table].column(point)[self.rows[kind]] for kind, point in points])
 
+    def paste(self, model: Model, offset: Vector, title: str = marked("paste")) -> list[Handle]:
+        """Create elements like these in a model, moved by an offset (m), as one edit; returns all but the loads.
 
-def places(model: Model, rows: RowsByKind) -> NDArray[np.float64]:
-    """Original positions of particles in some rows, and the points of other elements (m), shape (n, 2)."""
-    points = [(kind, point) for kind in rows for point in _points(kind)]
-    return np.concatenate([model.tables[kind.table].column(point)[rows[kind]] for kind, point in points])
-
-
-def paste(
-    model: Model, source: Model, rows: RowsByKind, offset: Vector, title: str = marked("paste")
-) -> list[Handle]:
-    """Create elements like those in rows of a model, moved by an offset (m), as one edit; returns all but the loads.
-
-    title: what undo calls it. Names that are taken are replaced by free ones.
-    """
-    place = np.zeros(source.particles.count, dtype=np.int64)
-    place[rows[Particle]] = model.particles.count + np.arange(len(rows[Particle]))
-    made: list[Handle] = []
-    with model.transaction(title):
-        for kind, those in rows.items():
-            table = source.tables[kind.table]
-            columns: dict[str, Any] = {
-                field.name: table.column(field.name)[those] for field in table.fields_in(*SAVED)
-            }
-            for point in _points(kind):
-                columns[point] = columns[point] + offset
-            for reference in columns.keys() & REFERENCES:
-                columns[reference] = place[columns[reference]]
-            columns["name"] = _free_names(model, kind, columns["name"].tolist())
-            entities = table.entities[those].tolist()
-            new = model.create(kind, len(those), **columns)
-            for handle, entity in zip(new, entities, strict=True) if source.foreign else ():
-                if entity in source.foreign:
-                    model.foreign[handle.entity] = source.foreign[entity]
-            made += new if kind is not Load else []
-    return made
+        title: what undo calls it. Names that are taken are replaced by free ones.
+        """
+        source, rows = self.model, self.rows
+        place = np.zeros(source.particles.count, dtype=np.int64)
+        place[rows[Particle]] = model.particles.count + np.arange(len(rows[Particle]))
+        made: list[Handle] = []
+        with model.transaction(title):
+            for kind, those in rows.items():
+                table, columns = source.tables[kind.table], dict[str, Any]()
+                for field in table.fields_in(*SAVED):
+                    column = table.column(field.name)[those]
+                    columns[field.name] = place[column] if field.references else column
+                for point in _points(kind):
+                    columns[point] = columns[point] + offset
+                columns["name"] = _free_names(model, kind, columns["name"].tolist())
+                entities = table.entities[those].tolist()
+                new = model.create(kind, len(those), **columns)
+                for handle, entity in zip(new, entities, strict=True) if source.foreign else ():
+                    if entity in source.foreign:
+                        model.foreign[handle.entity] = source.foreign[entity]
+                made += new if kind is not Load else []
+        return made
 
 
 def _points(kind: type[Handle]) -> tuple[str, ...]:

@@ -16,6 +16,11 @@ from pinjoint.systems.statics.force_method import SetState
 from pinjoint.systems.statics.settle import settle
 from pinjoint.systems.statics.unknowns import Unknown
 
+_ACTING = {  # what loads, moves or strains a structure, by table
+    "environment": ("force", "acceleration"),
+    "particles": ("force", "moment", "acceleration", "displacement", "rotation"),
+    "rods": ("distributed_force", "plastic_strain", "temperature_change", "temperature_gradient"),
+}
 _STIFF = 1e9  # times the bending stiffness, so that what is drawn stays straight
 
 
@@ -54,16 +59,10 @@ def unloaded(model: Model, released: Sequence[Unknown]) -> Model:
     """The released structure under nothing: no loads, lack of fit, warmth or displacements of supports."""
     copy = base_structure(model, released)
     copy.delete(list(copy.loads))
-    copy.environment.force = copy.environment.acceleration = (0.0, 0.0)
-    particles, rods = copy.particles, copy.rods
-    for name in ("force", "acceleration", "displacement"):
-        copy.assign(list(particles), name, [(0.0, 0.0)] * particles.count)
-    for name in ("moment", "rotation"):
-        copy.assign(list(particles), name, [0.0] * particles.count)
-    copy.assign(list(rods), "distributed_force", [(0.0, 0.0)] * rods.count)
-    for name in ("plastic_strain", "temperature_change", "temperature_gradient"):
-        copy.assign(list(rods), name, [0.0] * rods.count)
-    copy.assign(list(rods), "prescribed_rest_length", rods.original_length.tolist())
+    for table in map(copy.tables.__getitem__, _ACTING):
+        for name in _ACTING[table.name]:
+            copy.assign(list(table), name, np.zeros_like(table.column(name)))
+    copy.assign(list(copy.rods), "prescribed_rest_length", copy.rods.original_length.tolist())
     return copy
 
 

@@ -132,11 +132,6 @@ class Guide:
         self._scale_alike()
 
     @property
-    def degree(self) -> int:
-        """The degree of static indeterminacy."""
-        return self.count.degree
-
-    @property
     def unknown(self) -> Unknown | None:
         """The newest unknown."""
         return self.released[-1] if self.released else None
@@ -235,7 +230,7 @@ class Guide:
     @property
     def can_release_another(self) -> bool:
         """True if the primary structure is still hyperstatic and the unknowns so far are solved."""
-        return self.part == PARTS and len(self.released) < self.degree
+        return self.part == PARTS and len(self.released) < self.count.degree
 
     def release_another(self) -> None:
         """Repeat the method for a further unknown, those so far released as well (part 7 → part 2)."""

@@ -438,8 +438,7 @@ def _formulas(solved: Tables, *, pulls: bool) -> Iterator[str]:
     work, bends = solved.solution.work, solved.bends
     more = ["Σ n₁ ΔL"] * bool(work.axial.of_free.any()) + ["∫ m₁ κ dx"] * bool(work.bending.of_free.any())
     more += ["(− Σ r₁ c)"] * bool(len(work.settled))
-    yield f"δ₁₀ = {words.sums(bends, 'M₀ m₁', 'N₀ n₁', pulls=pulls, more=more)}"
-    yield f"δ₁₁ = {words.sums(bends, 'm₁²', 'n₁²', pulls=pulls)} > 0"
+    yield from words.formulas(bends, index(1), pulls=pulls, more=more)
     if len(solved.solution.unknowns) > 1:
         yield f"δ₁₂ = δ₂₁ = {words.sums(bends, 'm₁ m₂', 'n₁ n₂', pulls=pulls)}"
 

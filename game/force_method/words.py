@@ -162,7 +162,7 @@ def working(guide: Guide) -> tuple[str, ...]:
     if guide.part == 1:
         return (
             f"{guide.count.formula} = {guide.count.numbers}",
-            degree_of(guide.degree),
+            degree_of(guide.count.degree),
             tr("Yielding is switched off: superposition needs linear behaviour."),
         )
     if solution is None or guide.part < 3:
@@ -202,13 +202,13 @@ def explained(guide: Guide) -> tuple[str, ...]:
         return (gap_of(guide.solution.unknowns[-1], index(number, 0), index(number)),)
     if guide.part == 5:
         return (tr("The forces that {unknown} = 1 causes are the factors n.", unknown=f"X{index(number)}"),)
-    return (formulas(guide.tables.bends, index(number)), *guide.tables.sums(number - 1))
+    return (",  ".join(formulas(guide.tables.bends, index(number))), *guide.tables.sums(number - 1))
 
 
-def formulas(bends: bool, number: str) -> str:
-    """The sums of virtual work for one unknown."""
-    gap, own = (sums(bends, *of) for of in ((f"M₀ m{number}", f"N₀ n{number}"), (f"m{number}²", f"n{number}²")))
-    return f"δ{number}₀ = {gap},  δ{number}{number} = {own} > 0"
+def formulas(bends: bool, i: str, *, pulls: bool = True, more: Sequence[str] = ()) -> tuple[str, str]:
+    """The sums of virtual work for one unknown, its index below; see `sums`."""
+    gap = sums(bends, f"M₀ m{i}", f"N₀ n{i}", pulls=pulls, more=more)
+    return f"δ{i}₀ = {gap}", f"δ{i}{i} = {sums(bends, f'm{i}²', f'n{i}²', pulls=pulls)} > 0"
 
 
 def sums(bends: bool, moments: str, forces: str, *, pulls: bool = True, more: Sequence[str] = ()) -> str:

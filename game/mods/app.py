@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-import inspect
-from collections.abc import Callable, MutableMapping, Sequence
+from collections.abc import Callable, Container, MutableMapping, Sequence
 from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -12,7 +11,7 @@ from pinjoint.commands import Command
 from pinjoint.components.additions import Component, add_component, checked_kind
 from pinjoint.components.extensions import EXTENSIONS
 from pinjoint.components.handle import Handle
-from pinjoint.components.language import add_catalogues, joined, language, speak, tr
+from pinjoint.components.language import add_catalogues, joined, language, marked, speak, tr
 from pinjoint.components.load import HISTORIES, HistoryKind
 from pinjoint.components.mistake import WrongValue
 from pinjoint.components.obstacles import Shape
@@ -53,11 +52,7 @@ class App:
     def component(self, component: type[Component]) -> None:
         """Add the Fields of a component to all elements of its kind; see components.Component."""
         self._guard.checkers(fields_of(component))
-        try:
-            names = add_component(self.name, component)
-        except ValueError as error:
-            raise ModError(str(error)) from None
-        self._undo += [partial(delattr, component.of, name) for name in names]
+        self._undo += [partial(delattr, component.of, name) for name in add_component(self.name, component)]
         self._keeps_data()
 
     def kind(self, kind: type[Handle]) -> None:
@@ -67,11 +62,7 @@ class App:
         copied and selected in a box like others; a layer of the mod draws them.
         """
         self._guard.checkers(fields_of(kind))
-        try:
-            name = checked_kind(self.name, kind)
-        except ValueError as error:
-            raise ModError(str(error)) from None
-        self._put(EXTENSIONS.kinds, name, kind)
+        self._put(EXTENSIONS.kinds, checked_kind(self.name, kind), kind)
         self._keeps_data()
 
     def upgrade(self, upgrade: Upgrade) -> None:
@@ -145,20 +136,13 @@ class App:
         """Add an integrator that models, the command line and the properties can choose."""
         self._check_prefix("integrator", integrator.name)
         made = self._guard.integrator(integrator())
-        key = made.key
-        if key in INTEGRATORS:
-            raise ModError(
-                "There is an integrator '{key}' already; give {name} another name.", key=key, name=made.name
-            )
-        self._put(INTEGRATORS, key, made)
+        self._check_free(marked("an integrator"), made.key, INTEGRATORS)
+        self._put(INTEGRATORS, made.key, made)
 
     def history(self, kind: HistoryKind) -> None:
         """Add a way in which loads change in time."""
         kind = self._guard.history(kind)
-        if kind.name in HISTORIES:
-            raise ModError(
-                "There is a kind of history '{name}' already; give this one another name.", name=kind.name
-            )
+        self._check_free(marked("a kind of history"), kind.name, HISTORIES)
         self._put(HISTORIES, kind.name, kind)
 
     def models(self, folder: str | Path) -> None:
@@ -166,11 +150,8 @@ class App:
         path = Path(folder)
         if not path.is_dir():
             raise ModError("There is no folder of models {folder}; check its path.", folder=path)
-        taken = {entry.name for entry in path.glob("*.json")} & {f"{name}.json" for name in models.bundled()}
-        if taken:
-            raise ModError(
-                "There is a bundled model '{name}' already; give the file another name.", name=min(taken)
-            )
+        for file in sorted(path.glob("*.json")):
+            self._check_free(marked("a bundled model"), file.stem, models.bundled())
         self._add(EXTENSIONS.folders, path)
 
     # --- scenes, actions, keys -------------------------------------------------------------------------
@@ -179,8 +160,7 @@ class App:
         """Add a mode. Its `sources` are the scenes from which it can be reached; "pause" must be a target."""
         from pinjoint.editor import scenes
 
-        if scene.name in {other.name for other in scenes.all_scenes()}:
-            raise ModError("There is a scene '{name}' already; give this one another name.", name=scene.name)
+        self._check_free(marked("a scene"), scene.name, {other.name for other in scenes.all_scenes()})
         made = self._guard.scene(scene, scenes.Scene)
         if "pause" not in scene.targets:
             raise ModError(
@@ -223,8 +203,7 @@ class App:
         return register
 
     def _act(self, action: Action) -> None:
-        if action.name in ACTIONS:
-            raise ModError("There is an action '{name}' already; give this one another name.", name=action.name)
+        self._check_free(marked("an action"), action.name, ACTIONS)
         self._put(ACTIONS, action.name, action)
 
     def key(self, key: str, name: str, scenes: Sequence[str] = LIVE, title: str = "") -> None:
@@ -261,8 +240,7 @@ class App:
 
         UsageError, ModelError, FieldError and PathError that it raises are shown as mistakes of the person.
         """
-        if name in EXTENSIONS.commands:
-            raise ModError("There is a command '{name}' already; give this one another name.", name=name)
+        self._check_free(marked("a command"), name, EXTENSIONS.commands)
         self._put(EXTENSIONS.commands, name, Command(self._guard.command(name, run), about))
 
     # --- what is seen ------------------------------------------------------------------------------------
@@ -315,6 +293,10 @@ class App:
         entries.append(entry)
         self._undo.append(lambda: entries.remove(entry))
 
+    def _check_free(self, noun: str, name: str, taken: Container[str]) -> None:
+        if name in taken:
+            raise ModError("There is {noun} '{name}' already; choose another name.", noun=tr(noun), name=name)
+
     def _check_prefix(self, what: str, name: str) -> None:
         if not name.startswith(f"{self.name}."):
             raise ModError(
@@ -337,12 +319,3 @@ def _checked_key(key: str) -> str:
             "The key '{key}' is the same as '{named}'; use that, or 'ctrl+shift+{named}'.", key=key, named=named
         )
     return named
-
-
-def check_plugin(plugin: object) -> Callable[[App], object]:
-    """The function `plugin(app)` of a mod. Raises ModError."""
-    if not callable(plugin):
-        raise ModError("It has no function plugin(app); write `def plugin(app): …` in its __init__.py.")
-    if len(inspect.signature(plugin).parameters) != 1:
-        raise ModError("Its function plugin must take one argument: def plugin(app).")
-    return plugin

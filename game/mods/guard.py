@@ -10,7 +10,7 @@ from dataclasses import replace
 from functools import partial
 from inspect import getattr_static
 from itertools import islice
-from typing import TYPE_CHECKING, Any, ClassVar, TypeVar, get_args, get_origin, get_type_hints
+from typing import TYPE_CHECKING, Any, ClassVar, get_args, get_origin, get_type_hints
 
 import numpy as np
 
@@ -28,8 +28,8 @@ from pinjoint.components.view import Plot, Readout, View
 from pinjoint.components.wording import printable
 from pinjoint.documents import models
 from pinjoint.mods.declared import check, check_fields, check_has_run, result_of
-from pinjoint.mods.limit import check_limit
-from pinjoint.mods.mod import INCLUDED, Mod, ModError
+from pinjoint.mods.limit import T, check_limit
+from pinjoint.mods.mod import INCLUDED, LONGEST, Mod, ModError
 from pinjoint.paths import PathError
 from pinjoint.systems.base import Commit, Event, Integrator, Law, StepSystem, System
 from pinjoint.systems.edit import Refusal
@@ -42,15 +42,11 @@ from pinjoint.systems.render.sheet import Layer, Sheet
 if TYPE_CHECKING:  # a command needs no editor
     from pinjoint.editor.context import Context, Scene
 
-T = TypeVar("T")
-
 PATIENCE = 2.0  # s that a frame system may take; a longer one is interrupted
 
 _ROLES = (Law, Commit, Event, Integrator, StepSystem, System)
 _QUESTIONS = ("needs", "arrays", "leaves_flight_exact", "cutoff", "held_forces")  # that systems answer
 Panel = Callable[[Any], Readout | Sequence[Readout] | None]  # is given the context
-MISTAKES = (UsageError, models.ModelError, FieldError, PathError, SystemExit)  # of a person at the command line
-LONGEST = 400  # characters of a text in the window
 MOST_MARKS = 1_000_000  # of a layer: an iterator may have no end, in code that nothing interrupts
 _READ = {"heading": str, "message": str, "boxes": dict[str, str]}  # as attributes or properties
 
@@ -239,8 +235,9 @@ class Guard:
     def command(self, name: str, run: Callable[[list[str]], int]) -> Callable[[list[str]], int]:
         """A command of a mod for the command line, which may run as long as it likes."""
         what = tr("the command '{name}'", name=name)
+        of_person = (UsageError, models.ModelError, FieldError, PathError, SystemExit)
         return self.mod.guarded(
-            what, run, otherwise=BAD_INPUT, declared=int, patience=math.inf, mistakes=MISTAKES
+            what, run, otherwise=BAD_INPUT, declared=int, patience=math.inf, mistakes=of_person
         )
 
     def layer(self, draw: Layer) -> Layer:

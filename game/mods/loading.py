@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import importlib
 import importlib.util
+import inspect
 import math
 import sys
 import threading
@@ -15,10 +16,11 @@ import numpy as np
 
 from pinjoint.components.extensions import EXTENSIONS
 from pinjoint.components.language import tr
+from pinjoint.components.mistake import WrongValue
 from pinjoint.documents.library import data_folder
 from pinjoint.documents.preferences import preferred_keys
 from pinjoint.interrupts import is_persons, mark_interrupts
-from pinjoint.mods.app import App, check_plugin
+from pinjoint.mods.app import App
 from pinjoint.mods.declared import check_has_run
 from pinjoint.mods.mod import MANIFEST, Mod, ModError, read_manifest
 from pinjoint.systems.catalogue import all_systems
@@ -101,7 +103,7 @@ def _load(mod: Mod) -> None:
                 raise ModError("It requires the mod '{name}', which cannot be used.", name=name)
         mod.within(PATIENCE, lambda: _plug_in(mod, app))
         surroundings.check()
-    except ModError as error:
+    except (ModError, WrongValue) as error:  # what it registers cannot be used
         mod.problem = str(error)
     except BaseException as error:  # of code that is not ours
         if is_persons(error):
@@ -126,8 +128,12 @@ def _plug_in(mod: Mod, app: App) -> None:
     app.catalogues()
     if not mod.source.startswith("package "):
         _find(mod)
-    module = importlib.import_module(mod.module)
-    check_has_run(check_plugin(getattr(module, "plugin", None))(app), tr("what plugin(app) returned"))
+    plugin = getattr(importlib.import_module(mod.module), "plugin", None)
+    if not callable(plugin):
+        raise ModError("It has no function plugin(app); write `def plugin(app): …` in its __init__.py.")
+    if len(inspect.signature(plugin).parameters) != 1:
+        raise ModError("Its function plugin must take one argument: def plugin(app).")
+    check_has_run(plugin(app), tr("what plugin(app) returned"))
     Schedule(all_systems())
 
 

@@ -11,7 +11,7 @@ from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, TypeVar
+from typing import TYPE_CHECKING, Any
 
 from pinjoint.components import written
 from pinjoint.components.extensions import EXTENSIONS
@@ -20,18 +20,16 @@ from pinjoint.components.mistake import Mistake
 from pinjoint.components.wording import is_identifier, printable, quoted
 from pinjoint.interrupts import is_persons
 from pinjoint.mods.declared import check, check_has_run, fits
-from pinjoint.mods.limit import within
+from pinjoint.mods.limit import T, within
 
 if TYPE_CHECKING:  # a command without a run does not need it
     from pinjoint.systems.run.simulation import Simulation
-
-T = TypeVar("T")
 
 LOG = logging.getLogger("pinjoint.mods")
 LOG.setLevel(logging.DEBUG)  # tracebacks are for those who listen, such as mods.log
 INCLUDED = "Pinjoint"  # the source of the mods that come with the program
 MANIFEST = "mod.toml"
-LONGEST_MESSAGE = 500  # characters of what an error says
+LONGEST = 400  # characters of a text of a mod, such as what an error says
 PATIENCE = 10.0  # s that whatever a mod is asked may take, the compilation of functions of its own included
 
 _KEYS = {
@@ -116,7 +114,7 @@ class Mod:
 
         def read() -> str:
             said = error.msg if isinstance(error, SyntaxError) else error
-            return printable(" ".join(str(said).split()))[:LONGEST_MESSAGE]
+            return printable(" ".join(str(said).split()))[:LONGEST]
 
         try:
             return self.within(PATIENCE, read)

@@ -114,6 +114,11 @@ class Bound:
         """The system's name as a Python name."""
         return self.system.name.replace(".", "_")
 
+    @property
+    def sides(self) -> str:
+        """The array that notes of each row whether the quantity of an event is negative."""
+        return f"{self.prefix}_sides"
+
     def stored(self, name: str) -> str:
         """What the program calls one of its arrays: no other system's array, and nothing else there, is called so."""
         return name if name.startswith(f"{self.prefix}_") else f"{self.prefix}_{name}"
@@ -311,18 +316,6 @@ def written_row(name: str, index: str, shape: Sequence[int]) -> str:
         return f"{name}[{index}]"
     parts = [written_row(name, f"{index}, {k}", shape[1:]) for k in range(shape[0])]
     return f"({', '.join(parts)}{',' if len(parts) == 1 else ''})"
-
-
-def shape_given(b: Bound, parameter: str, model: Model) -> tuple[int, ...]:
-    """The shape of what a kernel gets for a parameter: of a number (), of a vector, such as `apart`, (2,)."""
-    if parameter in PROVIDED:
-        return (2,) if parameter in ("apart", "drift") else ()
-    if parameter in b.arrays:
-        single, shape = False, b.arrays[parameter].shape[1:]
-    else:
-        table, _, column = parameter.partition("_")
-        single, shape = model.tables[table].kind.single, model.tables[table].fields[column].shape
-    return (2, *shape) if b.each == "pairs" and not single else shape
 
 
 def check_names(bound: Iterable[Bound]) -> None:

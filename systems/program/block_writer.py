@@ -18,10 +18,6 @@ _PARTICLES = "first, last"
 _LIMITS = ("first = np.uint64(block_particles[block])", "last = np.uint64(block_particles[block + 1])")
 _COMPLETED = f"{TRIAL_STATE}, predicted"
 _MOVED = f"{_COMPLETED}, ending"
-_PARALLEL = """\
-from pinjoint.systems.kernels import prange, shared
-parallel = shared()
-"""
 
 
 class BlockWriter(Writer):
@@ -38,7 +34,7 @@ class BlockWriter(Writer):
         self.columns += [*self.BLOCK, *(f"block_{b.prefix}" for b in self.of[StepRole.LOAD])]
 
     def _head(self) -> str:
-        return super()._head() + _PARALLEL
+        return super()._head() + "from pinjoint.systems.kernels import prange, shared\n"
 
     def _rod_loop(self, loop: RodLoop) -> list[str]:
         return loop.in_stages(self._is_float, _RODS)
@@ -133,7 +129,7 @@ def _shared(name: str, given: str, body: list[str], results: str, after: list[st
     loop = ["if block_cores[0] > 1:", f"    {each}", "else:", *indented(_one_by_one(name, given))]
     return (
         _of_block(name, given, body)
-        + _function("parallel", f"def {each}:", several)
+        + _function("shared", f"def {each}:", several)
         + _of_all(name, given, results, after, loop)
     )
 

@@ -11,7 +11,7 @@ from pinjoint.systems.entries import Mark
 from pinjoint.systems.program.binding import Bound, StepRole, bind
 from pinjoint.systems.program.loops import RodLoop
 from pinjoint.systems.program.templates import events, forces, implicit, rods, runge_kutta
-from pinjoint.systems.program.writer import NO_POWER, POWER_RETURNED, Writer, sides_of
+from pinjoint.systems.program.writer import NO_POWER, POWER_RETURNED, Writer
 
 _AHEAD = 1e-3  # of a step, over which the slope of a margin is taken
 _STEADY = 1e-8  # a margin that changes less in a step is not watched
@@ -86,7 +86,7 @@ class ControlledWriter(Writer):
             quantity = self._apply(b, "r")
             if b.each == "particles":
                 quantity = quantity.replace("(displacement[r, 0], displacement[r, 1])", "(x, y)")
-            side = f"-1.0 if {sides_of(b)}[r] == Side.NEGATIVE else 1.0"
+            side = f"-1.0 if {b.sides}[r] == Side.NEGATIVE else 1.0"
             slope = self._slope(of_row, f"branch * {quantity}", self._needed_force(b))
             lines[b.each] += self._look(template, place, side, slope)
         return self.function(function, "compiled", **self._each_row(lines))

@@ -10,7 +10,7 @@ from pinjoint.components.language import marked, tr
 from pinjoint.components.model import Model
 from pinjoint.systems.base import Integrator, Mod
 from pinjoint.systems.interpreter import NoPlainForm, plain_function, rewrite
-from pinjoint.systems.program.binding import PROVIDED, Bound, ProgramError, shape_given
+from pinjoint.systems.program.binding import PROVIDED, Bound, ProgramError
 from pinjoint.systems.program.compiler import Choice, Compile
 
 _RESULTS = {  # how many numbers, and which
@@ -138,11 +138,15 @@ def _result_type(b: Bound, model: Model) -> Any:
 
     def type_of(parameter: str) -> Any:
         made: Any = types.float64  # of what Pinjoint provides
+        shape: tuple[int, ...] = (2,) if parameter in ("apart", "drift") else ()
         if parameter not in PROVIDED:
-            table, _, column = parameter.partition("_")
             own = b.arrays.get(parameter)
-            made = from_dtype(model.tables[table].fields[column].storage if own is None else own.dtype)
-        for width in reversed(shape_given(b, parameter, model)):
+            table, _, name = parameter.partition("_")
+            column = model.tables[table].storage(name) if own is None else own
+            made, shape = from_dtype(column.dtype), column.shape[1:]
+            if b.each == "pairs" and (own is not None or not model.tables[table].kind.single):
+                shape = (2, *shape)
+        for width in reversed(shape):
             made = types.UniTuple(made, width)  # type: ignore[no-untyped-call]
         return made
 

@@ -29,7 +29,7 @@ from pinjoint.systems.program.compiler import Between, GeneratedModule, generate
 from pinjoint.systems.program.controlled_writer import ControlledWriter
 from pinjoint.systems.program.faults import check_plain_forms, explain
 from pinjoint.systems.program.near_pairs import NearPairs
-from pinjoint.systems.program.writer import PUSHED, STATE, VERY_MANY, Writer, sides_of
+from pinjoint.systems.program.writer import PUSHED, STATE, VERY_MANY, Writer
 
 _ORIGIN = ("origin", "step_limit")
 _COUNTS = ("steps", "origin_steps")
@@ -218,7 +218,7 @@ class Program:
             self._stop_turning()
             extra |= self._of_bending(extra)
         self._sides = [(b, self._sides_of(b)) for b in self._writer.events]
-        extra |= {sides_of(b): sides for b, sides in self._sides}
+        extra |= {b.sides: sides for b, sides in self._sides}
         self._columns = [
             extra[name] if name in extra else self._column(name.replace("_", ".", 1))
             for name in self._writer.columns

@@ -213,7 +213,7 @@ class Writer:
                 taken = (p for p in b.parameters if p not in known)
                 names.update(dict.fromkeys(b.stored(p) if p in b.arrays else p for p in taken))
             if b.role is StepRole.EVENT:
-                names[sides_of(b)] = None
+                names[b.sides] = None
         self.columns = list(names)
 
     # --- templates --------------------------------------------------------------------------------
@@ -315,7 +315,7 @@ class Writer:
     @property
     def kept(self) -> list[str]:
         """What steps change besides the state of the particles, the clock and the account, and the state where it turns."""
-        changed = "unpushed", "resisting", "power", *self.written, *map(sides_of, self.events)
+        changed = "unpushed", "resisting", "power", *self.written, *(b.sides for b in self.events)
         return [*changed, *(STATE[:2] if self.bends else ())]
 
     def _drive(self) -> str:
@@ -672,7 +672,7 @@ class Writer:
             lines[b.each] += [
                 *self._needed_force(b),
                 *self.lines(
-                    events.turn, sides=sides_of(b), quantity=self._apply(b, "r"), turned=self._turned(place)
+                    events.turn, sides=b.sides, quantity=self._apply(b, "r"), turned=self._turned(place)
                 ),
             ]
         return [self.function(events.happened, "compiled", **self._each_row(lines))] if self.events else []
@@ -745,11 +745,6 @@ def read_sources(integrators: Iterable[Integrator]) -> None:
         for part in (one.begins, one.ends, *one.parts):
             if isinstance(part, str) and part:
                 source_of(find(part.partition("=")[0], one))
-
-
-def sides_of(b: Bound) -> str:
-    """The array that notes of each row whether the quantity of an event is negative."""
-    return f"{b.prefix}_sides"
 
 
 def accounts_of(bound: Iterable[Bound]) -> list[str]:

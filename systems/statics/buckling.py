@@ -10,7 +10,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from pinjoint.components.language import marked, plural, tr
+from pinjoint.components.language import plural, tr
 from pinjoint.components.mistake import WrongValue
 from pinjoint.components.model import Model
 from pinjoint.systems.statics.assembly import Matrix
@@ -39,10 +39,6 @@ STIFFENED = (
     1e-8,
     1e-10,
 )  # of the rods' stiffness: by what tension is to hold a mechanism before it gives way
-UNCOMPUTED = marked(
-    "The buckling loads cannot be computed: the stiffnesses or lengths of the rods differ too much. Make the stiffest softer"
-    " or the shortest longer."
-)
 STRAINED = 0.1  # strain at a critical factor above which no material is still elastic
 
 
@@ -163,7 +159,11 @@ def _modes(structure: Structure, stiffness: Matrix, softening: Matrix, count: in
         try:
             values, vectors = find(np.maximum(weight, stiffness.diagonal()), -softening, stiffness, count)
         except (ValueError, RuntimeError):
-            raise NoEquilibrium("collapse", tr(UNCOMPUTED)) from None
+            message = tr(
+                "The buckling loads cannot be computed: the stiffnesses or lengths of the rods differ too much. Make the"
+                " stiffest softer or the shortest longer."
+            )
+            raise NoEquilibrium("collapse", message) from None
     order = np.argsort(-values)[:count]
     found: Array = vectors[:, order[values[order] > NOTHING * np.abs(values).max(initial=0.0)]]
     return found

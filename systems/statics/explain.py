@@ -37,12 +37,6 @@ def rod_names(model: Model, rows: Rows) -> str:
     return plural("rod {names}", "rods {names}", len(names), names=listed(names))
 
 
-def cables_named(model: Model) -> str:
-    """The subject and verb of a sentence about a model's cables: "Rods AC and BD act"."""
-    rows = np.flatnonzero(model.rods.tension_only)
-    return plural("{rods} acts", "{rods} act", len(rows), rods=begun(rod_names(model, rows)))
-
-
 def slack_named(model: Model, slack: Flags) -> str:
     """A sentence that names the slack cables; "" if there are none."""
     rows = np.flatnonzero(slack)

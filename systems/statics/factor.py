@@ -103,7 +103,7 @@ class Factor:
 
 
 def regular(matrix: Matrix, weight: Array, share: float = NO_STIFFNESS) -> Factor:
-    """Factor of K + share × weight: definite if every motion is resisted by more than −share."""
+    """Factor of K + share × weight: as many eigenvalues are negative as there are motions resisted by less than −share."""
     return Factor(shifted(matrix, weight, share))
 
 
@@ -201,11 +201,6 @@ def unresisted(
         return modes
     kept = [float(m @ (matrix @ m)) <= SOFT * structure.effort(m, response) + ROUND_OFF for m in modes.T]
     return modes[:, kept]  # a bar that turns takes no effort at all; modes are orthonormal in W
-
-
-def soft_count(matrix: Matrix, weight: Array) -> int:
-    """How many modes K resists by less than a share SOFT of W."""
-    return regular(matrix, weight, -SOFT).negative
 
 
 def pseudo_random(size: int, count: int) -> Array:

@@ -28,7 +28,7 @@ from pinjoint.components.model import Model
 from pinjoint.components.numeric_range import incomputable
 from pinjoint.systems.statics.equations import Array, Rows, Structure, normalised
 from pinjoint.systems.statics.events import NoEquilibrium
-from pinjoint.systems.statics.explain import cables_named, describe_motion
+from pinjoint.systems.statics.explain import describe_motion
 from pinjoint.systems.statics.external import External
 from pinjoint.systems.statics.theory import FirstOrder
 from pinjoint.systems.statics.unknowns import ForceMethodError, Unknown
@@ -155,12 +155,6 @@ def solve(model: Model, unknowns: Sequence[Unknown]) -> Solution:
     problem = incomputable(model)
     if problem:
         raise ForceMethodError(problem)
-    if model.rods.tension_only.any():
-        raise ForceMethodError(
-            "{cables} in tension only, and superposition needs rods that bear compression as well. Make cables that"
-            " stay taut ordinary rods, and delete those that go slack.",
-            cables=cables_named(model),
-        )
     for unknown in unknowns:
         unknown.check_suits(model)
     try:

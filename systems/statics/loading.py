@@ -126,40 +126,32 @@ class Loading:
 
     def _note_yields(self, tangent: Tangent, found: Point, following: Tangent) -> None:
         """Report the rods that begin to yield."""
-        new = (found.response.flowing | following.flowing) & ~tangent.flowing
+        new, t = (found.response.flowing | following.flowing) & ~tangent.flowing, found.t
         if not new.any():
             return
-        force, at, parts = found.response.axial_force, self._at(found.t), []
-        if len(rows := np.flatnonzero(new & (force > 0.0))):
-            rods = begun(rod_names(self.model, rows))
-            said = plural(
-                "{rods} yields in tension {at}.", "{rods} yield in tension {at}.", len(rows), rods=rods, at=at
-            )
-            parts.append(said)
-        if len(rows := np.flatnonzero(new & (force < 0.0))):
-            rods = begun(rod_names(self.model, rows))
-            parts.append(
-                plural(
-                    "{rods} yields in compression {at}.",
-                    "{rods} yield in compression {at}.",
-                    len(rows),
-                    rods=rods,
-                    at=at,
-                )
-            )
-        self._tell("yield", found.t, joined(parts), new)
+        force = found.response.axial_force
+        said = [
+            self._said_of(
+                "{rods} yields in tension {at}.", "{rods} yield in tension {at}.", new & (force > 0.0), t
+            ),
+            self._said_of(
+                "{rods} yields in compression {at}.",
+                "{rods} yield in compression {at}.",
+                new & (force < 0.0),
+                t,
+            ),
+        ]
+        self._tell("yield", t, joined(said), new)
 
     def _note_cables(self, tangent: Tangent) -> None:
         """Report the cables that go slack, or tighten again."""
-        slack, taut = tangent.slack & ~self.slack, self.slack & ~tangent.slack
-        if len(rows := np.flatnonzero(slack)):
-            rods, at = begun(rod_names(self.model, rows)), self._at(self.point.t)
-            said = plural("{rods} goes slack {at}.", "{rods} go slack {at}.", len(rows), rods=rods, at=at)
-            self._tell("slack", self.point.t, said, slack)
-        if len(rows := np.flatnonzero(taut)):
-            rods, at = begun(rod_names(self.model, rows)), self._at(self.point.t)
-            said = plural("{rods} becomes taut {at}.", "{rods} become taut {at}.", len(rows), rods=rods, at=at)
-            self._tell("taut", self.point.t, said, taut)
+        slack, taut, t = tangent.slack & ~self.slack, self.slack & ~tangent.slack, self.point.t
+        if slack.any():
+            said = self._said_of("{rods} goes slack {at}.", "{rods} go slack {at}.", slack, t)
+            self._tell("slack", t, said, slack)
+        if taut.any():
+            said = self._said_of("{rods} becomes taut {at}.", "{rods} become taut {at}.", taut, t)
+            self._tell("taut", t, said, taut)
         self.slack = tangent.slack
 
     def _note_plastic_mechanism(self, tangent: Tangent, following: Tangent) -> None:
@@ -347,6 +339,12 @@ class Loading:
             factor=written.number(factor),
             force=written.force(abs(factor) * self.total),
         )
+
+    def _said_of(self, one: str, many: str, rods: Flags, t: float) -> str:
+        """A sentence about one or many rods, at the load at t; "" about none."""
+        if not (rows := np.flatnonzero(rods)).size:
+            return ""
+        return plural(one, many, len(rows), rods=begun(rod_names(self.model, rows)), at=self._at(t))
 
     def _tell(
         self, kind: str, t: float, message: str, rods: Flags | None = None, motion: Array | None = None

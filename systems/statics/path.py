@@ -39,27 +39,6 @@ SMALLEST_BRANCH = 1e-5  # of a rod's length: the least first increment on a bran
 
 
 @dataclass(frozen=True)
-class Curve:
-    """Equilibria in order along a path: load_factor (k,), displacement (k, n, 2) in m, axial_force (k, rods) in kN.
-
-    Where members bend: rotation (k, n) in rad, bending_moment (k, rods, 2) in kN·m; else zeros.
-
-    stable: (k,), False where the structure would snap or collapse under a dead load. complete: False if it
-    has as many points as were asked for, or its path was lost, before the goal. events: limit points and bifurcations on
-    the way, in order.
-    """
-
-    load_factor: Array
-    displacement: Array
-    rotation: Array
-    axial_force: Array
-    bending_moment: Array
-    stable: NDArray[np.bool_]
-    complete: bool
-    events: tuple[Event, ...] = ()
-
-
-@dataclass(frozen=True)
 class Goal:
     """The end of a curve: a load factor, or a displacement of a (particle row, axis), reached for the first time.
 
@@ -107,38 +86,63 @@ class Goal:
         return cls(value, (particle.row, direction))
 
 
-def load_path(model: Model, goal: Goal, *, points: int = 500, detail: float = DETAIL, branch: int = 0) -> Curve:
-    """The curve from the load factor 0 on, by arc-length continuation with exact geometry and yielding.
+@dataclass(frozen=True)
+class Curve:
+    """Equilibria in order along a path: load_factor (k,), displacement (k, n, 2) in m, axial_force (k, rods) in kN.
 
-    The factor first grows, or falls below 0 if that leads towards the goal. The curve ends exactly at the goal, or
-    after so many points, and goes straight on through bifurcations. Accelerations act in full from the start.
-    detail: of a rod's length, the largest change between points. branch: number of the bifurcation at which it goes on
-    along the mode instead, or, if negative, against it. Raises ValueError without a force or load to
-    scale, or without an equilibrium at the factor 0.
+    Where members bend: rotation (k, n) in rad, bending_moment (k, rods, 2) in kN·m; else zeros.
+
+    stable: (k,), False where the structure would snap or collapse under a dead load. complete: False if it
+    has as many points as were asked for, or its path was lost, before the goal. events: limit points and bifurcations on
+    the way, in order.
     """
-    if points < 2:
-        raise WrongValue("points is {points}; a curve has at least 2.", points=points)
-    unloaded = settle(model, (0.0,)).final
-    if not unloaded.balanced:
-        raise ValueError(joined([tr("There is no equilibrium to start from."), unloaded.message]))
-    structure, external = Structure.of(model), External.of(model)
-    loaded = external.scaled + structure.carried(structure.unmoved)
-    if not structure.gather(loaded).any():
-        raise WrongValue(
-            "No force or load acts in a free direction; apply one, which the load factor multiplies."
+
+    load_factor: Array
+    displacement: Array
+    rotation: Array
+    axial_force: Array
+    bending_moment: Array
+    stable: NDArray[np.bool_]
+    complete: bool
+    events: tuple[Event, ...] = ()
+
+    @classmethod
+    def of(
+        cls, model: Model, goal: Goal, *, points: int = 500, detail: float = DETAIL, branch: int = 0
+    ) -> Curve:
+        """The curve from the load factor 0 on, by arc-length continuation with exact geometry and yielding.
+
+        The factor first grows, or falls below 0 if that leads towards the goal. The curve ends exactly at the goal, or
+        after so many points, and goes straight on through bifurcations. Accelerations act in full from the start.
+        detail: of a rod's length, the largest change between points. branch: number of the bifurcation at which it goes on
+        along the mode instead, or, if negative, against it. Raises ValueError without a force or load to
+        scale, or without an equilibrium at the factor 0.
+        """
+        if points < 2:
+            raise WrongValue("points is {points}; a curve has at least 2.", points=points)
+        unloaded = settle(model, (0.0,)).final
+        if not unloaded.balanced:
+            raise ValueError(joined([tr("There is no equilibrium to start from."), unloaded.message]))
+        structure, external = Structure.of(model), External.of(model)
+        loaded = external.scaled + structure.carried(structure.unmoved)
+        if not structure.gather(loaded).any():
+            raise WrongValue(
+                "No force or load acts in a free direction; apply one, which the load factor multiplies."
+            )
+        search = _Search.towards(goal, structure, external, unloaded)
+        found, complete, events = search.run(model, points, detail, branch)
+        return cls(
+            load_factor=search.sign * np.array([point.t for point, _ in found]),
+            displacement=np.array([point.displacement[:, :2] for point, _ in found]),
+            rotation=np.array([structure.rotation(point.displacement) for point, _ in found]),
+            axial_force=np.array([point.response.axial_force for point, _ in found]),
+            bending_moment=np.array(
+                [structure.end_moments(point.response) * [-1.0, 1.0] for point, _ in found]
+            ),
+            stable=np.array([tangent.stable for _, tangent in found]),
+            complete=complete,
+            events=tuple(events),
         )
-    search = _Search.towards(goal, structure, external, unloaded)
-    found, complete, events = search.run(model, points, detail, branch)
-    return Curve(
-        load_factor=search.sign * np.array([point.t for point, _ in found]),
-        displacement=np.array([point.displacement[:, :2] for point, _ in found]),
-        rotation=np.array([structure.rotation(point.displacement) for point, _ in found]),
-        axial_force=np.array([point.response.axial_force for point, _ in found]),
-        bending_moment=np.array([structure.end_moments(point.response) * [-1.0, 1.0] for point, _ in found]),
-        stable=np.array([tangent.stable for _, tangent in found]),
-        complete=complete,
-        events=tuple(events),
-    )
 
 
 @dataclass(frozen=True)

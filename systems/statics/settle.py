@@ -27,6 +27,7 @@ from pinjoint.systems.statics.external import External, loose_bodies
 from pinjoint.systems.statics.factor import SOFT, soft_modes, softest
 from pinjoint.systems.statics.follow import Path, Point
 from pinjoint.systems.statics.loading import Loading, first_order_mechanism
+from pinjoint.systems.statics.relax import BALANCED
 from pinjoint.systems.statics.state import NEUTRAL, STABLE, UNSTABLE, Start, StaticState
 
 LARGEST_GROWTH, SMALLEST_GROWTH = (
@@ -36,7 +37,6 @@ LARGEST_GROWTH, SMALLEST_GROWTH = (
 MOST_TOLD = 3  # events in an account besides the message
 TOLD = ("free body", "mechanism", "snap-through", "bifurcation", "note")  # kinds of events that messages repeat
 NEARLY_SOFT = 1e-9  # of the rods' stiffness: a note about a motion that is resisted less
-ROUGH = 1e-9  # of the largest force: a note about a larger unbalanced force
 UNBALANCED = 1e-6  # of the largest force: a larger unbalanced force is no equilibrium
 UNCHANGED = 1e-12  # of the load: a smaller change is round-off
 MOST_DISCS = 250  # without rods; more would take minutes
@@ -301,7 +301,7 @@ class _Settling:
     def _check_balance(self, factor: float) -> None:
         """Report forces that rounding leaves unbalanced. Raises NoEquilibrium if they are many."""
         residual = self._residual()
-        if residual <= ROUGH:
+        if residual <= BALANCED:  # else a note says so
             return
         springs, called = self.structure.stiffness / self.structure.rest_length, "EA/L₀"
         if self.structure.bending is not None:

@@ -120,8 +120,9 @@ class StaticState:
             "axial_force": self.axial_force,
             "length": self.length,
             "strain": self.strain,
+            "plastic_strain": self.plastic_strain,
+            "yielding": self.yielding,
         }
-        of_rods |= {"strain": self.strain, "plastic_strain": self.plastic_strain, "yielding": self.yielding}
         found = {f"particles.{name}": values for name, values in of_particles.items()}
         return found | {f"rods.{name}": values for name, values in of_rods.items()}
 

@@ -8,13 +8,13 @@ from functools import cached_property
 
 import numpy as np
 
-from pinjoint.components.language import tr
+from pinjoint.components.language import begun, plural, tr
 from pinjoint.components.model import Model
 from pinjoint.systems.statics.equations import ROUND_OFF, Array, Response, Structure, largest, normalised
 from pinjoint.systems.statics.events import NoEquilibrium
-from pinjoint.systems.statics.explain import cables_named, describe_motion
+from pinjoint.systems.statics.explain import describe_motion, rod_names
 from pinjoint.systems.statics.external import External, loose_bodies
-from pinjoint.systems.statics.factor import SOFT, pseudo_random, regular, soft_count, soft_modes, unresisted
+from pinjoint.systems.statics.factor import SOFT, pseudo_random, regular, soft_modes, unresisted
 from pinjoint.systems.statics.state import STABLE, Start, StaticState
 
 _REFINEMENTS = 4  # of a linear solution
@@ -41,7 +41,7 @@ class FirstOrder:
     @cached_property
     def mechanisms(self) -> Array:
         """The motions of the unknowns that nothing resists, (N, k)."""
-        count = soft_count(self._matrix, self._measure.weight)
+        count = regular(self._matrix, self._measure.weight, -SOFT).negative
         return unresisted(self._measure, self.structure.unmoved, self._matrix, self._factor, most=count)
 
     def equilibrium(
@@ -64,10 +64,12 @@ class FirstOrder:
         """
         structure, model = self.structure, self.model
         if structure.sense.any():
+            rows = np.flatnonzero(structure.sense)
+            cables = plural("{rods} acts", "{rods} act", len(rows), rods=begun(rod_names(model, rows)))
             message = tr(
                 "{cables} in tension only, and linear theory needs rods that bear compression as well. Find the equilibrium"
                 " instead; or make cables that stay taut ordinary rods, and delete those that go slack.",
-                cables=cables_named(model),
+                cables=cables,
             )
             raise NoEquilibrium("limit reached", message)
         right = structure.gather(load)
@@ -175,7 +177,8 @@ def mechanisms(model: Model) -> Array:
     else:
         structure = _rigid(structure)
         matrix = structure.initial_tangent
-        modes = soft_modes(matrix, structure.weight, most=min(MOST_MODES, soft_count(matrix, structure.weight)))
+        count = regular(matrix, structure.weight, -SOFT).negative
+        modes = soft_modes(matrix, structure.weight, most=min(MOST_MODES, count))
     fields = structure.fields(_localised(modes))
     return np.array([normalised(field) for field in fields]).reshape(fields.shape)
 
@@ -205,7 +208,7 @@ def _rank(structure: Structure) -> int:
         return 0
     if structure.size > FULL:
         structure = _rigid(structure)
-        return structure.size - soft_count(structure.initial_tangent, structure.weight)
+        return structure.size - regular(structure.initial_tangent, structure.weight, -SOFT).negative
     matrix = structure.scaled_compatibility
     return int(np.linalg.matrix_rank(matrix, rtol=_tolerance(matrix)))
 

@@ -16,7 +16,7 @@ import numpy as np
 
 from pinjoint import Session
 from pinjoint.documents import models
-from pinjoint.systems.statics.path import Goal, load_path
+from pinjoint.systems.statics.path import Curve, Goal
 from pinjoint.systems.statics.settle import Settlement, settle
 from pinjoint.systems.statics.state import StaticState
 from tests.reference import statics, transients
@@ -306,7 +306,7 @@ def _curve(found: Finding) -> None:
     jumps = _jumps(settled)
     if settled.states[0].status != "equilibrium":
         return
-    curve = load_path(model, Goal(1.0))
+    curve = Curve.of(model, Goal(1.0))
     if not curve.complete:
         found.ends_early = True
         if settled.status == "equilibrium" and not jumps:

@@ -222,7 +222,7 @@ def test_it_is_repeated_for_a_further_unknown() -> None:
 def test_the_degree_says_how_often() -> None:
     session = Session.open("hyperstatic")
     guide = released(session, "BD")
-    assert guide.degree == 1
+    assert guide.count.degree == 1
     assert not guide.can_release_another
     session.press("n")
     assert "Every unknown is released" in session.notice

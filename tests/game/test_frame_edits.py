@@ -8,7 +8,7 @@ from pinjoint import Session
 from pinjoint.documents.document import document
 from pinjoint.documents.format import ModelError
 from pinjoint.documents.models import load, save
-from pinjoint.editor.clipboard import as_text, paste, selected_rows, source_in
+from pinjoint.editor.clipboard import Part
 from tests.reference.models import model, particle, rod
 
 MEMBER = {
@@ -49,9 +49,8 @@ def test_copies_have_all_facts_of_bending() -> None:
     loads = document(session.model)["loads"]
     assert [load["moment"] for load in loads] == [-0.75, -0.75]
     session.select(*session.particles, *session.rods)
-    text = as_text(session.model, selected_rows(session.model))
     other = Session.open({"format": "pinjoint model", "version": 1})
-    paste(other.model, *source_in(text), (0.0, 0.0))
+    Part.described(Part.selected(session.model).text).paste(other.model, (0.0, 0.0))
     assert other.rods[0].section == "IPE 200"
     assert other.rods[0].hinged == (False, True)
     assert other.particles[1].moment == 1.5

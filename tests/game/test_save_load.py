@@ -18,7 +18,7 @@ from pinjoint.components.form import Tile
 from pinjoint.documents import library, models
 from pinjoint.editor.scenes import files
 from pinjoint.editor.scenes.files import FileScene
-from pinjoint.editor.scenes.load import NEW, Load
+from pinjoint.editor.scenes.load import Load
 from pinjoint.scripts.script import Script, lessons, lessons_with_tasks
 from pinjoint.systems.render.marks import Text
 from pinjoint.systems.render.picture import compose
@@ -528,7 +528,7 @@ def test_the_first_screen_has_own_models_a_new_one_lessons_and_examples(
     seen = [place.item for place in scene.layout(session).places if isinstance(place.item, Tile)]
     titles = [tile.title for tile in seen]
     assert sum(isinstance(tile.source, Path) for tile in seen) >= min(own, 2)
-    assert NEW in titles
+    assert "New, empty model" in titles
     assert any(isinstance(tile.source, Script) for tile in seen)
     assert sum(isinstance(tile.source, str) and not tile.rest for tile in seen) >= 2
     assert any(tile.rest for tile in seen), "there are more examples"

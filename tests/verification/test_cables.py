@@ -13,7 +13,7 @@ from pinjoint.commands.command_line import main
 from pinjoint.documents import models
 from pinjoint.systems.statics.events import NoEquilibrium
 from pinjoint.systems.statics.force_method import solve
-from pinjoint.systems.statics.path import Goal, load_path
+from pinjoint.systems.statics.path import Curve, Goal
 from pinjoint.systems.statics.settle import settle
 from pinjoint.systems.statics.theory import linear
 from pinjoint.systems.statics.unknowns import ForceMethodError
@@ -221,7 +221,7 @@ def test_cables_slacken_and_tighten_at_the_loads_that_are_said(seed: int) -> Non
 def test_a_curve_goes_on_where_cables_slacken_and_tighten() -> None:
     """From both diagonals taut through one slack, at the same equilibria as settling."""
     model = models.load(braced(rest_length=math.sqrt(2.0) * (1.0 - 1e-3), push=300.0))
-    curve = load_path(model, Goal(1.0))
+    curve = Curve.of(model, Goal(1.0))
     assert curve.complete
     assert curve.stable.all()
     assert curve.axial_force[0, 4] > 0.0
@@ -246,7 +246,7 @@ def test_a_cable_much_stiffer_than_what_moves_it_tightens_without_a_jump(
     cable = {"tension_only": True, "stiffness": stiffness, "rest_length": math.hypot(1.0, aside) + longer}
     rods = [rod("A", "B", stiffness=100.0), rod("C", "B", stiffness=100.0), rod("D", "B", **cable)]
     made = models.load(model(particles, rods))
-    settled, curve = settle(made), load_path(made, Goal(1.0))
+    settled, curve = settle(made), Curve.of(made, Goal(1.0))
     assert [event.kind for event in settled.events] == ["taut"]
     assert settled.final.residual <= 1e-9
     assert curve.complete

@@ -13,7 +13,7 @@ from pinjoint.commands.command_line import main
 from pinjoint.components.model import Model
 from pinjoint.documents.models import parse
 from pinjoint.systems.statics.buckling import Buckling
-from pinjoint.systems.statics.path import Goal, load_path
+from pinjoint.systems.statics.path import Curve, Goal
 from tests.reference.closed_forms import von_mises_force
 from tests.reference.models import model, von_mises_truss
 from tests.verification.test_buckling import CLAMPED, EI, HEADS, LENGTH, PINNED, column
@@ -50,7 +50,7 @@ def lee(parts: int) -> Model:
 def test_williams_toggle_snaps_through() -> None:
     """Limit loads against those of 32 rods for each half."""
     for parts, error in {1: 1.87e-2, 2: 1.06e-2, 4: 6.7e-4, 8: 4e-5}.items():
-        curve = load_path(williams(parts), Goal(-0.8, (parts, 1)))
+        curve = Curve.of(williams(parts), Goal(-0.8, (parts, 1)))
         assert curve.complete
         upper, lower = curve.events
         assert (upper.kind, lower.kind) == ("limit point", "limit point")
@@ -63,7 +63,7 @@ def test_williams_toggle_snaps_through() -> None:
 @pytest.mark.parametrize(("parts", "error"), [(5, 3.6e-4), (10, 2.3e-5), (20, 1.4e-6)])
 def test_lees_frame_snaps_back(parts: int, error: float) -> None:
     """Limit loads against those of 80 rods for each leg; between them the load turns negative."""
-    curve = load_path(lee(parts), Goal(-90.0, (parts + parts // 5, 1)))
+    curve = Curve.of(lee(parts), Goal(-90.0, (parts + parts // 5, 1)))
     assert curve.complete
     upper, lower = curve.events
     assert upper.load_factor / 1.85567274 - 1.0 == pytest.approx(error, rel=0.1)
@@ -86,7 +86,7 @@ def test_a_column_behind_its_bifurcation_is_the_elastica(turned: float) -> None:
     for parts in (2, 4, 8):
         straight = parse(column(parts, CLAMPED, HEADS["free"]))
         goal = Goal.of(straight, until=f"P{parts}.rotation={-turned}")
-        curve = load_path(straight, goal, branch=1)
+        curve = Curve.of(straight, goal, branch=1)
         assert curve.complete
         assert [event.kind for event in curve.events] == ["bifurcation"]
         assert curve.events[0].load_factor == pytest.approx(Buckling.of(straight).factors[0], rel=1e-6)
@@ -101,11 +101,11 @@ def test_a_column_behind_its_bifurcation_is_the_elastica(turned: float) -> None:
 
 def test_straight_on_is_unstable_and_both_sides_are_alike() -> None:
     straight = parse(column(2, CLAMPED, HEADS["free"]))
-    sides = [load_path(straight, Goal(-2.0 * side, (2, 0)), branch=-side) for side in (1, -1)]
+    sides = [Curve.of(straight, Goal(-2.0 * side, (2, 0)), branch=-side) for side in (1, -1)]
     for values in ("load_factor", "axial_force"):
         assert getattr(sides[0], values)[-1] == pytest.approx(getattr(sides[1], values)[-1], rel=1e-9)
     assert sides[0].rotation[-1] == pytest.approx(-sides[1].rotation[-1], rel=1e-9)
-    curve = load_path(straight, Goal(40.0))
+    curve = Curve.of(straight, Goal(40.0))
     assert curve.complete
     assert np.abs(curve.displacement[:, :, 0]).max() < 1e-9
     factor = curve.events[0].load_factor
@@ -119,7 +119,7 @@ def test_a_high_truss_bifurcates_before_it_snaps() -> None:
     def force(deflection: float) -> float:
         return von_mises_force(deflection, 12.0, 5.0, 1.28e6)
 
-    curve = load_path(parse(tall), Goal(-8.0, (1, 1)))
+    curve = Curve.of(parse(tall), Goal(-8.0, (1, 1)))
     assert [event.kind for event in curve.events] == ["bifurcation", "bifurcation", "limit point"]
     for event in curve.events[:2]:  # where N (H/L)² + EA (L/L₀) (b/L)² = 0
         height = 12.0 - brentq(lambda down, at=event.load_factor: force(down) - at, 0.0, 7.0)
@@ -127,7 +127,7 @@ def test_a_high_truss_bifurcates_before_it_snaps() -> None:
         assert 25.0 / length**2 + (length - 13.0) / length * height**2 / length**2 == pytest.approx(
             0.0, abs=1e-9
         )
-    aside = load_path(parse(tall), Goal(1.0, (1, 0)), branch=1)
+    aside = Curve.of(parse(tall), Goal(1.0, (1, 0)), branch=1)
     assert aside.complete
     assert aside.displacement[-1, 1, 0] == pytest.approx(1.0, rel=1e-12)
     assert aside.load_factor[-1] < aside.events[0].load_factor

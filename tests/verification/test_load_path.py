@@ -11,7 +11,7 @@ import pytest
 from pinjoint import Session
 from pinjoint.commands.command_line import main
 from pinjoint.documents import models
-from pinjoint.systems.statics.path import Goal, load_path
+from pinjoint.systems.statics.path import Curve, Goal
 from tests.reference import closed_forms
 from tests.reference.models import model, particle, three_bar_truss, von_mises_truss
 from tests.reference.random_models import case
@@ -118,5 +118,5 @@ def test_a_curve_of_a_mechanism_says_what_moves(capsys: pytest.CaptureFixture[st
 @pytest.mark.parametrize("number", [78020, 78255])
 def test_curves_of_what_hangs_loosely_get_on(number: int) -> None:
     """Stiff rods turn much and elongate little on the way; then cables slacken, and forces hardly change."""
-    curve = load_path(models.load(case(number).document), Goal(1.0))
+    curve = Curve.of(models.load(case(number).document), Goal(1.0))
     assert curve.complete

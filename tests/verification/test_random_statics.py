@@ -12,7 +12,7 @@ from pinjoint import Session
 from pinjoint.commands.command_line import main
 from pinjoint.components.model import Model
 from pinjoint.documents import models
-from pinjoint.systems.statics.path import Goal, load_path
+from pinjoint.systems.statics.path import Curve, Goal
 from pinjoint.systems.statics.settle import settle
 from pinjoint.systems.statics.state import StaticState
 from tests.reference.elements import Model as Document
@@ -77,7 +77,7 @@ def test_to_become_straight_is_no_jump(strength: float) -> None:
     pulled = strength or 10_000.0 * found.final.displacement[2, 0] / 2.0
     assert found.final.axial_force == pytest.approx([300.0 - pulled, 300.0 - pulled, pulled], rel=1e-9)
     check_laws(loaded, found.final)
-    curve = load_path(loaded, Goal(1.0))
+    curve = Curve.of(loaded, Goal(1.0))
     assert curve.complete
     assert curve.axial_force[-1] == pytest.approx(found.final.axial_force, rel=1e-9)
 
@@ -85,14 +85,14 @@ def test_to_become_straight_is_no_jump(strength: float) -> None:
 def test_a_curve_passes_a_plateau_and_rods_that_become_straight_on_it() -> None:
     """At 20 kN the tie yields, and the load cannot grow until the bent rods are straight and take it."""
     loaded = models.load(bent_tie(20.0))
-    curve = load_path(loaded, Goal(1.0))
+    curve = Curve.of(loaded, Goal(1.0))
     assert curve.complete
     assert curve.axial_force[-1] == pytest.approx([280.0, 280.0, 20.0], rel=1e-9)
     hanging = model(
         [particle("A", 0, 0, fixed=[True, True]), particle("B", 0, -1, force=[0, -1.0])],
         [rod("A", "B", stiffness=100.0, tensile_strength=0.4)],
     )
-    curve = load_path(models.load(hanging), Goal(-1.3, (1, 1)))
+    curve = Curve.of(models.load(hanging), Goal(-1.3, (1, 1)))
     assert curve.complete
     assert curve.load_factor[-1] == pytest.approx(0.4, rel=1e-9)
 
@@ -112,7 +112,7 @@ def test_random_structures_settle_or_it_is_said_why(seed: int) -> None:
 @given(seed=st.integers(0, 10_000))
 def test_curves_of_yielding_trusses_do_not_end_early(seed: int) -> None:
     """One rod begins to yield, or ceases to, while others unload: some motion always goes on."""
-    curve = load_path(models.load(plastic_truss(seed)), Goal(1e9), points=50)
+    curve = Curve.of(models.load(plastic_truss(seed)), Goal(1e9), points=50)
     assert len(curve.load_factor) == 50
 
 

@@ -12,7 +12,7 @@ from pinjoint.components.particle import Particle
 from pinjoint.components.rod import Rod
 from pinjoint.editor.actions.editing import all_of
 from pinjoint.editor.context import Context
-from pinjoint.editor.gestures.drawing import HINGES, DrawForce, DrawMoment, DrawRod, DrawVelocity, tool_in_hand
+from pinjoint.editor.gestures.drawing import DrawForce, DrawMoment, DrawRod, DrawVelocity, tool_in_hand
 from pinjoint.systems.edit import Refusal
 from pinjoint.systems.edit.picking import End, pick_end, pick_particle, pick_rod
 from pinjoint.systems.edit.placing import place, snapped
@@ -89,7 +89,7 @@ def _rigid(context: Context, pixel: Vector) -> None:
 
 
 @action(
-    HINGES,
+    "hinge",
     "ctrl+j",
     "hinge an end of a rod, or make it rigid",
     while_drawing=True,

@@ -12,7 +12,7 @@ from pinjoint.components import written
 from pinjoint.components.field import Vector
 from pinjoint.components.handle import Handle
 from pinjoint.components.language import begun, listed, marked, plural, tr
-from pinjoint.editor.clipboard import as_text, paste, places, selected_rows, source_in
+from pinjoint.editor.clipboard import Part
 from pinjoint.editor.context import Context
 from pinjoint.editor.gestures.drawing import Drawing, DrawSupport, tool_in_hand
 from pinjoint.editor.gestures.moving import BoxSelect, Move, MovePoint, PullParticle
@@ -269,7 +269,7 @@ def _select_all(context: Context, pixel: Vector) -> None:
 
 @action("copy", "ctrl+c", "copy the selection", enabled=attrgetter("has_selected"))
 def _copy(context: Context, pixel: Vector) -> None:
-    context.clipboard = as_text(context.model, selected_rows(context.model))
+    context.clipboard = Part.selected(context.model).text
     context.notice = tr("Copied. Ctrl+V pastes it at the pointer.")
 
 
@@ -285,12 +285,12 @@ def _paste(context: Context, pixel: Vector) -> None:
     """Paste around the pointer, from the toolbar around the middle of the view; the first place snaps to the grid."""
     if context.view.strip.contains(pixel):
         pixel = context.view.canvas.middle
-    source, rows = source_in(context.clipboard)
-    position = places(source, rows)
+    part = Part.described(context.clipboard)
+    position = part.places
     middle = 0.5 * (position.min(axis=0) + position.max(axis=0))
     x, y = (position[0] + context.view.camera.to_model(pixel) - middle).tolist()
     offset = np.subtract(snapped(context.model, context.view, (x, y)), position[0]).tolist()
-    made = paste(context.model, source, rows, (offset[0], offset[1]))
+    made = part.paste(context.model, (offset[0], offset[1]))
     context.select(*made)
     context.notice = plural(
         "Pasted {count} element; drag it where it belongs.",
@@ -303,8 +303,8 @@ def _paste(context: Context, pixel: Vector) -> None:
 def _duplicate(context: Context, pixel: Vector) -> None:
     view = context.view
     beside = BESIDE * view.pixel_ratio / view.camera.scale
-    model, rows = context.model, selected_rows(context.model)
-    made = paste(model, model, rows, snapped(model, view, (beside, -beside)), marked("duplicate"))
+    model = context.model
+    made = Part.selected(model).paste(model, snapped(model, view, (beside, -beside)), marked("duplicate"))
     context.select(*made)
     context.notice = plural(
         "Duplicated {count} element; drag the copy where it belongs.",

@@ -28,7 +28,6 @@ from pinjoint.systems.forms.properties import heading
 from pinjoint.systems.input.actions import ACTIONS
 
 CLAMPED_BEYOND = 60.0  # points from a particle to its ground, which then holds its rotation, too
-HINGES = "hinge"  # the tool by which clicks hinge ends of rods; its action acts at once
 SMALLEST_RIM = 5.0  # points, of a particle as it is drawn
 
 
@@ -425,7 +424,7 @@ def tool_in_hand(context: Context) -> str:
 def end_pointed_at(context: Context, pixel: Vector) -> Preview | None:
     """With the tool for hinges in hand: what a click would make of the end under the pointer."""
     model, view = context.model, context.view
-    if view.tool != HINGES or pick_particle(model, view, pixel) is not None:
+    if view.tool != "hinge" or pick_particle(model, view, pixel) is not None:
         return None
     end = pick_end(model, view, pixel)
     if end is None:

@@ -15,7 +15,6 @@ from pinjoint.editor.context import Context
 from pinjoint.editor.scenes.form import FormScene
 from pinjoint.systems.base import Phase, System
 
-SAVED = marked("Saved models")
 LARGEST_PICTURED = 4 * 2**20  # bytes; larger files get no picture
 READING = 0.005  # s of each frame spent on reading pictures; one picture at least
 
@@ -136,7 +135,7 @@ class Pictures(System):
 def saved_models() -> list[Tile]:
     """The person's own models, the newest first."""
     return [
-        Tile(tr(SAVED), name, library.written_age(p), name, p)
+        Tile(tr("Saved models"), name, library.written_age(p), name, p)
         for p in library.saved()
         if (name := models.name_of(p))
     ]

@@ -17,8 +17,6 @@ from pinjoint.lessons import progress
 from pinjoint.lessons.progress import count_of, is_done, shelf
 from pinjoint.scripts.script import Script, lessons
 
-WELCOME = marked("Welcome to Pinjoint. What would you like to begin with?")
-NEW = marked("New, empty model")
 LESSONS = marked("Begin here")
 TRUSSES, BENDING, COLLISIONS = EXAMPLES = marked("Trusses"), marked("Members that bend"), marked("Collisions")
 YOURS = marked("Your models")
@@ -48,7 +46,8 @@ class Load(FileScene):
 
     def make_form(self, context: Context) -> Form:
         self._asked = False
-        new = Tile(tr(LESSONS), tr(NEW), tr("draw your own"), "", None, tr("An empty plane to draw on."), "+")
+        own, about = tr("draw your own"), tr("An empty plane to draw on.")
+        new = Tile(tr(LESSONS), tr("New, empty model"), own, "", None, about, "+")
         learn = _tasks()
         held = tr("{tasks} to do, {films} to watch", tasks=len(learn), films=len(lessons()))
         rest = Tile(tr(LESSONS), tr("All lessons"), held, "", ALL, symbol="»", rest=True)
@@ -58,7 +57,10 @@ class Load(FileScene):
             for s in films
         ]
         offers = [*_yours(context), *learn[:1], new, *learn[1:], *watch, rest, *_examples()]
-        form = self.new_form(tr(WELCOME) if self.welcome else tr("Open a model"), "", offers, tr("Open"))
+        heading = tr("Open a model")
+        if self.welcome:
+            heading = tr("Welcome to Pinjoint. What would you like to begin with?")
+        form = self.new_form(heading, "", offers, tr("Open"))
         form.boxes[0].note = tr("type to search, or click a picture")
         return form
 
