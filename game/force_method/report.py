@@ -7,7 +7,7 @@ from dataclasses import replace
 from functools import partial
 
 import numpy as np
-from reportlab.platypus import Flowable
+from reportlab.platypus import Flowable, KeepTogether
 
 from pinjoint.components import written
 from pinjoint.components.bent import AXIAL, MOMENT, SHEAR, is_frame
@@ -34,7 +34,6 @@ from pinjoint.systems.render.paper import (
     as_paper,
     in_rows,
     matrices,
-    together,
 )
 from pinjoint.systems.render.picture import compose
 from pinjoint.systems.render.theme import load_theme
@@ -179,7 +178,7 @@ def _flowing(heading: Sequence[Flowable], blocks: Sequence[Block], rows: int) ->
     if rows > _BESIDE:
         return [*heading, *(part for _, parts in blocks for part in parts)]
     first, *others = in_rows(blocks)
-    return [together(*heading, first), *others]
+    return [KeepTogether([*heading, first]), *others]
 
 
 # --- sections ----------------------------------------------------------------------------------------
@@ -292,7 +291,7 @@ class _Page:
         compatibility = self._compatibility()
         if len(every) == 1 and self._rows <= _BESIDE:
             return _flowing(heading, [*blocks, (0.0, compatibility)], self._rows)
-        return [*_flowing(heading, blocks, self._rows), together(*compatibility)]
+        return [*_flowing(heading, blocks, self._rows), KeepTogether([*compatibility])]
 
     def _compatibility(self) -> list[Flowable]:
         """The equations with their numbers, and the unknowns."""
@@ -344,7 +343,7 @@ class _Page:
         """The same in the thesis' convention."""
         lines = words.in_thesis(self.solution)
         heading = self._text(tr("2  Unknowns"), "heading")
-        return [together(heading, *(self._text(line, "equation") for line in lines))]
+        return [KeepTogether([heading, *(self._text(line, "equation") for line in lines)])]
 
     def forces(self) -> list[Flowable]:
         """Superposition, and the forces in the real structure."""
@@ -406,7 +405,7 @@ class _Page:
             )
         gaps.append(self._text(said))
         heading = self._text(tr("5  Checks"), "heading")
-        return [together(heading, *in_rows([(0.0, balance), (0.0, gaps)]))]
+        return [KeepTogether([heading, *in_rows([(0.0, balance), (0.0, gaps)])])]
 
 
 def _same(size: float) -> float:

@@ -6,11 +6,14 @@ from dataclasses import replace
 from functools import cache
 from typing import Any
 
+import numpy as np
+
+from pinjoint.components.camera import Rectangle
 from pinjoint.components.field import Vector
 from pinjoint.components.language import begun, language, tr, tr_in
 from pinjoint.components.toolbar import Tool
 from pinjoint.systems.render.layout import Drawn, Part, Plate, Row, Text, icon
-from pinjoint.systems.render.marks import cross
+from pinjoint.systems.render.marks import Strokes
 from pinjoint.systems.render.theme import Colour, Theme, faded
 
 ICON = 0.85  # points for each of the 20 units of an icon's square
@@ -62,8 +65,16 @@ def tool_icon(tool: Tool, theme: Theme, wide: float) -> Drawn:
 
 def closing(action: str | None, theme: Theme, side: float, item: Any = None, size: float = 1.0) -> Plate:
     """The button with a cross that closes something."""
-    sign = Drawn(lambda at, u: [cross(at, size * u, theme.muted)], side)
+    sign = Drawn(lambda at, u: [_cross(at, size * u, theme.muted)], side)
     return button(sign, action, theme, item=item, inset=0.0)
+
+
+def _cross(place: Rectangle, unit: float, colour: Colour) -> Strokes:
+    """The sign on a button that closes something."""
+    (x, y), reach = place.middle, 4.5 * unit
+    start = np.array([[x - reach, y - reach], [x - reach, y + reach]])
+    end = np.array([[x + reach, y + reach], [x + reach, y - reach]])
+    return Strokes(start, end, 1.6 * unit, colour)
 
 
 def titled(tool: Tool) -> str:

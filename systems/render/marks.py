@@ -13,7 +13,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from pinjoint.components.camera import Rectangle, Viewport
+from pinjoint.components.camera import Viewport
 from pinjoint.components.view import Hit
 from pinjoint.systems.render.theme import Colour
 
@@ -127,14 +127,6 @@ class Text(NamedTuple):
     weight: str = "regular"
     anchor: str = "left"
     of: Owner | None = None
-
-
-def cross(place: Rectangle, unit: float, colour: Colour) -> Strokes:
-    """The sign on a button that closes something."""
-    (x, y), reach = place.middle, 4.5 * unit
-    start = np.array([[x - reach, y - reach], [x - reach, y + reach]])
-    end = np.array([[x + reach, y + reach], [x + reach, y - reach]])
-    return Strokes(start, end, 1.6 * unit, colour)
 
 
 Mark = Strokes | Fills | Bars | Stamps | Discs | Panel | Text

@@ -332,12 +332,9 @@ def _swatch(name: str, theme: Theme, place: Rectangle, u: float) -> list[Mark]:
 # --- scale -----------------------------------------------------------------------------------------
 
 
-# where it stands, the metres that its ruler means (0: none), and notes
-Scale = tuple[Rectangle, float, list[str]]
-
-
-def place_scale(sheet: Sheet, room: tuple[float, float]) -> Scale | None:
-    """A place along the edges where the scale hides nothing, which is taken; None if there is none.
+def place_scale(sheet: Sheet, room: tuple[float, float]) -> tuple[Rectangle, float, list[str]] | None:
+    """A place along the edges where the scale hides nothing, which is taken, the metres that its ruler means (0: none), and
+    notes; None if there is none.
 
     There is room for how many values are hidden, before that is known; this is said alone, and over rods, in need.
     """
@@ -356,7 +353,7 @@ def place_scale(sheet: Sheet, room: tuple[float, float]) -> Scale | None:
     return None
 
 
-def draw_scale(sheet: Sheet, scale: Scale | None) -> list[Mark]:
+def draw_scale(sheet: Sheet, scale: tuple[Rectangle, float, list[str]] | None) -> list[Mark]:
     """A round length to scale, how many values are hidden, and by how much displacements and diagrams are scaled."""
     if scale is None:
         return []

@@ -14,7 +14,7 @@ from reportlab.lib.pagesizes import A4
 from reportlab.lib.styles import ParagraphStyle
 from reportlab.lib.units import mm
 from reportlab.pdfbase.pdfmetrics import stringWidth
-from reportlab.platypus import Flowable, KeepTogether, Paragraph, SimpleDocTemplate, Table
+from reportlab.platypus import Flowable, Paragraph, SimpleDocTemplate, Table
 
 from pinjoint.components.wording import UNPRINTABLE
 from pinjoint.systems.render.marks import Picture
@@ -99,11 +99,6 @@ LAYOUTS = (  # from the most comfortable to one by which most fits on a page
     Layout(7.8, 40 * mm, 2.6),
     Layout(7.5, 36 * mm, 9.0),
 )
-
-
-def together(*parts: Flowable) -> Flowable:
-    """Parts that no page break separates, unless they are longer than a page."""
-    return KeepTogether(list(parts))
 
 
 class Figure(Flowable):  # type: ignore[misc]

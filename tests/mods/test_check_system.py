@@ -313,7 +313,10 @@ class Harder(Spring):
 
 
 def test_laws_of_pairs_are_checked_for_opposite_forces_and_those_of_their_potential() -> None:
-    assert check_system(Spring, [BODIES]).needed == 1
+    apart = BODIES | {
+        "particles": [one | {"position": [9e3 * n, 0]} for n, one in enumerate(BODIES["particles"])]
+    }
+    assert check_system(Spring, [BODIES, apart]).needed == 2
     with pytest.raises(SystemCheckError, match="change if the two are swapped"):
         check_system(Attraction, [BODIES])
     with pytest.raises(
