@@ -115,24 +115,6 @@ def _move(session: Session, name: str, by: tuple[float, float]) -> None:
 
 
 @settings(max_examples=15)
-@given(st.lists(st.one_of(EDITS, RUNS, BACK_AND_FORTH), min_size=2, max_size=14))
-def test_undo_all_is_the_start_and_redo_all_the_end(steps: list[Step]) -> None:
-    session = Session.open(structure())
-    start = bits.columns(session.model)
-    for step in steps:
-        perform(session, step)
-    while session.can_redo:
-        session.redo()
-    end = bits.columns(session.model)
-    while session.can_undo:
-        session.undo()
-    assert bits.different(bits.columns(session.model), start) == []
-    while session.can_redo:
-        session.redo()
-    assert bits.different(bits.columns(session.model), end) == []
-
-
-@settings(max_examples=15)
 @given(st.lists(st.one_of(EDITS, RUNS), min_size=1, max_size=8))
 def test_undo_goes_back_entry_by_entry_through_every_state(steps: list[Step]) -> None:
     session = Session.open(structure())

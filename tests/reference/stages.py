@@ -238,28 +238,24 @@ class Stages:
         total[j][0] -= x
         total[j][1] -= y
 
-    def _loads(self, time: float) -> list[tuple[int, float, float]]:
-        made = []
+    def _varying(self, time: float) -> Iterator[tuple[int, float, float, float]]:
+        """The loads that vary: on which particle, in full, and the factor of it at a time."""
         for kernel in self.loading:
             on, force, values, first = (
                 kernel.arrays[f"{kernel.system.name.replace('.', '_')}_{part}"].tolist()
                 for part in ("on", "force", "values", "first")
             )
             for particle, (x, y), start in zip(on, force, first, strict=True):
-                factor = kernel.function(time, values, start)
-                made.append((particle, factor * x, factor * y))
-        return made
+                yield particle, x, y, kernel.function(time, values, start)
+
+    def _loads(self, time: float) -> list[tuple[int, float, float]]:
+        return [(particle, factor * x, factor * y) for particle, x, y, factor in self._varying(time)]
 
     def load_power(self, time: float, v: Any) -> float:
         """What the varying loads do per second."""
         total = 0.0
-        for kernel in self.loading:
-            on, force, values, first = (
-                kernel.arrays[f"{kernel.system.name.replace('.', '_')}_{part}"].tolist()
-                for part in ("on", "force", "values", "first")
-            )
-            for particle, (x, y), start in zip(on, force, first, strict=True):
-                total += kernel.function(time, values, start) * (x * v[particle][0] + y * v[particle][1])
+        for particle, x, y, factor in self._varying(time):
+            total += factor * (x * v[particle][0] + y * v[particle][1])
         return total
 
     # --- a state, and steps ----------------------------------------------------------------------

@@ -1,8 +1,5 @@
 """The same model gives the same bits: in every process, however steps are divided, saved and reloaded."""
 
-import os
-import subprocess
-import sys
 from collections.abc import Callable, Sequence
 from functools import cache
 from pathlib import Path
@@ -208,13 +205,6 @@ print(found.hexdigest())
 """
 
 
-def test_settling_has_the_same_bits_on_any_number_of_threads_of_the_linear_algebra_library():
-    found = set()
-    for threads in ("1", "3"):
-        chosen = {f"{library}_NUM_THREADS": threads for library in ("OPENBLAS", "MKL", "OMP")}
-        words = [sys.executable, "-c", SETTLED]
-        run = subprocess.run(
-            words, env=os.environ | chosen, capture_output=True, text=True, timeout=120, check=True
-        )
-        found.add(run.stdout)
-    assert len(found) == 1
+def test_settling_has_the_same_bits_on_any_number_of_threads_of_the_linear_algebra_library(fresh_process):
+    chosen = [{f"{library}_NUM_THREADS": threads for library in ("OPENBLAS", "MKL", "OMP")} for threads in "13"]
+    assert len({fresh_process(SETTLED, environment) for environment in chosen}) == 1

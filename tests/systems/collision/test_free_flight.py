@@ -12,7 +12,7 @@ from pinjoint.commands.command_line import main
 from pinjoint.documents.models import document
 from pinjoint.systems.collision.driven.neighbours import NeighbourList
 from pinjoint.systems.edit.pull import hand_on
-from tests.systems.collision.test_driven_collisions import box, energy_of_discs, gaps_of
+from tests.systems.collision.test_driven_collisions import box, energy_of_discs, gaps_of, state
 
 GRAVITY = {"acceleration": [0.0, -9.81]}
 
@@ -38,11 +38,6 @@ def pile(count: int = 6) -> dict[str, Any]:
     floor = [{"position": place, "fixed": [True, True]} for place in places]
     balls = [{"position": [0.2 + 0.1001 * (k % 3), 0.4 + 0.12 * (k // 3)]} for k in range(count)]
     return model([*floor, *balls], environment=GRAVITY, settings={"restitution": 0.4})
-
-
-def state(session: Session) -> bytes:
-    particles = session.model.particles
-    return particles.displacement.tobytes() + particles.velocity.tobytes()
 
 
 def momentum(session: Session) -> np.ndarray:

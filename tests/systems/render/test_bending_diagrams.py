@@ -42,19 +42,16 @@ def shown(
     return compose(session.model, session.view, LIGHT), session
 
 
+def all_areas(picture: Picture) -> dict[int, np.ndarray]:
+    """The corners of the area along each rod that has one: its baseline, and back along the edge."""
+    fills = [mark for mark in picture.marks if isinstance(mark, Fills) and mark.corners.shape[1] > 4]
+    of_rods = [mark for mark in fills if mark.of is not None and mark.of[0] == "rods"]
+    return {int(row): area for mark in of_rods for row, area in zip(mark.of[1], mark.corners, strict=True)}
+
+
 def areas(picture: Picture, session: Session, name: str) -> np.ndarray:
-    """The corners of the area along a rod: its baseline, and back along the edge."""
-    row = session.model.rods[name].row
-    found = [
-        mark.corners[mark.of[1] == row]
-        for mark in picture.marks
-        if isinstance(mark, Fills)
-        and mark.of is not None
-        and mark.of[0] == "rods"
-        and mark.corners.shape[1] > 4
-    ]
-    (corners,) = [corners[0] for corners in found if len(corners)]
-    return corners
+    """The area along a rod."""
+    return all_areas(picture)[session.model.rods[name].row]
 
 
 def cantilever(force: float) -> dict[str, Any]:
@@ -231,16 +228,7 @@ def test_only_tagged_rods_if_only_these_are_wanted() -> None:
     session.view.all_diagrams = False
     session.model.tag(session.model.rods["BC"], DiagramShown)
     picture = compose(session.model, session.view, LIGHT)
-    found = {
-        int(row)
-        for mark in picture.marks
-        if isinstance(mark, Fills)
-        and mark.of is not None
-        and mark.of[0] == "rods"
-        and mark.corners.shape[1] > 4
-        for row in mark.of[1]
-    }
-    assert found == {session.model.rods["BC"].row}
+    assert [*all_areas(picture)] == [session.model.rods["BC"].row]
 
 
 def test_unknown_forces_are_not_drawn() -> None:
