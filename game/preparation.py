@@ -10,20 +10,16 @@ from collections.abc import Iterator, Mapping, Sequence, Set
 from itertools import islice
 from typing import Any
 
-import msgspec
-
 from pinjoint.components.field import Role
 from pinjoint.components.language import english
 from pinjoint.components.model import Model
-from pinjoint.documents.document import document
 from pinjoint.documents.format import ModelError
 from pinjoint.editor.context import Waiting
-from pinjoint.elsewhere import UNITS, Elsewhere, Job, Work, in_a_line, problem_of, tell_slower
+from pinjoint.elsewhere import UNITS, Elsewhere, Job, Work, described, in_a_line, problem_of, tell_slower
 from pinjoint.systems import cache
 from pinjoint.systems.base import Law, Phase, StepSystem, System
-from pinjoint.systems.collision.driven.compiled import DRIVEN
+from pinjoint.systems.collision.driven.neighbours import DRIVEN
 from pinjoint.systems.collision.free.discs import EVENTS, HORIZONS, PILES
-from pinjoint.systems.collision.free.flight import may_pile
 from pinjoint.systems.collision.overlaps import PARTING, work_ahead
 from pinjoint.systems.edit.pull import Pull
 from pinjoint.systems.physics.system import (
@@ -146,7 +142,7 @@ class Preparation(System):
         for work in self.elsewhere.lacking:
             try:
                 if (by := asked.get(work.job)) is not None:
-                    work.document = made[by] = made.get(by) or msgspec.json.encode(document(by.model))
+                    work.document = made[by] = made.get(by) or described(by.model)
             except ModelError as error:
                 work.ended = in_a_line(error)
 
@@ -234,7 +230,8 @@ def _jobs_of(simulation: Simulation) -> list[Job]:
     """What a simulation runs with, and what it will once something rests on a structure."""
     model, plan = simulation.model, simulation.plan
     if simulation.integrator.exact:
-        piles = may_pile(model, any(isinstance(system, Law) for system in plan))
+        # laws, such as a hand that pulls, and constant forces press particles together for long
+        piles = any(isinstance(system, Law) for system in plan) or model.particles.constant_force.any()
         return [(unit.name,) for unit in (EVENTS, HORIZONS, *([PILES] if piles else []))]
     jobs = [_job(simulation, plan)]
     if any(system.impulsive for system in plan):  # particles that do not fly free may meet

@@ -5,13 +5,12 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from pinjoint.components.obstacles import NO_OBSTACLES, Obstacles
+from pinjoint.components.obstacles import NO_OBSTACLES, Floats, Obstacles
 
-Floats = NDArray[np.float64]
 Rows = NDArray[np.int64]
 
 ALL_PAIRS_DISCS = 64  # discs up to which it is faster to look at all pairs than to import and build trees
-SEARCH_MARGIN = 1.0 + 1e-9  # factor of the radius of the search by trees, so that round-off loses no pair
+SEARCH_MARGIN = 1.0 + 1e-9  # factor of the radius of a search, so that round-off loses no pair
 
 
 def nearest(line: Floats, span: Floats) -> Floats:

@@ -6,29 +6,41 @@
 from __future__ import annotations
 
 import sys
+from collections.abc import Callable
 from enum import IntEnum, auto
-from typing import Any, NamedTuple
+from functools import cache
+from typing import Annotated, Any, NamedTuple, TypeVar, get_args, get_type_hints
 
 import numpy as np
 from numpy.typing import NDArray
 
-Floats = NDArray[np.float64]
+from pinjoint.components.obstacles import Floats
+
 Integers = NDArray[np.int64]
+Arrays = TypeVar("Arrays")
 
 EPSILON = sys.float_info.epsilon
 SPEED_NOISE = 16.0 * EPSILON  # round-off of a speed, as a share of the speeds that it is computed from
 NONE = -1  # no entry, no member
-MOST_CHANGES = 2**31 - 1  # mask: the part of a disc's number of changes that an impact in the queue keeps
 DIRECT = 48  # contacts up to which a projection is solved directly; larger groups are solved by sweeps
 SHARED_START, SHARED_END = 1.0, 2.0  # flags of Disc.SHARED
-OVERLAP = 1e-9  # of the reach of two nodes; a larger overlap at the start of a step is older than the run
+SHORTEST_SHARE = (
+    1.0 / 16.0
+)  # shortest step of piles and crowds, where discs are fast, as a share of the longest
+TINY = 1e-300  # more than none, in any unit
 
 
-# Steps of crowds; SHORTEST_SHARE also of piles
-STEP_SHARE = 0.04  # longest step, as a share of the time in which a disc falls through its diameter
-SHORTEST_SHARE = 1.0 / 16.0  # shortest step, where discs are fast, as a share of the longest
-# Relative travel of two discs in a longer step than the shortest, at most, in radii of the smaller.
-TRAVEL = 0.35
+_hints = cache(get_type_hints)
+
+
+def zeros(kind: Callable[..., Arrays], given: dict[str, Any] | None = None, **sizes: int) -> Arrays:
+    """Arrays of zeros, but for those given. Their annotations say their shapes: numbers, and names of sizes."""
+    made = dict(given or {})
+    for name, hint in _hints(kind, include_extras=True).items():
+        if name not in made:
+            array, *shape = get_args(hint)
+            made[name] = np.zeros([sizes.get(size, size) for size in shape], get_args(get_args(array)[1])[0])
+    return kind(**made)
 
 
 class Places(IntEnum):
@@ -74,55 +86,41 @@ FLIGHT = slice(Disc.UX, Disc.CY + 1)
 class Grid(NamedTuple):
     """Boxes around the paths of all discs, and a hash grid of the boxes; see kernels/grid.py.
 
-    boxes: left, bottom, right, top, shape (n, 4), m. layer: of each disc, shape (n,). levels: the cells of
-    layer k have the size cell × 2^levels[k], ascending, shape (64,); inverse: one by that size, 1/m. heads: first entry
-    of each bucket; the number of buckets is a power of two. after, before: the next entry in the same bucket and the one
-    before, shape (4 × a power of two,). found: the discs that searches find, shape (2 n + 2,); times: of impacts with
-    them, s.
+    boxes: left, bottom, right, top, m. layer: of each disc. levels: the cells of layer k have the size cell × 2^levels[k],
+    ascending; inverse: one by that size, 1/m. heads: first entry of each bucket; the number of buckets is a power of two,
+    and that of entries four times one. after, before: the next entry in the same bucket and the one before. found: the
+    discs that searches find; times: of impacts with them, s.
     """
 
-    boxes: Floats
-    layer: Integers
-    levels: Integers
-    inverse: Floats
-    heads: NDArray[np.int32]
-    after: NDArray[np.int32]
-    before: NDArray[np.int32]
-    found: Integers
-    times: Floats
+    boxes: Annotated[Floats, "n", 4]
+    layer: Annotated[Integers, "n"]
+    levels: Annotated[Integers, 64]
+    inverse: Annotated[Floats, 64]
+    heads: Annotated[NDArray[np.int32], "buckets"]
+    after: Annotated[NDArray[np.int32], "entries"]
+    before: Annotated[NDArray[np.int32], "entries"]
+    found: Annotated[Integers, "found"]
+    times: Annotated[Floats, "found"]
 
     @classmethod
     def empty(cls, n: int, layers: int) -> Grid:
         """A grid of n discs with room for so many layers."""
         buckets = 1 << int(np.ceil(np.log2(max(n * layers, 64))))
         entries = 4 << int(np.ceil(np.log2(max(2 * n * layers, 64))))
-        return cls(
-            boxes=np.zeros((n, 4)),
-            layer=np.zeros(n, dtype=np.int64),
-            levels=np.zeros(64, dtype=np.int64),
-            inverse=np.zeros(64),
-            heads=np.full(buckets, NONE, dtype=np.int32),
-            after=np.zeros(entries, dtype=np.int32),
-            before=np.zeros(entries, dtype=np.int32),
-            found=np.zeros(2 * n + 2, dtype=np.int64),
-            times=np.zeros(2 * n + 2),
-        )
+        grid = zeros(cls, n=n, buckets=buckets, entries=entries, found=2 * n + 2)
+        grid.heads[:] = NONE
+        return grid
 
 
 class Queue(NamedTuple):
     """Impacts to come, a binary heap; see kernels/heap.py.
 
-    times: shape (capacity,), s. impacts: shape (capacity, 4): two discs, and how often each had changed its
-    path when the impact was computed; the impact is void once either has changed again.
+    times: s. impacts: two discs, and how often each had changed its path when the impact was computed; the impact is void
+    once either has changed again.
     """
 
-    times: Floats
-    impacts: NDArray[np.int32]
-
-    @classmethod
-    def empty(cls, size: int) -> Queue:
-        """A queue with room for `size` impacts."""
-        return cls(np.zeros(size), np.zeros((size, 4), dtype=np.int32))
+    times: Annotated[Floats, "size"]
+    impacts: Annotated[NDArray[np.int32], "size", 4]
 
 
 class Constraints(NamedTuple):
@@ -139,13 +137,6 @@ class Constraints(NamedTuple):
     first_persistent: Integers
     persistent: Integers
     forces: Floats
-
-    @classmethod
-    def of(cls, n: int, joined: Any, size: int, counts: Integers) -> Constraints:
-        """Constraints of n discs: these pairs never collide, and there is room for `size` entries of contacts."""
-        first, partners = partners_of(n, joined)
-        contacts = np.zeros(n, dtype=np.int64), np.zeros((0, 2), dtype=np.int64), np.zeros(0)
-        return cls(first, partners, *contacts).cleared(size, counts)
 
     def cleared(self, size: int, counts: Integers) -> Constraints:
         """These constraints without persistent contacts, with room for `size` entries."""
@@ -184,52 +175,42 @@ class Entry(Places):
 class Group(NamedTuple):
     """Discs ("members" 0, 1, …) that touch now, and the contacts between them, solved together.
 
-    members: the disc of each member; place: the member that a disc is, or NONE; shape (n,) both.
-    links: the two members of each contact, shape (c, 2). contacts: shape (c, len(Contact)).
-    mobility: inverse mass of each member in each direction, 1/kg, 0 where it is held, shape (n, 2), so that
-    N_cᵀ M⁻¹ N_d is the compliance of the contacts under the members' supports.
-    motion: what impulses change, shape (n, 2): velocities, m/s, with impulses in N·s; or accelerations, m/s²,
-    with forces in N. initial, start, other: copies of other motion.
-    Of a step in persistent contact, shape (n, 2): before, accelerations in the stage before, m/s²; bend, columns BX and BY
-    of Disc; curve, CX and CY.
-    noise: rate below which a contact closes by round-off only, shape (1,).
+    members: the disc of each member; place: the member that a disc is, or NONE. links: the two members of each contact.
+    mobility: inverse mass of each member in each direction, 1/kg, 0 where it is held, so that N_cᵀ M⁻¹ N_d is the
+    compliance of the contacts under the members' supports.
+    motion: what impulses change: velocities, m/s, with impulses in N·s; or accelerations, m/s², with forces in N. initial,
+    start, other: copies of other motion.
+    Of a step in persistent contact: before, accelerations in the stage before, m/s²; bend, columns BX and BY of Disc;
+    curve, CX and CY.
+    noise: rate below which a contact closes by round-off only.
     active: the contacts of a projection; state: of each contact in the active-set method; chosen: those whose rates are now
-    brought to 0; shape (c,). matrix: work space, shape (DIRECT + 1, DIRECT).
+    brought to 0. matrix: work space.
     """
 
-    members: Integers
-    place: Integers
-    links: Integers
-    contacts: Floats
-    mobility: Floats
-    motion: Floats
-    initial: Floats
-    start: Floats
-    other: Floats
-    before: Floats
-    bend: Floats
-    curve: Floats
-    noise: Floats
-    active: Integers
-    state: Integers
-    chosen: Integers
-    matrix: Floats
+    members: Annotated[Integers, "n"]
+    place: Annotated[Integers, "n"]
+    links: Annotated[Integers, "contacts", 2]
+    contacts: Annotated[Floats, "contacts", len(Contact)]
+    mobility: Annotated[Floats, "n", 2]
+    motion: Annotated[Floats, "n", 2]
+    initial: Annotated[Floats, "n", 2]
+    start: Annotated[Floats, "n", 2]
+    other: Annotated[Floats, "n", 2]
+    before: Annotated[Floats, "n", 2]
+    bend: Annotated[Floats, "n", 2]
+    curve: Annotated[Floats, "n", 2]
+    noise: Annotated[Floats, 1]
+    active: Annotated[Integers, "contacts"]
+    state: Annotated[Integers, "contacts"]
+    chosen: Annotated[Integers, "contacts"]
+    matrix: Annotated[Floats, DIRECT + 1, DIRECT]
 
     @classmethod
     def empty(cls, n: int, contacts: int) -> Group:
         """An empty group with room for n members and so many contacts."""
-        vectors = "mobility", "motion", "initial", "start", "other", "before", "bend", "curve"
-        arrays: dict[str, Any] = {name: np.zeros((n, 2)) for name in vectors}
-        arrays |= {name: np.zeros(contacts, dtype=np.int64) for name in ("active", "state", "chosen")}
-        return cls(
-            members=np.zeros(n, dtype=np.int64),
-            place=np.full(n, NONE, dtype=np.int64),
-            links=np.zeros((contacts, 2), dtype=np.int64),
-            contacts=np.zeros((contacts, len(Contact))),
-            noise=np.zeros(1),
-            matrix=np.zeros((DIRECT + 1, DIRECT)),
-            **arrays,
-        )
+        group = zeros(cls, n=n, contacts=contacts)
+        group.place[:] = NONE
+        return group
 
 
 class Contact(Places):
@@ -252,76 +233,56 @@ class Contact(Places):
 class Pile(NamedTuple):
     """Discs that take steps, the pairs of discs that are near, and the contacts of the present step; see kernels/pile.py.
 
-    Of each disc in each direction, x and y in turns, shape (2 n,): speed, u = v/√w; root, √w; previous, u before the
+    Of each disc in each direction, x and y in turns: speed, u = v/√w; root, √w; previous, u before the
     sweeps; direction, sum of the changes of u by the sweeps so far.
-    Of each disc, shape (n,): shift, the farthest that contacts may shift it in the step, m; fastest, relative speed of a
+    Of each disc: shift, the farthest that contacts may shift it in the step, m; fastest, relative speed of a
     disc that it may meet, m/s; nearness, 1 if it is near another at the end of the step, 2 if another pushed it; pull,
     acceleration without contacts, m/s²; law, of its contacts in this step, see kernels/pile_energy.py; part, the first of
     the discs that push one another, with it among them.
-    Of each part, at its first disc, shape (n,): gain, energy that the step supplies, J; energy, by which the round-off of
+    Of each part, at its first disc: gain, energy that the step supplies, J; energy, by which the round-off of
     that is measured, J; pushed_out, energy that pushing discs out of one another takes, J; bounced, 1 if a contact in which
     discs bounce pushes; change, twice the energy of the change of velocities by impulses, J; work, of the impulses beyond
     what the biases demand, J; share, of the impulses, that is kept.
-    pairs: two discs each, ascending, shape (p, 2); near: shape (p, len(PilePair)); forces: in the pairs in the step before,
-    N, shape (p,). chosen: the pairs that are contacts; order: the same, in the order in which sweeps go through the
-    contacts; shape (p,) both. ends: the two discs of a contact, one disc twice where the other is held, shape (p, 2).
-    contacts: shape (p, len(PileContact)). scale: square root of the compliances, 1/√kg, shape (p,). contacts_of, shape
-    (2 p,): those of disc i from first[i] to first[i + 1]. queue: contacts still to be relaxed; queued: 1 for these;
-    shape (p,) both.
+    pairs: two discs each, ascending. forces: in the pairs in the step before, N. chosen: the pairs that are contacts; order:
+    the same, in the order in which sweeps go through the contacts. ends: the two discs of a contact, one disc twice where
+    the other is held. scale: square root of the compliances, 1/√kg. contacts_of: those of disc i from first[i] to
+    first[i + 1]. queue: contacts still to be relaxed; queued: 1 for these.
     """
 
-    speed: Floats
-    root: Floats
-    previous: Floats
-    direction: Floats
-    shift: Floats
-    fastest: Floats
-    nearness: Floats
-    pull: Floats
-    law: Floats
-    part: NDArray[np.int32]
-    gain: Floats
-    energy: Floats
-    pushed_out: Floats
-    bounced: Floats
-    change: Floats
-    work: Floats
-    share: Floats
-    pairs: Integers
-    near: Floats
-    forces: Floats
-    chosen: Integers
-    order: Integers
-    ends: NDArray[np.uint32]
-    contacts: Floats
-    scale: Floats
-    first: NDArray[np.int32]
-    contacts_of: NDArray[np.int32]
-    queue: NDArray[np.int32]
-    queued: NDArray[np.int32]
+    speed: Annotated[Floats, "coordinates"]
+    root: Annotated[Floats, "coordinates"]
+    previous: Annotated[Floats, "coordinates"]
+    direction: Annotated[Floats, "coordinates"]
+    shift: Annotated[Floats, "n"]
+    fastest: Annotated[Floats, "n"]
+    nearness: Annotated[Floats, "n"]
+    pull: Annotated[Floats, "n"]
+    law: Annotated[Floats, "n"]
+    part: Annotated[NDArray[np.int32], "n"]
+    gain: Annotated[Floats, "n"]
+    energy: Annotated[Floats, "n"]
+    pushed_out: Annotated[Floats, "n"]
+    bounced: Annotated[Floats, "n"]
+    change: Annotated[Floats, "n"]
+    work: Annotated[Floats, "n"]
+    share: Annotated[Floats, "n"]
+    pairs: Annotated[Integers, "pairs", 2]
+    near: Annotated[Floats, "pairs", len(PilePair)]
+    forces: Annotated[Floats, "pairs"]
+    chosen: Annotated[Integers, "pairs"]
+    order: Annotated[Integers, "pairs"]
+    ends: Annotated[NDArray[np.uint32], "pairs", 2]
+    contacts: Annotated[Floats, "pairs", len(PileContact)]
+    scale: Annotated[Floats, "pairs"]
+    first: Annotated[NDArray[np.int32], "bounds"]
+    contacts_of: Annotated[NDArray[np.int32], "ends"]
+    queue: Annotated[NDArray[np.int32], "pairs"]
+    queued: Annotated[NDArray[np.int32], "pairs"]
 
     @classmethod
     def empty(cls, n: int, pairs: int) -> Pile:
         """A pile of n discs with room for so many pairs."""
-        of_parts = "gain", "energy", "pushed_out", "bounced", "change", "work", "share"
-        of_discs = "shift", "fastest", "nearness", "pull", "law", *of_parts
-        return cls(
-            **{name: np.zeros(2 * n) for name in ("speed", "root", "previous", "direction")},
-            **{name: np.zeros(n) for name in of_discs},
-            part=np.zeros(n, dtype=np.int32),
-            pairs=np.zeros((pairs, 2), dtype=np.int64),
-            near=np.zeros((pairs, len(PilePair))),
-            forces=np.zeros(pairs),
-            chosen=np.zeros(pairs, dtype=np.int64),
-            order=np.zeros(pairs, dtype=np.int64),
-            ends=np.zeros((pairs, 2), dtype=np.uint32),
-            contacts=np.zeros((pairs, len(PileContact))),
-            scale=np.zeros(pairs),
-            first=np.zeros(n + 1, dtype=np.int32),
-            contacts_of=np.zeros(2 * pairs, dtype=np.int32),
-            queue=np.zeros(pairs, dtype=np.int32),
-            queued=np.zeros(pairs, dtype=np.int32),
-        )
+        return zeros(cls, n=n, coordinates=2 * n, bounds=n + 1, pairs=pairs, ends=2 * pairs)
 
 
 class PilePair(Places):

@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 import math
-from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from pinjoint.components import written
+from pinjoint.components.field import Column
 from pinjoint.components.language import tr
 from pinjoint.components.model import Model
 from pinjoint.components.obstacles import obstacles
@@ -16,8 +16,6 @@ from pinjoint.components.table import read_only
 
 MOST_KEPT = 2**22  # impacts; of longer runs the earliest are forgotten
 _COLUMNS = ("time", "first", "second", "impulse", "energy_lost", "x", "y")
-
-Column = NDArray[Any]
 
 
 class TooManyImpacts(Exception):

@@ -10,17 +10,16 @@ from numpy.typing import NDArray
 
 from pinjoint.components.language import joined, plural
 from pinjoint.components.model import Model
-from pinjoint.components.obstacles import NO_OBSTACLES, Obstacles, obstacles
+from pinjoint.components.obstacles import NO_OBSTACLES, Floats, Obstacles, obstacles
 from pinjoint.components.rod import nodes
-from pinjoint.systems.broad_phase import Floats, Rows, gaps, near_pairs
+from pinjoint.systems.broad_phase import SEARCH_MARGIN, Rows, gaps, near_pairs
+from pinjoint.systems.collision.free.discs import WORK_AT_ONCE
 from pinjoint.systems.program.compiler import LONGEST_WORK, GeneratedModule, entries_to
 
 SLACK = 1e-13  # of the reach of two discs: a smaller overlap is round-off
 AROUND = 1.5  # radii: the neighbours of a disc within it are moved apart at a time
 MOST_ROUNDS = 100  # in each of which neighbours are found anew
 MOST_SWEEPS = 400  # over the same pairs; overlaps that these leave stay
-WORK_AT_ONCE = 2**22  # pairs × sweeps in machine code, after which a window may draw
-TOUCHING = 1.0 + 1e-9  # of the reach of two discs
 JOINT_WORK = 32  # operations in a joint impact, for each of the pairs and each disc of the row that passes it on (measured)
 UNSEEN_OVERLAP = 1e-3  # of a radius: too small to see, as steps of piles leave them, and not worth a message
 
@@ -104,7 +103,7 @@ def work_ahead(model: Model) -> tuple[int, int]:
     """
     particles, others = model.particles, obstacles(model)
     place = particles.position + particles.displacement
-    pairs, among = near_pairs(place, TOUCHING * particles.radius, others), _colliding(model)
+    pairs, among = near_pairs(place, SEARCH_MARGIN * particles.radius, others), _colliding(model)
     if not len(pairs := pairs[among(pairs)]):
         return 0, 0
     overlapping = int(among(overlaps(place, particles.radius, others)).sum())

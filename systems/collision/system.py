@@ -28,29 +28,22 @@ class Collision(StepSystem):
     reads = ("particles.radius", "particles.mobility", "settings.restitution")
     writes = ("particles.velocity", "clock.collisions", "clock.dissipated_impact")
     impulsive = True
-    between = "pinjoint.systems.collision.driven.compiled:BETWEEN"
+    between = "pinjoint.systems.collision.driven.neighbours:BETWEEN"
 
     def needs(self, model: Model) -> bool:
-        return model.settings.collisions and can_touch(model)
+        """True if there are two particles that a rod does not join, or one and an obstacle, of which one can move."""
+        if not model.settings.collisions:
+            return False
+        mobility = model.particles.mobility
+        movable: NDArray[np.bool_] = (mobility[:, 0] > 0.0) | (mobility[:, 1] > 0.0)
+        count, moving = len(movable), int(movable.sum())
+        if any_obstacles(model) and moving:
+            return True
+        pairs = count * (count - 1) // 2 - (count - moving) * (count - moving - 1) // 2
+        return pairs > model.rods.count or pairs > int(movable[model.rods.between].any(axis=1).sum())
 
     def leaves_flight_exact(self, model: Model) -> bool:
         return True
-
-
-def can_touch(model: Model) -> bool:
-    """True if there are two particles that a rod does not join, or one and an obstacle, of which one can move."""
-    mobility = model.particles.mobility
-    movable: NDArray[np.bool_] = (mobility[:, 0] > 0.0) | (mobility[:, 1] > 0.0)
-    if any_obstacles(model) and movable.any():
-        return True
-    count, moving = len(movable), int(movable.sum())
-    held = count - moving
-    pairs = count * (count - 1) // 2 - held * (held - 1) // 2
-    if pairs > model.rods.count:
-        return True
-    between = model.rods.between
-    joined = movable[between[:, 0]] | movable[between[:, 1]]
-    return pairs > int(joined.sum())
 
 
 def persistent_contacts(model: Model) -> PersistentContacts | None:

@@ -3,7 +3,7 @@
 from collections.abc import Iterator
 from contextlib import contextmanager
 
-from pinjoint.systems.collision.driven.compiled import DRIVEN
+from pinjoint.systems.collision.driven.neighbours import DRIVEN
 from pinjoint.systems.collision.free.discs import EVENTS, HORIZONS, PILES
 from pinjoint.systems.program import compiler
 from pinjoint.systems.program.compiler import Choice, Compile, GeneratedModule

@@ -4,12 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from enum import auto
-from typing import Any, NamedTuple
+from typing import Annotated, Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
-from pinjoint.systems.collision.columns import NONE, Detail, Floats, Grid, Group, Integers, Places
+from pinjoint.components.obstacles import Floats
+from pinjoint.systems.collision.columns import NONE, Detail, Grid, Group, Integers, Places, zeros
 from pinjoint.systems.entries import Account, Control
 
 
@@ -32,8 +33,6 @@ class Phase(Places):
     TRYING = auto()  # contact forces are to be tried
     TRIED = auto()  # it was taken, or foreseen, with them
     HELD = auto()  # contacts are closed at its end: does it hold an impact?
-    CROWD_TRYING = auto()  # forces in a crowd are to be tried
-    CROWD_TRIED = auto()  # it was taken with them
     OVER = auto()  # it was taken for good, up to an impact if there is one
 
 
@@ -142,13 +141,13 @@ class Tried(Places):
 class Driven(NamedTuple):
     """Driven particles, n of them, the obstacles after them, and the step that they are in the midst of.
 
-    Of the document: position, span, weight (inverse mass, 1/kg, 0 where held), shape (n + obstacles, 2); radius, size
-    (the radius, ∞ for obstacles), restitution, node (1: of a structure), shape (n + obstacles,); loose: the particles
-    that are no nodes; asleep, and pull, acceleration by constant forces (m/s²), shape (n,).
-    Of the list, whose arrays have room for p pairs, of which Whole.LISTED are there: near: the particles in pairs, shape
-    (n,); pairs, rows i < j in ascending order, shape (p, 2), and of each pair lasting (1: a persistent contact),
-    forces (N), normal, slow (speed below which it stays in contact, m/s), rate (at which it opens, m/s); listed:
-    displacements when it was made, margin (m): how far each particle may move from there, negative: there is no list.
+    Of the document: position, span, weight (inverse mass, 1/kg, 0 where held), radius, size (the radius, ∞ for obstacles),
+    restitution, node (1: of a structure); loose: the particles that are no nodes; asleep, and pull, acceleration by
+    constant forces (m/s²).
+    Of the list, whose arrays have room for more pairs than the Whole.LISTED that are there: near: the particles in pairs;
+    pairs, rows i < j in ascending order, and of each pair lasting (1: a persistent contact), forces (N), normal, slow (speed
+    below which it stays in contact, m/s), rate (at which it opens, m/s); listed: displacements when it was made, margin (m):
+    how far each particle may move from there, negative: there is no list.
     Of the step: before, velocity: the state it begins with; ahead, ahead_speed: where it leads, as foreseen;
     acceleration, at its start; path_error (m); support: contact forces (kN); kept: control and account at the start.
     Of the search for contact forces: chosen, the pairs in persistent contact; search, with the rows of Tried; start, end:
@@ -159,88 +158,62 @@ class Driven(NamedTuple):
     Of impacts: group, report; touching: the pairs that touch; parent, chain: work space, by which they are grouped.
     """
 
-    position: Floats
-    span: Floats
-    weight: Floats
-    radius: Floats
-    size: Floats
-    restitution: Floats
-    node: Integers
-    loose: Integers
-    asleep: NDArray[np.bool_]
-    pull: Floats
-    near: Integers
-    pairs: Integers
-    lasting: Integers
-    forces: Floats
-    normal: Floats
-    slow: Floats
-    rate: Floats
-    room: Floats
-    pushes: Floats
-    impulses: Floats
-    listed: Floats
-    margin: Floats
-    before: Floats
-    velocity: Floats
-    ahead: Floats
-    ahead_speed: Floats
-    acceleration: Floats
-    path_error: Floats
-    support: Floats
-    kept: Floats
-    chosen: Integers
-    search: Floats
-    start: Floats
-    end: Floats
-    slope: Floats
-    learnt: Floats
-    matrix: Floats
-    block: Integers
-    sides: Integers
+    position: Annotated[Floats, "every", 2]
+    span: Annotated[Floats, "every", 2]
+    weight: Annotated[Floats, "every", 2]
+    radius: Annotated[Floats, "every"]
+    size: Annotated[Floats, "every"]
+    restitution: Annotated[Floats, "every"]
+    node: Annotated[Integers, "every"]
+    loose: Annotated[Integers, "n"]
+    asleep: Annotated[NDArray[np.bool_], "n"]
+    pull: Annotated[Floats, "n"]
+    near: Annotated[Integers, "n"]
+    pairs: Annotated[Integers, "pairs", 2]
+    lasting: Annotated[Integers, "pairs"]
+    forces: Annotated[Floats, "pairs"]
+    normal: Annotated[Floats, "pairs", 2]
+    slow: Annotated[Floats, "pairs"]
+    rate: Annotated[Floats, "pairs"]
+    room: Annotated[Floats, "pairs"]
+    pushes: Annotated[Floats, "pairs"]
+    impulses: Annotated[Floats, "pairs"]
+    listed: Annotated[Floats, "n", 2]
+    margin: Annotated[Floats, "n"]
+    before: Annotated[Floats, "n", 2]
+    velocity: Annotated[Floats, "n", 2]
+    ahead: Annotated[Floats, "n", 2]
+    ahead_speed: Annotated[Floats, "n", 2]
+    acceleration: Annotated[Floats, "n", 2]
+    path_error: Annotated[Floats, "n"]
+    support: Annotated[Floats, "n", 2]
+    kept: Annotated[Floats, len(Account) + len(Control)]
+    chosen: Annotated[Integers, "contacts"]
+    search: Annotated[Floats, len(Tried), "contacts"]
+    start: Annotated[Floats, "contacts", 2]
+    end: Annotated[Floats, "contacts", 2]
+    slope: Annotated[Floats, "contacts", "contacts"]
+    learnt: Annotated[Floats, "contacts", "contacts"]
+    matrix: Annotated[Floats, "contacts", "columns"]
+    block: Annotated[Integers, 2, "contacts"]
+    sides: Annotated[Integers, 2, "contacts"]
     group: Group
-    report: Floats
-    touching: Integers
-    parent: Integers
-    chain: Integers
-    whole: Integers
-    real: Floats
+    report: Annotated[Floats, "reported", len(Detail)]
+    touching: Annotated[Integers, "pairs"]
+    parent: Annotated[Integers, "every"]
+    chain: Annotated[Integers, "pairs"]
+    whole: Annotated[Integers, len(Whole)]
+    real: Annotated[Floats, len(Real)]
 
     @classmethod
     def empty(cls, of_document: Mapping[str, Any], n: int, pairs: int, contacts: int) -> Driven:
         """Arrays of n particles, of which some are given, with room for so many pairs and persistent contacts."""
-        every = len(of_document["radius"])
-        shapes: dict[str, tuple[tuple[int, ...], Any]] = {
-            "near": ((n,), np.int64),
-            "pairs": ((pairs, 2), np.int64),
-            **dict.fromkeys(("lasting", "touching", "chain"), ((pairs,), np.int64)),
-            **dict.fromkeys(("forces", "slow", "rate", "room", "pushes", "impulses"), ((pairs,), np.float64)),
-            "normal": ((pairs, 2), np.float64),
-            **dict.fromkeys(
-                ("listed", "before", "velocity", "ahead", "ahead_speed", "acceleration", "support"),
-                ((n, 2), np.float64),
-            ),
-            **dict.fromkeys(("margin", "path_error"), ((n,), np.float64)),
-            "kept": ((len(Account) + len(Control),), np.float64),
-            "chosen": ((contacts,), np.int64),
-            "search": ((len(Tried), contacts), np.float64),
-            **dict.fromkeys(("start", "end"), ((contacts, 2), np.float64)),
-            **dict.fromkeys(("slope", "learnt"), ((contacts, contacts), np.float64)),
-            "matrix": ((contacts, contacts + 1), np.float64),
-            "block": ((2, contacts), np.int64),
-            "sides": ((2, contacts), np.int64),
-            "parent": ((every,), np.int64),
-            "whole": ((len(Whole),), np.int64),
-            "real": ((len(Real),), np.float64),
-        }
-        arrays = {name: np.zeros(shape, dtype) for name, (shape, dtype) in shapes.items()}
-        arrays["parent"][:] = NONE
-        return cls(
-            **of_document,
-            **arrays,
-            group=Group.empty(max(every, 2 * pairs), pairs),
-            report=np.zeros((4 * pairs + 64, len(Detail))),
-        )
+        every = len(of_document.get("radius", ()))
+        given = {**of_document, "group": Group.empty(max(every, 2 * pairs), pairs)}
+        room = {"pairs": pairs, "reported": 4 * pairs + 64, "contacts": contacts, "columns": contacts + 1}
+        driven = zeros(cls, given, n=n, every=every, **room)
+        driven.parent[:] = NONE
+        return driven
 
 
 class Listing(NamedTuple):

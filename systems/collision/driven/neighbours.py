@@ -1,24 +1,30 @@
-"""The neighbour list of driven particles: its arrays, and what of it the document and the state of a model say."""
+"""The neighbour list of driven particles: its arrays, what the document and the state of a model say of it, its kernels."""
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from pinjoint.components.clock import PersistentContacts
-from pinjoint.components.field import Role
+from pinjoint.components.field import Column, Role
 from pinjoint.components.model import Model
-from pinjoint.components.obstacles import obstacles
+from pinjoint.components.obstacles import Floats, obstacles
+from pinjoint.components.particle import Particle
 from pinjoint.components.rod import nodes
-from pinjoint.systems.collision.columns import NONE, STEP_SHARE, Floats, Grid, Integers, partners_of
+from pinjoint.systems.broad_phase import gaps
+from pinjoint.systems.collision.columns import NONE, Grid, Integers, partners_of
 from pinjoint.systems.collision.driven.columns import Driven, Listing, Order, Phase, Real, Whole
-from pinjoint.systems.collision.driven.compiled import DRIVEN
+from pinjoint.systems.collision.driven.kernels.neighbours import list_pairs
+from pinjoint.systems.collision.driven.kernels.steps import collide
 from pinjoint.systems.collision.system import persistent_contacts
-from pinjoint.systems.entries import Control
+from pinjoint.systems.entries import Account, Control
+from pinjoint.systems.program.compiler import Between, GeneratedModule, entries_to
 
 CONTACTS = 8  # room at first
+STEP_SHARE = 0.04  # longest step of crowds: of the time in which a disc falls through its diameter
 MORE, LEAST_ROOM = 1.5, 16  # times the pairs there are, and beyond that: room for those that come near later
 OF_PAIRS = (
     *("pairs", "lasting", "forces", "normal", "slow", "rate", "room", "pushes", "impulses"),
@@ -177,3 +183,54 @@ class NeighbourList:
     def velocity(self) -> Floats:
         """Of the particles, now (m/s)."""
         return self.model.tables["particles"].storage("velocity")
+
+
+# --- the kernels -------------------------------------------------------------------------------------
+
+
+def _contents() -> tuple[str, dict[str, Callable[..., Any]]]:
+    """The source, and the kernels by the names that it calls them."""
+    source, kernels = entries_to({"collide": collide, "list_pairs": list_pairs})
+    layout = [_layout(arrays) for arrays in _idle()]  # what is kept on disk is of no use for another
+    return f"{source}# arrays: {layout}\n", kernels
+
+
+def _layout(arrays: Any) -> Any:
+    """The names, types and dimensions of arrays, in named tuples of their own where they are."""
+    if isinstance(arrays, np.ndarray):
+        return arrays.dtype.str, arrays.ndim
+    return [(name, _layout(held)) for name, held in zip(arrays._fields, arrays, strict=True)]
+
+
+def _idle() -> tuple[Driven, Listing]:
+    """Arrays of no particles."""
+    driven = Driven.empty({}, 0, 0, 0)
+    return driven, Listing(*partners_of(0, ()), driven.pairs, Grid.empty(0, 1))
+
+
+def _support(model: Model) -> Column:
+    contacts, particles = persistent_contacts(model), model.particles
+    total = np.zeros((particles.count, 2))
+    if contacts is not None:
+        place, pairs = particles.position + particles.displacement, contacts.pairs
+        _, normal = gaps(place, particles.radius, pairs, obstacles(model))
+        push = normal * (0.001 * contacts.forces)[:, None]
+        for d in range(2):
+            # obstacles come after them
+            total[:, d] = np.bincount(pairs[:, 1], push[:, d], len(total))[: len(total)]
+            total[:, d] -= np.bincount(pairs[:, 0], push[:, d], len(total))
+    return total
+
+
+def _warm_up() -> None:
+    """Call every compiled function once."""
+    model, none = Model(), np.zeros((0, 2))
+    model.create(Particle, 2, position=[(0.0, 0.0), (0.09, 0.0)], velocity=[(1.0, 0.0), (0.0, 0.0)])
+    near = NeighbourList(model)
+    near.look_up()
+    near.list_within(0.0)
+    DRIVEN.form.collide(_idle()[0], np.zeros(len(Control)), np.zeros(len(Account)), none, none)
+
+
+DRIVEN = GeneratedModule("driven_collisions", _contents, _warm_up)
+BETWEEN = Between(DRIVEN, (collide, list_pairs), _idle, _support)

@@ -11,16 +11,11 @@ from __future__ import annotations
 import math
 from typing import Protocol
 
-import numpy as np
-
 from pinjoint.components.model import Model
-from pinjoint.components.particle import Particle
 from pinjoint.systems.base import StopReason
 from pinjoint.systems.collision.driven.columns import Need, Real, Whole
-from pinjoint.systems.collision.driven.compiled import DRIVEN, idle
 from pinjoint.systems.collision.driven.neighbours import NeighbourList
 from pinjoint.systems.collision.impacts import Impacts
-from pinjoint.systems.entries import Account, Control
 from pinjoint.systems.program.program import Program
 
 
@@ -102,18 +97,3 @@ class DrivenCollisions:
             clock = self.model.clock
             self.model.writable("clock.collisions")[0] = clock.collisions + count
             whole[Whole.REPORTED] = 0
-
-
-def _warm_up() -> None:
-    """Call every compiled function once."""
-    model, (arrays, _) = Model(), idle()
-    model.create(Particle, 2, position=[(0.0, 0.0), (0.09, 0.0)], velocity=[(1.0, 0.0), (0.0, 0.0)])
-    near = NeighbourList(model)
-    near.look_up()
-    near.list_within(0.0)
-    DRIVEN.form.collide(
-        arrays, np.zeros(len(Control)), np.zeros(len(Account)), np.zeros((0, 2)), np.zeros((0, 2))
-    )
-
-
-DRIVEN.warm_up = _warm_up

@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from pinjoint.components.clock import FreeFlightState
-from pinjoint.components.obstacles import NO_OBSTACLES, Obstacles
+from pinjoint.components.obstacles import NO_OBSTACLES, Floats, Obstacles
 from pinjoint.systems.broad_phase import nearest
 from pinjoint.systems.collision.columns import (
     FLIGHT,
@@ -26,7 +26,6 @@ from pinjoint.systems.collision.columns import (
     Detail,
     Disc,
     Entry,
-    Floats,
     Grid,
     Group,
     Integers,
@@ -34,6 +33,8 @@ from pinjoint.systems.collision.columns import (
     Pile,
     Queue,
     Reason,
+    partners_of,
+    zeros,
 )
 from pinjoint.systems.collision.system import REST_HEIGHT
 from pinjoint.systems.program.compiler import Choice, GeneratedModule, entries_to
@@ -41,7 +42,9 @@ from pinjoint.systems.program.compiler import Choice, GeneratedModule, entries_t
 SAME_PLACE = 1e-12  # of the largest coordinate: ends of obstacles nearer than this are one
 REPORTED_AT_ONCE = 512  # impacts; fetched before more are reported
 PILE_STEP_SHARE = 0.03  # longest step of piles: of the time in which a disc falls through its diameter
-WORK_AT_ONCE = 2**22  # discs × events, after which a kernel returns, so that Python can heed Ctrl+C
+WORK_AT_ONCE = (
+    2**22
+)  # discs × events, or pairs × sweeps, after which a kernel returns: Python heeds Ctrl+C, a window draws
 MORE_PATIENCE = 64  # calm steps between two searches for the equilibrium of a pile
 
 
@@ -101,12 +104,14 @@ class Discs:
         self.numbers[Number.WORK_SINCE] = time
         self.numbers[[Number.LOSS, Number.MOST_LOSS]] = lost
         self.numbers[Number.STOP] = np.inf
-        self.queue = Queue.empty(2 * n + 64)
+        self.queue = zeros(Queue, size=2 * n + 64)
         self.grid = Grid.empty(n, 2)
         self.group = Group.empty(n, 4 * n + 64)
         self.pile = Pile.empty(n, len(self.group.links))
         self.report = np.zeros((max(REPORTED_AT_ONCE, len(self.group.links)), len(Detail)))
-        self.constraints = Constraints.of(n, joined, 2 * len(self.group.links), self.counts)
+        chains, entries = np.zeros(n, dtype=np.int64), np.zeros((0, 2), dtype=np.int64)
+        none = Constraints(*partners_of(n, joined), chains, entries, np.zeros(0))
+        self.constraints = none.cleared(2 * len(self.group.links), self.counts)
 
     def _enter_obstacles(self) -> None:
         added, others = self.rows[self.count :], self._obstacles
@@ -150,30 +155,28 @@ class Discs:
         numbers, counts = self.numbers, self.counts
         if counts[Count.STEPPING]:
             arrays = rows, grid, constraints, pile, report, numbers, counts
-            return self._in_portions(PILES, "take_steps", until, most_events, *arrays)
+            return self._in_portions(PILES, until, most_events, *arrays)
         if counts[Count.RENEW]:
             reason = Reason(HORIZONS.form.open_horizon(rows, grid, constraints, queue, numbers, counts))
             if reason is not Reason.DONE:
                 return reason
         arrays = rows, grid, constraints, queue, group, report, numbers, counts  # type: ignore[assignment]
-        return self._in_portions(EVENTS, "fly", until, most_events, *arrays)
+        return self._in_portions(EVENTS, until, most_events, *arrays)
 
-    def _in_portions(
-        self, module: GeneratedModule, name: str, until: float, most_events: int, *arrays: Any
-    ) -> Reason:
-        """Call a kernel; interpreted, it does a portion."""
-        if module.is_loaded:
-            return Reason(getattr(module.form, name)(until, most_events, *arrays))
-        before, most = int(self.counts[Count.EVENTS]), min(most_events, module.portion)
-        reason = Reason(getattr(module.form, name)(until, most, *arrays))
-        module.did(int(self.counts[Count.EVENTS]) - before)
+    def _in_portions(self, module: GeneratedModule, until: float, most_events: int, *arrays: Any) -> Reason:
+        """Call the kernel that a module is named after; interpreted, it does a portion."""
+        before, interpreted = int(self.counts[Count.EVENTS]), not module.is_loaded
+        most = min(most_events, module.portion) if interpreted else most_events
+        reason = Reason(getattr(module.form, module.name)(until, most, *arrays))
+        if interpreted:
+            module.did(int(self.counts[Count.EVENTS]) - before)
         return reason
 
     def _make_room(self, reason: Reason) -> None:
         n = len(self.rows)
         if reason is Reason.QUEUE_FULL:
             self.counts[Count.RENEW] = 1
-            self.queue = Queue.empty(2 * len(self.queue.times))
+            self.queue = zeros(Queue, size=2 * len(self.queue.times))
         elif reason is Reason.GRID_FULL:
             self.grid = Grid.empty(n, int(self.counts[Count.LAYERS]) + 1)
             self.counts[Count.LISTED] = NONE

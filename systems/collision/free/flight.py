@@ -16,31 +16,28 @@ from pinjoint.components.field import Role
 from pinjoint.components.handle import Handle
 from pinjoint.components.load import loads_end
 from pinjoint.components.model import Model
-from pinjoint.components.obstacles import obstacles
+from pinjoint.components.obstacles import Floats, obstacles
 from pinjoint.systems.base import REVIEW_INTERVAL, Event, Law, StopReason
-from pinjoint.systems.collision.columns import FLIGHT, PILE_COUNTS, PILE_NUMBERS, Floats, Number, Reason
+from pinjoint.systems.collision.columns import FLIGHT, PILE_COUNTS, PILE_NUMBERS, Number, Reason
 from pinjoint.systems.collision.free.discs import EVENTS, HORIZONS, Discs, state_on
 from pinjoint.systems.collision.impacts import MOST_KEPT, Impacts, TooManyImpacts
 from pinjoint.systems.entries import Measure
-from pinjoint.systems.program.compiler import Choice, GeneratedModule, Unfinished
+from pinjoint.systems.program.compiler import Choice, Unfinished
 
 EVENTS_AT_ONCE = 2**18  # of which the impacts are gathered
 CHECK_INTERVAL = 128  # steps, at multiples of which a run may end at rest
 
 
-def may_pile(model: Model, pulled: bool) -> bool:
-    """True if laws, such as a hand that pulls, or constant forces press particles together for long."""
-    return pulled or bool(model.particles.constant_force.any())
-
-
 class Flight:
     """The particles of one model on their exact paths from impact to impact.
 
-    measures, compile_seconds: as of Program. unbalanced: force on each particle as last observed (kN).
+    flying: the discs as they are in the midst of a step, if they fly already. measures, compile_seconds: as of Program.
+    unbalanced: force on each particle as last observed (kN).
     The paths are part of the model's state: clock.collision_state. laws: a hand's, for one, whose forces are held
     constant during a step, so that paths are exact within it.
     """
 
+    module = EVENTS
     lasting = ""  # nothing changes with time for ever
     watches_events = False
     follows_state = False  # contacts keep particles at rest, too
@@ -59,16 +56,6 @@ class Flight:
         self.compile_seconds = time.perf_counter() - started
 
     @property
-    def module(self) -> GeneratedModule:
-        """What lets events happen."""
-        return EVENTS
-
-    @property
-    def flying(self) -> Discs | None:
-        """The discs as they are in the midst of a step, if they fly already."""
-        return self._flying
-
-    @property
     def changes_end(self) -> float:
         """The time (s) at which the last load history ends."""
         return loads_end(self.model)
@@ -85,12 +72,12 @@ class Flight:
 
     def bind(self) -> None:
         """The document changed: paths are found anew."""
-        self._flying: Discs | None = None
+        self.flying: Discs | None = None
         self._state_revision = -1
 
     @property
     def _fresh(self) -> bool:
-        return self._flying is not None and self._state_revision == self.model.newest(Role.STATE)
+        return self.flying is not None and self._state_revision == self.model.newest(Role.STATE)
 
     @property
     def discs(self) -> Discs:
@@ -99,7 +86,7 @@ class Flight:
             self._found: deque[Floats] = deque()  # by a step that is not finished
             self._happened = 0
             particles, clock = self.model.particles, self.model.clock
-            self._flying = Discs(
+            self.flying = Discs(
                 particles.position,
                 particles.velocity,
                 particles.radius,
@@ -113,10 +100,10 @@ class Flight:
             )
             saved = clock.collision_state
             if not self._laws and isinstance(saved, FreeFlightState) and self._fits(saved):
-                self._flying.resume(saved)
+                self.flying.resume(saved)
             self._state_revision = self.model.newest(Role.STATE)
-        assert self._flying is not None
-        return self._flying
+        assert self.flying is not None
+        return self.flying
 
     def _fits(self, saved: FreeFlightState) -> bool:
         """True if saved paths lead through the present state, bit for bit."""
@@ -155,7 +142,7 @@ class Flight:
     def _step_under_laws(self, until: float, landing: float) -> int:
         """Take one step with the laws' forces held constant, and enter their work."""
         force, particles = self._held_forces(), self.model.particles
-        self._flying, before = None, particles.displacement.copy()
+        self.flying, before = None, particles.displacement.copy()
         taken, _ = self._pass(1, until, landing)
         if taken:
             work = 1000.0 * float((force * (particles.displacement - before)).sum())

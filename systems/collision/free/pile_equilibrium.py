@@ -20,12 +20,11 @@ from numpy.typing import NDArray
 from scipy.sparse import csr_matrix, diags
 from scipy.sparse.linalg import splu
 
-from pinjoint.components.obstacles import Obstacles
-from pinjoint.systems.broad_phase import Floats, Rows, gaps, near_pairs
+from pinjoint.components.obstacles import Floats, Obstacles
+from pinjoint.systems.broad_phase import Rows, gaps, near_pairs
 
 AROUND = 0.1  # of its radius around each disc, in which its neighbours are listed, and iterates are sought
 FARTHEST = 0.025  # of its radius: an equilibrium to which a disc would go farther is not near
-FREE_STRIDE = 1.0  # radii by which inertia lets a disc go in an iteration that nothing holds
 FIRST_BARRIER = 1e-5  # μ at first, in weight × radius of the lighter and the smaller of a pair
 QUICK, SLOW = 0.03, 0.8  # what is left of μ after an iteration that got far, and after others
 LONG_STEP = 0.5  # of Newton's step: an iteration that takes more of it got far
@@ -77,7 +76,9 @@ class EquilibriumSearch:
         self._weight = np.append(mass * float(np.hypot(*pull.T).max(initial=0.0)), everywhere)
         self._weight[~self._moves] = np.inf
         self._size = np.append(radius, everywhere)
-        inertia = (self._weight[:count] / (FREE_STRIDE * radius))[:, None]
+        inertia = (self._weight[:count] / radius)[
+            :, None
+        ]  # lets a disc that nothing holds go by a radius in an iteration
         self._inertia = np.broadcast_to(inertia, place.shape)[self._free]
         self._list(pushing, forces)
 

@@ -12,6 +12,7 @@ import numpy as np
 from pinjoint.systems.collision.columns import (
     NONE,
     SPEED_NOISE,
+    TINY,
     Contact,
     Count,
     Disc,
@@ -20,9 +21,9 @@ from pinjoint.systems.collision.columns import (
     Reason,
 )
 from pinjoint.systems.collision.kernels import compiled
-from pinjoint.systems.collision.kernels.grid import neighbours, place_box, sort
-from pinjoint.systems.collision.kernels.heap import drop_first, is_void
-from pinjoint.systems.collision.kernels.horizon import enclose_anew, is_joined, schedule_impact
+from pinjoint.systems.collision.kernels.grid import enclose_anew, neighbours, place_box, sort
+from pinjoint.systems.collision.kernels.heap import drop_first, drop_void
+from pinjoint.systems.collision.kernels.horizon import is_joined, schedule_impact
 from pinjoint.systems.collision.kernels.impact import respond
 from pinjoint.systems.collision.kernels.pair_impact import strike
 from pinjoint.systems.collision.kernels.persistent_contact import (
@@ -50,8 +51,6 @@ from pinjoint.systems.collision.kernels.time_of_impact import (
     velocity_at,
 )
 
-COINCIDENT = 1e-300  # m; in place of the distance of centres that coincide
-
 
 @compiled
 def fly(until, most_events, discs, grid, constraints, queue, group, report, numbers, counts):
@@ -61,9 +60,7 @@ def fly(until, most_events, discs, grid, constraints, queue, group, report, numb
     """
     last = counts[Count.EVENTS] + most_events
     while counts[Count.RENEW] == 0 and counts[Count.STEPPING] == 0:
-        while counts[Count.QUEUED] > 0 and is_void(queue, 0, discs):
-            drop_first(queue, counts[Count.QUEUED])
-            counts[Count.QUEUED] -= 1
+        drop_void(queue, discs, counts)
         stop = min(until, numbers[Number.HORIZON_END])
         if counts[Count.QUEUED] == 0 or queue.times[0] > stop:
             numbers[Number.NOW] = max(numbers[Number.NOW], stop)
@@ -97,8 +94,7 @@ def _next_event(discs, grid, constraints, queue, group, report, numbers, counts)
         _dismiss(count, group)
         begin_steps(numbers, counts)
         return Reason.DONE
-    drop_first(queue, counts[Count.QUEUED])
-    counts[Count.QUEUED] -= 1
+    drop_first(queue, counts)
     counts[Count.EVENTS] += 1
     hold_together(count, touching, discs, group, numbers)
     respond(count, touching, _restitution(touching, discs, group, numbers), group)
@@ -167,7 +163,7 @@ def _link(i, j, force, touching, discs, group, time):
         contact = group.contacts[touching]
         contact[Contact.ROUND] = rounded
         if distance == 0.0:  # no direction is better than another
-            dx = distance = COINCIDENT
+            dx = distance = TINY
         contact[Contact.NX], contact[Contact.NY] = dx / distance, dy / distance
         contact[Contact.DISTANCE] = distance
         contact[Contact.SX], contact[Contact.SY] = dx, dy
@@ -290,7 +286,6 @@ def _keep_contacts(count, touching, discs, constraints, group, counts):
         if force > 0.0:
             i, j = group.members[group.links[c, 0]], group.members[group.links[c, 1]]
             enter_persistent(i, j, force, discs, constraints, counts)
-            enter_persistent(j, i, force, discs, constraints, counts)
             for disc in (i, j):
                 pull = math.hypot(discs[disc, Disc.GX], discs[disc, Disc.GY])
                 discs[disc, Disc.NOISE] += SPEED_NOISE * math.sqrt(pull * discs[disc, Disc.RADIUS])

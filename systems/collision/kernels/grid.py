@@ -13,7 +13,7 @@ fro. The buckets of neighbouring cells differ.
 
 import math
 
-from pinjoint.systems.collision.columns import NONE, Disc
+from pinjoint.systems.collision.columns import NONE, Count, Disc, Number
 from pinjoint.systems.collision.kernels import compiled
 from pinjoint.systems.collision.kernels.time_of_impact import extent
 
@@ -94,7 +94,7 @@ def suitable_size(i, grid):
 
 
 @compiled
-def level_of(i, grid, cell):
+def _level_of(i, grid, cell):
     """The finest level (0: cells of size `cell`, then doubling) that suits the box of a disc."""
     size = suitable_size(i, grid)
     if size <= cell:
@@ -104,7 +104,7 @@ def level_of(i, grid, cell):
 
 
 @compiled
-def layer_of(level, grid, layers):
+def _layer_of(level, grid, layers):
     """The finest layer of at least this level; `layers` if all are finer."""
     k = 0
     while k < layers and grid.levels[k] < level:
@@ -113,7 +113,7 @@ def layer_of(level, grid, layers):
 
 
 @compiled
-def choose_layers(grid, cell, coarsest):
+def _choose_layers(grid, cell, coarsest):
     """Choose the layers that the boxes need, and one of at least the level `coarsest`; returns how many.
 
     cell: size of the finest cells. Every disc is given its layer.
@@ -121,7 +121,7 @@ def choose_layers(grid, cell, coarsest):
     count = grid.boxes.shape[0]
     needed = 1 << min(coarsest, COARSEST)
     for i in range(count):
-        grid.layer[i] = level_of(i, grid, cell)
+        grid.layer[i] = _level_of(i, grid, cell)
         needed |= 1 << grid.layer[i]
     layers = 0
     for level in range(COARSEST + 1):
@@ -130,12 +130,12 @@ def choose_layers(grid, cell, coarsest):
             grid.inverse[layers] = math.ldexp(1.0 / cell, -level)
             layers += 1
     for i in range(count):
-        grid.layer[i] = layer_of(grid.layer[i], grid, layers)
+        grid.layer[i] = _layer_of(grid.layer[i], grid, layers)
     return layers
 
 
 @compiled
-def cell_size(grid):
+def _cell_size(grid):
     """About twice the largest of the boxes, but not more than a few times the small ones (measured).
 
     Nor so small that no layer is coarse enough for the largest: every box overlaps few cells, however small others are.
@@ -287,6 +287,29 @@ def _look_into(entry, kind, i, box, x, y, left_most, lowest, k, count, grid):
 
 
 @compiled
+def set_layers(grid, numbers, counts):
+    """Choose the finest cells and the layers that the boxes need, and give every disc its layer."""
+    numbers[Number.CELL] = _cell_size(grid)
+    counts[Count.LAYERS] = _choose_layers(grid, numbers[Number.CELL], counts[Count.LEVEL])
+    counts[Count.LEVEL] = 0
+
+
+@compiled
+def enclose_anew(i, discs, grid, numbers, counts):
+    """Set the box of a disc with a new path. False if it is too large for the grid: a new horizon must be opened."""
+    layers = counts[Count.LAYERS]
+    leave(i, grid, layers)
+    enclose(i, discs, grid, numbers[Number.NOW], numbers[Number.HORIZON_END])
+    level = _level_of(i, grid, numbers[Number.CELL])
+    grid.layer[i] = _layer_of(level, grid, layers)
+    enter(i, grid, layers)
+    if grid.layer[i] < layers:
+        return True
+    counts[Count.LEVEL] = max(counts[Count.LEVEL], level)
+    return False
+
+
+@compiled
 def sort(found, count):
     """Sort a few numbers: the order in which a grid finds discs depends on when it was made."""
     for k in range(1, count):
@@ -298,12 +321,14 @@ def sort(found, count):
 
 
 @compiled
-def list_pairs(layers, pairs, grid):
-    """List the pairs of discs i < j whose boxes overlap, in ascending order, at the end of `pairs`; returns how many.
+def list_pairs(pairs, grid):
+    """List the pairs of discs i < j whose boxes overlap, in ascending order, at the end of `pairs`.
 
-    Also where there is no room for all of them.
+    Returns how many, also where there is no room for all of them, or NONE if the grid has no room; and its layers.
     """
-    count, room = 0, pairs.shape[0]
+    layers, count, room = _choose_layers(grid, _cell_size(grid), 0), 0, pairs.shape[0]
+    if not has_room(grid, layers):
+        return NONE, layers
     grid.heads[:] = NONE
     # from the last on, so that those entered have higher numbers
     for i in range(grid.boxes.shape[0] - 1, -1, -1):
@@ -315,7 +340,7 @@ def list_pairs(layers, pairs, grid):
             if count <= room:
                 pairs[room - count, 0], pairs[room - count, 1] = i, grid.found[k]
         enter(i, grid, layers)
-    return count
+    return count, layers
 
 
 @compiled
@@ -339,14 +364,11 @@ def are_listed(position, displacement, reach, listed, count, pairs, grid):
             listed[i, d] = displacement[i, d]
             away += abs(displacement[i, d])
         set_box(i, x + displacement[i, 0], y + displacement[i, 1], 0.0, 0.0, 0.5 * reach[1], away, grid)
-    layers = choose_layers(grid, cell_size(grid), 0)
-    if not has_room(grid, layers):
-        count[0] = room + 1
+    found, _ = list_pairs(pairs, grid)
+    if found == NONE or found > room:
+        count[0] = max(found, room + 1)
         return False
-    found, near = list_pairs(layers, pairs, grid), 0
-    if found > room:
-        count[0] = found
-        return False
+    near = 0
     for k in range(room - 1, room - 1 - found, -1):
         i, j = pairs[k, 0], pairs[k, 1]
         dx = (position[j, 0] - position[i, 0]) + (displacement[j, 0] - displacement[i, 0])

@@ -2,8 +2,10 @@
 
 import numpy as np
 
-from pinjoint.systems.collision.columns import MOST_CHANGES, Disc
+from pinjoint.systems.collision.columns import Count, Disc
 from pinjoint.systems.collision.kernels import compiled
+
+MOST_CHANGES = 2**31 - 1  # mask: the part of a disc's number of changes that an impact in the queue keeps
 
 
 @compiled
@@ -41,16 +43,23 @@ def _move(queue, source, target):
 
 
 @compiled
-def push(queue, size, time, i, j, changes_i, changes_j):
-    """Add an impact to a heap of `size` that has room for it."""
-    k = size
+def queue_impact(time, i, j, discs, queue, counts):
+    """Queue an impact of two discs, i ≤ j. False if the queue is full."""
+    capacity = queue.times.shape[0]
+    if counts[Count.QUEUED] == capacity:
+        counts[Count.QUEUED] = _purge(queue, capacity, discs)
+        if counts[Count.QUEUED] > capacity - capacity // 8:
+            return False
+    k = counts[Count.QUEUED]
     while k > 0:
         parent = (k - 1) // 2
         if not _before(time, i, j, parent, queue):
             break
         _move(queue, parent, k)
         k = parent
-    _place(queue, k, time, i, j, changes_i, changes_j)
+    _place(queue, k, time, i, j, _changes(i, discs), _changes(j, discs))
+    counts[Count.QUEUED] += 1
+    return True
 
 
 @compiled
@@ -72,32 +81,41 @@ def _sink(queue, size, k):
 
 
 @compiled
-def drop_first(queue, size):
-    """Remove the earliest impact; the heap then has size − 1."""
-    if size > 1:
-        _move(queue, size - 1, 0)
-        _sink(queue, size - 1, 0)
+def drop_first(queue, counts):
+    """Remove the earliest impact."""
+    counts[Count.QUEUED] -= 1
+    size = counts[Count.QUEUED]
+    if size > 0:
+        _move(queue, size, 0)
+        _sink(queue, size, 0)
 
 
 @compiled
-def changes(i, discs):
+def drop_void(queue, discs, counts):
+    """Remove the earliest impacts as long as they are void."""
+    while counts[Count.QUEUED] > 0 and _is_void(queue, 0, discs):
+        drop_first(queue, counts)
+
+
+@compiled
+def _changes(i, discs):
     """Number of changes of the path of a disc, as the queue keeps it."""
     return int(discs[i, Disc.CHANGES]) & MOST_CHANGES
 
 
 @compiled
-def is_void(queue, k, discs):
+def _is_void(queue, k, discs):
     """True if a disc of the impact at k has changed its path since."""
     _, i, j, changes_i, changes_j = _impact_at(queue, k)
-    return changes_i != changes(i, discs) or changes_j != changes(j, discs)
+    return changes_i != _changes(i, discs) or changes_j != _changes(j, discs)
 
 
 @compiled
-def purge(queue, size, discs):
+def _purge(queue, size, discs):
     """Remove the void impacts; returns the number of impacts that are left."""
     kept = 0
     for k in range(size):
-        if not is_void(queue, k, discs):
+        if not _is_void(queue, k, discs):
             _move(queue, k, kept)
             kept += 1
     for k in range(kept // 2 - 1, -1, -1):

@@ -10,17 +10,13 @@ import math
 from pinjoint.systems.collision.columns import NONE, Count, Disc, Number, Reason
 from pinjoint.systems.collision.kernels import compiled
 from pinjoint.systems.collision.kernels.grid import (
-    cell_size,
-    choose_layers,
     enclose,
     enter,
     has_room,
-    layer_of,
-    leave,
-    level_of,
     neighbours,
+    set_layers,
 )
-from pinjoint.systems.collision.kernels.heap import changes, purge, push
+from pinjoint.systems.collision.kernels.heap import queue_impact
 from pinjoint.systems.collision.kernels.persistent_contact import find_persistent, is_held
 from pinjoint.systems.collision.kernels.time_of_impact import (
     INFINITY,
@@ -104,19 +100,6 @@ def schedule_impact(i, j, discs, constraints, queue, numbers, counts):
         start = max(discs[i, Disc.EPOCH], discs[j, Disc.EPOCH])
         time = impact_on(relative_motion(discs, i, j, start), i, j, start, discs, constraints, end)
     return time > end or queue_impact(time, i, j, discs, queue, counts)
-
-
-@compiled
-def queue_impact(time, i, j, discs, queue, counts):
-    """Queue an impact of two discs, i ≤ j. False if the queue is full."""
-    capacity = queue.times.shape[0]
-    if counts[Count.QUEUED] == capacity:
-        counts[Count.QUEUED] = purge(queue, capacity, discs)
-        if counts[Count.QUEUED] > capacity - capacity // 8:
-            return False
-    push(queue, counts[Count.QUEUED], time, i, j, changes(i, discs), changes(j, discs))
-    counts[Count.QUEUED] += 1
-    return True
 
 
 @compiled
@@ -242,29 +225,3 @@ def _spread(discs):
         left, right = min(left, x - r), max(right, x + r)
         bottom, top = min(bottom, y - r), max(top, y + r)
     return (right - left) * (top - bottom)
-
-
-# --- layers of the grid ---------------------------------------------------------------------------------
-
-
-@compiled
-def set_layers(grid, numbers, counts):
-    """Choose the finest cells and the layers that the boxes need, and give every disc its layer."""
-    numbers[Number.CELL] = cell_size(grid)
-    counts[Count.LAYERS] = choose_layers(grid, numbers[Number.CELL], counts[Count.LEVEL])
-    counts[Count.LEVEL] = 0
-
-
-@compiled
-def enclose_anew(i, discs, grid, numbers, counts):
-    """Set the box of a disc with a new path. False if it is too large for the grid: a new horizon must be opened."""
-    layers = counts[Count.LAYERS]
-    leave(i, grid, layers)
-    enclose(i, discs, grid, numbers[Number.NOW], numbers[Number.HORIZON_END])
-    level = level_of(i, grid, numbers[Number.CELL])
-    grid.layer[i] = layer_of(level, grid, layers)
-    enter(i, grid, layers)
-    if grid.layer[i] < layers:
-        return True
-    counts[Count.LEVEL] = max(counts[Count.LEVEL], level)
-    return False

@@ -9,9 +9,9 @@ import math
 
 from pinjoint.systems.collision.columns import NONE, SPEED_NOISE, Count, Disc, Number, Reason
 from pinjoint.systems.collision.kernels import compiled
-from pinjoint.systems.collision.kernels.grid import neighbours
-from pinjoint.systems.collision.kernels.heap import drop_first
-from pinjoint.systems.collision.kernels.horizon import enclose_anew, impact_on, queue_impact
+from pinjoint.systems.collision.kernels.grid import enclose_anew, neighbours
+from pinjoint.systems.collision.kernels.heap import drop_first, queue_impact
+from pinjoint.systems.collision.kernels.horizon import impact_on
 from pinjoint.systems.collision.kernels.persistent_contact import is_held
 from pinjoint.systems.collision.kernels.pile import begin_steps, crowded, enter_impact
 from pinjoint.systems.collision.kernels.time_of_impact import (
@@ -59,8 +59,7 @@ def strike(i, j, discs, grid, constraints, queue, report, numbers, counts):
             _restore(j, other, discs, grid, numbers, counts)
     if all_meets == NONE:
         return Reason.GO_ON
-    drop_first(queue, counts[Count.QUEUED])
-    counts[Count.QUEUED] -= 1
+    drop_first(queue, counts)
     counts[Count.EVENTS] += 1
     loss = -0.5 * impulse * (before + after)
     numbers[Number.LOSS] += loss

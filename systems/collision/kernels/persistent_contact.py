@@ -73,15 +73,16 @@ def forget_persistent(i, constraints, counts):
 
 @compiled
 def enter_persistent(i, j, force, discs, constraints, counts):
-    """Enter a persistent contact with j for disc i, unless i is held."""
-    if not is_held(i, discs):
-        entry = counts[Count.SPARE]
-        counts[Count.SPARE] = constraints.persistent[entry, Entry.NEXT]
-        counts[Count.SPARES] -= 1
-        constraints.persistent[entry, Entry.OTHER] = j
-        constraints.persistent[entry, Entry.NEXT] = constraints.first_persistent[i]
-        constraints.forces[entry] = force
-        constraints.first_persistent[i] = entry
+    """Enter a persistent contact of two discs for each that is not held."""
+    for disc, other in ((i, j), (j, i)):
+        if not is_held(disc, discs):
+            entry = counts[Count.SPARE]
+            counts[Count.SPARE] = constraints.persistent[entry, Entry.NEXT]
+            counts[Count.SPARES] -= 1
+            constraints.persistent[entry, Entry.OTHER] = other
+            constraints.persistent[entry, Entry.NEXT] = constraints.first_persistent[disc]
+            constraints.forces[entry] = force
+            constraints.first_persistent[disc] = entry
 
 
 # --- the end of a step --------------------------------------------------------------------------------------

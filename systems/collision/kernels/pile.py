@@ -50,11 +50,14 @@ SMALL_PILE = 50  # contacts; with more of them, these are enough:
 DEPTH = 9.5e-4  # of the smallest radius
 ROUGHNESS = 0.05  # of the fastest travel in the step
 NEARBY = 0.2  # of the radius of the smaller of two discs: gap below which they move on straight lines
-CALM_TRAVEL = 0.004  # of the smallest radius, in a step: a disc that travels less is calm
-CALM_SPEEDS = 1.0  # of the speed that free fall gives in a step: a slower disc is calm
+CALM_TRAVEL = (
+    0.004  # of the smallest radius, in a step: a disc that travels less, or than free fall gives, is calm
+)
 LEAST_PATIENCE = 16  # calm steps before a pile first seeks its equilibrium
 LARGE_GROUP = 256  # contacts at one instant, above which weights that press on them make steps cheaper
-WORK_PER_DISC, LEAST_WORK = 1, 300  # contacts dealt with in WORK_STEPS steps before events give way to steps
+LEAST_WORK = (
+    300  # contacts, and one for each disc, dealt with in WORK_STEPS steps before events give way to steps
+)
 WORK_STEPS = 10.0
 
 
@@ -71,7 +74,7 @@ def crowded(touching, numbers, counts):
     if numbers[Number.NOW] - numbers[Number.WORK_SINCE] > WORK_STEPS * h:
         counts[Count.WORK], numbers[Number.WORK_SINCE] = 0, numbers[Number.NOW]
     counts[Count.WORK] += touching * (1 + touching // 8)
-    return counts[Count.WORK] > LEAST_WORK + WORK_PER_DISC * counts[Count.DISCS]
+    return counts[Count.WORK] > LEAST_WORK + counts[Count.DISCS]
 
 
 @compiled
@@ -83,21 +86,16 @@ def begin_steps(numbers, counts):
 
 
 @compiled
-def end_steps(numbers, counts):
-    """Go back to events."""
-    counts[Count.STEPPING], counts[Count.RENEW], counts[Count.WORK] = 0, 1, 0
-    numbers[Number.WORK_SINCE] = numbers[Number.NOW]
-
-
-@compiled
 def step(discs, grid, constraints, pile, report, numbers, counts):
     """Take the step that begins now. Returns a Reason; unless it is Reason.DONE, nothing has happened yet."""
     _begin_paths(discs, pile, numbers)
     if counts[Count.CALM] >= counts[Count.PATIENCE]:
         enter_pushing_pairs(discs, constraints, pile, counts)
         if counts[Count.SPARES] < constraints.forces.shape[0]:
-            return Reason.SETTLE  # without a contact that pushes the pile has dissolved
-        end_steps(numbers, counts)
+            return Reason.SETTLE
+        # without a contact that pushes the pile has dissolved: go back to events
+        counts[Count.STEPPING], counts[Count.RENEW], counts[Count.WORK] = 0, 1, 0
+        numbers[Number.WORK_SINCE] = numbers[Number.NOW]
         return Reason.DONE
     h = numbers[Number.STEP_LENGTH]
     allow_shifts(h, discs, pile)
@@ -130,10 +128,8 @@ def step(discs, grid, constraints, pile, report, numbers, counts):
             break
     numbers[Number.STEP_END] = end
     numbers[Number.MOST_LOSS] = max(numbers[Number.MOST_LOSS], numbers[Number.LOSS])
-    _note_deepest(active, discs, pile, numbers)
     _report_impacts(active, h, discs, pile, report, numbers, counts)
-    pushing = _keep_forces(active, h, pile, counts)
-    _mark_near(active, h, discs, pile)
+    pushing = _keep_contacts(active, h, discs, pile, numbers, counts)
     calm = _start_paths(h, discs, pile, numbers)
     if calm or pushing == 0:
         counts[Count.CALM] += 1
@@ -154,15 +150,6 @@ def _begin_paths(discs, pile, numbers):
         discs[i, Disc.CHANGES] += 1.0
         pile.root[2 * i] = math.sqrt(discs[i, Disc.WX])
         pile.root[2 * i + 1] = math.sqrt(discs[i, Disc.WY])
-
-
-@compiled
-def _note_deepest(active, discs, pile, numbers):
-    """Note how far discs are in one another as the step begins."""
-    for c in range(active):
-        k = pile.order[c]
-        size = smaller_radius(pile.pairs[k, 0], pile.pairs[k, 1], discs)
-        numbers[Number.DEEPEST] = max(numbers[Number.DEEPEST], -pile.near[k, PilePair.GAP] / size)
 
 
 @compiled
@@ -195,35 +182,34 @@ def enter_impact(i, j, time, impulse, loss, place, report, counts):
 
 
 @compiled
-def _keep_forces(active, h, pile, counts):
-    """Keep the forces of the step for the next; returns the number of contacts that push."""
+def _keep_contacts(active, h, discs, pile, numbers, counts):
+    """Keep the forces of the step for the next; returns the number of contacts that push.
+
+    Note how far discs are in one another as the step begins; mark the discs that were pushed, and those that end the step
+    near another or could reach it on a parabola.
+    """
     for k in range(counts[Count.LISTED]):
         pile.forces[k] = 0.0
     pushing = 0
     for c in range(active):
-        if pile.contacts[c, PileContact.IMPULSE] > 0.0:
-            pile.forces[pile.order[c]] = pile.contacts[c, PileContact.IMPULSE] / (pile.scale[c] * h)
-            pushing += 1
-    return pushing
-
-
-@compiled
-def _mark_near(active, h, discs, pile):
-    """Mark the discs that were pushed, and the discs that end the step near another or could reach it on a parabola."""
-    for c in range(active):
-        i, j = pile.pairs[pile.order[c], 0], pile.pairs[pile.order[c], 1]
-        pair = pile.near[pile.order[c]]
+        k = pile.order[c]
+        i, j, pair = pile.pairs[k, 0], pile.pairs[k, 1], pile.near[k]
         nx, ny, gap = pair[PilePair.NX], pair[PilePair.NY], pair[PilePair.GAP]
+        size = smaller_radius(i, j, discs)
+        numbers[Number.DEEPEST] = max(numbers[Number.DEEPEST], -gap / size)
         (ivx, ivy), (jvx, jvy) = velocity_after(i, pile), velocity_after(j, pile)
         vx, vy = jvx - ivx, jvy - ivy
         bend = 2.0 * h * h * (pile.pull[i] + pile.pull[j])
         near = 0.0
         if pile.contacts[c, PileContact.IMPULSE] > 0.0:
+            pile.forces[k] = pile.contacts[c, PileContact.IMPULSE] / (pile.scale[c] * h)
+            pushing += 1
             near = 2.0
-        elif gap + h * (nx * vx + ny * vy) <= max(NEARBY * smaller_radius(i, j, discs), bend):
+        elif gap + h * (nx * vx + ny * vy) <= max(NEARBY * size, bend):
             near = 1.0
         pile.nearness[i] = max(pile.nearness[i], near)
         pile.nearness[j] = max(pile.nearness[j], near)
+    return pushing
 
 
 @compiled
@@ -244,7 +230,7 @@ def _start_paths(h, discs, pile, numbers):
                     numbers[Number.LOSS] -= gained / discs[i, Disc.WX + d]
             discs[i, Disc.VX], discs[i, Disc.VY] = vx, vy
             discs[i, Disc.AX], discs[i, Disc.AY] = 0.0, 0.0
-            slow = max(CALM_SPEEDS * h * pull, CALM_TRAVEL * numbers[Number.SMALLEST] / h)
+            slow = max(h * pull, CALM_TRAVEL * numbers[Number.SMALLEST] / h)
             calm = calm and (pile.nearness[i] < 2.0 or vx * vx + vy * vy <= slow * slow)
         discs[i, Disc.NOISE] = SPEED_NOISE * (abs(vx) + abs(vy) + 2.0 * h * pull)
     return calm

@@ -18,8 +18,8 @@ from pinjoint.systems.collision.columns import (
     Reason,
 )
 from pinjoint.systems.collision.kernels import compiled
-from pinjoint.systems.collision.kernels.grid import enclose, enter, has_room, neighbours, sort
-from pinjoint.systems.collision.kernels.horizon import is_joined, set_layers
+from pinjoint.systems.collision.kernels.grid import enclose, enter, has_room, neighbours, set_layers, sort
+from pinjoint.systems.collision.kernels.horizon import is_joined
 from pinjoint.systems.collision.kernels.persistent_contact import (
     enter_persistent,
     find_persistent,
@@ -161,7 +161,6 @@ def enter_pushing_pairs(discs, constraints, pile, counts):
         if pile.forces[k] > 0.0:
             i, j = pile.pairs[k, 0], pile.pairs[k, 1]
             enter_persistent(i, j, pile.forces[k], discs, constraints, counts)
-            enter_persistent(j, i, pile.forces[k], discs, constraints, counts)
 
 
 @compiled

@@ -10,7 +10,7 @@ import math
 from pinjoint.systems.collision.columns import DIRECT, EPSILON, SPEED_NOISE, Contact
 from pinjoint.systems.collision.kernels import compiled
 
-IDLE, FITTED, DEPENDENT = 0, 1, 2
+IDLE, TAKEN = 0, 1  # of contacts: TAKEN: fitted, or dependent on such
 MOST_SWEEPS = 20000  # over the contacts of a large group; more: nearer to round-off, slower
 MOST_CROWD_SWEEPS = 200  # over the contacts of a crowd; its next step continues from the impulses reached
 
@@ -154,7 +154,7 @@ def _solve_by_active_set(members, active, group):
         if worst < 0:
             return
         group.chosen[fitted] = worst
-        group.state[worst] = FITTED
+        group.state[worst] = TAKEN
         fitted = _fit(fitted + 1, group)
         copy_motion(group.start, group.motion, members)
         for r in range(fitted):
@@ -184,7 +184,7 @@ def _fit(fitted, group):
             fitted -= 1  # the newest depends on the others, which stop it already
             c = group.chosen[fitted]
             contacts[c, Contact.IMPULSE] = 0.0
-            group.state[c] = DEPENDENT
+            group.state[c] = TAKEN
             continue
         share = 1.0
         for r in range(fitted):

@@ -11,13 +11,14 @@ from hypothesis import strategies as st
 from numpy.typing import NDArray
 
 from pinjoint import Session
+from pinjoint.components.particle import Particle
 from pinjoint.systems.collision.columns import Contact, Group
 from pinjoint.systems.collision.driven.columns import Whole
 from pinjoint.systems.collision.driven.kernels.crowd import CROWD_CONTACTS
 from pinjoint.systems.collision.kernels.projection import separate_motion
 from pinjoint.systems.collision.system import persistent_contacts
 from pinjoint.systems.program.compiler import Compile, GeneratedModule, entries_to
-from tests.reference import bits
+from tests.reference import bits, scenes_of_discs
 from tests.reference.forms import load_all, programs
 from tests.systems.collision.test_driven_collisions import GRAVITY, assert_lies, box, energy_of_discs
 
@@ -44,11 +45,9 @@ def heap(count: int, width: float, *, seed: int = 0, **sections: Any) -> Session
 
 def deepest(session: Session) -> float:
     """By how much discs are in one another or in the floor, in the smallest radius."""
-    particles = session.particles
-    place, radius = particles.position + particles.displacement, particles.radius
-    apart = np.hypot(*(place[:, None] - place[None]).transpose(2, 0, 1)) - radius[:, None] - radius
-    np.fill_diagonal(apart, np.inf)
-    return float(max(-apart.min(), (radius - place[:, 1]).max(), 0.0) / radius.min())
+    place, radius = session.particles.position + session.particles.displacement, session.particles.radius
+    into = scenes_of_discs.deepest(place, radius, np.ones(len(radius), dtype=bool))
+    return float(max(into, (radius - place[:, 1]).max(), 0.0) / radius.min())
 
 
 def random_group(discs: int, slack: float, seed: int) -> Any:
@@ -162,8 +161,9 @@ def test_a_crowd_has_the_same_bits_in_both_forms() -> None:
     assert bits.different(*found) == []
 
 
-def test_a_heap_comes_to_rest_and_weighs_on_the_floor() -> None:
-    session = heap(36, 0.9)
+@pytest.mark.parametrize("settings", [{}, {"restitution": 0.0, "integrator": "rk4", "time_step": 1e-3}])
+def test_a_heap_comes_to_rest_and_weighs_on_the_floor(settings: dict[str, Any]) -> None:
+    session = heap(36, 0.9, **({"settings": settings} if settings else {}))
     assert session.run(until="rest", limit=60.0) == "at rest"
     contacts, weight = persistent_contacts(session.model), GRAVITY_PULL * session.particles.mass.sum()
     assert contacts is not None
@@ -181,14 +181,6 @@ def test_a_narrow_heap_comes_to_rest(restitution: float, drag: float) -> None:
     session = heap(14, 0.4, seed=2, **sections)
     assert session.run(until="rest", limit=6.0) == "at rest"
     assert_lies(session)
-
-
-def test_fixed_steps_lead_to_the_same_place_to_rest() -> None:
-    settings_ = {"restitution": 0.0, "integrator": "rk4", "time_step": 1e-3}
-    session = heap(36, 0.9, settings=settings_)
-    assert session.run(until="rest", limit=60.0) == "at rest"
-    assert np.abs(session.particles.applied_force).max() <= 1e-8 * GRAVITY_PULL * session.particles.mass.sum()
-    assert deepest(session) <= 1e-6
 
 
 def test_a_saved_crowd_goes_on_with_the_same_bits(tmp_path: Path) -> None:
@@ -220,15 +212,9 @@ def test_a_disc_that_falls_on_a_heap_bounces() -> None:
     session = heap(30, 0.9, settings={"restitution": 0.8}, environment=GRAVITY | {"drag": 2.0})
     assert session.run(until="rest", limit=60.0) == "at rest"
     session.particles["p0"].velocity = (0.0, 0.0)
-    top = int(np.argmax((session.particles.position + session.particles.displacement)[:, 1]))
-    highest = (session.particles.position + session.particles.displacement)[top]
-    session.model.create(
-        type(session.particles[0]),
-        name=["ball"],
-        position=[(highest[0], highest[1] + 0.5)],
-        radius=0.05,
-        mass=1.0,
-    )
+    place = session.particles.position + session.particles.displacement
+    above = place[np.argmax(place[:, 1])] + [0.0, 0.5]
+    session.model.create(Particle, 1, name=["ball"], position=[above], radius=0.05, mass=1.0)
     fastest = 0.0
     for _ in range(60):
         session.run(time=0.01)

@@ -14,12 +14,12 @@ from pinjoint import Session
 from pinjoint.components.clock import PersistentContacts
 from pinjoint.components.particle import Particle
 from pinjoint.components.rod import spawn_rods
-from pinjoint.systems.broad_phase import nearest
+from pinjoint.systems.broad_phase import gaps, nearest
 from pinjoint.systems.collision.columns import Contact, Group
-from pinjoint.systems.collision.driven.columns import Order, Phase, Real, Whole
-from pinjoint.systems.collision.driven.compiled import DRIVEN
+from pinjoint.systems.collision.driven.columns import Goal, Order, Phase, Real, Whole
 from pinjoint.systems.collision.driven.kernels.contacts import MOST_STEP_CUTS, choose_contacts, judge_forces
-from pinjoint.systems.collision.driven.neighbours import NeighbourList
+from pinjoint.systems.collision.driven.kernels.steps import MOST_ENDS_TRIED, collide
+from pinjoint.systems.collision.driven.neighbours import DRIVEN, NeighbourList
 from pinjoint.systems.collision.kernels.impact import respond
 from pinjoint.systems.collision.system import persistent_contacts
 from pinjoint.systems.edit.pull import hand_on
@@ -63,12 +63,9 @@ def state(session: Session) -> bytes:
 
 def gap(session: Session) -> float:
     """Between the rims of the ball and the node."""
-    node, ball = session.particles["B"], session.particles["ball"]
-    line = [
-        (b + v) - (a + u)
-        for a, u, b, v in zip(node.position, node.displacement, ball.position, ball.displacement, strict=True)
-    ]
-    return float(np.hypot(*line)) - (node.radius + ball.radius)
+    particles = session.particles
+    rows = np.array([[particles.names.index("B"), particles.names.index("ball")]])
+    return float(gaps(particles.position + particles.displacement, particles.radius, rows)[0][0])
 
 
 def test_a_ball_comes_to_rest_on_a_truss_and_loads_it() -> None:
@@ -555,27 +552,44 @@ def test_an_impact_along_a_row_of_discs_ends(count: int) -> None:
     assert speed[-1] == pytest.approx(1.0, rel=1e-12)
 
 
-def test_contacts_that_no_forces_close_are_counted_and_told() -> None:
-    """A disc that is pressed into another while its step cannot be cut any more."""
-    session = Session.open(
-        model([particle(name, x, 0.0, radius=0.05) for name, x in (("A", 0.0), ("B", 0.1))], [])
-    )
+def two_apart(radii: float) -> tuple[Session, tuple[Any, ...]]:
+    """A disc and another, so many radii farther away than where they touch, and what `collide` is given of them."""
+    session = Session(touching(2, 1))
     near = NeighbourList(session.model)
     near.look_up()
     near.list_within(0.0)
-    driven, place, speed = near.driven, near.displacement.copy(), near.velocity.copy()
-    driven.lasting[0] = 1
-    assert choose_contacts(driven, place)
     control, account = np.zeros(len(Control)), np.zeros(len(Account))
-    control[Control.TIME], driven.whole[Whole.TURN], driven.whole[Whole.CUTS] = 1e-3, 1, MOST_STEP_CUTS
-    place[1, 0] -= 0.01 * 0.05
-    assert judge_forces(driven, control, account, place, speed) == Order.GO_ON
+    control[Control.TIME], place = 1e-3, near.displacement.copy()
+    place[1, 0] = 0.05 * radii
+    return session, (near.driven, control, account, place, near.velocity)
+
+
+def test_contacts_that_no_forces_close_are_counted_and_told() -> None:
+    """A disc that is pressed into another while its step cannot be cut any more."""
+    session, arrays = two_apart(-0.01)
+    driven = arrays[0]
+    driven.lasting[0] = 1
+    assert choose_contacts(driven, np.zeros((2, 2)))
+    driven.whole[Whole.TURN], driven.whole[Whole.CUTS] = 1, MOST_STEP_CUTS
+    assert judge_forces(*arrays) == Order.GO_ON
     assert driven.whole[Whole.PHASE] == Phase.HELD  # the step is accepted
     assert driven.whole[Whole.UNCLOSED] == 1
     assert driven.real[Real.UNCLOSED] == pytest.approx(0.01, rel=1e-6)
     session.simulation._driven_collisions.unclosed = 1, 0.01
     assert "In one step no forces were found that close all contacts" in session.simulation.warning
     assert "1.00 % of a radius" in session.simulation.warning
+
+
+def test_a_step_that_is_not_found_to_end_at_its_impact_is_counted() -> None:
+    """After so many tries it ends where the two have not met yet."""
+    _, arrays = two_apart(0.01)
+    whole, real = arrays[0].whole, arrays[0].real
+    whole[Whole.PHASE], whole[Whole.GOAL], whole[Whole.TRIES] = Phase.HELD, Goal.IMPACT, MOST_ENDS_TRIED - 1
+    real[Real.NOW] = real[Real.IMPACT] = 1e-3
+    real[Real.LAST] = 1.0
+    assert collide(*arrays) == Order.LEAVE
+    assert whole[Whole.UNCLOSED] == 1
+    assert real[Real.UNCLOSED] == pytest.approx(0.01, rel=1e-6)
 
 
 def test_a_step_that_time_cannot_halve_ends() -> None:

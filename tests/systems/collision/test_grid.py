@@ -4,8 +4,7 @@ import numpy as np
 import pytest
 
 from pinjoint.systems.collision.columns import NONE, Count, Grid, Number
-from pinjoint.systems.collision.kernels.grid import enter, leave, neighbours
-from pinjoint.systems.collision.kernels.horizon import set_layers
+from pinjoint.systems.collision.kernels.grid import enter, leave, neighbours, set_layers
 
 
 def grid_of(boxes: np.ndarray) -> tuple[Grid, np.ndarray]:
@@ -28,11 +27,8 @@ def found(i: int, grid: Grid, layers: int) -> list[int]:
 def test_a_search_finds_each_box_that_overlaps_once(spread: float, away: float) -> None:
     """Sizes differ up to 10^spread times, and a fifth of the boxes have left the grid."""
     random = np.random.default_rng(5)
-    corner, size = (
-        random.uniform(-5.0, 5.0, (120, 2)) + away,
-        0.5 * 10.0 ** random.uniform(-spread, 0.0, (120, 1)),
-    )
-    size = size * random.uniform(0.3, 1.0, (120, 2))
+    corner = random.uniform(-5.0, 5.0, (120, 2)) + away
+    size = 0.5 * 10.0 ** random.uniform(-spread, 0.0, (120, 1)) * random.uniform(0.3, 1.0, (120, 2))
     boxes = np.hstack([corner, corner + size])
     grid, counts = grid_of(boxes)
     layers = int(counts[Count.LAYERS])

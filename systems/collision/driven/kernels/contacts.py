@@ -17,10 +17,9 @@ from pinjoint.systems.base import StopReason
 from pinjoint.systems.collision.columns import NONE
 from pinjoint.systems.collision.driven.columns import Order, Phase, Real, Tried, Whole
 from pinjoint.systems.collision.driven.kernels.complementarity import complementary
-from pinjoint.systems.collision.driven.kernels.groups import chain_groups, end_groups, root_of
-from pinjoint.systems.collision.driven.kernels.paths import foresee, opening, take_back
+from pinjoint.systems.collision.driven.kernels.pairs import chain_groups, end_groups, gap_of, opening, root_of
+from pinjoint.systems.collision.driven.kernels.paths import foresee, take_back
 from pinjoint.systems.collision.kernels import compiled
-from pinjoint.systems.collision.kernels.pairs import gap_of
 from pinjoint.systems.collision.kernels.projection import coupling
 from pinjoint.systems.entries import Account, Control
 
@@ -109,7 +108,7 @@ def clear_support(driven):
 
 
 @compiled
-def try_forces(driven, control, account, place, speed):
+def try_forces(driven, control, account):
     """Take, or foresee, the step with the forces that are to be tried."""
     whole = driven.whole
     clear_support(driven)
@@ -167,7 +166,7 @@ def judge_forces(driven, control, account, place, speed):
     after = driven.ahead if whole[Whole.FORESEEN] else place
     closed = not lost and _measure(driven, after)
     if not lost and not closed and whole[Whole.CUTS] == MOST_STEP_CUTS:
-        _note_unclosed(driven)
+        note_unclosed(driven, _not_closed(driven))
         closed = True
     if closed:
         if h > 0.5 * real[Real.CUT]:  # the next step may be longer than one that was cut
@@ -188,15 +187,22 @@ def judge_forces(driven, control, account, place, speed):
 
 
 @compiled
-def _note_unclosed(driven):
-    """Note that contacts stay as the forces that were tried leave them, and how far they are from closed."""
-    driven.whole[Whole.UNCLOSED] += 1
+def _not_closed(driven):
+    """How far contacts that push are open, or any in one another, at most: a share of the smaller radius."""
+    wrong = 0.0
     for c in range(driven.whole[Whole.CHOSEN]):
-        k = driven.chosen[c]
-        size = min(driven.size[driven.pairs[k, 0]], driven.size[driven.pairs[k, 1]])
+        i, j = driven.pairs[driven.chosen[c]]
         gap = driven.search[Tried.GAP, c]
-        wrong = abs(gap) if driven.search[Tried.FORCES, c] > 0.0 else -gap
-        driven.real[Real.UNCLOSED] = max(driven.real[Real.UNCLOSED], wrong / size)
+        gap = abs(gap) if driven.search[Tried.FORCES, c] > 0.0 else -gap
+        wrong = max(wrong, gap / min(driven.size[i], driven.size[j]))
+    return wrong
+
+
+@compiled
+def note_unclosed(driven, wrong):
+    """Note that a step is accepted though contacts are open, or discs in one another, by this share of a radius."""
+    driven.whole[Whole.UNCLOSED] += 1
+    driven.real[Real.UNCLOSED] = max(driven.real[Real.UNCLOSED], wrong)
 
 
 @compiled

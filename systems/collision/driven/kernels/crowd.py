@@ -9,28 +9,29 @@ work; and no impact supplies energy.
 import math
 
 from pinjoint.systems.base import StopReason
-from pinjoint.systems.collision.columns import NONE, SHORTEST_SHARE, TRAVEL, Contact
+from pinjoint.systems.collision.columns import NONE, SHORTEST_SHARE, TINY, Contact
 from pinjoint.systems.collision.driven.columns import Need, Order, Phase, Real, Whole
 from pinjoint.systems.collision.driven.kernels.contacts import (
+    CLOSED_GAP,
     SETTLING_HEIGHT,
     clear_support,
     enter_work,
     raise_scale,
 )
-from pinjoint.systems.collision.driven.kernels.impacts import report_impact
-from pinjoint.systems.collision.driven.kernels.paths import opening, take_back
+from pinjoint.systems.collision.driven.kernels.impacts import ROUND_OFF, report_impact
+from pinjoint.systems.collision.driven.kernels.pairs import gap_of, opening
+from pinjoint.systems.collision.driven.kernels.paths import take_back
 from pinjoint.systems.collision.kernels import compiled
-from pinjoint.systems.collision.kernels.pairs import gap_of
-from pinjoint.systems.collision.kernels.projection import push_apart, separate_motion
+from pinjoint.systems.collision.kernels.projection import copy_motion, push_apart, separate_motion
 from pinjoint.systems.entries import Account, Control
 
 CROWD_CONTACTS = 24  # persistent contacts and impacts in the next step, from which on particles are a crowd
 CROWD_PARTICLES = 8  # particles that are no nodes, below which they are no crowd
-DEEPEST_OVERLAP = 1e-12  # of a radius, by which particles may sink into others in a step
-WANTED_OVERLAP = 1e-13  # as long as tries are left: what is at rest would be moved to and fro by more
-ROUND_OFF = 1e-14  # of an energy
-LEAST_SPAN = 1e-300  # m; more than none
+DEEPEST_OVERLAP = (
+    1e-12  # of a radius, by which particles may sink in in a step; as long as tries are left, CLOSED_GAP
+)
 MOST_FORCE_TRIES = 4  # of the forces in a step
+TRAVEL = 0.35  # relative travel of two particles in a longer step than the shortest, at most, in radii of the smaller
 
 
 @compiled
@@ -50,7 +51,7 @@ def crowd_span(driven, control, place, speed):
         i = driven.loose[p]
         x, y = place[i, 0] - driven.listed[i, 0], place[i, 1] - driven.listed[i, 1]
         if math.sqrt(x * x + y * y) + 2.0 * travel > driven.margin[i]:
-            return 2.0 * travel + LEAST_SPAN
+            return 2.0 * travel + TINY
     return 0.0
 
 
@@ -125,17 +126,13 @@ def begin_crowd(driven, account, place, speed):
     for m in range(members):
         group.place[group.members[m]] = NONE
     whole[Whole.CHOSEN], whole[Whole.MEMBERS], whole[Whole.TURN] = count, members, 0
-    driven.real[Real.CROWD_TOLERANCE] = 0.1 * WANTED_OVERLAP * least
-    for i in range(speed.shape[0]):
-        for d in range(2):
-            driven.ahead_speed[i, d] = speed[i, d]
+    driven.real[Real.CROWD_TOLERANCE] = 0.1 * CLOSED_GAP * least
+    copy_motion(speed, driven.ahead_speed, speed.shape[0])
     before = _energy(driven, speed)
     _collide_all(driven, before, place, speed)
     account[Account.DISSIPATED_IMPACT] += before - _energy(driven, speed)
     driven.real[Real.CROWD_LOSS] = before - _energy(driven, speed)
-    for i in range(speed.shape[0]):
-        for d in range(2):
-            driven.velocity[i, d] = speed[i, d]
+    copy_motion(speed, driven.velocity, speed.shape[0])
     whole[Whole.FRESH] = 0
 
 
@@ -227,7 +224,7 @@ def try_crowd(driven, control, account):
                 driven.support[j, d] += push
     raise_scale(driven, driven.real[Real.CROWD_LENGTH], control, account)
     driven.whole[Whole.PUSHED] = 1
-    driven.whole[Whole.PHASE] = Phase.CROWD_TRIED
+    driven.whole[Whole.PHASE] = Phase.TRIED
     return Order.TAKE
 
 
@@ -239,21 +236,23 @@ def judge_crowd(driven, control, account, place, speed):
     if h == 0.0 or whole[Whole.REASON] == StopReason.DIVERGED:
         if _drop_forces(driven):
             take_back(driven, control, account, place, speed)
-            whole[Whole.PHASE] = Phase.CROWD_TRYING
+            whole[Whole.PHASE] = Phase.TRYING
             return Order.GO_ON
-        reason = whole[Whole.REASON]
-        _give_up(driven, control, account, place, speed)
-        whole[Whole.REASON] = reason
+        reason = whole[Whole.REASON]  # put back the state before the impacts
+        take_back(driven, control, account, place, speed)
+        account[Account.DISSIPATED_IMPACT] -= real[Real.CROWD_LOSS]
+        copy_motion(driven.ahead_speed, speed, speed.shape[0])
+        whole[Whole.FRESH], whole[Whole.REASON] = 0, reason
         whole[Whole.PHASE], whole[Whole.NEED] = Phase.BETWEEN, Need.NOTHING
         return Order.LEAVE
     whole[Whole.TURN] += 1
-    overlap = WANTED_OVERLAP if whole[Whole.TURN] < MOST_FORCE_TRIES - 1 else DEEPEST_OVERLAP
+    overlap = CLOSED_GAP if whole[Whole.TURN] < MOST_FORCE_TRIES - 1 else DEEPEST_OVERLAP
     if not _holds(driven, place, overlap) and whole[Whole.TURN] < MOST_FORCE_TRIES:
         if real[Real.END] == math.inf:
             real[Real.END] = control[Control.TIME]
         _improve(driven, h, place)
         take_back(driven, control, account, place, speed)
-        whole[Whole.PHASE] = Phase.CROWD_TRYING
+        whole[Whole.PHASE] = Phase.TRYING
         return Order.GO_ON
     _keep(driven, control, account, place)
     whole[Whole.CROWDS] += 1
@@ -270,17 +269,6 @@ def _drop_forces(driven):
         dropped = dropped or driven.pushes[k] > 0.0
         driven.pushes[k] = 0.0
     return dropped
-
-
-@compiled
-def _give_up(driven, control, account, place, speed):
-    """Put back the state before the impacts."""
-    take_back(driven, control, account, place, speed)
-    account[Account.DISSIPATED_IMPACT] -= driven.real[Real.CROWD_LOSS]
-    for i in range(speed.shape[0]):
-        for d in range(2):
-            speed[i, d] = driven.ahead_speed[i, d]
-    driven.whole[Whole.FRESH] = 0
 
 
 @compiled

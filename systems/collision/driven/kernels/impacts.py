@@ -5,17 +5,16 @@ import math
 from pinjoint.systems.collision.columns import NONE, Contact, Detail
 from pinjoint.systems.collision.driven.columns import Need, Real, Whole
 from pinjoint.systems.collision.driven.kernels.contacts import SETTLING_CONTACTS, SETTLING_HEIGHT
-from pinjoint.systems.collision.driven.kernels.groups import chain_groups, end_groups, root_of
-from pinjoint.systems.collision.driven.kernels.paths import TOUCHING_GAP, is_left_alone, opening, touching_gap
+from pinjoint.systems.collision.driven.kernels.pairs import chain_groups, end_groups, gap_of, opening, root_of
+from pinjoint.systems.collision.driven.kernels.paths import TOUCHING_GAP, is_left_alone, touching_gap
 from pinjoint.systems.collision.kernels import compiled
 from pinjoint.systems.collision.kernels.impact import respond
-from pinjoint.systems.collision.kernels.pairs import gap_of
 from pinjoint.systems.collision.kernels.projection import compliance
 from pinjoint.systems.collision.system import REST_HEIGHT
 from pinjoint.systems.entries import Account, Control
 
 SHORT_BOUNCE = 1.0 / 32.0  # of a step: half of how long a bounce lasts
-ROUND_OFF = 1e-14  # of the fastest speed: slower approaches are none
+ROUND_OFF = 1e-14  # of the fastest speed: slower approaches are none; and of an energy
 
 
 @compiled

@@ -8,12 +8,11 @@ import math
 
 from pinjoint.systems.collision.columns import NONE
 from pinjoint.systems.collision.driven.columns import Need, Order, Phase, Real, Whole
-from pinjoint.systems.collision.driven.kernels.groups import moves
+from pinjoint.systems.collision.driven.kernels.pairs import gap_of, moves
 from pinjoint.systems.collision.kernels import compiled
-from pinjoint.systems.collision.kernels.grid import cell_size, choose_layers, has_room, set_box
 from pinjoint.systems.collision.kernels.grid import list_pairs as all_pairs
+from pinjoint.systems.collision.kernels.grid import set_box
 from pinjoint.systems.collision.kernels.horizon import is_joined
-from pinjoint.systems.collision.kernels.pairs import gap_of
 from pinjoint.systems.entries import Control
 
 LISTED_AROUND = 0.5  # of the radius of a particle: the least margin within which others are listed
@@ -79,12 +78,9 @@ def _find(driven, listing, place, wider):
     grid, found, count = listing.grid, listing.found, 0
     for i in range(grid.boxes.shape[0]):
         _enclose(driven, listing, i, place, wider)
-    layers = choose_layers(grid, cell_size(grid), 0)
-    driven.whole[Whole.LAYERS] = layers
-    if not has_room(grid, layers):
-        return NONE
-    room, overlapping = found.shape[0], all_pairs(layers, found, grid)
-    if overlapping > room:
+    room = found.shape[0]
+    overlapping, driven.whole[Whole.LAYERS] = all_pairs(found, grid)
+    if overlapping == NONE or overlapping > room:
         return overlapping
     for k in range(room - 1, room - 1 - overlapping, -1):
         i, j = found[k, 0], found[k, 1]

@@ -3,24 +3,23 @@
 import math
 
 from pinjoint.systems.base import StopReason
-from pinjoint.systems.collision.columns import EPSILON, OVERLAP
+from pinjoint.systems.collision.columns import EPSILON, SPEED_NOISE, TINY
 from pinjoint.systems.collision.driven.columns import Real, Whole
+from pinjoint.systems.collision.driven.kernels.pairs import gap_of, opening
 from pinjoint.systems.collision.kernels import compiled
-from pinjoint.systems.collision.kernels.pairs import gap_of
-from pinjoint.systems.collision.kernels.time_of_impact import INFINITY, first_touch
+from pinjoint.systems.collision.kernels.projection import copy_motion
+from pinjoint.systems.collision.kernels.time_of_impact import INFINITY, ROUND_OFF, first_touch
 from pinjoint.systems.entries import Control
 
 TOUCHING_GAP = 1e-12  # of the reach of two particles, below which they touch
 DOUBT = 1e-3  # of a radius, by which a path may differ from a parabola where particles collide
 CUBIC_DEVIATION = 0.15  # of h |Δv|: distance of a cubic path from the parabola through its ends (4/27)
 DOUBTFUL = -1.0  # instead of a time of impact
-NOISE = 16.0 * EPSILON  # of speeds and accelerations: slower approaches are round-off
 SQUARE = 0.7  # of a radius: half the side of a square that fits into a circle
 AHEAD = 4.0  # times the speeds of now that those of the next step, if it is foreseen, may reach
 SAFE = 8.0  # times the speeds and accelerations of now that those of clear steps may reach
 FEWEST_CLEAR, MOST_CLEAR = 4, 256  # clear steps at once
-SLOWEST = 1e-300  # m/s; avoids division by zero
-ROUND_OFF_OF_PATHS = 1e-9  # of how far particles move in a step: by as much more the search is wide
+OVERLAP = 1e-9  # of the reach of two nodes; a larger overlap at the start of a step is older than the run
 
 
 @compiled
@@ -33,10 +32,8 @@ def keep_state(driven, control, account, place, speed, near_alone):
                 driven.before[i, d] = place[i, d]
                 driven.velocity[i, d] = speed[i, d]
     else:
-        for i in range(place.shape[0]):
-            for d in range(2):
-                driven.before[i, d] = place[i, d]
-                driven.velocity[i, d] = speed[i, d]
+        copy_motion(place, driven.before, place.shape[0])
+        copy_motion(speed, driven.velocity, place.shape[0])
     for k in range(control.shape[0]):
         driven.kept[k] = control[k]
     for k in range(account.shape[0]):
@@ -52,10 +49,8 @@ def take_back(driven, control, account, place, speed):
     whole = driven.whole
     if whole[Whole.FORESEEN]:
         return
-    for i in range(place.shape[0]):
-        for d in range(2):
-            place[i, d] = driven.before[i, d]
-            speed[i, d] = driven.velocity[i, d]
+    copy_motion(driven.before, place, place.shape[0])
+    copy_motion(driven.velocity, speed, place.shape[0])
     for k in range(control.shape[0]):
         control[k] = driven.kept[k]
     for k in range(account.shape[0]):
@@ -104,7 +99,7 @@ def plan_clear_steps(driven, control, place, speed):
     if not room > 0.0:
         return False
     start = control[Control.TIME]
-    time = 2.0 * room / (fastest + math.sqrt(fastest * fastest + 2.0 * strongest * room) + SLOWEST)
+    time = 2.0 * room / (fastest + math.sqrt(fastest * fastest + 2.0 * strongest * room) + TINY)
     time = min(time, real[Real.BREAK] - start, MOST_CLEAR * control[Control.STEP_SIZE])
     if time < FEWEST_CLEAR * control[Control.STEP_SIZE]:
         return False
@@ -128,17 +123,6 @@ def went_too_far(driven, place, speed):
 
 
 @compiled
-def is_listed(driven, place, travel):
-    """True if the list holds all pairs that can meet before any particle has moved farther than `travel` (m) from here."""
-    listed, margin, outside = driven.listed, driven.margin, 0
-    for i in range(place.shape[0]):
-        room = SQUARE * margin[i] - travel
-        x, y = abs(place[i, 0] - listed[i, 0]), abs(place[i, 1] - listed[i, 1])
-        outside += 1 if x > room or y > room else 0
-    return outside == 0
-
-
-@compiled
 def span_to_list(driven, h, after, later):
     """The margin within which pairs must be listed for a step of h seconds (m), or 0 where the list is complete.
 
@@ -155,10 +139,15 @@ def span_to_list(driven, h, after, later):
         by = h * (later[i, 1] + velocity[i, 1]) - 2.0 * y
         driven.path_error[i] = CUBIC_DEVIATION * math.sqrt(bx * bx + by * by)
         most = max(most, driven.path_error[i])
-    swing = (h * math.sqrt(turn) + 4.0 * most) * (1.0 + ROUND_OFF_OF_PATHS)
-    if is_listed(driven, after, swing):
+    swing = (h * math.sqrt(turn) + 4.0 * most) * (1.0 + ROUND_OFF)
+    outside = 0
+    for i in range(before.shape[0]):
+        room = SQUARE * driven.margin[i] - swing
+        x, y = abs(after[i, 0] - driven.listed[i, 0]), abs(after[i, 1] - driven.listed[i, 1])
+        outside += 1 if x > room or y > room else 0
+    if outside == 0:
         return 0.0
-    return math.sqrt(travel) * (1.0 + ROUND_OFF_OF_PATHS) + swing
+    return math.sqrt(travel) * (1.0 + ROUND_OFF) + swing
 
 
 @compiled
@@ -178,7 +167,7 @@ def foreseen_span(driven, h, place, speed):
     fastest = 0.0
     for i in range(place.shape[0]):
         fastest = max(fastest, speed[i, 0] * speed[i, 0] + speed[i, 1] * speed[i, 1])
-    return 2.0 * far * math.sqrt(fastest) + SLOWEST
+    return 2.0 * far * math.sqrt(fastest) + TINY
 
 
 @compiled
@@ -204,7 +193,7 @@ def first_impact(driven, h, after):
         i = driven.near[m]
         fastest = max(fastest, abs(driven.velocity[i, 0]) + abs(driven.velocity[i, 1]))
     # a joint impact leaves approaches as slow as that in a row, of however slow a pair
-    noise = 2.0 * NOISE * fastest
+    noise = 2.0 * SPEED_NOISE * fastest
     for k in range(driven.whole[Whole.LISTED]):
         if driven.lasting[k] == 0:
             earliest = min(earliest, _impact_of(driven, k, h, after, noise))
@@ -244,20 +233,23 @@ def _impact_of(driven, k, h, after, noise):
     if tx == 0.0 and ty == 0.0 and not overlapping:  # too far to meet in this step?
         mx, my = ux - sx, uy - sy
         far = reach + abs(mx) + abs(my) + abs(h * vx - mx) + abs(h * vy - my)
-        if dx * dx + dy * dy > far * far * (1.0 + ROUND_OFF_OF_PATHS):
+        if dx * dx + dy * dy > far * far * (1.0 + ROUND_OFF):
             return INFINITY
     ax, ay = 2.0 * ((ux - sx) / h - vx) / h, 2.0 * ((uy - sy) / h - vy) / h
     if abs(ax) + abs(ay) <= 64.0 * EPSILON * (away / h + moving) / h:
         ax, ay = 0.0, 0.0
-    growth = NOISE * (abs(ax) + abs(ay))
+    growth = SPEED_NOISE * (abs(ax) + abs(ay))
     path = (dx, dy, vx, vy, ax, ay)
     return first_touch(path, tx, ty, 0.0, reach, noise, growth, h, overlapping)
 
 
 @compiled
 def meeting(driven, after, later):
-    """How late (s) the end of the step is for the pair that met first, or is to meet first, and whether it touches."""
-    latest, closed = -math.inf, False
+    """How late (s) the end of the step is for the pair that met first, or is to meet first; its gap, 0 if it touches.
+
+    The gap, or overlap, is a share of the smaller radius.
+    """
+    latest, missed = -math.inf, math.inf
     for k in range(driven.whole[Whole.LISTED]):
         if driven.lasting[k] == 1 or is_left_alone(driven, k):
             continue
@@ -267,8 +259,9 @@ def meeting(driven, after, later):
         late = gap / rate if rate < 0.0 else -math.inf
         if late > latest:
             latest = late
-            closed = abs(gap) <= touching_gap(driven, i, j, after)
-    return latest, closed
+            touches = abs(gap) <= touching_gap(driven, i, j, after)
+            missed = 0.0 if touches else abs(gap) / min(driven.size[i], driven.size[j])
+    return latest, missed
 
 
 @compiled
@@ -276,12 +269,3 @@ def touching_gap(driven, i, j, place):
     """The gap (m) below which a pair touches: more where places are so large that gaps are rounded by more."""
     far = abs(driven.position[i, 0] + place[i, 0]) + abs(driven.position[i, 1] + place[i, 1])
     return max(TOUCHING_GAP * (driven.radius[i] + driven.radius[j]), EPSILON * far)
-
-
-@compiled
-def opening(i, j, nx, ny, speed):
-    """Speed (m/s) at which a pair parts along the line of centres."""
-    x, y = -speed[i, 0], -speed[i, 1]
-    if j < speed.shape[0]:
-        x, y = speed[j, 0] + x, speed[j, 1] + y
-    return nx * x + ny * y

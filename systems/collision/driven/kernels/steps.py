@@ -17,6 +17,7 @@ from pinjoint.systems.collision.driven.kernels.contacts import (
     choose_contacts,
     judge_forces,
     keep_contacts,
+    note_unclosed,
     resume_search,
     try_forces,
 )
@@ -61,14 +62,17 @@ def collide(driven, control, account, place, speed):
             order = _begin(driven, control, account, place, speed)
         elif phase == Phase.CLEAR:
             order = _check_clear(driven, control, account, place, speed)
-        elif phase == Phase.CROWD_TRYING:
-            order = try_crowd(driven, control, account)
-        elif phase == Phase.CROWD_TRIED:
-            order = judge_crowd(driven, control, account, place, speed)
         elif phase == Phase.TRYING:
-            order = try_forces(driven, control, account, place, speed)
+            order = (
+                try_crowd(driven, control, account)
+                if whole[Whole.CROWD]
+                else try_forces(driven, control, account)
+            )
         elif phase == Phase.TRIED:
-            order = judge_forces(driven, control, account, place, speed)
+            if whole[Whole.CROWD]:
+                order = judge_crowd(driven, control, account, place, speed)
+            else:
+                order = judge_forces(driven, control, account, place, speed)
         elif phase == Phase.HELD:
             order = _look(driven, control, account, place, speed)
         else:
@@ -172,7 +176,7 @@ def _begin_crowd(driven, control, account, place, speed):
     for k in range(account.shape[0]):
         driven.kept[control.shape[0] + k] = account[k]
     whole[Whole.KEEP] = 1
-    whole[Whole.PHASE] = Phase.CROWD_TRYING
+    whole[Whole.PHASE] = Phase.TRYING
     return Order.EVALUATE
 
 
@@ -241,13 +245,16 @@ def _approach(driven, control, account, place, speed):
     whole, real = driven.whole, driven.real
     time, start = real[Real.IMPACT], real[Real.START]
     whole[Whole.TRIES] += 1
-    if real[Real.NOW] != time or whole[Whole.TRIES] >= MOST_ENDS_TRIED:
-        return _accept(driven)  # also where persistent contacts allowed only a part of the step
+    if real[Real.NOW] != time:  # persistent contacts allowed only a part of the step
+        return _accept(driven)
     after = driven.ahead if whole[Whole.FORESEEN] else place
     later = driven.ahead_speed if whole[Whole.FORESEEN] else speed
-    late, closed = meeting(driven, after, later)
+    late, missed = meeting(driven, after, later)
     better = min(time - late, real[Real.LAST])
-    if closed or better == time or not start < better < time + (time - start):
+    if missed == 0.0 or better == time or not start < better < time + (time - start):
+        return _accept(driven)
+    if whole[Whole.TRIES] >= MOST_ENDS_TRIED:
+        note_unclosed(driven, missed)
         return _accept(driven)
     real[Real.IMPACT] = better
     return _retry(driven, control, account, place, speed, better)
