@@ -86,10 +86,14 @@ def can_be_filled(text: str) -> bool:
 
 
 def calls() -> Iterator[tuple[Path, ast.Call, str]]:
+    """But for those in functions whose own arguments are sentences: they pass them on."""
     for path in SOURCES:
-        for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
+        tree = ast.parse(path.read_text(encoding="utf-8"))
+        outer = [node for node in ast.walk(tree) if isinstance(node, ast.FunctionDef) and node.name in KEYWORDS]
+        passed_on = {inner for function in outer for inner in ast.walk(function)}
+        for node in ast.walk(tree):
             match node:
-                case ast.Call(func=ast.Name(name), args=[_, *_]) if name in KEYWORDS:
+                case ast.Call(func=ast.Name(name), args=[_, *_]) if name in KEYWORDS and node not in passed_on:
                     yield path, node, name
 
 
