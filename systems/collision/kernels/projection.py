@@ -119,16 +119,21 @@ def separate_motion(members, count, tolerance, group):
             active += 1
     begin(members, group)
     project(members, active, tolerance, MOST_CROWD_SWEEPS, group)
-    _limit_work(members, active, group)
+    _limit_work(members, active, tolerance, group)
 
 
 @compiled
-def _limit_work(members, active, group):
-    """Reduce all impulses p by one factor so that p · (N m + b) ≤ 0 for the motion m after them."""
-    before, after = 0.0, 0.0
+def _limit_work(members, active, tolerance, group):
+    """Reduce all impulses p by one factor so that p · (N m + b) ≤ 0 for the motion m after them.
+
+    Before that, take impulses back that the last acceleration of the sweeps turned into a pull, and those too small for a
+    sweep to take back where a contact opens.
+    """
+    before, after, least = 0.0, 0.0, max(tolerance, group.noise[0])
     for k in range(active):
         c = group.active[k]
-        if group.contacts[c, Contact.IMPULSE] < 0.0:  # the last acceleration of the sweeps went too far
+        small = group.contacts[c, Contact.IMPULSE] * group.contacts[c, Contact.COMPLIANCE] <= least
+        if group.contacts[c, Contact.IMPULSE] < 0.0 or (small and opening_rate(c, group.motion, group) > least):
             push_apart(c, -group.contacts[c, Contact.IMPULSE], group)
             group.contacts[c, Contact.IMPULSE] = 0.0
     for k in range(active):

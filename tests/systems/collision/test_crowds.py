@@ -118,6 +118,16 @@ def test_impulses_that_are_not_found_do_no_work(seed: int, discs: int, known: fl
     assert (masses * group.motion**2).sum() <= (masses * before**2).sum() * (1.0 + 1e-12)
 
 
+def test_contacts_that_open_push_by_nothing() -> None:
+    """What is left of impulses, too small for a sweep to take back, was a push, and the step tried again in vain."""
+    group = random_group(12, 0.3, 0)
+    group.contacts[:, Contact.IMPULSE] = 1e-20
+    separate_motion(12, len(group.links), 1e-13, group)
+    opens = opening(group) > 1e-9
+    assert opens.any()
+    assert not group.contacts[opens, Contact.IMPULSE].any()
+
+
 @pytest.mark.parametrize(("width", "restitution", "seed"), [(0.9, 0.0, 1), (0.6, 0.9, 3)])
 def test_energy_never_grows_and_nothing_sinks_in(width: float, restitution: float, seed: int) -> None:
     session = heap(40, width, seed=seed, settings={"restitution": restitution})
@@ -131,6 +141,7 @@ def test_energy_never_grows_and_nothing_sinks_in(width: float, restitution: floa
         before = now
     assert abs(session.energy.imbalance) <= 1e-10
     assert len(session.impacts) > 50
+    assert session.simulation.warning == ""
 
 
 def test_what_contacts_take_is_no_work() -> None:

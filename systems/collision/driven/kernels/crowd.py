@@ -13,9 +13,11 @@ from pinjoint.systems.collision.columns import NONE, SHORTEST_SHARE, TINY, Conta
 from pinjoint.systems.collision.driven.columns import Need, Order, Phase, Real, Whole
 from pinjoint.systems.collision.driven.kernels.contacts import (
     CLOSED_GAP,
+    MOST_FORCE_TRIES,
     SETTLING_HEIGHT,
     clear_support,
     enter_work,
+    note_unclosed,
     raise_scale,
 )
 from pinjoint.systems.collision.driven.kernels.impacts import ROUND_OFF, report_impact
@@ -30,7 +32,7 @@ CROWD_PARTICLES = 8  # particles that are no nodes, below which they are no crow
 DEEPEST_OVERLAP = (
     1e-12  # of a radius, by which particles may sink in in a step; as long as tries are left, CLOSED_GAP
 )
-MOST_FORCE_TRIES = 4  # of the forces in a step
+TOLD_OVERLAP = 1e-9  # of a radius: a message tells of more, where all tries leave it
 TRAVEL = 0.35  # relative travel of two particles in a longer step than the shortest, at most, in radii of the smaller
 
 
@@ -247,13 +249,16 @@ def judge_crowd(driven, control, account, place, speed):
         return Order.LEAVE
     whole[Whole.TURN] += 1
     overlap = CLOSED_GAP if whole[Whole.TURN] < MOST_FORCE_TRIES - 1 else DEEPEST_OVERLAP
-    if not _holds(driven, place, overlap) and whole[Whole.TURN] < MOST_FORCE_TRIES:
+    wrong = _not_closed(driven, place)
+    if wrong > overlap and whole[Whole.TURN] < MOST_FORCE_TRIES:
         if real[Real.END] == math.inf:
             real[Real.END] = control[Control.TIME]
         _improve(driven, h, place)
         take_back(driven, control, account, place, speed)
         whole[Whole.PHASE] = Phase.TRYING
         return Order.GO_ON
+    if wrong > TOLD_OVERLAP:
+        note_unclosed(driven, wrong)
     _keep(driven, control, account, place)
     whole[Whole.CROWDS] += 1
     whole[Whole.PHASE] = Phase.BETWEEN
@@ -285,14 +290,14 @@ def _closed(driven, k, place):
 
 
 @compiled
-def _holds(driven, place, overlap):
+def _not_closed(driven, place):
+    """How far pairs that push are apart, or any in one another, at most: a share of the smaller radius."""
+    wrong = 0.0
     for c in range(driven.whole[Whole.CHOSEN]):
         k = driven.touching[c]
         left = _closed(driven, k, place)
-        wrong = abs(left) if driven.pushes[k] > 0.0 else -left
-        if wrong > overlap * _size(driven, k):
-            return False
-    return True
+        wrong = max(wrong, (abs(left) if driven.pushes[k] > 0.0 else -left) / _size(driven, k))
+    return wrong
 
 
 @compiled
