@@ -17,6 +17,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pinjoint.components.derived import with_full_turns
+from pinjoint.components.field import SMALLEST
 from pinjoint.components.mistake import WrongValue
 from pinjoint.components.model import Model
 from pinjoint.components.rod import bends
@@ -167,7 +168,7 @@ class Structure:
             position=particles.position.copy(),
             ends=ends,
             difference=rods.difference.copy(),
-            original_length=rods.original_length.copy(),
+            original_length=np.where(rods.original_length < SMALLEST, 0.0, rods.original_length),
             rest_length=rods.rest_length.copy(),
             misfit=rods.misfit.copy(),
             stiffness=rods.stiffness.copy(),
@@ -447,7 +448,7 @@ class Structure:
             axis = np.where(self.flat[:, None], straight, axis)
             stretch = np.where(self.flat, (straight * change).sum(axis=1), stretch)
             length = np.where(self.flat, original, length)
-        return stretch, axis, length
+        return stretch, axis, np.where(length < SMALLEST, 0.0, length)  # whose inverse has no square
 
     def internal(self, response: Response) -> Array:
         """Forces (n, 2), or (n, 3), that hold the particles against the rods and what acts between their ends."""

@@ -183,7 +183,10 @@ def soft_modes(matrix: Matrix, weight: Array, factor: Factor | None = None, most
     for _ in range(4):
         block = root[:, None] * factor.solve(weight[:, None] * block)
         block = np.linalg.qr(block)[0] / root[:, None]
-    values, turn = np.linalg.eigh(block.T @ (matrix @ block))
+    resisted = block.T @ (matrix @ block)
+    if not np.isfinite(resisted).all():  # beyond the numbers that one can compute with
+        return np.zeros((len(weight), 0))
+    values, turn = np.linalg.eigh(resisted)
     modes: Array = (block @ turn)[:, np.abs(values) < SOFT]
     return modes
 

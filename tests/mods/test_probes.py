@@ -9,6 +9,7 @@ import pytest
 
 from pinjoint import Session
 from pinjoint.commands.command_line import main
+from pinjoint.components.camera import Rectangle
 from pinjoint.components.view import Plot
 from pinjoint.included.probes import ENERGIES, probes_of, record
 from pinjoint.paths import quantity
@@ -19,7 +20,7 @@ from pinjoint.systems.render.theme import load_theme
 from tests.systems.render.frame_models import portal_at_rest
 
 LIGHT = load_theme("light")
-BOX = (0.0, 0.0, 300.0, 150.0)
+BOX = Rectangle(0.0, 0.0, 300.0, 150.0)
 
 
 def test_quantities_are_read_in_the_units_on_screen() -> None:

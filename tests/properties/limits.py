@@ -6,6 +6,8 @@ from contextlib import contextmanager
 
 from pinjoint.interrupts import Interrupt
 
+AGAIN = 10.0  # s of processor time
+
 
 class Hang(AssertionError):
     """Something went on for longer than anything may."""
@@ -24,22 +26,25 @@ def within(seconds: float, what: str = "this") -> Iterator[None]:
 
 @contextmanager
 def interrupted_after(seconds: float) -> Iterator[None]:
-    """Ctrl+C in whatever takes more processor time (s) than that; not where the system has no such timers."""
+    """Ctrl+C in whatever takes more processor time (s) than that, and again after AGAIN, since a compiler swallows some.
+
+    Not where the system has no such timers.
+    """
 
     def handle(*_: object) -> None:
         raise Interrupt
 
-    with _after(seconds, handle):
+    with _after(seconds, handle, AGAIN):
         yield
 
 
 @contextmanager
-def _after(seconds: float, handle: Callable[..., object]) -> Iterator[None]:
+def _after(seconds: float, handle: Callable[..., object], again: float = 0.0) -> Iterator[None]:
     if not hasattr(signal, "setitimer"):
         yield
         return
     before = signal.signal(signal.SIGPROF, handle)
-    signal.setitimer(signal.ITIMER_PROF, seconds)
+    signal.setitimer(signal.ITIMER_PROF, seconds, again)
     try:
         yield
     finally:

@@ -310,3 +310,17 @@ def test_a_column_that_leans_ever_further_never_snaps(number: int) -> None:
     tip = [found.final.displacement[-1] for found in (at_once, slowly)]
     assert tip[0] == pytest.approx(tip[1], abs=1e-7)
     assert tip[0][0] > 0.0
+
+
+def test_a_member_between_two_nodes_in_one_place_gives_no_numbers_that_are_none(
+    recwarn: pytest.WarningsRecorder,
+) -> None:
+    """1e-300 m is a length, but its inverse has no square."""
+    nodes = [
+        {"name": "A", "position": [0, 0], "fixed": [True, True], "fixed_rotation": True},
+        {"name": "B", "position": [1e-300, 0], "force": [0.0, -1.0]},
+    ]
+    bent = {"name": "AB", "between": ["A", "B"], "rest_length": 1.0, "bending_stiffness": 1.0}
+    found = settle(parse(model(nodes, [bent])))
+    assert found.status == "limit reached"
+    assert not recwarn.list
