@@ -247,12 +247,12 @@ class Program:
         arm, column = self._arm, self._column
         mass, lever = column("particles.mass"), levers(self.model)[self._held_rows]
         loads = (b.prefix for b in self._writer.of[StepRole.LOAD])
+        with np.errstate(over="ignore"):  # such numbers are reported before a run
+            turning = arm * arm * column("particles.turning")
         return {
             "per_arm": np.array([1.0 / arm]),
             "lever": np.column_stack([np.ones((len(lever), 2)), arm * lever]),
-            "particles_mobility": np.column_stack(
-                [column("particles.mobility"), arm * arm * column("particles.turning")]
-            ),
+            "particles_mobility": np.column_stack([column("particles.mobility"), turning]),
             "particles_masses": np.column_stack([mass, mass, column("particles.inertia") / (arm * arm)]),
             "particles_constant_force": np.column_stack(
                 [column("particles.constant_force"), column("particles.constant_moment") / arm]
