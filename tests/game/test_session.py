@@ -10,6 +10,8 @@ import pytest
 
 from pinjoint import Session
 from pinjoint.components import FieldError
+from tests.properties.limits import interrupted_after
+from tests.reference.models import model, particle
 
 
 @pytest.fixture
@@ -202,3 +204,10 @@ def test_any_time_may_be_given_for_a_run() -> None:
     assert session.run(time=1e91) == "at rest"
     with pytest.raises(ValueError, match=r"steps is 1\d+; it must be below 2\^63"):
         session.run(steps=10**91)
+
+
+def test_more_steps_than_can_be_counted_are_begun() -> None:
+    discs = [particle("A", 0, 0, velocity=[-1, 0]), particle("B", 1, 0, velocity=[1, 0])]
+    session = Session.open(model(discs, [], settings={"time_step": 1e-30}))
+    with interrupted_after(3.0), pytest.raises(KeyboardInterrupt):
+        session.run(time=1e301)

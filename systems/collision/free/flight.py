@@ -160,7 +160,8 @@ class Flight:
         first, origin, size = clock.steps - clock.origin_steps, clock.origin, clock.step_size
         steps = min(steps, REVIEW_INTERVAL - clock.steps % REVIEW_INTERVAL)
         if until < math.inf:
-            steps = min(steps, max(math.floor((until - origin) / size * (1.0 + 1e-15)) - first, 0))
+            whole = min((until - origin) / size * (1.0 + 1e-15), 2.0**62)
+            steps = min(steps, max(math.floor(whole) - first, 0))
         target = origin + (first + steps) * size
         last = steps == 0 or origin + (first + steps + 1) * size > landing  # late in a run neither is exact
         if last and math.inf > landing > clock.time:
