@@ -28,10 +28,8 @@ from pinjoint.documents.autosave import Autosave, unkept
 from pinjoint.documents.open_documents import ModelFile, OpenDocument
 from pinjoint.documents.preferences import (
     DEFAULT_THEME,
-    preferred_convention,
-    preferred_magnification,
+    preferred,
     preferred_place,
-    preferred_theme,
     remember,
 )
 from pinjoint.editor.frame import Frame
@@ -92,8 +90,8 @@ def open_window(
         autosave = Autosave()
     except OSError as error:  # nothing can be written
         trouble = unkept(library.data_folder(), error)
-    magnification, place = preferred_magnification(), preferred_place()
-    app = App(model, file, autosave, theme or preferred_theme(), Preparation(), magnification, place)
+    magnification, place = preferred("magnification"), preferred_place()
+    app = App(model, file, autosave, theme or preferred("theme"), Preparation(), magnification, place)
     app.session.lesson = lesson
     app.session.notice = trouble or app.session.notice
     if path is not None:
@@ -183,7 +181,7 @@ class App:
         self.render = PygameRender(self.window.get_surface(), raster)
         further = [system for system in (autosave, preparation) if system is not None]
         systems: list[System] = [self.input, Hover(symbol_at), *further, self.render]
-        self.session = Session(model, systems, View(theme=theme, convention=preferred_convention()), file)
+        self.session = Session(model, systems, View(theme=theme, convention=preferred("convention")), file)
         self.session.window = self
         self.session.faults_seen = 0  # so that mods that were left out are shown
         self.session.autosave = self.autosave = autosave

@@ -24,7 +24,6 @@ from pinjoint.components.extensions import EXTENSIONS
 from pinjoint.components.language import language, speak, tr
 from pinjoint.components.model import Model
 from pinjoint.documents.document import parse
-from pinjoint.documents.facts import gathered
 from pinjoint.mods.loading import load
 from pinjoint.systems import cache
 from pinjoint.systems.base import Integrator, StepSystem
@@ -255,11 +254,6 @@ def main() -> None:
     for job, place in task.jobs:
         print(problem_of(job, task.documents[place]), flush=True)
     forget_unused()
-
-
-def described(model: Model) -> bytes:
-    """A model as other processes read it. Raises ModelError."""
-    return msgspec.json.encode(gathered(model))
 
 
 def problem_of(job: Job, document: bytes) -> str:

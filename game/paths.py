@@ -25,17 +25,15 @@ from pinjoint.components.wording import cut, missing, remedy
 
 EVERY = "*"  # in place of a name: all elements of the table
 TIME = "time"  # the path of the simulated time
-ENERGIES = (  # that are reported, in this order
-    "kinetic",
-    "elastic",
-    "dissipated_damping",
-    "dissipated_plastic",
-    "dissipated_impact",
-    "work",
-    "imbalance",
-)
-OVERRIDE_FORM = marked("write it like particles.B.force=120,-160 or settings.restitution=0.5")
-QUANTITY_FORM = marked("write it like rods.AB.axial_force, particles.B.displacement.y, energy.kinetic or time")
+ENERGIES = {  # that are reported, in this order, and what people call them
+    "kinetic": marked("kinetic"),
+    "elastic": marked("elastic"),
+    "dissipated_damping": marked("dissipated by damping"),
+    "dissipated_plastic": marked("dissipated by yielding"),
+    "dissipated_impact": marked("dissipated by impacts"),
+    "work": marked("work of loads"),
+    "imbalance": marked("imbalance"),
+}
 
 _SET_BY_TIME = ("clock",)  # tables
 _FLAGS = {"true": True, "false": False}
@@ -213,7 +211,8 @@ def apply_override(model: Model, override: str) -> None:
     with quoted(override):
         target, rest = locate(model, override, settable)
         if not rest.startswith("="):
-            raise PathError("it has no value; {form}.", form=tr(OVERRIDE_FORM))
+            form = tr("write it like particles.B.force=120,-160 or settings.restitution=0.5")
+            raise PathError("it has no value; {form}.", form=form)
         if not target.handles:
             raise PathError(
                 "the model has no {table}; add some, or leave this out.", table=tr(target.table.name)
@@ -278,7 +277,8 @@ def quantity(model: Model, path: str) -> Quantity:
             name = energy_named(rest)
         return Quantity(path, name.replace("_", " "), "J", lambda session: session.energy.as_dict()[name])
     if table not in model.tables or not rest:
-        raise PathError("There is no quantity '{path}'; {form}.", path=cut(path), form=tr(QUANTITY_FORM))
+        form = tr("write it like rods.AB.axial_force, particles.B.displacement.y, energy.kinetic or time")
+        raise PathError("There is no quantity '{path}'; {form}.", path=cut(path), form=form)
     target = locate_one(model, path, _numbers)
     if target.field.shape and not target.axis:
         parts = _parts(target.key, target.field)

@@ -121,9 +121,9 @@ def frame(
     return as_colours([compose(session.model, view, load_theme(theme), placed)], size)
 
 
-def plot_png(plot: Plot, path: Path, theme: str = "light", size: Size = (900, 560)) -> None:
+def plot_png(plot: Plot, path: Path, theme: str = "light") -> None:
     """Draw a plot to a PNG file, without a display. Raises OSError if it cannot be written."""
-    colours, unit = load_theme(theme), 1.5
+    colours, unit, size = load_theme(theme), 1.5, (900, 560)
     box = Rectangle(16.0 * unit, 8.0 * unit, size[0] - 32.0 * unit, size[1] - 16.0 * unit)
     marks = draw_plot(plot, box, colours, unit, None)
     picture = Picture(Viewport(0, 0, *size), colours.background, marks)

@@ -10,12 +10,15 @@ from collections.abc import Iterator, Mapping, Sequence, Set
 from itertools import islice
 from typing import Any
 
+import msgspec
+
 from pinjoint.components.field import Role
 from pinjoint.components.language import english
 from pinjoint.components.model import Model
+from pinjoint.documents.document import document
 from pinjoint.documents.format import ModelError
 from pinjoint.editor.context import Waiting
-from pinjoint.elsewhere import UNITS, Elsewhere, Job, Work, described, in_a_line, problem_of, tell_slower
+from pinjoint.elsewhere import UNITS, Elsewhere, Job, Work, in_a_line, problem_of, tell_slower
 from pinjoint.systems import cache
 from pinjoint.systems.base import Law, Phase, StepSystem, System
 from pinjoint.systems.collision.driven.neighbours import DRIVEN
@@ -142,7 +145,7 @@ class Preparation(System):
         for work in self.elsewhere.lacking:
             try:
                 if (by := asked.get(work.job)) is not None:
-                    work.document = made[by] = made.get(by) or described(by.model)
+                    work.document = made[by] = made.get(by) or msgspec.json.encode(document(by.model))
             except ModelError as error:
                 work.ended = in_a_line(error)
 

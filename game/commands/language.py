@@ -8,7 +8,7 @@ from collections.abc import Iterable, Sequence
 
 from pinjoint.commands.arguments import Parser, UsageError
 from pinjoint.components.language import ENGLISH, LANGUAGES, speak
-from pinjoint.documents.preferences import preferred_language
+from pinjoint.documents.preferences import preferred
 
 VARIABLE = "PINJOINT_LANGUAGE"
 _OF_SYSTEM = ("LANGUAGE", "LC_ALL", "LC_MESSAGES", "LANG")  # the first that is set counts, as for gettext
@@ -19,7 +19,7 @@ def speak_as_asked(words: Sequence[str]) -> list[str]:
 
     Returns the other words. Raises UsageError for a language that there is not.
     """
-    speak(asked_language() or preferred_language() or language_of_system())
+    speak(asked_language() or preferred("language") or language_of_system())
     parser = Parser(prog="pinjoint", add_help=False, allow_abbrev=False)
     parser.add_argument("--language", metavar="CODE")
     options, others = parser.parse_known_args(list(words))

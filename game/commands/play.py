@@ -14,14 +14,12 @@ from pinjoint.commands.output import Row, add_output, write_result
 from pinjoint.commands.progress import follow
 from pinjoint.commands.window import in_window
 from pinjoint.components.language import ENGLISH, plural, spoken, tr
-from pinjoint.components.model import Model
 from pinjoint.documents import library, models
 from pinjoint.documents.open_documents import file_of
 from pinjoint.lessons import progress
 from pinjoint.lessons.checking import check_lesson
 from pinjoint.scripts import playing, script
 from pinjoint.scripts.script import EMPTY
-from pinjoint.session import Session
 from pinjoint.streams import tell
 
 
@@ -62,7 +60,7 @@ def command(words: Sequence[str]) -> int:
         elif loaded.has_tasks:
             playing.check_mods(loaded)
             kept.enter_context(library.data_apart())
-            failures = check_lesson(loaded, lambda: Session(Model()))
+            failures = check_lesson(loaded)
         else:
             session = playing.session_of(loaded)
             follow(session.simulation.progress)

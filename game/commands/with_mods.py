@@ -12,7 +12,7 @@ from pinjoint.commands.arguments import Parser
 from pinjoint.components.extensions import EXTENSIONS
 from pinjoint.components.language import marked, tr
 from pinjoint.documents.library import data_folder
-from pinjoint.documents.locks import lock_file
+from pinjoint.documents.models import lock_file
 from pinjoint.mods.loading import load
 from pinjoint.mods.mod import INCLUDED, LOG, ModError
 from pinjoint.streams import tell

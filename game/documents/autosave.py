@@ -10,25 +10,19 @@ import time
 import uuid
 from collections.abc import Iterable
 from pathlib import Path
-from typing import Any, cast
+from typing import Any
 
 import msgspec
 
-from pinjoint.components.field import SAVED, Column
-from pinjoint.components.handle import Handle
 from pinjoint.components.language import tr
-from pinjoint.components.model import Model
-from pinjoint.components.table import Table
 from pinjoint.documents import library, models
-from pinjoint.documents.facts import gathered
-from pinjoint.documents.locks import lock_file
+from pinjoint.documents.facts import Facts
 from pinjoint.documents.open_documents import OpenDocument
-from pinjoint.documents.sliders import slider_entries
 from pinjoint.systems.base import Phase, System
 
 LOG = logging.getLogger("pinjoint.autosave")
 INTERVAL = 2.0  # s between recovery files of the same model, at least
-SHARE = 0.2  # of one core at most is spent on writing them; 10⁵ rods take less than 0.1 s
+SHARE = 0.2  # of one core at most is spent on writing them; 10⁵ rods take less than 0.4 s
 
 
 def recovered_name(path: Path) -> str:
@@ -71,7 +65,7 @@ class Autosave(System):
         self._said = ""  # the trouble that was reported last
         self._thread: threading.Thread | None = None
         self._folder.mkdir(parents=True, exist_ok=True)
-        lock = lock_file(self._folder / f"{self._id}.lock")
+        lock = models.lock_file(self._folder / f"{self._id}.lock")
         self._locks = [lock] if lock is not None else []
         self._left = self._orphans()
 
@@ -83,7 +77,7 @@ class Autosave(System):
             if path.stem == self._id:
                 continue
             with contextlib.suppress(OSError):  # such as a folder of that name
-                lock = lock_file(path)
+                lock = models.lock_file(path)
                 self._locks += [lock] if lock is not None else []
         ours = {Path(lock.name).stem for lock in self._locks}
         files = self._folder.glob("[!.]*.json")
@@ -130,16 +124,16 @@ class Autosave(System):
             opened.recovery = self._folder / f"{self._id}.{self._count}.{name}.json"
         self._written.setdefault(opened, -1)
         self._thread = threading.Thread(
-            target=self._put, args=(opened, opened.recovery, opened.newest, _Still(opened.model)), daemon=True
+            target=self._put, args=(opened, opened.recovery, opened.newest, Facts(opened.model)), daemon=True
         )
         self._thread.start()
         return self._thread
 
-    def _put(self, opened: OpenDocument, path: Path, revision: int, still: _Still) -> None:
+    def _put(self, opened: OpenDocument, path: Path, revision: int, facts: Facts) -> None:
         """Write a file; what could not be written, on a full disk above all, is tried again."""
         began, trouble = time.monotonic(), ""
         try:
-            models.replace(path, msgspec.json.encode(gathered(cast(Model, still), still.sliders)))
+            models.replace(path, msgspec.json.encode(facts.document()))
         except models.ModelError as error:  # no file can hold it as it is now
             trouble = tr(
                 "The unsaved work on '{name}' cannot be kept, so a crash would lose it: {reason}",
@@ -181,34 +175,3 @@ def _delete(path: Path) -> None:
     """Delete a file, where that is possible."""
     with contextlib.suppress(OSError):
         path.unlink(missing_ok=True)
-
-
-class _Still:
-    """A copy of the data of a model that a file holds, for `gathered` to read in another thread."""
-
-    def __init__(self, model: Model) -> None:
-        self.title = model.title
-        self.description = model.description
-        self.foreign = dict(model.foreign)
-        self.foreign_kinds = dict(model.foreign_kinds)
-        self.foreign_versions = dict(model.foreign_versions)
-        self.sliders = slider_entries(model)
-        self.tables = {name: _StillTable(table) for name, table in model.tables.items()}
-
-    def describe(self, handle: Handle) -> str:
-        """What kind of element it is."""
-        return handle.noun
-
-
-class _StillTable:
-    def __init__(self, table: Table[Any]) -> None:
-        self.count = table.count
-        self.handles: tuple[Handle, ...] = tuple(table.handles)
-        fields = table.fields_in(*SAVED)
-        self._columns = {field.name: table.column(field.name).copy() for field in fields}
-
-    def __getitem__(self, row: int) -> Handle:
-        return self.handles[row]
-
-    def column(self, name: str) -> Column:
-        return self._columns[name]

@@ -8,13 +8,12 @@ from dataclasses import dataclass, replace
 from types import NoneType
 from typing import Any
 
-import msgspec
 import numpy as np
 
 from pinjoint.completion import complete
 from pinjoint.components.commands import Assign
 from pinjoint.components.extensions import EXTENSIONS
-from pinjoint.components.field import Column, Field, FieldError
+from pinjoint.components.field import SAVED, Column, Field, FieldError
 from pinjoint.components.grid import Grid
 from pinjoint.components.handle import Handle
 from pinjoint.components.language import joined, marked, tr
@@ -24,20 +23,19 @@ from pinjoint.components.section import NAMES, given_by
 from pinjoint.components.snapshot import Snapshot
 from pinjoint.components.table import fields_of
 from pinjoint.components.wording import cut, is_broken, missing, quoted, remedy
-from pinjoint.documents.facts import Gathered, gathered, spread
+from pinjoint.documents.facts import Facts
 from pinjoint.documents.format import (
-    BY_COLUMNS,
+    FOREIGN,
     FORMAT,
+    MODS,
     SECTIONS,
     VERSION,
     ModelError,
     copied,
     fail,
     required,
-    saved_fields,
+    upgraded,
 )
-from pinjoint.documents.mod_data import DATA as FOREIGN
-from pinjoint.documents.mod_data import MODS, upgraded
 from pinjoint.documents.sliders import KEY as SLIDERS
 from pinjoint.documents.sliders import read_sliders
 
@@ -59,7 +57,7 @@ def parse(document: Mapping[str, Any], source: str = "") -> Model:
 
 def document(model: Model) -> dict[str, Any]:
     """The document that `parse` turns into this model again, bit for bit. Raises ModelError."""
-    return spread(gathered(model))
+    return Facts(model).document()
 
 
 # --- from a document to a model ----------------------------------------------------------------------
@@ -87,7 +85,7 @@ class _Section:
 
 
 def _parsed(document: Any) -> Model:
-    document = _of_this_version(_by_elements(document))
+    document = _of_this_version(document)
     try:
         document = upgraded(document)
     except ValueError as error:
@@ -124,17 +122,6 @@ def _read_added(model: Model, kinds: Any) -> None:
     for name, kind in EXTENSIONS.kinds.items():  # kinds that refer to others come after them
         if name in kinds:
             _read(model, _section(f"{path}.{name}", kind, kinds[name]))
-
-
-def _by_elements(document: Any) -> Any:
-    """A document in its usual form, in which it may be already."""
-    stated = document.get("format") if isinstance(document, Mapping) else None
-    if not (isinstance(stated, str) and stated == BY_COLUMNS):
-        return document
-    try:
-        return spread(msgspec.convert(document, Gathered))
-    except (msgspec.ValidationError, ValueError, IndexError, TypeError, AttributeError) as error:
-        fail("$", "its columns do not fit together ({error}); copy the model again.", error=error)
 
 
 def _of_this_version(document: Any) -> Mapping[str, Any]:
@@ -185,7 +172,7 @@ def _section(path: str, kind: type[Handle], value: Any) -> _Section:
             place = path if kind.single else f"{path}[{row}]"
             fail(place, "it must be an object, not {found}.", found=_kind_of(element))
     section = _Section(path, kind, elements, set().union(*elements))
-    known = [*(field.key for field in saved_fields(kind) if not field.component), FOREIGN]
+    known = [*(field.key for field in _saved(kind) if not field.component), FOREIGN]
     if not section.keys <= set(known):
         for row, element in enumerate(elements):
             _refuse_unknown(element, known, section.where(row), kind)
@@ -197,10 +184,14 @@ def _section(path: str, kind: type[Handle], value: Any) -> _Section:
     return section
 
 
+def _saved(kind: type[Handle]) -> list[Field[Any]]:
+    return [field for field in fields_of(kind) if field.role in SAVED]
+
+
 def _components(kind: type[Handle]) -> dict[str, dict[str, Field[Any]]]:
     """The Fields of mods' components of a kind, by component and key."""
     found: dict[str, dict[str, Field[Any]]] = {}
-    for field in saved_fields(kind):
+    for field in _saved(kind):
         if field.component:
             found.setdefault(field.component, {})[field.key] = field
     return found
@@ -240,7 +231,7 @@ def _read(model: Model, section: _Section) -> None:
         _check_components(section)
     if kind is Rod and not section.keys.isdisjoint(NAMES):
         section = _with_numbers(section)
-    columns = {field.name: _column(model, section, field) for field in saved_fields(kind)}
+    columns = {field.name: _column(model, section, field) for field in _saved(kind)}
     if kind is Grid:
         _check_grids(section, columns["shown"])
     handles: Sequence[Handle]

@@ -13,6 +13,7 @@ from pinjoint.components.model import Model
 from pinjoint.components.numeric_range import incomputable
 from pinjoint.components.obstacles import obstacles
 from pinjoint.components.round_numbers import round_down
+from pinjoint.documents.assessment import LARGEST
 from pinjoint.systems.edit.arrows import extent
 from pinjoint.systems.physics.pace import expected_displacement, loaded_mode
 
@@ -21,7 +22,6 @@ KEPT = (0.02, 0.25)  # of the size, drawn, within which a factor stays as it is
 FROM = 5.0  # the smallest factor; what would need less is seen without one
 TRUE = 1.0  # the factor of motions that are seen without one
 LEAST = 1e-7  # of the size: smaller displacements are rounding
-LARGEST = 2000  # rods up to which displacements are expected by theory; larger structures are looked at
 
 Displacement = NDArray[np.float64]
 

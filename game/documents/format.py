@@ -1,20 +1,19 @@
-"""Format: what documents consist of, by their keys, and what cannot stand in one."""
+"""Format: what documents consist of, by their keys, what cannot stand in one, and how mods bring their data up to date."""
 
 from __future__ import annotations
 
+import copy
 import math
-from collections.abc import Mapping, Sequence
-from types import MappingProxyType
+from collections.abc import Callable, Mapping, Sequence
 from typing import Any, NoReturn
 
 from pinjoint.components.clock import Clock
 from pinjoint.components.extensions import EXTENSIONS
-from pinjoint.components.field import SAVED, Field
 from pinjoint.components.grid import Grid
 from pinjoint.components.handle import Handle
 from pinjoint.components.language import joined, listed, tr
 from pinjoint.components.load import Load
-from pinjoint.components.mistake import Mistake
+from pinjoint.components.mistake import Mistake, WrongValue
 from pinjoint.components.model import Model
 from pinjoint.components.particle import Particle
 from pinjoint.components.rod import Rod
@@ -24,21 +23,25 @@ from pinjoint.components.wording import is_broken, quoted
 
 FORMAT = "pinjoint model"
 VERSION = 1
-BY_COLUMNS = "pinjoint model by columns"
-SECTIONS: Mapping[str, type[Handle]] = MappingProxyType(
-    {
-        "environment": Environment,
-        "settings": Settings,
-        "particles": Particle,
-        "rods": Rod,
-        "loads": Load,
-        "grids": Grid,
-        "state": Clock,
-    }
-)
-REQUIRED: Mapping[str, tuple[str, ...]] = MappingProxyType(
-    {"particles": ("name", "position"), "rods": ("name", "between"), "loads": ("on",)}
-)
+FOREIGN = "components"  # the key of the data of mods, at elements and in the document
+MODS = "mods"  # the key of the versions of the mods whose data a document holds
+SECTIONS: Mapping[str, type[Handle]] = {
+    "environment": Environment,
+    "settings": Settings,
+    "particles": Particle,
+    "rods": Rod,
+    "loads": Load,
+    "grids": Grid,
+    "state": Clock,
+}
+REQUIRED: Mapping[str, tuple[str, ...]] = {
+    "particles": ("name", "position"),
+    "rods": ("name", "between"),
+    "loads": ("on",),
+}
+
+# Changes a document; given the version of the mod that wrote it.
+Upgrade = Callable[[dict[str, Any], str], None]
 
 
 class ModelError(Mistake, ValueError):
@@ -54,10 +57,6 @@ def required(kind: type[Handle]) -> Sequence[str]:
     if kind.table in REQUIRED or kind not in EXTENSIONS.kinds.values():
         return REQUIRED.get(kind.table, ())
     return [field.key for field in fields_of(kind) if field.name in kind.points or field.references]
-
-
-def saved_fields(kind: type[Handle]) -> list[Field[Any]]:
-    return [field for field in fields_of(kind) if field.role in SAVED]
 
 
 def copied(value: Any, where: str) -> Any:
@@ -82,3 +81,67 @@ def missing_mods(model: Model) -> str:
         mods=listed(names),
     )
     return said if names else ""
+
+
+# --- data of mods ---------------------------------------------------------------------------------------
+
+
+def upgraded(document: Mapping[str, Any]) -> Mapping[str, Any]:
+    """The document with the data of mods as their present versions have it.
+
+    A mod is asked where the document holds data of it that another, older version wrote, or one that is not told ("").
+    Raises ValueError for a version that is none.
+    """
+    stated = document.get(MODS, {})
+    _check(stated)
+    waiting = [
+        name
+        for name in EXTENSIONS.upgrades
+        if _is_older(stated.get(name, ""), EXTENSIONS.versions.get(name, ""))
+    ]
+    if not waiting:
+        return document
+    present = mods_in(document)
+    made: dict[str, Any] | None = None
+    for name in waiting:
+        if name in present:
+            made = copy.deepcopy(dict(document)) if made is None else made
+            EXTENSIONS.upgrades[name](made, stated.get(name, ""))
+    return document if made is None else made
+
+
+def mods_in(document: Mapping[str, Any]) -> set[str]:
+    """Names of the mods whose data a document holds."""
+    return {
+        str(name).partition(".")[0]
+        for section in (*document.values(), document)
+        for element in (section if isinstance(section, list | tuple) else (section,))
+        if isinstance(element, Mapping) and isinstance(element.get(FOREIGN), Mapping)
+        for name in element[FOREIGN]
+    }
+
+
+def _check(stated: Any) -> None:
+    if not isinstance(stated, Mapping):
+        raise WrongValue("it must be an object such as {form}.", form='{"wind": "1.0"}')
+    for name, version in stated.items():
+        if not isinstance(version, str) or not _is_version(version):
+            raise WrongValue(
+                'the version of {name} is {version}; write it like "1.0".', name=name, version=quoted(version)
+            )
+
+
+def _is_version(text: str) -> bool:
+    from packaging.version import InvalidVersion, Version  # only where there is a mod
+
+    try:
+        Version(text)
+    except InvalidVersion:
+        return False
+    return True
+
+
+def _is_older(stated: str, present: str) -> bool:
+    from packaging.version import Version
+
+    return not stated or not present or Version(stated) < Version(present)

@@ -18,7 +18,7 @@ from functools import cache
 from importlib.resources import files
 from importlib.resources.abc import Traversable
 from pathlib import Path
-from typing import Any, NoReturn
+from typing import IO, Any, NoReturn
 
 import msgspec
 
@@ -28,10 +28,8 @@ from pinjoint.components.model import Model
 from pinjoint.components.wording import nearest, quoted
 from pinjoint.documents.document import document, parse
 from pinjoint.documents.format import ModelError
-from pinjoint.documents.locks import lock_file
 
 UNHELD = 60.0  # s after which a running program holds a file that it made
-_ENCODER = msgspec.json.Encoder()
 
 __all__ = [
     "ModelError",
@@ -279,6 +277,24 @@ def replace(path: str | Path, content: bytes) -> None:
         temporary.unlink(missing_ok=True)
 
 
+def lock_file(path: Path) -> IO[bytes] | None:
+    """The open file, if no running program holds it; it is held until it is closed or the program ends."""
+    file = path.open("ab")
+    try:
+        if sys.platform == "win32":
+            import msvcrt
+
+            msvcrt.locking(file.fileno(), msvcrt.LK_NBLCK, 1)
+        else:
+            import fcntl
+
+            fcntl.flock(file, fcntl.LOCK_EX | fcntl.LOCK_NB)
+    except OSError:
+        file.close()
+        return None
+    return file
+
+
 @cache
 def _clear_leftovers(folder: Path) -> None:
     """Delete what programs that were killed while they saved have left in a folder; a running one holds its file.
@@ -304,26 +320,14 @@ def _sync(folder: Path) -> None:
             os.close(handle)
 
 
-def laid_out(value: Any, depth: int, indent: str = "", *, spaced: bool = True) -> str:
-    """JSON text whose outermost `depth` levels have one entry a line, indented by 2 spaces.
-
-    spaced: a space after every comma and colon, for people; without, writing is faster.
-    """
+def laid_out(value: Any, depth: int, indent: str = "") -> str:
+    """JSON text whose outermost `depth` levels have one entry a line, indented by 2 spaces."""
     if depth == 0 or not isinstance(value, dict | list) or not value:
         return msgspec.json.format(msgspec.json.encode(value), indent=0).decode()
-    inner = indent + "  "
+    inner, (opening, closing) = indent + "  ", "[]"
     if isinstance(value, dict):
-        entries = [
-            f"{laid_out(key, 0)}: {laid_out(item, depth - 1, inner, spaced=spaced)}"
-            for key, item in value.items()
-        ]
-        opening, closing = "{", "}"
-    elif depth == 1:  # faster than one by one
-        entries = _ENCODER.encode_lines(value).decode().removesuffix("\n").split("\n")
-        if spaced:
-            entries = [msgspec.json.format(entry, indent=0) for entry in entries]
-        opening, closing = "[", "]"
+        entries = [f"{laid_out(key, 0)}: {laid_out(item, depth - 1, inner)}" for key, item in value.items()]
+        opening, closing = "{}"
     else:
-        entries = [laid_out(item, depth - 1, inner, spaced=spaced) for item in value]
-        opening, closing = "[", "]"
+        entries = [laid_out(item, depth - 1, inner) for item in value]
     return f"{opening}\n{inner}" + f",\n{inner}".join(entries) + f"\n{indent}{closing}"

@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import json
 import os
+from collections.abc import Callable, Iterable, Mapping
 from contextlib import suppress
 from pathlib import Path
 from typing import Any
@@ -20,6 +21,14 @@ from pinjoint.systems.render.theme import theme_names
 
 CONFIG_VARIABLE = "PINJOINT_CONFIG"  # names another folder than the system's own
 DEFAULT_THEME = "light"
+_CHOICES: Mapping[
+    str, tuple[Any, Callable[[], Iterable[Any]]]
+] = {  # by entry: the default, and all that there are
+    "theme": (DEFAULT_THEME, theme_names),
+    "language": ("", lambda: LANGUAGES),
+    "convention": (TEXTBOOK, lambda: CONVENTIONS),
+    "magnification": (1.0, lambda: MAGNIFICATIONS),
+}
 FARTHEST = 100_000  # points that a window is away from a corner of the display, or wide, at most
 
 
@@ -30,22 +39,11 @@ def settings_path() -> Path:
     return folder / "settings.json"
 
 
-def preferred_theme() -> str:
-    """The name of the theme that was chosen last; the default where that cannot be read or is gone."""
-    name = read(settings_path()).get("theme")
-    return name if isinstance(name, str) and name in theme_names() else DEFAULT_THEME
-
-
-def preferred_convention() -> str:
-    """The convention of the force method; the textbook's where it cannot be read."""
-    name = read(settings_path()).get("convention")
-    return name if isinstance(name, str) and name in CONVENTIONS else TEXTBOOK
-
-
-def preferred_language() -> str:
-    """The code of the language that was chosen last; "" where none was, or there is no such language."""
-    code = read(settings_path()).get("language")
-    return code if isinstance(code, str) and code in LANGUAGES else ""
+def preferred(entry: str) -> Any:
+    """The choice that was made last; the default where none can be read, or it is one no more."""
+    default, known = _CHOICES[entry]
+    last = read(settings_path()).get(entry)
+    return next((choice for choice in known() if choice == last), default)
 
 
 def preferred_keys() -> list[tuple[str, str, str]]:
@@ -62,12 +60,6 @@ def preferred_keys() -> list[tuple[str, str, str]]:
     ]
 
 
-def preferred_magnification() -> float:
-    """The factor by which type and symbols are enlarged; 1 where it cannot be read."""
-    factor = read(settings_path()).get("magnification")
-    return float(factor) if factor in MAGNIFICATIONS else 1.0
-
-
 def preferred_place() -> tuple[int, int, int, int] | None:
     """Left, top, width and height of the window (points) when it was closed last; None where that cannot be read."""
     place = read(settings_path()).get("window")
@@ -80,7 +72,7 @@ def preferred_place() -> tuple[int, int, int, int] | None:
 
 
 def remember(entry: str, choice: str | float | list[int]) -> None:
-    """Keep a choice: "theme", "language", "convention" of the force method, "magnification" or the place of the "window"."""
+    """Keep what was chosen, or the place of the "window"."""
     keep(settings_path(), entry, choice)
 
 

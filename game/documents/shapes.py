@@ -16,6 +16,7 @@ from pinjoint.components.mistake import Mistake
 from pinjoint.components.model import Model
 from pinjoint.components.view import Shape
 from pinjoint.components.wording import cut
+from pinjoint.documents.assessment import LARGEST
 from pinjoint.systems.edit.arrows import extent
 
 if TYPE_CHECKING:  # it imports scipy
@@ -26,7 +27,6 @@ LOWEST = 10  # mechanisms, and modes, in the round of `next`
 LOWEST_BUCKLING = 3  # buckling modes in it
 PERIOD = 2.4  # s, in which a shape swings to and fro
 LOWEST_OF_LARGE = 50  # modes of structures that are too large for all
-LARGEST = 2000  # rods; shapes of larger structures are left to the command line
 
 
 class NoShape(Mistake, LookupError):

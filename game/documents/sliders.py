@@ -121,11 +121,7 @@ def _paths(model: Model, slider: Slider) -> Iterator[str]:
         table = model.tables[aim.table]
         if aim.element is not None and not aim.element.exists:
             continue
-        element = EVERY if aim.element is None else "" if table.kind.single else _name(aim.element)
+        element = EVERY if aim.element is None else "" if table.kind.single else table.names[aim.element.row]
         field = table.fields[aim.field]
         key = next(name for name, known in settable(table).items() if known is field)
         yield Target(table, [], element, field, key, aim.axis).path(element)
-
-
-def _name(element: Any) -> str:
-    return str(element.name)

@@ -21,7 +21,7 @@ from pinjoint.components.rod import Rod
 from pinjoint.components.table import fields_of
 from pinjoint.components.tags import Selected
 from pinjoint.documents.document import parse
-from pinjoint.documents.facts import document_of
+from pinjoint.documents.facts import Facts
 from pinjoint.documents.format import ModelError
 from pinjoint.documents.models import laid_out
 from pinjoint.systems.edit import Refusal
@@ -66,7 +66,7 @@ class Part:
     def text(self) -> str:
         """It as the text of a document. Raises Refusal if it cannot be written."""
         try:
-            return laid_out(document_of(self.model, self.rows), depth=2, spaced=False)
+            return laid_out(Facts(self.model, self.rows).document(), depth=2)
         except ModelError as error:
             raise Refusal("This cannot be copied: {error}", error=error) from None
 

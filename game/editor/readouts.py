@@ -20,6 +20,7 @@ from pinjoint.components.rod import Rod, bends
 from pinjoint.components.view import Readout
 from pinjoint.documents.assessment import LARGEST
 from pinjoint.editor.context import Context
+from pinjoint.paths import ENERGIES
 from pinjoint.systems.base import StopReason
 from pinjoint.systems.statics.counting import Count
 
@@ -50,14 +51,9 @@ _DISTURBED = {
     "pulled": marked("pulled during the run"),
     "settled": marked("settled during the run"),
 }
-_ENERGIES = {
+_ENERGIES = ENERGIES | {
     "initial": marked("at the beginning"),
     "work": marked("work of the loads"),
-    "kinetic": marked("kinetic"),
-    "elastic": marked("elastic"),
-    "dissipated_damping": marked("dissipated by damping"),
-    "dissipated_plastic": marked("dissipated by yielding"),
-    "dissipated_impact": marked("dissipated by impacts"),
     "imbalance": marked("numerical imbalance"),
 }
 _ERRORS = {

@@ -2,19 +2,21 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
-from typing import Any
+import re
+from collections.abc import Iterator
 
 from pinjoint.components.language import tr
+from pinjoint.components.model import Model
 from pinjoint.lessons import progress
 from pinjoint.lessons.course import Course
-from pinjoint.lessons.judging import filled, is_filled
+from pinjoint.lessons.judging import filled
 from pinjoint.lessons.tasks import CHOICES, UNTIL, Lesson
 from pinjoint.scripts.lines import Failure
 from pinjoint.scripts.script import Script
+from pinjoint.session import Session
 
 
-def check_lesson(script: Script, open_session: Callable[[], Any]) -> list[Failure]:
+def check_lesson(script: Script) -> list[Failure]:
     """Play all tasks; what is wrong with each. Raises ScriptError.
 
     A task must not be done before anything was; its solution must be accepted; every wrong answer must be refused, and
@@ -25,11 +27,11 @@ def check_lesson(script: Script, open_session: Callable[[], Any]) -> list[Failur
         return [
             Failure(task.line, *failure)
             for number, task in enumerate(lesson.tasks)
-            for failure in _failures(lesson, number, open_session())
+            for failure in _failures(lesson, number, Session(Model()))
         ]
 
 
-def _failures(lesson: Lesson, number: int, session: Any) -> Iterator[tuple[str, str]]:
+def _failures(lesson: Lesson, number: int, session: Session) -> Iterator[tuple[str, str]]:
     """(expected, got) of what is wrong with one task."""
     course = Course(session, lesson)
     session.course = course
@@ -49,7 +51,7 @@ def _failures(lesson: Lesson, number: int, session: Any) -> Iterator[tuple[str, 
         course.check()
         if course.accepted:
             yield tr("a wrong answer that is refused: {say}", say=wrong.say), tr("it is accepted")
-        elif not is_filled(course.said, wrong.say):
+        elif not _is_filled(course.said, wrong.say):
             yield wrong.say, course.said
     for choice in task.choices if task.kind == CHOICES else ():
         course.again()
@@ -65,3 +67,9 @@ def _failures(lesson: Lesson, number: int, session: Any) -> Iterator[tuple[str, 
         course.check()
     if not course.accepted:
         yield tr("a solution that is accepted"), course.said or tr("nothing was answered")
+
+
+def _is_filled(said: str, text: str) -> bool:
+    """True if what was said is a text with any values in its places."""
+    pattern = ".*".join(re.escape(part) for part in re.split(r"\{[^{}]*\}", tr(text)))
+    return re.fullmatch(pattern, said) is not None

@@ -221,12 +221,6 @@ def filled(text: str, session: Session, answer: float | None = None) -> str:
     return _PLACE.sub(value, tr(text)) if text else ""
 
 
-def is_filled(said: str, text: str) -> bool:
-    """True if what was said is a text with any values in its places."""
-    pattern = ".*".join(re.escape(part) for part in re.split(r"\{[^{}]*\}", tr(text)))
-    return re.fullmatch(pattern, said) is not None
-
-
 def shown(session: Session, path: str) -> str:
     """The present value at a path as a person reads it, with its unit."""
     value = read(session, path)

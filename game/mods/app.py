@@ -17,7 +17,7 @@ from pinjoint.components.mistake import WrongValue
 from pinjoint.components.obstacles import Shape
 from pinjoint.components.table import fields_of
 from pinjoint.documents import models
-from pinjoint.documents.mod_data import Upgrade
+from pinjoint.documents.format import Upgrade
 from pinjoint.mods.declared import check
 from pinjoint.mods.guard import Guard, Panel
 from pinjoint.mods.mod import INCLUDED, Mod, ModError

@@ -90,7 +90,7 @@ def compute(plan: Plan, numbers: Iterable[int]) -> Iterator[Outcome]:
     One that cannot be computed is a record that says why, in English, as files are. Raises SweepError if this process has
     another version of Pinjoint, or other mods, than the plan is of.
     """
-    plan.software.require()
+    plan.require_software()
     runner: VariantRunner | None = None
     for number in numbers:
         with spoken(ENGLISH):

@@ -4,8 +4,11 @@ from __future__ import annotations
 
 import hashlib
 import math
+import re
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
+from functools import reduce
+from operator import getitem
 from pathlib import Path
 from typing import Any
 
@@ -14,21 +17,20 @@ import numpy as np
 
 from pinjoint import __version__
 from pinjoint.commands.reports.report import Analysis
+from pinjoint.commands.reports.results import State, reported
 from pinjoint.components.extensions import EXTENSIONS
-from pinjoint.components.language import english, tr
+from pinjoint.components.language import english, joined, marked, tr
+from pinjoint.components.model import Model
 from pinjoint.documents import models
 from pinjoint.documents.open_documents import file_of
 from pinjoint.mods import load
 from pinjoint.mods.mod import INCLUDED
-from pinjoint.paths import apply_override
-from pinjoint.sweeps.measure import Measure, read_measures
+from pinjoint.paths import EVERY, PathError, apply_override, energy_named, locate
 from pinjoint.sweeps.variation import (
     FORMS,
     MOST_VARIANTS,
-    Random,
     SweepError,
     Value,
-    Values,
     Variation,
     read_variations,
 )
@@ -38,56 +40,43 @@ FAILED = "failed"  # the status of a variant that could not be computed
 Record = tuple[Any, ...]  # of one state: status, message, time, load factor, measures
 RECORDED = ("status", "message", "time", "load_factor")
 Outcome = tuple[int, list[Record]]  # the number of a variant, and a record of each of its states
+_OF_THE_RUN = ("residual", "collisions")
+_ANYWAY = ("time", "load_factor")  # columns that every result has
+_TABLES = ("particles", "rods")
+_SECTIONS = (*_TABLES, "energy")
+_BETWEEN = re.compile(
+    rf",(?=\s*(?:(?:{'|'.join(_SECTIONS)})\.|(?:{'|'.join((*_OF_THE_RUN, *_ANYWAY))})\s*(?:,|$)))"
+)
+_FORM = marked("write it like rods.CD.axial_force, rods.*.strain, particles.C.displacement.y or energy.elastic")
 
 
 @dataclass(frozen=True)
-class NeededMod:
-    """A mod of a sweep. folder: where it was found, "" if in an installed package."""
+class Measure:
+    """One number of a state: the column it goes to, where it is found, what to call it, its unit.
 
-    name: str
-    version: str
-    folder: str
+    keys: in the facts of a state; element: the name of that in whose row it is, "" if it is not of an element.
+    """
 
+    column: str
+    keys: tuple[str, ...]
+    element: str
+    axis: int | None
+    title: str
+    unit: str
 
-@dataclass(frozen=True)
-class SoftwareEnvironment:
-    """The software of a sweep, which its workers need. version: of Pinjoint. mods: besides those that come with it."""
+    def of(self, model: Model, found: State) -> Any:
+        """Its value in the facts of a state of a model."""
+        value: Any = reduce(getitem, self.keys, found)
+        if not self.element:
+            return value
+        row = model.tables[self.keys[0]][self.element].row
+        number = value.item(row) if self.axis is None else value.item(row, self.axis)
+        return None if number != number else number
 
-    version: str
-    mods: tuple[NeededMod, ...]
-
-    @classmethod
-    def present(cls) -> SoftwareEnvironment:
-        """The software of this process, as it is now."""
-        mods = (mod for mod in EXTENSIONS.mods if mod.loaded and mod.source != INCLUDED)
-        return cls(
-            __version__,
-            tuple(
-                NeededMod(mod.name, mod.version, "" if mod.source.startswith("package ") else str(mod.folder))
-                for mod in mods
-            ),
-        )
-
-    def require(self) -> None:
-        """Load the mods that this process lacks. Raises SweepError if its version or mods differ even then."""
-        if self.version != __version__:
-            raise SweepError(
-                "A worker has Pinjoint {present}, but the sweep needs {version}; install that version there.",
-                present=__version__,
-                version=self.version,
-            )
-        missing = set(self.mods) - set(SoftwareEnvironment.present().mods)
-        if missing:
-            folders = [mod.folder for mod in self.mods if mod in missing and mod.folder]
-            load(map(Path, folders), installed=len(folders) < len(missing))
-            missing -= set(SoftwareEnvironment.present().mods)
-        for mod in sorted(missing, key=lambda mod: mod.name):
-            wanted = {"name": mod.name, "version": mod.version, "folder": mod.folder}
-            if mod.folder:
-                raise SweepError(
-                    "A worker lacks the mod '{name}' {version} in {folder}; install it there.", **wanted
-                )
-            raise SweepError("A worker lacks the mod '{name}' {version}; install it there.", **wanted)
+    @property
+    def label(self) -> str:
+        """For the axis of a diagram."""
+        return self.title + (f", {self.unit}" if self.unit else "")
 
 
 @dataclass(frozen=True)
@@ -97,7 +86,8 @@ class Plan:
     Variants are numbered: every combination of the values of all variations, those of the last varying
     fastest; if something is drawn, `samples` of each, the same draws for every combination.
 
-    name, document: of the model. overrides: what is changed in every variant. software: what it is of.
+    name, document: of the model. overrides: what is changed in every variant. version: of Pinjoint. mods: besides those
+    that come with it, each with its version and the folder where it was found, "" if in an installed package.
     """
 
     name: str
@@ -108,12 +98,34 @@ class Plan:
     seed: int
     measures: tuple[Measure, ...]
     analysis: Analysis
-    software: SoftwareEnvironment
+    version: str
+    mods: tuple[tuple[str, str, str], ...]
+
+    def require_software(self) -> None:
+        """Load the mods that this process lacks. Raises SweepError if its version or mods differ even then."""
+        if self.version != __version__:
+            raise SweepError(
+                "A worker has Pinjoint {present}, but the sweep needs {version}; install that version there.",
+                present=__version__,
+                version=self.version,
+            )
+        missing = set(self.mods) - set(_present_mods())
+        if missing:
+            folders = [folder for mod in self.mods if mod in missing and (folder := mod[2])]
+            load(map(Path, folders), installed=len(folders) < len(missing))
+            missing -= set(_present_mods())
+        for name, version, folder in sorted(missing):
+            wanted = {"name": name, "version": version, "folder": folder}
+            if folder:
+                raise SweepError(
+                    "A worker lacks the mod '{name}' {version} in {folder}; install it there.", **wanted
+                )
+            raise SweepError("A worker lacks the mod '{name}' {version}; install it there.", **wanted)
 
     @property
     def size(self) -> int:
         """Number of variants."""
-        return self.samples * math.prod(len(v.values) for v in self.variations if isinstance(v, Values))
+        return self.samples * math.prod(len(variation.values) or 1 for variation in self.variations)
 
     @property
     def varied(self) -> tuple[str, ...]:
@@ -124,11 +136,11 @@ class Plan:
         """The values of a variant, in the order of the paths that are varied."""
         place, sample = divmod(number, self.samples)
         combinations = self.size // self.samples
-        drawn = any(isinstance(variation, Random) for variation in self.variations)
+        drawn = any(variation.distribution for variation in self.variations)
         generator = np.random.default_rng([self.seed, sample]) if drawn else None
         taken: list[Value] = []
         for variation in self.variations:
-            if isinstance(variation, Values):
+            if variation.values:
                 combinations //= len(variation.values)
                 index, place = divmod(place, combinations)
                 taken.append(variation.values[index])
@@ -147,6 +159,15 @@ class Plan:
         return hashlib.sha256(content).hexdigest()
 
 
+def _present_mods() -> tuple[tuple[str, str, str], ...]:
+    """The mods of this process, as they are now."""
+    return tuple(
+        (mod.name, mod.version, "" if mod.source.startswith("package ") else str(mod.folder))
+        for mod in EXTENSIONS.mods
+        if mod.loaded and mod.source != INCLUDED
+    )
+
+
 def plan_of(
     source: str | Path | Mapping[str, Any],
     vary: Iterable[str] | Mapping[str, Sequence[Value]],
@@ -163,7 +184,7 @@ def plan_of(
     for override in overrides:
         apply_override(model, override)
     variations = read_variations(model, vary)
-    drawn = any(isinstance(variation, Random) for variation in variations)
+    drawn = any(variation.distribution for variation in variations)
     if not variations:
         raise SweepError("Nothing is varied; {form}.", form=tr(FORMS))
     if drawn and samples is None:
@@ -183,9 +204,10 @@ def plan_of(
         variations,
         samples or 1,
         seed,
-        read_measures(model, measure),
+        _read_measures(model, measure),
         analysis,
-        SoftwareEnvironment.present(),
+        __version__,
+        _present_mods(),
     )
     if plan.size > MOST_VARIANTS:
         raise SweepError(
@@ -194,3 +216,57 @@ def plan_of(
             most=MOST_VARIANTS,
         )
     return plan
+
+
+# --- measures -------------------------------------------------------------------------------------------
+
+
+def _read_measures(model: Model, texts: Iterable[str]) -> tuple[Measure, ...]:
+    """The measures of a model that paths, or lists of paths with commas, name. Raises SweepError."""
+    measures: dict[str, Measure] = {}
+    for text in texts:
+        for path in _BETWEEN.split(text):
+            measures |= {measure.column: measure for measure in _measured(model, path.strip())}
+    if not measures:
+        raise SweepError("Nothing is measured; add --measure: {form}.", form=tr(_FORM))
+    return tuple(measures.values())
+
+
+def _measured(model: Model, path: str) -> list[Measure]:
+    section, _, rest = path.partition(".")
+    if path in _ANYWAY:
+        return []
+    if path in _OF_THE_RUN:
+        return [Measure(path, (path,), "", None, path, "")]
+    if section not in _SECTIONS:
+        names = ", ".join(_OF_THE_RUN)
+        raise SweepError("--measure {path}: {form}, or one of {names}.", path=path, form=tr(_FORM), names=names)
+    try:
+        if section == "energy":
+            return [
+                Measure(path, ("energy", energy_named(rest)), "", None, f"{rest.replace('_', ' ')} energy", "J")
+            ]
+        target, rest = locate(
+            model,
+            path,
+            lambda table: {f.name: f for f in reported(model, table.name)} if table.name in _TABLES else {},
+        )
+        if rest:
+            raise PathError("'{rest}' does not belong to the quantity; {form}.", rest=rest, form=tr(_FORM))
+    except PathError as error:
+        raise SweepError(joined([f"--measure {path}:", str(error)])) from None
+    elements = target.table.names if target.element == EVERY else [target.element]
+    return [
+        Measure(
+            column=f"{section}.{element}.{target.key}" + (f".{axis}" if axis else ""),
+            keys=(section, target.field.name),
+            element=element,
+            axis=target.field.axes.index(axis) if axis else None,
+            title=tr(
+                "{quantity} of {element}", quantity=joined([tr(target.field.title), axis]), element=element
+            ),
+            unit=target.field.unit_of(axis),
+        )
+        for element in elements
+        for axis in ([target.axis] if target.axis or not target.field.shape else target.field.axes)
+    ]

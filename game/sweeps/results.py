@@ -17,7 +17,7 @@ from pinjoint.components import written
 from pinjoint.components.language import tr
 from pinjoint.documents.models import replace
 from pinjoint.sweeps.plan import RECORDED, Plan
-from pinjoint.sweeps.variation import INSTALL, Random, SweepError, Values
+from pinjoint.sweeps.variation import INSTALL, SweepError
 
 SUFFIXES = (".csv", ".parquet")
 _NEEDED = {".parquet": "pyarrow", ".png": "matplotlib"}
@@ -111,7 +111,7 @@ class Results:
         from matplotlib import pyplot
 
         measures = self.plan.measures[:MOST_PANELS]
-        drawn = any(isinstance(variation, Random) for variation in self.plan.variations)
+        drawn = any(variation.distribution for variation in self.plan.variations)
         figure, axes = pyplot.subplots(
             len(measures),
             squeeze=False,
@@ -136,7 +136,7 @@ class Results:
 
     def _lines(self) -> dict[str, NDArray[np.intp]]:
         """The rows of each line, by its label: what else is varied, and the state where there are several."""
-        others = [v.path for v in self.plan.variations[1:] if isinstance(v, Values)]
+        others = [v.path for v in self.plan.variations[1:] if v.values]
         others += [name for name in ("time", "load_factor") if self._several(name)]
         lines: dict[str, list[int]] = {}
         for row in np.flatnonzero(self.found).tolist():

@@ -32,39 +32,23 @@ class SweepError(Mistake, ValueError):
 
 
 @dataclass(frozen=True)
-class Values:
-    """One fact that takes these values in turn."""
+class Variation:
+    """What gets other values in each variant: one fact, these `values` in turn, or facts, each drawn anew for every sample.
 
-    path: str
-    values: tuple[Value, ...]
-    label: str
-
-    @property
-    def columns(self) -> tuple[str, ...]:
-        """The paths that it gives values to."""
-        return (self.path,)
-
-
-@dataclass(frozen=True)
-class Random:
-    """Facts, each drawn anew for every sample from the same distribution.
-
-    path: of all of them. columns: of each.
+    path: of all of them. columns: of each. label: for the axis of a diagram. distribution: "" if nothing is drawn.
     """
 
     path: str
     columns: tuple[str, ...]
-    distribution: str
-    parameters: tuple[float, float]
     label: str
+    values: tuple[Value, ...] = ()
+    distribution: str = ""
+    parameters: tuple[float, float] = (0.0, 0.0)
 
     def draw(self, generator: np.random.Generator) -> tuple[float, ...]:
-        """One value per path."""
+        """One value per column."""
         drawn = DISTRIBUTIONS[self.distribution](generator, *self.parameters, len(self.columns))
         return tuple(drawn.tolist())
-
-
-Variation = Values | Random
 
 
 def _lognormal(generator: np.random.Generator, mean: float, deviation: float, count: int) -> Any:
@@ -130,9 +114,8 @@ def _read(model: Model, text: str) -> Variation:
         if target.field.shape and not target.axis:
             raise PathError("vary one component, {key}.x or {key}.y.", key=target.field.key)
         if rest.startswith("="):
-            return Values(
-                target.path(target.element), _values(target, rest[1:]), _label(target, target.element)
-            )
+            path = target.path(target.element)
+            return Variation(path, (path,), _label(target, target.element), _values(target, rest[1:]))
         if rest.startswith("~"):
             return _random(target, rest[1:])
         raise PathError("it has no values; {form}.", form=tr(FORMS))
@@ -177,7 +160,7 @@ def _range(parts: Sequence[str]) -> tuple[float, ...]:
     return tuple(spaced(start, stop, int(parts[2])).tolist())
 
 
-def _random(target: Target, text: str) -> Random:
+def _random(target: Target, text: str) -> Variation:
     found = re.fullmatch(r"\s*(\w+)\s*\(([^,()]+),([^,()]+)\)\s*", text)
     kinds = ", ".join(DISTRIBUTIONS)
     if found is None or found[1] not in DISTRIBUTIONS:
@@ -202,7 +185,8 @@ def _random(target: Target, text: str) -> Random:
     # Strengths and stiffnesses of different rods are independent: each has its own draw.
     elements = target.table.names if target.element == EVERY else [target.element]
     columns = tuple(map(target.path, elements))
-    return Random(target.path(target.element), columns, kind, parameters, _label(target, elements[0]))
+    label = _label(target, elements[0])
+    return Variation(target.path(target.element), columns, label, (), kind, parameters)
 
 
 def _finite(text: str) -> float:

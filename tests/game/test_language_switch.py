@@ -4,7 +4,7 @@ import pytest
 
 from pinjoint.components.language import language, spoken
 from pinjoint.components.particle import Particle
-from pinjoint.documents.preferences import preferred_language
+from pinjoint.documents.preferences import preferred
 from pinjoint.editor.scenes.form import FormScene
 from pinjoint.session import Session
 from pinjoint.systems.render.picture import compose_all
@@ -49,11 +49,11 @@ def test_a_window_remembers_the_choice():
 
     app = App(models.load("isostatic"))
     app.frame(0.0)
-    assert preferred_language() == ""
+    assert preferred("language") == ""
     app.session.press("f2")
     app.frame(0.0)
     assert app.render.drawn
-    assert preferred_language() == "pt"
+    assert preferred("language") == "pt"
     app.close()
 
 

@@ -43,7 +43,7 @@ def begun(session: Session, name: str, task: int = 1) -> Course:
 @pytest.mark.parametrize("name", lessons_with_tasks())
 def test_a_lesson_is_as_its_author_means(name: str) -> None:
     script = Script(name)
-    assert [str(failure) for failure in check_lesson(script, lambda: Session(Model()))] == []
+    assert [str(failure) for failure in check_lesson(script)] == []
     assert script.description
 
 
@@ -74,7 +74,7 @@ def test_the_example_for_teachers_is_a_lesson(tmp_path: Path) -> None:
     example = page.partition("```jsonl\n")[2].partition("```")[0]
     path = tmp_path / "example.jsonl"
     path.write_text(example, encoding="utf-8")
-    assert [str(failure) for failure in check_lesson(Script(path), lambda: Session(Model()))] == []
+    assert [str(failure) for failure in check_lesson(Script(path))] == []
 
 
 # --- other right answers, and wrong ones -----------------------------------------------------------------
@@ -406,7 +406,7 @@ def test_what_is_wrong_with_a_file_is_said(tmp_path: Path, line: str, said: str)
     extra = "" if "task" in line else '\n{"say": "x"}'
     path.write_text(f"{HEADER}\n{line}{extra}\n", encoding="utf-8")
     with pytest.raises(ScriptError, match=re.escape(said)):
-        check_lesson(Script(path), lambda: Session(Model()))
+        check_lesson(Script(path))
 
 
 @pytest.mark.parametrize(
@@ -425,7 +425,7 @@ def test_what_is_wrong_with_a_lesson_is_found(tmp_path: Path, line: str, said: s
     path = tmp_path / "mine.jsonl"
     header = HEADER.replace("}", ', "model": "isostatic"}')
     path.write_text(f"{header}\n{line}\n", encoding="utf-8")
-    failures = [str(failure) for failure in check_lesson(Script(path), lambda: Session(Model()))]
+    failures = [str(failure) for failure in check_lesson(Script(path))]
     assert len(failures) == 1
     assert said in failures[0]
 

@@ -8,7 +8,6 @@ import sys
 from pathlib import Path
 from typing import Any
 
-import msgspec
 import numpy as np
 import pytest
 
@@ -17,10 +16,7 @@ from pinjoint.components.field import Column, FieldError, Role, same
 from pinjoint.components.load import Load
 from pinjoint.components.model import Model
 from pinjoint.documents import models
-from pinjoint.documents.facts import gathered
 from pinjoint.documents.models import ModelError
-from tests.benchmarks.models import mesh
-from tests.reference.lines import lines_run
 from tests.reference.models import model, particle, rod, square, triangle
 
 BASE = {"format": "pinjoint model", "version": 1}
@@ -360,46 +356,6 @@ def everything() -> Model:
     )
     made.writable("particles.velocity")[2] = (-1e300, 4e-320)
     return made
-
-
-def test_a_document_by_columns_is_the_same_model(tmp_path: Path) -> None:
-    """It is made and written in a fraction of the time, for what is written every few seconds."""
-    for made in (everything(), models.parse(triangle()), Model()):
-        path = tmp_path / "columns.json"
-        path.write_bytes(msgspec.json.encode(gathered(made)))
-        assert_same(made, models.load(path))
-    large = mesh(10_000)
-    assert lines_run(lambda: gathered(large)) < large.rods.count  # none for each rod
-
-
-COLUMNS = msgspec.json.decode(msgspec.json.encode(gathered(models.parse(triangle()))))
-NUMBERS = {"kind": "<f8", "pairs": True, "absent": False, "data": "AAAA"}
-
-
-@pytest.mark.parametrize(
-    "changed",
-    [
-        {"sections": {"particles": [10**12, []]}},
-        {"sections": {"particles": [-1, []]}},
-        {"sections": {"particles": [2, [["name", "", None, ["A"]]]]}},
-        {"sections": {"particles": [1, [["name", "", [7], ["A"]]]]}},
-        {"sections": {"particles": [1, [["name", "", None, ["A"]], ["position", "", None, NUMBERS]]]}},
-        {
-            "sections": {
-                "particles": [1, [["name", "", None, ["A"]], ["x", "", None, NUMBERS | {"kind": "|O"}]]]
-            }
-        },
-        {"sections": {"particles": [1, [["components", "", None, [5]]]]}},
-        {"sections": {"nothing": [1, []]}},
-        {"sections": {}, "version": "1"},
-        {"sections": {}, "version": 99},
-    ],
-)
-def test_damaged_columns_are_explained(changed: dict[str, Any], tmp_path: Path) -> None:
-    path = tmp_path / "columns.json"
-    path.write_bytes(msgspec.json.encode(COLUMNS | changed))
-    with pytest.raises(ModelError, match=r"columns\.json: \$"):
-        models.load(path)
 
 
 def test_what_is_as_by_default_is_left_out() -> None:

@@ -26,9 +26,9 @@ def test_t_goes_through_all_themes_and_back() -> None:
 
 
 def test_a_theme_is_remembered_and_other_entries_stay(config: Path) -> None:
-    assert preferences.preferred_theme() == "light"
+    assert preferences.preferred("theme") == "light"
     preferences.remember("theme", "dark")
-    assert preferences.preferred_theme() == "dark"
+    assert preferences.preferred("theme") == "dark"
     path = config / "settings.json"
     path.write_text('{"theme": "dark", "other": 1}', encoding="utf-8")
     preferences.remember("theme", "colour-blind")
@@ -37,11 +37,11 @@ def test_a_theme_is_remembered_and_other_entries_stay(config: Path) -> None:
 
 
 def test_the_convention_of_the_force_method_is_remembered(config: Path) -> None:
-    assert preferences.preferred_convention() == "textbook"
+    assert preferences.preferred("convention") == "textbook"
     preferences.remember("convention", "thesis")
-    assert preferences.preferred_convention() == "thesis"
+    assert preferences.preferred("convention") == "thesis"
     preferences.remember("convention", "another")
-    assert preferences.preferred_convention() == "textbook"
+    assert preferences.preferred("convention") == "textbook"
 
 
 @pytest.mark.parametrize(
@@ -54,9 +54,9 @@ def test_the_convention_of_the_force_method_is_remembered(config: Path) -> None:
 def test_a_damaged_file_is_no_choice_and_can_be_written_again(config: Path, text: str) -> None:
     config.mkdir()
     (config / "settings.json").write_bytes(text.encode("latin-1"))
-    assert (preferences.preferred_theme(), preferences.preferred_magnification()) == ("light", 1.0)
+    assert (preferences.preferred("theme"), preferences.preferred("magnification")) == ("light", 1.0)
     preferences.remember("theme", "dark")
-    assert preferences.preferred_theme() == "dark"
+    assert preferences.preferred("theme") == "dark"
 
 
 def test_what_cannot_be_read_is_put_aside(config: Path) -> None:
@@ -65,14 +65,14 @@ def test_what_cannot_be_read_is_put_aside(config: Path) -> None:
     config.mkdir()
     (config / "settings.json").write_bytes(slip)
     preferences.remember("theme", "dark")
-    assert preferences.preferred_theme() == "dark"
+    assert preferences.preferred("theme") == "dark"
     assert (config / "settings-unreadable.json").read_bytes() == slip
 
 
 def test_where_nothing_can_be_written_nothing_is_kept(config: Path) -> None:
     config.write_text("a file where the folder should be", encoding="utf-8")
     preferences.remember("theme", "dark")
-    assert preferences.preferred_theme() == "light"
+    assert preferences.preferred("theme") == "light"
 
 
 def test_a_session_without_a_window_writes_no_settings(config: Path) -> None:
@@ -83,8 +83,8 @@ def test_a_session_without_a_window_writes_no_settings(config: Path) -> None:
 def test_the_magnification_is_kept_beside_the_theme(config: Path) -> None:
     preferences.remember("theme", "dark")
     preferences.remember("magnification", 1.5)
-    assert preferences.preferred_magnification() == 1.5
-    assert preferences.preferred_theme() == "dark"
+    assert preferences.preferred("magnification") == 1.5
+    assert preferences.preferred("theme") == "dark"
 
 
 @pytest.mark.parametrize(

@@ -9,6 +9,7 @@ from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import Any
 
+import msgspec
 import pygame
 import pytest
 
@@ -19,7 +20,7 @@ from pinjoint.components.language import spoken
 from pinjoint.components.model import Model
 from pinjoint.documents import models
 from pinjoint.editor.view_model import COMPILING
-from pinjoint.elsewhere import UNITS, Job, described, parts_of, problem_of
+from pinjoint.elsewhere import UNITS, Job, parts_of, problem_of
 from pinjoint.preparation import Preparation, _job, _jobs_of, is_live
 from pinjoint.session import Session
 from pinjoint.systems import cache
@@ -441,7 +442,7 @@ def test_a_model_waits_while_a_law_of_a_mod_acts_on_it(monkeypatch: pytest.Monke
 def _assert_the_same_there(session: Session) -> None:
     simulation = session.simulation
     jobs = [*_jobs_of(simulation), *preparation._jobs_later(simulation)]
-    document = described(session.model)
+    document = msgspec.json.encode(models.document(session.model))
     for job in jobs:
         if job[0] not in UNITS:
             here = preparation._module_of(job, simulation)
@@ -511,7 +512,7 @@ def test_another_process_compiles_what_this_one_loads(
         document = {**document, **BENT}
     simulation = Session.open(document).simulation
     [job] = _jobs_of(simulation)
-    process = elsewhere.started({job: described(simulation.model)}, urgent=True)
+    process = elsewhere.started({job: msgspec.json.encode(models.document(simulation.model))}, urgent=True)
     assert process.communicate(timeout=300) == ("\n", None)
     assert process.returncode == 0
     assert not (tmp_path / "planted").exists()

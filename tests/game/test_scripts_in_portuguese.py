@@ -8,7 +8,6 @@ import pytest
 
 from pinjoint.commands.command_line import main
 from pinjoint.components.language import english, language, spoken
-from pinjoint.components.model import Model
 from pinjoint.documents import library
 from pinjoint.lessons.checking import check_lesson
 from pinjoint.scripts.playing import Recorder, play, session_of
@@ -31,7 +30,7 @@ def test_scripts_play_where_every_word_differs(source):
 @pytest.mark.parametrize("name", lessons_with_tasks())
 def test_tasks_of_lessons_are_solved_where_every_word_differs(name):
     with pseudo(), library.data_apart():
-        assert not check_lesson(Script(name), lambda: Session(Model()))
+        assert not check_lesson(Script(name))
 
 
 def pressed_and_read() -> tuple[object, ...]:

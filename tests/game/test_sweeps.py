@@ -464,7 +464,7 @@ def test_an_installation_that_differs_does_not_compute() -> None:
 
     plan = plan_of(MODEL, [FORCE_Y], MEASURES, STATIC, (), None, 0)
     with pytest.raises(SweepError, match=r"the sweep needs 9\.9"):
-        list(compute_all(replace(plan, software=replace(plan.software, version="9.9")), [0], 1, None))
+        list(compute_all(replace(plan, version="9.9"), [0], 1, None))
 
 
 # --- the command -------------------------------------------------------------------------------------------

@@ -22,7 +22,6 @@ from pinjoint import Session
 from pinjoint.commands.command_line import main
 from pinjoint.documents import library, models, preferences
 from pinjoint.documents.autosave import Autosave
-from pinjoint.documents.facts import gathered
 from pinjoint.systems import cache
 from pinjoint.systems.program import compiler
 from tests.properties.limits import within
@@ -117,12 +116,12 @@ def settings(folder: Path, chance: random.Random) -> None:
     path = preferences.settings_path()
     path.write_bytes(SETTINGS)
     spoil(path, chance)
-    preferences.preferred_theme()
+    preferences.preferred("theme")
     preferences.preferred_keys()
-    preferences.preferred_magnification()
+    preferences.preferred("magnification")
     if not path.is_dir() and not path.is_symlink():
         preferences.remember("theme", "colour-blind")
-        assert preferences.preferred_theme() == "colour-blind"
+        assert preferences.preferred("theme") == "colour-blind"
 
 
 def journal(folder: Path, chance: random.Random) -> None:
@@ -186,7 +185,7 @@ def unsaved_work(folder: Path, chance: random.Random) -> None:
     left.parent.mkdir(exist_ok=True)
     (left.parent / "dead.lock").touch()
     made = models.parse(triangle(stiffness=5.0))
-    left.write_bytes(msgspec.json.encode(chance.choice((gathered, models.document))(made)))
+    left.write_bytes(msgspec.json.encode(models.document(made)))
     _open_damaged(left, chance)
 
 

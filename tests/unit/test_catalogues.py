@@ -10,6 +10,7 @@ from string import Formatter
 import pytest
 
 from pinjoint.components.language import DOMAIN, ENGLISH, LANGUAGES
+from pinjoint.components.view import BETWEEN
 from tests.catalogues import KEYWORDS, ROOT, extracted, folders, is_translated, path_of, texts, translations
 
 SOURCES = [
@@ -75,6 +76,14 @@ def test_translations_fill_in_the_same_values(domain, language):
                 assert fields(said) - {("count", "", "")} == fields(source) - {("count", "", "")}
         elif can_be_filled(message.id):
             assert fields(message.string) == fields(message.id)
+
+
+@pytest.mark.parametrize(("domain", "language"), CATALOGUES)
+def test_translations_keep_the_steps_of_a_hint_apart(domain, language):
+    """They are shown one by one, where there is room."""
+    for message in translations(domain, language):
+        if isinstance(message.id, str) and is_translated(message):
+            assert message.string.count(BETWEEN) == message.id.count(BETWEEN), message.id
 
 
 def can_be_filled(text: str) -> bool:

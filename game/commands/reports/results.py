@@ -45,15 +45,6 @@ _ERRORS = {
     "relative_rotation": marked("rotations"),
     "relative_bending_moment": marked("bending moments"),
 }
-_ENERGIES = {
-    "kinetic": marked("kinetic"),
-    "elastic": marked("elastic"),
-    "dissipated_damping": marked("dissipated by damping"),
-    "dissipated_plastic": marked("dissipated by yielding"),
-    "dissipated_impact": marked("dissipated by impacts"),
-    "work": marked("work of loads"),
-    "imbalance": marked("imbalance"),
-}
 STATUSES = (  # that runs end with, beside those of report.py
     marked("mechanism"),
     marked("collapse"),
@@ -204,7 +195,7 @@ def _state_lines(made: State) -> Iterator[str]:
             yield ""
             yield from aligned(_element_rows(group, made[group]))
     yield ""
-    energies = [[tr(_ENERGIES[name]), value] for name, value in made["energy"].items()]
+    energies = [[tr(ENERGIES[name]), value] for name, value in made["energy"].items()]
     yield from aligned([[tr("energy"), "J"], *energies])
     yield ""
     counts = {"residual": as_written(made["residual"]), "collisions": made["collisions"]}

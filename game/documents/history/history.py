@@ -9,7 +9,7 @@ from dataclasses import replace
 from pinjoint.components.commands import Assign, Command, Group
 from pinjoint.components.field import Role
 from pinjoint.components.model import Model
-from pinjoint.documents.history.log import DiskStore, Edit, Entry, Log, Run
+from pinjoint.documents.history.log import Edit, Entry, Log, Run
 from pinjoint.systems.run.checkpoint import Checkpoint
 from pinjoint.systems.run.simulation import Simulation
 
@@ -29,8 +29,7 @@ class History:
         on_change: Callable[[Entry], None],
         memory: int = MEMORY,
     ) -> None:
-        store = DiskStore()
-        self._done, self._undone = Log(store, memory), Log(store, memory)
+        self._done, self._undone = Log(memory), Log(memory)
         self._model = model
         self._simulation = simulation
         self._on_change = on_change

@@ -9,7 +9,7 @@ import pytest
 from pinjoint import __main__ as program
 from pinjoint.commands import language as choice
 from pinjoint.components.language import language
-from pinjoint.documents.preferences import preferred_language, remember
+from pinjoint.documents.preferences import preferred, remember
 
 OF_SYSTEM = ("LANGUAGE", "LC_ALL", "LC_MESSAGES", "LANG")
 
@@ -71,7 +71,7 @@ def test_the_choice_of_the_person_goes_before_the_system_and_what_is_asked_befor
 @pytest.mark.parametrize("kept", ['"xx"', "7", "null", '["pt"]'])
 def test_a_preference_that_is_no_language_counts_as_none(person, tmp_path, kept):
     (tmp_path / "settings.json").write_text(f'{{"language": {kept}}}')
-    assert preferred_language() == ""
+    assert preferred("language") == ""
 
 
 @pytest.mark.parametrize("place", ["before", "after"])
