@@ -79,10 +79,8 @@ class Session(Headless):
         self.on_press: Callable[[str, Vector | None], None] | None = None
         self.on_resize: Callable[[], None] | None = None
         self._clicked: tuple[object, ...] | None = None  # what took the last press, if that was a click
-        self.extent = (
-            self.view.camera.viewport.width,
-            self.view.camera.viewport.height,
-        )  # of the window (pixels)
+        # Of the window (pixels).
+        self.extent = self.view.camera.viewport.width, self.view.camera.viewport.height
         self.offer_tools()
         self.begin_document()
 

@@ -50,10 +50,8 @@ _FURTHER: dict[Use, dict[str, Any]] = {
     Use.PART: _NO_WRAPPERS,
     Use.SHARED: {**_NO_WRAPPERS, "parallel": True},
     Use.KEPT: {"nogil": True},  # others may call them by their address
-    Use.ENTRY: {
-        "no_cfunc_wrapper": True,
-        "nogil": True,
-    },  # a thread ends the process where a call never returns
+    # without the lock, since a thread ends the process where a call never returns
+    Use.ENTRY: {"no_cfunc_wrapper": True, "nogil": True},
 }
 
 

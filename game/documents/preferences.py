@@ -21,9 +21,8 @@ from pinjoint.systems.render.theme import theme_names
 
 CONFIG_VARIABLE = "PINJOINT_CONFIG"  # names another folder than the system's own
 DEFAULT_THEME = "light"
-_CHOICES: Mapping[
-    str, tuple[Any, Callable[[], Iterable[Any]]]
-] = {  # by entry: the default, and all that there are
+# By entry: the default, and all that there are.
+_CHOICES: Mapping[str, tuple[Any, Callable[[], Iterable[Any]]]] = {
     "theme": (DEFAULT_THEME, theme_names),
     "language": ("", lambda: LANGUAGES),
     "convention": (TEXTBOOK, lambda: CONVENTIONS),

@@ -34,11 +34,8 @@ RESTARTS = 100
 LANCZOS = 40  # vectors that the lowest of larger structures are found from, at least
 MODES = 5
 NOTHING = 1e-10  # of the largest axial force, or of the largest eigenvalue: round-off
-STIFFENED = (
-    1e-6,
-    1e-8,
-    1e-10,
-)  # of the rods' stiffness: by what tension is to hold a mechanism before it gives way
+# Of the rods' stiffness: by what tension is to hold a mechanism before it gives way.
+STIFFENED = 1e-6, 1e-8, 1e-10
 STRAINED = 0.1  # strain at a critical factor above which no material is still elastic
 
 

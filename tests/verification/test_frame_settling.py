@@ -13,7 +13,7 @@ from scipy.optimize import brentq
 from pinjoint.components.model import Model
 from pinjoint.documents.models import parse
 from pinjoint.session import Session
-from pinjoint.systems.statics.factor import is_held
+from pinjoint.systems.statics.factor import is_held, soft_modes
 from pinjoint.systems.statics.settle import settle
 from pinjoint.systems.statics.state import StaticState
 from pinjoint.systems.statics.theory import Indeterminacy, linear
@@ -324,3 +324,9 @@ def test_a_member_between_two_nodes_in_one_place_gives_no_numbers_that_are_none(
     found = settle(parse(model(nodes, [bent])))
     assert found.status == "limit reached"
     assert not recwarn.list
+
+
+def test_a_motion_that_too_small_a_stiffness_resists_has_no_mode() -> None:
+    weight = np.array([3.0, 1.0, 1.0, 2e-323])  # as of a bar of EI = 5e-324 kN·m²
+    matrix = np.diag(weight) - np.diag([0.0, 1.0, 0.0, 0.0])
+    assert soft_modes(matrix, weight).shape == (4, 0)
