@@ -20,8 +20,8 @@ from pinjoint.systems.collision.driven.columns import Driven, Listing, Order, Ph
 from pinjoint.systems.collision.driven.kernels.neighbours import list_pairs
 from pinjoint.systems.collision.driven.kernels.steps import collide
 from pinjoint.systems.collision.system import persistent_contacts
-from pinjoint.systems.entries import Account, Control
 from pinjoint.systems.program.compiler import Between, GeneratedModule, entries_to
+from pinjoint.systems.program.entries import Account, Control
 
 CONTACTS = 8  # room at first
 STEP_SHARE = 0.04  # longest step of crowds: of the time in which a disc falls through its diameter

@@ -23,9 +23,9 @@ from pinjoint.systems.collision.driven.neighbours import DRIVEN, NeighbourList
 from pinjoint.systems.collision.kernels.impact import respond
 from pinjoint.systems.collision.system import persistent_contacts
 from pinjoint.systems.edit.pull import hand_on
-from pinjoint.systems.entries import Account, Control
 from pinjoint.systems.physics.integrators import INTEGRATORS
 from pinjoint.systems.program.compiler import Compile, GeneratedModule, entries_to
+from pinjoint.systems.program.entries import Account, Control
 from pinjoint.systems.program.program import Program
 from tests.benchmarks.models import touching
 from tests.reference import bits
