@@ -24,9 +24,8 @@ SPEED_NOISE = 16.0 * EPSILON  # round-off of a speed, as a share of the speeds t
 NONE = -1  # no entry, no member
 DIRECT = 48  # contacts up to which a projection is solved directly; larger groups are solved by sweeps
 SHARED_START, SHARED_END = 1.0, 2.0  # flags of Disc.SHARED
-SHORTEST_SHARE = (
-    1.0 / 16.0
-)  # shortest step of piles and crowds, where discs are fast, as a share of the longest
+# shortest step of piles and crowds, where discs are fast, as a share of the longest
+SHORTEST_SHARE = 1.0 / 16.0
 TINY = 1e-300  # more than none, in any unit
 
 

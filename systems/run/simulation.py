@@ -106,9 +106,8 @@ class Simulation:
         self._account = Account(model, self._measured)
         self._recovery = Recovery(model, self.programs, self._sleep, self.step_size)
         self._announces = True
-        self._parting: tuple[int, Generator[None, None, str]] | None = (
-            None  # that a frame left, at this revision
-        )
+        # that a frame left, at this revision
+        self._parting: tuple[int, Generator[None, None, str]] | None = None
         self._present: tuple[int, Snapshot] | None = None  # the state at this revision
         self.armed = False
         self.armed_revision = self._sound_at = -1

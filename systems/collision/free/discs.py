@@ -42,9 +42,8 @@ from pinjoint.systems.program.compiler import Choice, GeneratedModule, entries_t
 SAME_PLACE = 1e-12  # of the largest coordinate: ends of obstacles nearer than this are one
 REPORTED_AT_ONCE = 512  # impacts; fetched before more are reported
 PILE_STEP_SHARE = 0.03  # longest step of piles: of the time in which a disc falls through its diameter
-WORK_AT_ONCE = (
-    2**22
-)  # discs × events, or pairs × sweeps, after which a kernel returns: Python heeds Ctrl+C, a window draws
+# discs × events, or pairs × sweeps, after which a kernel returns: Python heeds Ctrl+C, a window draws
+WORK_AT_ONCE = 2**22
 MORE_PATIENCE = 64  # calm steps between two searches for the equilibrium of a pile
 
 

@@ -18,12 +18,10 @@ from pinjoint.systems.collision.kernels.projection import (
     push_apart,
 )
 
-REFLECTIONS_BEFORE_JAM_TEST = (
-    256  # after which, and after twice as many, …, a test shows whether they can ever end
-)
-MOST_REFLECTIONS = (
-    1000000  # of contacts; after these, or where they never end, the rest of the impact is plastic
-)
+# after which, and after twice as many, …, a test shows whether they can ever end
+REFLECTIONS_BEFORE_JAM_TEST = 256
+# of contacts; after these, or where they never end, the rest of the impact is plastic
+MOST_REFLECTIONS = 1000000
 
 
 @compiled
