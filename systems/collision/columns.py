@@ -183,7 +183,7 @@ class Group(NamedTuple):
     curve, CX and CY.
     noise: rate below which a contact closes by round-off only.
     active: the contacts of a projection; state: of each contact in the active-set method; chosen: those whose rates are now
-    brought to 0. matrix: work space.
+    brought to 0. matrix: work space. cut_short: how many impacts had more reflections than are followed.
     """
 
     members: Annotated[Integers, "n"]
@@ -203,6 +203,7 @@ class Group(NamedTuple):
     state: Annotated[Integers, "contacts"]
     chosen: Annotated[Integers, "contacts"]
     matrix: Annotated[Floats, DIRECT + 1, DIRECT]
+    cut_short: Annotated[Integers, 1]
 
     @classmethod
     def empty(cls, n: int, contacts: int) -> Group:

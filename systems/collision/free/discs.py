@@ -177,7 +177,8 @@ class Discs:
             self.counts[Count.LISTED] = NONE
         elif reason is Reason.GROUP_FULL:
             size = 2 * len(self.group.links)
-            self.group, self.pile = Group.empty(n, size), Pile.empty(n, size)
+            group = Group.empty(n, size)._replace(cut_short=self.group.cut_short)
+            self.group, self.pile = group, Pile.empty(n, size)
             self.counts[Count.LISTED] = NONE
             self.report = np.zeros((max(REPORTED_AT_ONCE, size), len(Detail)))
             self.constraints = self.constraints.enlarged(2 * size, self.counts)
@@ -324,6 +325,11 @@ class Discs:
     def deepest(self) -> float:
         """How far discs of a pile were in one another at most so far, in radii of the smaller disc."""
         return float(self.numbers[Number.DEEPEST])
+
+    @property
+    def created(self) -> float:
+        """Energy (J) that steps of piles have given back of all that was lost, to discs that jam."""
+        return max(float(self.numbers[Number.MOST_LOSS] - self.numbers[Number.LOSS]), 0.0)
 
     def state_at(self, time: float) -> tuple[Floats, Floats]:
         """Displacements (m) and velocities (m/s) at a time (s) between the last event and the next."""
