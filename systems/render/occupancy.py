@@ -89,7 +89,9 @@ class Occupancy:
         """For each box of `cells` (n, 4), whether nothing takes any and no line in it is stronger than `covering`."""
         left, top, right, bottom = cells.T
         blocked, (height, width) = self.taken | (self.lined > covering), self.taken.shape
-        before = np.zeros((height + 1, width + 1), dtype=np.int32)  # how many are above and to the left of each corner
+        before = np.zeros(
+            (height + 1, width + 1), dtype=np.int32
+        )  # how many are above and to the left of each corner
         blocked.cumsum(axis=0, dtype=np.int32).cumsum(axis=1, out=before[1:, 1:])
         free: Truths = before[bottom, right] - before[top, right] == before[bottom, left] - before[top, left]
         return free
