@@ -558,21 +558,18 @@ def test_an_impact_along_a_row_of_discs_ends(count: int) -> None:
 @pytest.mark.parametrize("drag", [0.0, 1.0])
 def test_impacts_that_were_not_reflected_to_the_end_are_told(drag: float) -> None:
     """Of free discs, and of such as an integrator moves; until the run is taken back to before them."""
-    session = Session(touching(3, 1))
+    session, told = Session(touching(3, 1)), "2 joint impacts had more reflections than can be followed"
     session.environment.drag = drag
     session.run(steps=1)
     run = session.simulation
-    assert "reflections" not in run.said
-    group = run.programs.flying.group if drag == 0.0 else run._driven_collisions._neighbours.driven.group
-    group.cut_short[0] = 2
+    flying = run.programs.flying or run._driven_collisions._neighbours.driven
+    flying.group.cut_short[0] = 2
     session.run(steps=1)
-    session.run(steps=1)
-    assert "2 joint impacts had more reflections than can be followed" in run.said
+    assert told in run.said
     session.undo()
     session.undo()
-    session.undo()
-    assert session.model.clock.collisions == len(run.impacts) == 0
-    assert "reflections" not in run.said
+    assert len(run.impacts) == 0
+    assert told not in run.said
 
 
 def two_apart(radii: float) -> tuple[Session, tuple[Any, ...]]:
