@@ -13,6 +13,7 @@ from pinjoint.components.snapshot import Snapshot
 from pinjoint.components.view import drawn_places
 from pinjoint.documents.models import replace
 from pinjoint.session import Session
+from pinjoint.systems.physics.pace import natural_pace
 from pinjoint.systems.render.labels import Placed
 
 FRAME = 0.05  # s for which each picture is shown; viewers of GIFs slow down quicker ones
@@ -69,7 +70,7 @@ def _run(session: Session, until: float | None, limit: float) -> tuple[str, list
 def _times(session: Session, until: float | None, limit: float) -> Iterator[float]:
     """The simulated times of the pictures (s)."""
     begin, most = session.time, math.floor(LONGEST / FRAME)
-    step = FRAME * session.pace
+    step = FRAME * natural_pace(session.model)
     if until is None:
         count = min(most, math.ceil(limit / step))
     else:
