@@ -418,9 +418,7 @@ def test_files_that_are_dropped_are_opened_and_wrong_ones_explained(session: Ses
     assert "rodz" in session.message
     assert "is a folder" in session.message
     assert "gone.json" in session.message
-    session.press(
-        "files " + "\n".join(f"{tmp_path / name}" for name in ("isostatic.json", "photo.png", "tower.json"))
-    )
+    session.press(f"files {tmp_path}/isostatic.json\n{tmp_path}/photo.png\n{tmp_path}/tower.json")
     assert (session.scene, session.document.file.name) == ("pause", "tower")
     assert session.notice.endswith("Opened isostatic and tower. Ctrl+Z goes back.")
     assert "photo.png" in session.notice

@@ -19,13 +19,11 @@ def test_dragging_a_running_particle_pulls_it_with_a_spring_whose_work_is_accoun
     shown = preview(session)
     assert shown.kind == "pull"
     assert shown.end == pytest.approx((1.0, 0.0), abs=1e-12)
-    for _ in range(120):
-        session.frame(FRAME)
+    run_frames(session, 120)
     # Two seconds of a critically damped spring with ω = 4π/s: 25 periods of decay, e⁻²⁵ is left.
     assert session.particles["A"].displacement == pytest.approx((1.0, 0.0), abs=1e-6)
     session.press("drag to", session.point(1.0, 1.0))
-    for _ in range(6):
-        session.frame(FRAME)
+    run_frames(session, 6)
     energy = session.energy
     assert energy.kinetic > 0.0
     # The work of the hand, by the trapezoidal rule, is the particle's kinetic energy.
@@ -54,8 +52,7 @@ def test_pulling_a_structure_bends_it_by_the_force_that_is_shown(triangle: Sessi
     triangle.frame(FRAME)
     triangle.press("drag", triangle.point(1.0, 1.0))
     triangle.press("drag to", triangle.point(1.5, 1.0))
-    for _ in range(600):
-        triangle.frame(FRAME)
+    run_frames(triangle, 600)
     x, y = triangle.document.pull.force
     # 164.64 kN for 100 px, at 50 px or so (the truss gives way by less than a millimetre).
     assert x == pytest.approx(0.5 * 164.64, rel=0.01)
@@ -84,12 +81,10 @@ def test_a_second_pull_compiles_nothing(triangle: Session) -> None:
 def test_a_pull_is_undone_with_its_run(triangle: Session) -> None:
     before = Snapshot.take(triangle.model)
     triangle.press("space")
-    triangle.frame(FRAME)
-    triangle.frame(FRAME)
+    run_frames(triangle, 2)
     triangle.press("drag", triangle.point(1.0, 1.0))
     triangle.press("drag to", triangle.point(1.4, 1.4))
-    for _ in range(10):
-        triangle.frame(FRAME)
+    run_frames(triangle, 10)
     triangle.press("space")
     assert triangle.particles["B"].displacement != (0.0, 0.0)
     triangle.press("ctrl+z")

@@ -111,12 +111,10 @@ def test_pace_goes_from_a_hundred_thousandth_to_fast(triangle: Session) -> None:
         triangle.press("-")
     assert triangle.document.live.clock.factor == pytest.approx(1e-5, rel=1e-12)
     triangle.press("space")
-    for _ in range(5):
-        triangle.frame(FRAME)
+    run_frames(triangle, 5)
     # Less than one step in five frames, yet time does not stand still: what is due is carried over.
     triangle.press("0")
-    for _ in range(5):
-        triangle.frame(FRAME)
+    run_frames(triangle, 5)
     assert triangle.model.clock.steps > 0
     for _ in range(40):
         triangle.press("+")
