@@ -90,7 +90,7 @@ def load_raster() -> Raster:
 
 
 def _contents() -> tuple[str, dict[str, Callable[..., Any]]]:
-    lines = ["from pinjoint.systems.kernels import kept", ""]
+    lines = ["from pinjoint.systems.program.kernel import kept", ""]
     for name, signature in SIGNATURES.items():
         parameters = ", ".join(inspect.signature(getattr(kernels, name)).parameters)
         lines += [
