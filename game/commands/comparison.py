@@ -1,4 +1,4 @@
-"""Simulation, linear and exact theory side by side; indeterminacy, mechanisms and frequencies: what `pinjoint verify` prints."""
+"""Simulation, linear and exact theory side by side, and what theory says of a structure: what `pinjoint verify` prints."""
 
 from __future__ import annotations
 

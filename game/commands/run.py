@@ -19,7 +19,6 @@ from pinjoint.commands.options import (
     model_of,
 )
 from pinjoint.commands.output import Row, add_output, aligned, as_written, writable, write, write_result
-from pinjoint.components.field import Field
 from pinjoint.components.handle import Handle
 from pinjoint.components.language import marked, several, tr
 from pinjoint.components.particle import Particle
@@ -147,44 +146,40 @@ def _state_lines(made: State) -> Iterator[str]:
 def _element_rows(group: str, elements: Mapping[str, Mapping[str, Any]]) -> Iterator[Row]:
     """Two rows of headings, then one row per element."""
     columns = _columns(group, elements)
-    yield tr(_KINDS[group].noun), *(column.field.named(column.axis) for column in columns)
-    yield "", *("mm" if column.in_mm else column.unit for column in columns)
+    yield tr(_KINDS[group].noun), *(column.title for column in columns)
+    in_mm = Particle.displacement.name
+    yield "", *("mm" if column.fact == in_mm else column.unit for column in columns)
     for name, values in elements.items():
-        numbers = ((column.of(values), column.in_mm) for column in columns)
-        yield name, *(1000.0 * number if in_mm else number for number, in_mm in numbers)
+        numbers = ((column.of(values), column.fact) for column in columns)
+        yield name, *(1000.0 * number if fact == in_mm else number for number, fact in numbers)
 
 
 class _Column(NamedTuple):
-    """One number of each element: a Field's, or its part along an axis, "" for the whole."""
+    """One number of each element: a fact, or the part of one that is a vector."""
 
-    field: Field[Any]
-    axis: str
-
-    @property
-    def key(self) -> str:
-        return f"{self.field.name}_{self.axis}" if self.axis else self.field.name
-
-    @property
-    def unit(self) -> str:
-        return self.field.unit_of(self.axis)
-
-    @property
-    def in_mm(self) -> bool:
-        """In tables to read; all else is in the units of files there, too."""
-        return self.field is Particle.displacement
+    fact: str
+    part: int | None
+    key: str
+    title: str
+    unit: str
 
     def of(self, values: Mapping[str, Any]) -> Any:
         """The number in the values of an element."""
-        value = values[self.field.name]
-        return value[self.field.axes.index(self.axis)] if self.axis else value
+        value = values[self.fact]
+        return value if self.part is None else value[self.part]
 
 
 def _columns(group: str, elements: Mapping[str, Mapping[str, Any]]) -> list[_Column]:
     """The columns of the elements of a table, which all have the same facts."""
     fields = {field.name: field for field in fields_of(_KINDS[group])}
-    facts = next(iter(elements.values()), ())
-    return [
-        _Column(fields[fact], axis)
-        for fact in facts
-        for axis in (fields[fact].axes if fields[fact].shape else ("",))
-    ]
+    columns: list[_Column] = []
+    for fact in next(iter(elements.values()), ()):
+        field = fields[fact]
+        if field.shape:
+            parts = enumerate(field.axes)
+            columns += (
+                _Column(fact, n, f"{fact}_{axis}", field.named(axis), field.unit_of(axis)) for n, axis in parts
+            )
+        else:
+            columns.append(_Column(fact, None, fact, field.named(), field.unit))
+    return columns
