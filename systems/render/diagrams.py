@@ -34,7 +34,6 @@ from pinjoint.systems.render.labels import ANCHORS
 from pinjoint.systems.render.marks import Bars, Discs, Fills, Points, Rows, Strokes, Truths, Values
 from pinjoint.systems.render.nearness import ranges
 from pinjoint.systems.render.occupancy import FAINT
-from pinjoint.systems.render.overlays import heading_height
 from pinjoint.systems.render.sheet import Sheet, typical_length
 from pinjoint.systems.render.theme import Colour, faded
 from pinjoint.systems.render.values import (
@@ -53,8 +52,12 @@ NAMES = {
     SHEAR: marked("shear force V"),
 }
 _UNITS = {AXIAL: "kN", MOMENT: "kN·m", SHEAR: "kN"}
-_MEANT = {AXIAL: ("tension", "compression"), MOMENT: ("moment",), SHEAR: ("shear",)}  # in the legend
-_BESIDE = ("load", "load per length", "load moment", "reaction", "reaction moment", "ghost")  # there, at most
+_BESIDE = ("load", "load per length", "load moment", "reaction", "reaction moment", "ghost")
+EXPLAINED = {  # in the legend, at most: what they show, then what stands beside them
+    AXIAL: ("tension", "compression", *_BESIDE),
+    MOMENT: ("moment", *_BESIDE),
+    SHEAR: ("shear", *_BESIDE),
+}
 _LEAST = 24.0  # points that diagrams have towards the legend and the rim, where there is less room
 _LARGEST, _FAR = 1e100, 1e6  # kN or kN·m, pixels: what is beyond is left out
 _STEPS = (8.0, 6.0, 5.0, 4.0, 3.0, 2.0, 1.5, 1.0)
@@ -125,8 +128,11 @@ class _Diagram:
         return points[:, 0], normals[:, 0]
 
 
-def draw_diagrams(sheet: Sheet) -> None:
-    """The diagrams of rods; where they are too short, they themselves take the colour of tension or compression."""
+def draw_diagrams(sheet: Sheet, taken: float = 0.0) -> None:
+    """The diagrams of rods; where they are too short, they themselves take the colour of tension or compression.
+
+    taken: pixels at the top, of heading and legend, off which those of rods that bend keep.
+    """
     shown = np.full(len(sheet.rods), sheet.view.forces_known)
     if sheet.view.forces_known and not sheet.view.all_diagrams:
         shown = sheet.chosen(sheet.tagged(DiagramShown, "rods"), sheet.rods)
@@ -143,7 +149,7 @@ def draw_diagrams(sheet: Sheet) -> None:
     window = min(sheet.viewport.width, sheet.viewport.height)  # what leaves the structure readable:
     room = max(min(0.15 * window, 0.6 * typical_length(start, end)), 10.0 * sheet.unit)
     diagram = (
-        _curves(sheet, rows, quantity, min(_ROOM * room, MARGIN * sheet.unit))
+        _curves(sheet, rows, quantity, min(_ROOM * room, MARGIN * sheet.unit), taken)
         if sheet.is_frame
         else (_rectangles(sheet, rows, force, start, end, room))
     )
@@ -226,7 +232,7 @@ def _outward(sheet: Sheet, rows: Rows) -> Values:
 # --- curves ------------------------------------------------------------------------------------------
 
 
-def _curves(sheet: Sheet, rows: Rows, quantity: str, room: float) -> _Diagram | None:
+def _curves(sheet: Sheet, rows: Rows, quantity: str, room: float, taken: float) -> _Diagram | None:
     """The diagram of some rods, on the scale of all; None where there is nothing to be drawn."""
     model = sheet.model
     every = inner_forces(model, np.arange(model.rods.count), quantity)
@@ -238,7 +244,7 @@ def _curves(sheet: Sheet, rows: Rows, quantity: str, room: float) -> _Diagram | 
     if largest <= SMALLEST:
         return None
     side = np.full(len(every), -1.0 if quantity == MOMENT else 1.0)
-    fitting = max(largest, room * _crowding(sheet, every, quantity, side))
+    fitting = max(largest, room * _crowding(sheet, every, side, taken))
     scale = room * model.settings.diagram_scale / steady(sheet, (f"diagrams.{quantity}", 0), fitting)
     base, polynomials, side = _baseline(sheet, rows), every[rows], side[rows]
     most = np.clip(_PIECES // len(rows), 4, 24)  # more where rods are few and long
@@ -250,16 +256,15 @@ def _curves(sheet: Sheet, rows: Rows, quantity: str, room: float) -> _Diagram | 
     return found.some(np.asarray(near.all(axis=(1, 2))))
 
 
-def _crowding(sheet: Sheet, every: Values, quantity: str, side: Values) -> float:
+def _crowding(sheet: Sheet, every: Values, side: Values, taken: float) -> float:
     """The value per pixel up to which diagrams of all rods keep off the legend and the rim; 0 where the view is closer."""
     view = sheet.view
     if not view.shows(sheet.model):
         return 0.0
-    shares, names = np.linspace(0.0, 1.0, 5), _MEANT[quantity]
+    shares = np.linspace(0.0, 1.0, 5)
     points, normals = _stations(_baseline(sheet, np.arange(len(every))), shares, side)
-    explained = (*names, *_BESIDE) if view.legend else ()
     low, high = view.room.corners
-    low[1] += heading_height(view.heading, sheet.viewport.width, sheet.unit, sheet.theme, explained)
+    low[1] += taken
     above = normals * values(every, shares)[..., None]
     free = np.maximum(np.where(above < 0.0, points - low, high - points), _LEAST * sheet.unit)
     return float(np.nan_to_num(np.abs(above) / free).max(initial=0.0))
@@ -295,7 +300,7 @@ def _draw(sheet: Sheet, diagram: _Diagram) -> None:
     """Areas with an outline; axial forces in the colours of tension and compression, and of bars without force."""
     if diagram.quantity != AXIAL:
         everywhere = np.ones(len(diagram.rows), dtype=bool)
-        _draw_areas(sheet, _MEANT[diagram.quantity][0], diagram, diagram.heights, everywhere)
+        _draw_areas(sheet, EXPLAINED[diagram.quantity][0], diagram, diagram.heights, everywhere)
         return
     nothing = diagram.is_straight & ~sheet.model.rods.tension_only[diagram.rows]  # a slack cable stays dashed
     pulled, pushed = np.maximum(diagram.heights, 0.0), np.minimum(diagram.heights, 0.0)

@@ -14,6 +14,7 @@ from pinjoint.components.language import begun, marked, plural, tr
 from pinjoint.components.round_numbers import round_down
 from pinjoint.components.view import BETWEEN, LEAST_MODEL
 from pinjoint.systems.render import marks
+from pinjoint.systems.render.diagrams import EXPLAINED
 from pinjoint.systems.render.layout import Column, Drawn, Gap, Paper, Part, Plate, Row, Text, icon
 from pinjoint.systems.render.marks import Mark, Panel, Stamps, Strokes
 from pinjoint.systems.render.sheet import Sheet
@@ -108,6 +109,14 @@ def heading_height(text: str, width: float, unit: float, theme: Theme, explained
     plates, beside = _arranged(meanings_of(explained), theme, width, right, unit)
     rows = len(plates) * _ROW * unit
     return max(height, rows + 2 * _ABOVE * unit - 4.0 * unit) if beside else height + rows
+
+
+def taken_by_heading(sheet: Sheet) -> float:
+    """Pixels that the heading of a picture takes at the top, with the legend of diagrams of rods that bend."""
+    if not sheet.is_frame:
+        return 0.0
+    explained = EXPLAINED[sheet.view.quantity] if sheet.view.legend else ()
+    return heading_height(sheet.view.heading, sheet.viewport.width, sheet.unit, sheet.theme, explained)
 
 
 def _caption(sheet: Sheet, heading_end: float, top: float) -> tuple[list[Mark], float]:

@@ -27,7 +27,14 @@ from pinjoint.systems.render.layout import Paper
 from pinjoint.systems.render.lesson_card import compose_lesson
 from pinjoint.systems.render.marks import Fills, Mark, Owners, Picture, Points, Stamps, Strokes
 from pinjoint.systems.render.members import draw_distributed_forces, draw_hinges, draw_moments
-from pinjoint.systems.render.overlays import BAR, draw_notice, draw_overlays, draw_scale, place_scale
+from pinjoint.systems.render.overlays import (
+    BAR,
+    draw_notice,
+    draw_overlays,
+    draw_scale,
+    place_scale,
+    taken_by_heading,
+)
 from pinjoint.systems.render.page import draw_page
 from pinjoint.systems.render.pointed import draw_pointed
 from pinjoint.systems.render.readouts import put_readouts
@@ -126,7 +133,7 @@ def _put_controls(paper: Paper, model: Model, view: View, theme: Theme) -> None:
 
 def _draw_structure(sheet: Sheet) -> None:
     """Rods, supports and particles, with diagrams, loads and velocities."""
-    draw_diagrams(sheet)
+    draw_diagrams(sheet, taken_by_heading(sheet))
     draw_ghost(sheet)
     draw_halos(sheet)
     sides = support_sides(sheet)

@@ -17,6 +17,7 @@ from pinjoint.systems.render.arrows import draw_loads, draw_velocities
 from pinjoint.systems.render.diagrams import draw_diagrams
 from pinjoint.systems.render.marks import Bars, Discs, Fills, Mark, Points, Stamps, Strokes
 from pinjoint.systems.render.members import draw_distributed_forces, draw_hinges, draw_moments
+from pinjoint.systems.render.overlays import taken_by_heading
 from pinjoint.systems.render.sheet import measure
 from pinjoint.systems.render.structure import draw_particles, draw_rods
 from pinjoint.systems.render.supports import draw_supports, support_sides
@@ -100,7 +101,7 @@ def _marks(model: Model, camera: Camera, unit: float, theme: Theme) -> tuple[Mar
     for layer in EXTENSIONS.below:
         sheet.marks += layer(sheet)
     below = len(sheet.marks)
-    draw_diagrams(sheet)
+    draw_diagrams(sheet, taken_by_heading(sheet))
     sheet.marks[below:] = [
         replace(mark, colour=faded(mark.colour, _DENSE)) if isinstance(mark, Bars) else mark
         for mark in sheet.marks[below:]
