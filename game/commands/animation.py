@@ -13,7 +13,7 @@ from pinjoint.components.snapshot import Snapshot
 from pinjoint.components.view import drawn_places
 from pinjoint.documents.models import replace
 from pinjoint.session import Session
-from pinjoint.systems.render.labels import Placed
+from pinjoint.systems.render.labels.placing import Placed
 
 FRAME = 0.05  # s for which each picture is shown; viewers of GIFs slow down quicker ones
 LONGEST = 12.0  # s shown; a longer run to a time is shown faster, one until rest in part and at its end

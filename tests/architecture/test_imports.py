@@ -20,7 +20,7 @@ LAYERS = ("components", "systems", "game", "tests")  # each may import itself an
 RESOURCES = "assets"
 # of folders
 NAMES = {top: f"pinjoint.{top}" for top in ("components", "systems", RESOURCES)} | {"game": "pinjoint"}
-WINDOW = ("systems/render/pygame_*.py", "systems/input/pygame_*.py", "game/app.py")
+WINDOW = ("systems/render/*pygame_*.py", "systems/input/pygame_*.py", "game/app.py")
 COMPILER = "systems/program/machine_code.py"  # numba is imported as soon as it is
 COMPILED = (COMPILER, "systems/program/*.py")
 SHARED = ("is_ours", "base", "broad_phase", "islands", "program")  # by all systems
@@ -265,7 +265,7 @@ def test_a_forbidden_import_is_found(path: str, line: str) -> None:
         ("systems/physics/system.py", "from pinjoint.systems.base import Law"),
         ("systems/physics/system.py", "from pinjoint.systems.plasticity.kernels import limited"),
         ("systems/physics/system.py", "from pinjoint.systems.plasticity import kernels\nfrom . import kernels"),
-        ("systems/render/pygame_canvas.py", "import pygame.gfxdraw"),
+        ("systems/render/backends/pygame_canvas.py", "import pygame.gfxdraw"),
         ("game/app.py", "import pygame\nfrom pinjoint.systems.physics.system import Elasticity"),
         ("systems/program/compiler.py", "import numba"),
         ("game/documents/models.py", "import msgspec, pinjoint.assets"),
