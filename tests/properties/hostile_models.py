@@ -32,7 +32,7 @@ from tests.properties.limits import interrupted_after
 
 PATIENCE = 10.0  # s of processor time, then Ctrl+C
 GRACE = 50.0  # s in which what is interrupted ends
-# Nothing raised in Python that LLVM or the end of an object calls goes on; the program itself ends all the same then.
+# Nothing raised while an object ends goes on; the program itself ends all the same then.
 _SWALLOWED = re.compile(r"Exception ignored .*\bInterrupt\b", re.DOTALL)
 MOST_MEMORY = 6 << 30  # bytes of address space
 EXTREMES = (0.0, 5e-324, 1e-300, 1e-30, 1e-19, 1e-9, 1e-3, 1.0, 3.0, 1e3, 1e9, 1e16, 1e30)
