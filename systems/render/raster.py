@@ -108,11 +108,6 @@ RASTER = GeneratedModule("raster", _contents)
 # --- few strokes, without compiled code ---------------------------------------------------------------
 
 
-def stroke_pixels_estimate(start: Points, end: Points, width: float) -> float:
-    """An estimate of the pixels that stroke_coverage visits."""
-    return float(np.abs(end - start).max(axis=1, initial=0.0).sum() + 2.0 * len(start)) * (1.42 * width + 2.0)
-
-
 def stroke_coverage(
     start: Points, end: Points, width: float
 ) -> tuple[NDArray[np.int32], NDArray[np.int32], NDArray[np.uint8]]:
