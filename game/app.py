@@ -12,9 +12,7 @@ from contextlib import nullcontext, suppress
 from pathlib import Path
 from typing import Any
 
-import numpy as np
 import pygame
-from numpy.typing import NDArray
 
 from pinjoint.boundary import Boundary
 from pinjoint.components.camera import Viewport
@@ -61,8 +59,6 @@ DISPLAYS = ("DISPLAY", "WAYLAND_DISPLAY")  # where Linux says what to draw on
 UNSEEN = ("offscreen", "dummy")  # drivers of SDL without a visible window
 
 Place = tuple[int, int, int, int]  # left, top, width and height of a window (points)
-Points = NDArray[np.float64]
-Colours = NDArray[np.uint8]
 
 
 class NoDisplay(Explained, RuntimeError):
@@ -342,7 +338,9 @@ class App:
     def _choices(self) -> dict[str, str]:
         """What the person has chosen; not what a script that is performed shows."""
         view = self.session.view
-        shown = {} if self.session.performing else {"language": language(), "convention": view.convention}
+        shown = (
+            {} if self.session.footer is not None else {"language": language(), "convention": view.convention}
+        )
         return {"theme": view.theme, **shown}
 
     def _follow_choices(self) -> None:

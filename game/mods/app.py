@@ -98,9 +98,9 @@ class App:
         name = f"{self.name}.{kind.noun}"
 
         def drawing() -> Any:
-            from pinjoint.editor.gestures.drawing import drawing_of
+            from pinjoint.editor.gestures.drawing import DrawElement
 
-            return drawing_of(kind, name, key)
+            return DrawElement.of(kind, name, key)
 
         hint = tr(
             "{table}: click two points, or drag from one to the other     {key} or Esc done",
