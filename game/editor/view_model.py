@@ -21,7 +21,7 @@ from pinjoint.systems.edit.picking import pick_end, pick_particle, ring_of
 from pinjoint.systems.edit.rods import is_rigid
 from pinjoint.systems.forms.results import told
 from pinjoint.systems.input.actions import ACTIONS, LIVE
-from pinjoint.systems.render.overlays import BAR
+from pinjoint.systems.render.ui.overlays import BAR
 
 COMPILING = marked("Compiling the program for this model, once: about {seconds:.0f} s left.")
 STILL = ("pause", "properties")  # scenes of the model in which time stands still

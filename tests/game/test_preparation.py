@@ -29,7 +29,7 @@ from pinjoint.systems.program import compiler as programs
 from pinjoint.systems.program.compiler import Choice, Compile, GeneratedModule, forget_unused
 from pinjoint.systems.program.program import module_of
 from pinjoint.systems.program.writer import FEW
-from pinjoint.systems.render.raster import RASTER
+from pinjoint.systems.render.backends.raster import RASTER
 from tests.benchmarks.models import lattice, mesh, overlapping, touching
 
 RAW_LOAD = GeneratedModule.load_kept

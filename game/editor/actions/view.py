@@ -10,8 +10,8 @@ from pinjoint.components.language import LANGUAGES, language, speak, tr
 from pinjoint.editor.context import Context
 from pinjoint.systems.edit import Refusal
 from pinjoint.systems.input.actions import ACTIONS, EVERY, IN_PICTURES, Perform, actions_of
-from pinjoint.systems.render.help import help_pages
 from pinjoint.systems.render.theme import load_theme
+from pinjoint.systems.render.ui.help import help_pages
 
 action = actions_of("View", EVERY, while_drawing=True)
 
