@@ -12,8 +12,8 @@ from pinjoint.commands.arguments import Parser, UsageError, positive
 from pinjoint.commands.options import ANSWERED, NOT_ANSWERED, add_model, session_of
 from pinjoint.commands.output import writable, writing
 from pinjoint.commands.reports.report import FOUND
-from pinjoint.components.bent import QUANTITIES
 from pinjoint.components.language import tr
+from pinjoint.components.settings import DIAGRAMS
 from pinjoint.documents.shapes import numbered
 from pinjoint.session import Session
 from pinjoint.systems.base import DEFAULT_LIMIT
@@ -65,7 +65,7 @@ def _parser() -> Parser:
     parser.add_argument("--diagrams", action="store_true", help=tr("draw all force diagrams"))
     parser.add_argument(
         "--diagrams-of",
-        choices=QUANTITIES,
+        choices=DIAGRAMS,
         help=tr(
             "draw all diagrams of one quantity: the axial force N, or where rods bend the bending moment M or the shear"
             " force V"

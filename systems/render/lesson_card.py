@@ -7,9 +7,8 @@ from functools import partial
 import numpy as np
 
 from pinjoint.components.camera import Rectangle
-from pinjoint.components.card import Card
 from pinjoint.components.toolbar import Tool
-from pinjoint.components.view import View
+from pinjoint.components.view import Card, View
 from pinjoint.systems.render.buttons import button, ink_of
 from pinjoint.systems.render.layout import Column, Drawn, Gap, Paper, Part, Plate, Row, Scroll, Text
 from pinjoint.systems.render.marks import Mark, Panel, Picture, Stamps, Strokes

@@ -17,7 +17,7 @@ from pinjoint.editor.context import Context, Gesture
 from pinjoint.systems.edit import Refusal
 from pinjoint.systems.edit.picking import Grip, inside
 from pinjoint.systems.edit.placing import Movable, check_free, snapped, snapped_to_points
-from pinjoint.systems.edit.pull import hand_on
+from pinjoint.systems.edit.pull import Hand
 
 
 class Placing(Gesture):
@@ -114,7 +114,7 @@ class PullParticle(Gesture):
         self._particle = particle
         context.simulation.advance(0)
         context.document.assessment.disturb("pulled")
-        context.document.timeline.hold(hand_on(context.model, context.view, particle, lambda: context.pace))
+        context.document.timeline.hold(Hand.on(context.model, context.view, particle, lambda: context.pace))
 
     def move(self, context: Context, pixel: Vector) -> None:
         x, y = context.view.camera.to_model(pixel)
