@@ -85,7 +85,6 @@ from pinjoint.systems.base import StepSystem as StepSystem
 from pinjoint.systems.base import StopReason as StopReason
 from pinjoint.systems.base import System as System
 from pinjoint.systems.edit import Refusal as Refusal
-from pinjoint.systems.kernels import compiled as compiled
 from pinjoint.systems.physics.integrators import DormandPrince853 as DormandPrince853
 from pinjoint.systems.physics.integrators import ImplicitRungeKutta4 as ImplicitRungeKutta4
 from pinjoint.systems.physics.integrators import RungeKutta4 as RungeKutta4
@@ -94,6 +93,7 @@ from pinjoint.systems.physics.integrators import ThesisTaylor as ThesisTaylor
 from pinjoint.systems.physics.integrators import VelocityVerlet as VelocityVerlet
 from pinjoint.systems.physics.integrators import runge_kutta_constants as runge_kutta_constants
 from pinjoint.systems.physics.tableaus import Tableau as Tableau
+from pinjoint.systems.program.kernel import compiled as compiled
 from pinjoint.systems.render.marks import Bars as Bars
 from pinjoint.systems.render.marks import Discs as Discs
 from pinjoint.systems.render.marks import Fills as Fills

@@ -25,13 +25,13 @@ from pinjoint.components.language import language, speak, tr
 from pinjoint.components.model import Model
 from pinjoint.documents.document import parse
 from pinjoint.mods.loading import load
-from pinjoint.systems import cache
 from pinjoint.systems.base import Integrator, StepSystem
 from pinjoint.systems.catalogue import all_systems
 from pinjoint.systems.collision.driven.neighbours import DRIVEN
 from pinjoint.systems.collision.free.discs import EVENTS, HORIZONS, PILES
 from pinjoint.systems.collision.overlaps import PARTING
 from pinjoint.systems.physics.integrators import INTEGRATORS
+from pinjoint.systems.program import cache
 from pinjoint.systems.program.compiler import (
     Choice,
     Compile,
@@ -259,7 +259,7 @@ def main() -> None:
 def problem_of(job: Job, document: bytes) -> str:
     """Do a job for the model of a document; returns why it could not be done, "" if it could."""
     try:
-        importlib.import_module("pinjoint.systems.machine_code")
+        importlib.import_module("pinjoint.systems.program.machine_code")
     except Exception as error:  # numba is not there, or damaged
         return tr("numba cannot be imported ({error})", error=in_a_line(error))
     try:

@@ -92,9 +92,9 @@ def write(
 
 def _as_image(pictures: Sequence[Picture], size: Size, suffix: str, *, clear: bool) -> bytes:
     """Pictures as pixels."""
-    from pinjoint.systems.render.pygame_canvas import as_clear_png, as_image  # pygame takes a while to import
+    from pinjoint.systems.render.pygame_canvas import as_image  # pygame takes a while to import
 
-    return as_clear_png(pictures, size) if clear else as_image(pictures, size, suffix)
+    return as_image(pictures, size, suffix, clear=clear)
 
 
 def path_of(model: Model, owner: Owner) -> str:

@@ -19,7 +19,6 @@ from pinjoint.documents.document import document
 from pinjoint.documents.format import ModelError
 from pinjoint.editor.context import Waiting
 from pinjoint.elsewhere import UNITS, Elsewhere, Job, Work, in_a_line, problem_of, tell_slower
-from pinjoint.systems import cache
 from pinjoint.systems.base import Law, Phase, StepSystem, System
 from pinjoint.systems.collision.driven.neighbours import DRIVEN
 from pinjoint.systems.collision.free.discs import EVENTS, HORIZONS, PILES
@@ -34,6 +33,7 @@ from pinjoint.systems.physics.system import (
     Slackness,
 )
 from pinjoint.systems.plasticity.system import FirstYield, Strength, Yielding
+from pinjoint.systems.program import cache
 from pinjoint.systems.program.binding import is_our_own
 from pinjoint.systems.program.compiler import (
     LARGE,

@@ -2,7 +2,7 @@
 
 A law is a declaration and a kernel, a function of one row:
 
->>> from pinjoint.systems.kernels import compiled
+>>> from pinjoint.systems.program.kernel import compiled
 >>> @compiled
 ... def weight(particles_mass):
 ...     return 0.0, -0.00981 * particles_mass
@@ -30,7 +30,7 @@ from numpy.typing import NDArray
 from pinjoint.components.handle import Handle
 from pinjoint.components.language import marked
 from pinjoint.components.model import Model
-from pinjoint.systems.entries import ACCOUNTS
+from pinjoint.systems.program.entries import ACCOUNTS
 
 __all__ = [
     "ACCOUNTS",

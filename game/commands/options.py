@@ -8,9 +8,9 @@ from collections.abc import Iterable, Sequence
 from functools import partial
 from typing import TYPE_CHECKING, TypeVar
 
+from pinjoint.commands.analysis import Analysis
 from pinjoint.commands.arguments import Parser, UsageError, count, numbers, positive, times
 from pinjoint.commands.progress import follow
-from pinjoint.commands.reports.report import Analysis
 from pinjoint.components.extensions import EXTENSIONS
 from pinjoint.components.language import tr
 from pinjoint.components.model import Model

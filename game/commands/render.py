@@ -3,25 +3,38 @@
 from __future__ import annotations
 
 import argparse
+import io
+import math
 import re
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
+from itertools import pairwise
 from pathlib import Path
 
+import numpy as np
+
 from pinjoint import pictures
+from pinjoint.commands.analysis import FOUND
 from pinjoint.commands.arguments import Parser, UsageError, positive
 from pinjoint.commands.options import ANSWERED, NOT_ANSWERED, add_model, session_of
 from pinjoint.commands.output import writable, writing
-from pinjoint.commands.reports.report import FOUND
 from pinjoint.components.language import tr
 from pinjoint.components.settings import DIAGRAMS
+from pinjoint.components.snapshot import Snapshot
+from pinjoint.components.view import drawn_places
+from pinjoint.documents.models import replace
 from pinjoint.documents.shapes import numbered
 from pinjoint.session import Session
 from pinjoint.systems.base import DEFAULT_LIMIT
+from pinjoint.systems.render.labels import Placed
 from pinjoint.systems.render.theme import load_theme, theme_names
 
 _PICTURES = (".png", ".svg", ".pdf", ".gif", ".jpg", ".bmp")
 _CLEAR = (".png", ".svg", ".pdf")  # those that may be without a background
 _LIGHT = 128  # of 255: themes with a darker background are not made for white paper
+FRAME = 0.05  # s for which each picture is shown; viewers of GIFs slow down quicker ones
+LONGEST = 12.0  # s shown; a longer run to a time is shown faster, one until rest in part and at its end
+HELD = 1.5  # s for which the last picture stays
+COLOURS = 128
 
 
 def command(words: Sequence[str]) -> int:
@@ -143,11 +156,55 @@ def _draw(session: Session, options: argparse.Namespace, size: tuple[int, int]) 
 
 
 def _animate(session: Session, options: argparse.Namespace, size: tuple[int, int]) -> str:
-    from pinjoint.commands.animation import render_gif
+    """Write a run as a GIF, at the pace at which a window shows it; returns its status."""
+    from PIL import Image
 
     _show_shape(session, options)
     until = None if options.until_rest or options.at is None else session.time + options.at
-    return render_gif(session, options.output, size, options.theme, until=until, limit=options.limit)
+    status, moments = _run(session, until, options.limit)
+    session.exaggerate()
+    places = []
+    for moment in moments:
+        moment.restore(session.model)
+        places.append(drawn_places(session.model))
+    around, images = np.concatenate(places), []
+    placed: Placed = {}
+    for moment in moments:
+        moment.restore(session.model)
+        image = Image.fromarray(pictures.frame(session, size, options.theme, around, placed))
+        images.append(image.quantize(128, method=Image.Quantize.MEDIANCUT, dither=Image.Dither.NONE))
+    durations = [round(1000 * FRAME)] * (len(images) - 1) + [round(1000 * HELD)]
+    made = io.BytesIO()
+    images[0].save(made, "GIF", save_all=True, append_images=images[1:], duration=durations, loop=0)
+    replace(options.output, made.getvalue())
+    return status
+
+
+def _run(session: Session, until: float | None, limit: float) -> tuple[str, list[Snapshot]]:
+    """The status at the end of the run, and the states of the pictures."""
+    moments = [Snapshot.take(session.model)]
+    status = "time reached"
+    for begin, end in pairwise(_times(session, until, limit)):
+        status = session.run(time=end - begin)
+        moments.append(Snapshot.take(session.model))
+        if status != "time reached":
+            return status, moments
+    if until is None:  # the rest of a run that takes longer than is shown
+        status = session.run(until="rest", limit=limit)
+        moments.append(Snapshot.take(session.model))
+    return status, moments
+
+
+def _times(session: Session, until: float | None, limit: float) -> Iterator[float]:
+    """The simulated times of the pictures (s)."""
+    begin, most = session.time, math.floor(LONGEST / FRAME)
+    step = FRAME * session.pace
+    if until is None:
+        count = min(most, math.ceil(limit / step))
+    else:
+        count = max(min(most, math.ceil((until - begin) / step)), 1)
+        step = (until - begin) / count
+    yield from (begin + number * step for number in range(count + 1))
 
 
 def _size(text: str) -> tuple[int, int]:

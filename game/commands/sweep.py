@@ -6,9 +6,9 @@ import sys
 from collections.abc import Sequence
 from pathlib import Path
 
+from pinjoint.commands.analysis import FOUND
 from pinjoint.commands.arguments import Parser, UsageError
 from pinjoint.commands.options import ANSWERED, NOT_ANSWERED, STOPPED, add_analysis, add_model, analysis_of
-from pinjoint.commands.reports.report import FOUND
 from pinjoint.components.language import tr
 from pinjoint.streams import tell
 from pinjoint.sweeps import sweep

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from pinjoint.commands.arguments import BAD_INPUT, Parser, UsageError, positive
+from pinjoint.commands.arguments import Parser, UsageError, positive
 from pinjoint.commands.options import ANSWERED, NOT_ANSWERED, add_model, headless_of
 from pinjoint.commands.output import add_output, write_result
 from pinjoint.components.language import tr
@@ -40,16 +40,19 @@ def command(words: Sequence[str]) -> int:
     add_output(parser)
     options = parser.parse_args(words)
     session = headless_of(options)
-    from pinjoint.commands.reports import verify
+    from pinjoint.commands import comparison, influence
     from pinjoint.systems.statics.events import NoEquilibrium
     from pinjoint.systems.statics.unknowns import ForceMethodError
 
     try:
         if options.influence:
-            found = verify.influence(session.model, options.influence)
-        else:
-            found = verify.verify(session, options.model, options.limit, simulate=not options.theory_only)
-    except (ForceMethodError, NoEquilibrium) as error:
-        raise UsageError(str(error), NOT_ANSWERED if isinstance(error, NoEquilibrium) else BAD_INPUT) from None
-    write_result(options, found, verify.rows, verify.lines)
-    return ANSWERED if found.get("status") != verify.NOT_VERIFIED else NOT_ANSWERED
+            lines = influence.influence(session.model, options.influence)
+            write_result(options, lines, influence.rows, influence.lines)
+            return ANSWERED
+        found = comparison.compare(session, options.model, options.limit, simulate=not options.theory_only)
+    except ForceMethodError as error:
+        raise UsageError(str(error)) from None
+    except NoEquilibrium as error:
+        raise UsageError(str(error), NOT_ANSWERED) from None
+    write_result(options, found, comparison.rows, comparison.lines)
+    return NOT_ANSWERED if found["status"] == comparison.NOT_VERIFIED else ANSWERED

@@ -12,7 +12,7 @@ from contextlib import contextmanager
 from itertools import islice
 from typing import Any
 
-from pinjoint.commands.reports.results import State, facts
+from pinjoint.commands.analysis import State
 from pinjoint.components.language import ENGLISH, english, spoken
 from pinjoint.components.model import Model
 from pinjoint.components.snapshot import Snapshot
@@ -62,9 +62,8 @@ class VariantRunner:
         about = run["status"], english(run["message"])
         return [(*about, *state.values()) for state in run["states"]]
 
-    def _measured(self, model: Model, *given: Any) -> State:
+    def _measured(self, model: Model, found: State) -> State:
         """What is kept of a state."""
-        found = facts(model, *given)
         measures = {measure.column: measure.of(model, found) for measure in self._plan.measures}
         return {"time": found["time"], "load_factor": found["load_factor"], **measures}
 

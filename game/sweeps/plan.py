@@ -16,8 +16,7 @@ import msgspec
 import numpy as np
 
 from pinjoint import __version__
-from pinjoint.commands.reports.report import Analysis
-from pinjoint.commands.reports.results import State, reported
+from pinjoint.commands.analysis import Analysis, State, reported
 from pinjoint.components.extensions import EXTENSIONS
 from pinjoint.components.language import english, joined, marked, tr
 from pinjoint.components.model import Model

@@ -12,7 +12,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from pinjoint.commands.reports.report import FOUND
+from pinjoint.commands.analysis import FOUND
 from pinjoint.components import written
 from pinjoint.components.language import tr
 from pinjoint.documents.models import replace

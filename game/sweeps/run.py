@@ -11,7 +11,7 @@ from typing import Any, BinaryIO, TextIO
 
 import msgspec
 
-from pinjoint.commands.reports.report import Analysis
+from pinjoint.commands.analysis import Analysis
 from pinjoint.components.language import tr
 from pinjoint.sweeps.execution import compute_all
 from pinjoint.sweeps.plan import FAILED, Outcome, Plan, plan_of

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from pinjoint.components.clock import PersistentContacts
 from pinjoint.components.language import marked
 from pinjoint.components.model import Model
-from pinjoint.components.obstacles import any_obstacles, obstacles
+from pinjoint.components.obstacles import Floats, any_obstacles, obstacles
 from pinjoint.systems.base import Integrator, StepSystem
 
 REST_HEIGHT = 1e-9  # of the smaller radius; bounces that would rise less end in contact
@@ -52,6 +52,13 @@ def persistent_contacts(model: Model) -> PersistentContacts | None:
     if type(contacts) is not PersistentContacts or not len(contacts.pairs):  # isinstance of a Mapping is slow
         return None
     return contacts if contacts.pairs.max() < model.particles.count + len(obstacles(model)) else None
+
+
+def fall_time(radius: Floats, pull: Floats) -> float:
+    """Median time (s) in which discs of these radii (m) fall through their diameters under pulls (m/s²); ∞ without any."""
+    radius, pull = radius[pull > 0.0], pull[pull > 0.0]
+    with np.errstate(over="ignore"):  # what is hardly pulled falls for ever
+        return float(np.median(np.sqrt(4.0 * radius / pull))) if len(pull) else math.inf
 
 
 class FreeFlight(Integrator):

@@ -1,6 +1,6 @@
 """Kernels of editing: the pull of a person's hand."""
 
-from pinjoint.systems.kernels import compiled
+from pinjoint.systems.program.kernel import compiled
 
 
 @compiled

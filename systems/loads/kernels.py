@@ -2,7 +2,7 @@
 
 import math
 
-from pinjoint.systems.kernels import compiled
+from pinjoint.systems.program.kernel import compiled
 
 
 @compiled

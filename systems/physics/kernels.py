@@ -3,8 +3,8 @@
 import math
 
 from pinjoint.systems.base import StopReason
-from pinjoint.systems.entries import SMALLEST_ENERGY, Account, Measure
-from pinjoint.systems.kernels import compiled, part
+from pinjoint.systems.program.entries import SMALLEST_ENERGY, Account, Measure
+from pinjoint.systems.program.kernel import compiled, part
 
 REST_RESIDUAL = 2e-9  # of the largest force, so that sums of residuals are within 1e-8; larger: rests sooner
 SMALL_SHARE = 1e-3  # of the largest force ever, taken as scale where all forces die out
@@ -124,7 +124,7 @@ def conserved(measures, account, dt, shadow):
 def judge(measures, account, dt, shadow, ahead, loads_are_over):
     """The StopReason that follows from the measures of a state: DONE (go on), REST or DIVERGED.
 
-    measures, account: see Measure and Account in systems/entries.py; the scales and the largest imbalance in
+    measures, account: see Measure and Account in systems/program/entries.py; the scales and the largest imbalance in
         `account` are kept up to date.
     shadow: 1 if the integrator conserves kinetic − (h²/8) fᵀM⁻¹f + elastic, 2 if it does with velocities
         half a step earlier, -1 if it is as exact as its tolerance, else 0.

@@ -9,9 +9,9 @@ from numpy.typing import NDArray
 
 from pinjoint.components.model import Model
 from pinjoint.components.rod import bends
-from pinjoint.systems.entries import MEASURED, Measure
 from pinjoint.systems.islands import Rows
 from pinjoint.systems.physics.bending import bending_energy, bowing_work, levers
+from pinjoint.systems.program.entries import MEASURED, Measure
 
 Array = NDArray[np.float64]
 Mask = NDArray[np.bool_]

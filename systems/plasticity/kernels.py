@@ -2,7 +2,7 @@
 
 import math
 
-from pinjoint.systems.kernels import compiled
+from pinjoint.systems.program.kernel import compiled
 
 AT_LIMIT = 1e-9  # relative distance from a limit within which a rod that moves on yields
 

@@ -22,9 +22,9 @@ from pinjoint.components.table import read_only
 from pinjoint.components.wording import is_identifier
 from pinjoint.systems import is_ours
 from pinjoint.systems.base import Commit, Event, Law, StepSystem
-from pinjoint.systems.entries import ACCOUNTS
-from pinjoint.systems.interpreter import plain_function
+from pinjoint.systems.program.entries import ACCOUNTS
 from pinjoint.systems.program.identity import reached_from, used_by
+from pinjoint.systems.program.interpreter import plain_function
 
 _TO_COMMITS = ("elongation", "axial_force", "time", "dt")
 PROVIDED_TO: Mapping[str, tuple[str, ...]] = {  # by what the kernel is called for

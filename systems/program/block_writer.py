@@ -7,8 +7,8 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
 
-from pinjoint.systems.entries import ACCOUNTS
 from pinjoint.systems.program.binding import Bound, StepRole
+from pinjoint.systems.program.entries import ACCOUNTS
 from pinjoint.systems.program.loops import RodLoop
 from pinjoint.systems.program.pasting import indented
 from pinjoint.systems.program.writer import PREDICTED, RESISTED, TRIAL_STATE, Writer, accounts_of
@@ -34,7 +34,7 @@ class BlockWriter(Writer):
         self.columns += [*self.BLOCK, *(f"block_{b.prefix}" for b in self.of[StepRole.LOAD])]
 
     def _head(self) -> str:
-        return super()._head() + "from pinjoint.systems.kernels import prange, shared\n"
+        return super()._head() + "from pinjoint.systems.program.kernel import prange, shared\n"
 
     def _rod_loop(self, loop: RodLoop) -> list[str]:
         return loop.in_stages(self._is_float, _RODS)

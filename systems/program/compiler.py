@@ -27,11 +27,11 @@ from pinjoint.components.field import Column
 from pinjoint.components.language import begun, tr
 from pinjoint.components.mistake import Mistake
 from pinjoint.components.model import Model
-from pinjoint.systems import cache
-from pinjoint.systems.interpreter import NoPlainForm, Rewriting, in_lists, plain_function, rewrite
-from pinjoint.systems.kernels import Kernel, Use
+from pinjoint.systems.program import cache
 from pinjoint.systems.program.binding import ProgramError
 from pinjoint.systems.program.identity import key_of, reached_from
+from pinjoint.systems.program.interpreter import NoPlainForm, Rewriting, in_lists, plain_function, rewrite
+from pinjoint.systems.program.kernel import Kernel, Use
 
 # --- which form ------------------------------------------------------------------------------------
 
@@ -315,7 +315,7 @@ class GeneratedModule:
             kept = cache.read(self._kept.name)
             if kept is None:  # damaged: it is compiled anew
                 return False
-            from pinjoint.systems.machine_code import compile_for
+            from pinjoint.systems.program.machine_code import compile_for
 
             for name, function in (machine := self._machine()).items():
                 compile_for(function, kept, name)
@@ -330,14 +330,14 @@ class GeneratedModule:
 
     def _machine(self) -> dict[str, Callable[..., Any]]:
         """The functions, to be compiled when they are called."""
-        from pinjoint.systems.machine_code import adopt, machine_code
+        from pinjoint.systems.program.machine_code import adopt, machine_code
 
         adopt(self.module, self.key, reached_from(self._source_and_kernels[1].values()))
         return {name: machine_code(f) for name, f in self.functions.items()}
 
     def _compile(self) -> None:
         """Compile by calling everything, and keep that."""
-        from pinjoint.systems.machine_code import types_of
+        from pinjoint.systems.program.machine_code import types_of
 
         before, machine = self._form, self._machine()
         self._form, self._compiled = self._form_of(machine), True
@@ -376,7 +376,7 @@ def entries_to(kernels: Mapping[str, Callable[..., Any]]) -> tuple[str, dict[str
     """Source of a module with an entry to each kernel, under the given names, and the kernels as the source calls them."""
     lines = [
         '"""Entries to kernels. Generated; safe to delete."""',
-        "from pinjoint.systems.kernels import kept",
+        "from pinjoint.systems.program.kernel import kept",
         "entry = kept(_nrt=False)",
     ]
     for name, kernel in kernels.items():
@@ -401,7 +401,7 @@ class Between:
     def functions(self, *, compiled: bool) -> list[Any]:
         """The kernels in one of their forms, to hand to a program in the same."""
         if compiled:
-            from pinjoint.systems.machine_code import addressed
+            from pinjoint.systems.program.machine_code import addressed
 
             form = self.module.form if self.module.is_loaded else self.module.load()
             return [addressed(getattr(form, kernel.py_func.__name__)) for kernel in self.kernels]

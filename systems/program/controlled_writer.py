@@ -7,8 +7,8 @@ from typing import Any
 
 from pinjoint.components.model import Model
 from pinjoint.systems.base import Integrator, StepSystem
-from pinjoint.systems.entries import Mark
 from pinjoint.systems.program.binding import Bound, StepRole, bind
+from pinjoint.systems.program.entries import Mark
 from pinjoint.systems.program.loops import RodLoop
 from pinjoint.systems.program.templates import events, forces, implicit, rods, runge_kutta
 from pinjoint.systems.program.writer import NO_POWER, POWER_RETURNED, Writer

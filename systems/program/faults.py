@@ -9,9 +9,9 @@ from typing import Any
 from pinjoint.components.language import marked, tr
 from pinjoint.components.model import Model
 from pinjoint.systems.base import Integrator, Mod
-from pinjoint.systems.interpreter import NoPlainForm, plain_function, rewrite
 from pinjoint.systems.program.binding import PROVIDED, Bound, ProgramError
 from pinjoint.systems.program.compiler import Choice, Compile
+from pinjoint.systems.program.interpreter import NoPlainForm, plain_function, rewrite
 
 _RESULTS = {  # how many numbers, and which
     "rods": (1, marked("one number, the axial force (kN)")),
@@ -134,7 +134,7 @@ def _result_type(b: Bound, model: Model) -> Any:
     from numba import types
     from numba.np.numpy_support import from_dtype
 
-    from pinjoint.systems.machine_code import machine_code
+    from pinjoint.systems.program.machine_code import machine_code
 
     def type_of(parameter: str) -> Any:
         made: Any = types.float64  # of what Pinjoint provides

@@ -16,10 +16,10 @@ from typing import Any
 
 import numpy as np
 
-from pinjoint.systems.interpreter import plain_function
-from pinjoint.systems.kernels import PLAIN
+from pinjoint.systems.program.interpreter import plain_function
+from pinjoint.systems.program.kernel import PLAIN
 
-_LAYOUT = 7  # of what is kept on disk: raise it where former files are of no use any more
+_LAYOUT = 8  # of what is kept on disk: raise it where former files are of no use any more
 
 
 def meaning_of(functions: Iterable[Callable[..., Any]]) -> str:

@@ -20,13 +20,13 @@ from pinjoint.components.model import Model
 from pinjoint.systems.base import Event, Integrator, StepSystem, StopReason
 from pinjoint.systems.collision.columns import Grid
 from pinjoint.systems.collision.driven.columns import Phase, Real, Whole
-from pinjoint.systems.entries import ACCOUNT, ACCOUNTS, CONTROL, Mark, Measure, Search, Side
 from pinjoint.systems.physics.bending import arm_of, levers
 from pinjoint.systems.physics.kernels import conserved
 from pinjoint.systems.program.binding import Bound, ProgramError, StepRole, bind, find
 from pinjoint.systems.program.block_writer import BlockWriter
 from pinjoint.systems.program.compiler import Between, GeneratedModule, generated
 from pinjoint.systems.program.controlled_writer import ControlledWriter
+from pinjoint.systems.program.entries import ACCOUNT, ACCOUNTS, CONTROL, Mark, Measure, Search, Side
 from pinjoint.systems.program.faults import check_plain_forms, explain
 from pinjoint.systems.program.near_pairs import NearPairs
 from pinjoint.systems.program.writer import PUSHED, STATE, VERY_MANY, Writer

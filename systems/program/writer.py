@@ -19,8 +19,6 @@ from pinjoint.systems import is_ours
 from pinjoint.systems.base import REVIEW_INTERVAL, Event, Integrator, StepSystem, StopReason
 from pinjoint.systems.collision.driven.columns import Order, Real, Whole
 from pinjoint.systems.collision.kernels.grid import are_listed
-from pinjoint.systems.entries import ACCOUNTS, Account, Control, Mark, Measure, Search, Side
-from pinjoint.systems.interpreter import plain_function
 from pinjoint.systems.physics.automatic import SMALL
 from pinjoint.systems.physics.kernels import conserved, judge
 from pinjoint.systems.program.binding import (
@@ -36,6 +34,8 @@ from pinjoint.systems.program.binding import (
     find,
     written_row,
 )
+from pinjoint.systems.program.entries import ACCOUNTS, Account, Control, Mark, Measure, Search, Side
+from pinjoint.systems.program.interpreter import plain_function
 from pinjoint.systems.program.loops import RodLoop
 from pinjoint.systems.program.near_pairs import ARRAYS
 from pinjoint.systems.program.pasting import Insert, expanded, fragment, indented, pasted, source_of
@@ -110,7 +110,7 @@ import math
 
 import numpy as np
 
-from pinjoint.systems.kernels import entry, part
+from pinjoint.systems.program.kernel import entry, part
 
 compiled = part()
 inlined = part(forceinline=True)

@@ -53,9 +53,9 @@ def ink_of(theme: Theme, *, enabled: bool, pressed: bool = False) -> Colour:
 
 def tool_row(tool: Tool, theme: Theme, sign: Part, points: float | tuple[float, ...], apart: float) -> Row:
     """A sign, the title and the key of a tool, with points between those."""
-    ink = ink_of(theme, enabled=tool.enabled)
+    ink, title = ink_of(theme, enabled=tool.enabled), begun(tr(tool.title))
     key = Text(written_key(tool.key) if tool.key else "", points, theme.muted if tool.enabled else ink)
-    return Row((sign, Row((Text(titled(tool), points, ink, grow=1.0), key), apart, grow=1.0)), grow=1.0)
+    return Row((sign, Row((Text(title, points, ink, grow=1.0), key), apart, grow=1.0)), grow=1.0)
 
 
 def tool_icon(tool: Tool, theme: Theme, wide: float) -> Drawn:
@@ -75,11 +75,6 @@ def _cross(place: Rectangle, unit: float, colour: Colour) -> Strokes:
     start = np.array([[x - reach, y - reach], [x - reach, y + reach]])
     end = np.array([[x + reach, y + reach], [x + reach, y - reach]])
     return Strokes(start, end, 1.6 * unit, colour)
-
-
-def titled(tool: Tool) -> str:
-    """The title of an entry or a button in the present language, as a sentence begins."""
-    return begun(tr(tool.title))
 
 
 def written_key(key: str) -> str:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import numpy as np
+from numpy.typing import NDArray
 
 from pinjoint.systems.render.marks import Points, Rows
 
@@ -10,45 +11,33 @@ from pinjoint.systems.render.marks import Points, Rows
 def clip_segments(start: Points, end: Points, low: Points, high: Points) -> tuple[Points, Points, Rows]:
     """The parts of segments, each (n, 2), inside the rectangle from `low` to `high`, and their rows.
 
-    Liang and Barsky's method: along start + t (end − start) each side of the rectangle bounds t.
-    Segments with a coordinate that is not finite are left out.
+    An end is marked by the sides of the rectangle that it lies beyond: a segment is inside if neither is marked, outside if
+    both are by the same side (Cohen and Sutherland's method). Only the others, which are few, are cut: along
+    start + t (end − start) each side bounds t (Liang and Barsky's). Those with a coordinate that is not finite are left out.
     """
-    step = end - start
+    first, last = (_sides_beyond(points, low, high) for points in (start, end))
+    if not (first | last).any():
+        return start, end, np.arange(len(start))
+    rows = np.flatnonzero((first & last) == 0)
+    start, end, crosses = start[rows], end[rows], (first | last)[rows] > 0
+    origin, step = start[crosses], end[crosses] - start[crosses]
     with np.errstate(divide="ignore", over="ignore", invalid="ignore"):
-        at_low, at_high = (low - start) / step, (high - start) / step
-        first, last = np.fmin(at_low, at_high), np.fmax(at_low, at_high)
-        parallel = step == 0.0
-        inside = (start >= low) & (start <= high)
-        first = np.where(parallel, np.where(inside, 0.0, np.inf), first)
-        last = np.where(parallel, np.where(inside, 1.0, -np.inf), last)
-        t0 = np.maximum(first.max(axis=1, initial=0.0), 0.0)
-        t1 = np.minimum(last.min(axis=1, initial=1.0), 1.0)
-        rows = np.flatnonzero((t0 <= t1) & np.isfinite(step).all(axis=1))
-    t0, t1, origin, step = t0[rows, None], t1[rows, None], start[rows], step[rows]
-    return origin + t0 * step, origin + t1 * step, rows
+        at_low, at_high = (low - origin) / step, (high - origin) / step
+        parallel, inside = step == 0.0, (origin >= low) & (origin <= high)
+        begin = np.where(parallel, np.where(inside, 0.0, np.inf), np.fmin(at_low, at_high))
+        stop = np.where(parallel, np.where(inside, 1.0, -np.inf), np.fmax(at_low, at_high))
+        t0, t1 = np.maximum(begin.max(axis=1), 0.0)[:, None], np.minimum(stop.min(axis=1), 1.0)[:, None]
+        start[crosses], end[crosses] = origin + t0 * step, origin + t1 * step
+        kept = np.ones(len(rows), dtype=bool)
+        kept[crosses] = (t0 <= t1)[:, 0] & np.isfinite(step).all(axis=1)
+    return start[kept], end[kept], rows[kept]
 
 
-def clip_rods(points: Points, ends: Rows, low: Points, high: Points) -> tuple[Points, Points, Rows]:
-    """clip_segments of the rods between rows `ends` (m, 2) of `points`, where most lie wholly inside or outside.
-
-    A point is marked by the sides of the rectangle that it lies beyond. A rod is inside if neither end is
-    marked, outside if both are by the same side; only the others are cut (Cohen and Sutherland's method).
-    """
+def _sides_beyond(points: Points, low: Points, high: Points) -> NDArray[np.uint8]:
+    """For each point, as bits, the sides of the rectangle that it lies beyond, and one if it is not finite."""
     beyond = np.zeros(len(points), dtype=np.uint8)
     for axis in (0, 1):
         beyond |= (points[:, axis] < low[axis]).astype(np.uint8) << (2 * axis)
         beyond |= (points[:, axis] > high[axis]).astype(np.uint8) << (2 * axis + 1)
         beyond |= (~np.isfinite(points[:, axis])).astype(np.uint8) << 4
-    first, last = ends[:, 0], ends[:, 1]
-    if not beyond.any():
-        return points.take(first, axis=0), points.take(last, axis=0), np.arange(len(ends))
-    rows = np.flatnonzero((beyond[first] & beyond[last]) == 0)
-    first, last = first[rows], last[rows]
-    start, end = points.take(first, axis=0), points.take(last, axis=0)
-    cut = np.flatnonzero(beyond[first] | beyond[last])
-    kept = np.ones(len(rows), dtype=bool)
-    kept[cut] = False
-    cut_start, cut_end, remaining = clip_segments(start[cut], end[cut], low, high)
-    cut = cut[remaining]
-    start[cut], end[cut], kept[cut] = cut_start, cut_end, True
-    return start[kept], end[kept], rows[kept]
+    return beyond

@@ -6,6 +6,7 @@ Where no rod of a model bends, N is drawn as rectangles that stand outside of th
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from typing import Literal
 
@@ -18,7 +19,7 @@ from pinjoint.components.model import Model
 from pinjoint.components.tags import DiagramShown, Selected
 from pinjoint.components.view import MARGIN
 from pinjoint.systems.render.arrows import steady
-from pinjoint.systems.render.clip import clip_rods
+from pinjoint.systems.render.clip import clip_segments
 from pinjoint.systems.render.labels import ANCHORS
 from pinjoint.systems.render.marks import Bars, Discs, Fills, Points, Rows, Strokes, Truths, Values
 from pinjoint.systems.render.nearness import ranges
@@ -28,10 +29,8 @@ from pinjoint.systems.render.sheet import Sheet, typical_length
 from pinjoint.systems.render.theme import Colour, faded
 from pinjoint.systems.render.values import (
     FEW_VALUES,
-    GAP,
     SMALLEST,
     half_sizes,
-    in_rows,
     most_important,
     reach,
     said,
@@ -73,6 +72,7 @@ _SLIDES = (
     (-1.0, -1.0),
     (1.5, 4.0),
 )  # between ends, and at one
+_GAP = 1.0  # points between a rod and a value beside it
 _NEAR = 42.0  # points along a rod, or two steps: so far from its end stands a value, but for the last place
 _PLACES = 3  # of values of a rod: start, end, between
 
@@ -371,9 +371,7 @@ def _write(sheet: Sheet, diagram: _Diagram) -> None:
     they are not told by a neighbour already."""
     quantity, field = diagram.quantity, f"rods.{diagram.quantity}"
     if diagram.is_straight:
-        ends = np.arange(2 * len(diagram.rows)).reshape(2, -1).T
-        points = np.concatenate([diagram.base.start, diagram.base.end])
-        start, end, seen = clip_rods(points, ends, *sheet.viewport.corners)
+        start, end, seen = clip_segments(diagram.base.start, diagram.base.end, *sheet.viewport.corners)
         diagram = diagram.some(seen)
         diagram = replace(diagram, base=replace(diagram.base, start=start, end=end))
     selected = sheet.chosen(sheet.tagged(Selected, "rods"), diagram.rows)
@@ -498,7 +496,7 @@ def _places_by_rectangles(
     at: middles of what is seen of the rods, which is so long.
     """
     along = np.stack([-normal[:, 1], normal[:, 0]], axis=1)
-    across, beside = reach(normal, half), reach(normal, half) + GAP * u
+    across, beside = reach(normal, half), reach(normal, half) + _GAP * u
     fits, beyond = height > 2.0 * across, height + beside
     rows = [
         np.where(fits, 0.5 * height, beyond),
@@ -508,7 +506,7 @@ def _places_by_rectangles(
         0.0 * height,
     ]
     slides = np.maximum(length / 2 - reach(along, half), 0.0)[:, None] * _ALONG
-    return in_rows(at, normal, rows, along, slides).reshape(len(at), -1, 2)
+    return _in_rows(at, normal, rows, along, slides).reshape(len(at), -1, 2)
 
 
 def _places_by_curves(
@@ -518,7 +516,7 @@ def _places_by_curves(
 
     inward: +1, −1: at the start, the end of a rod, whose values stand along it; 0: between.
     """
-    across, beside = reach(normal, half), reach(normal, half) + GAP * u
+    across, beside = reach(normal, half), reach(normal, half) + _GAP * u
     fits, beyond = height > 2.0 * across, height + beside
     rows = [beyond, np.where(fits, 0.5 * height, beyond), -beside, beyond + 10.0 * u]
     rows.append(np.where(fits, beside, -beside))
@@ -530,6 +528,14 @@ def _places_by_curves(
     ]
     slides.append(inward * 3.0 * step)
     slides = slides if len(at) <= FEW_VALUES else slides[:3]
-    places = in_rows(at, normal, rows, along, np.stack(slides, axis=1))
+    places = _in_rows(at, normal, rows, along, np.stack(slides, axis=1))
     parts = [part.reshape(len(at), -1, 2) for part in (places[:, :, :5], places[:, :, 5:])]  # far ones last
     return np.concatenate(parts, axis=1)
+
+
+def _in_rows(at: Points, way: Points, across: Sequence[Values], along: Points, slides: Values) -> Points:
+    """Places of values by points (n, 2): at distances (n,) each along unit vectors `way` (n, 2), and in each of these
+    rows shifted by `slides` (n, k) along others, (n, rows, k, 2)."""
+    offset = np.stack(across, axis=1)[:, :, None, None] * way[:, None, None, :]
+    places: Points = at[:, None, None, :] + offset + slides[:, None, :, None] * along[:, None, None, :]
+    return places

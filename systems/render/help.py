@@ -11,7 +11,6 @@ from collections.abc import Sequence
 from functools import cache, lru_cache
 from importlib.resources import files
 from itertools import groupby
-from typing import NamedTuple
 
 import numpy as np
 
@@ -31,19 +30,11 @@ _TERM, _MEANING = 140.0, 330.0  # points across a term and its meaning
 Lines = tuple[tuple[str, str], ...]  # (key, meaning); ("", purpose) stands above the keys of a purpose
 
 
-class Term(NamedTuple):
-    """A term, what it means, and perhaps what it is also called."""
-
-    term: str
-    meaning: str
-    also: str = ""
-
-
 @cache
-def terms() -> list[Term]:
-    """All terms, as the file has them."""
+def terms() -> list[tuple[str, str, str]]:
+    """All terms, as the file has them: each, what it means, and what it is also called, or ""."""
     held = json.loads((files("pinjoint.assets") / "glossary.json").read_text(encoding="utf-8"))
-    return [Term(**entry) for entry in held]
+    return [(entry["term"], entry["meaning"], entry.get("also", "")) for entry in held]
 
 
 def help_pages(keys: Lines, viewport: Viewport, unit: float, theme: Theme) -> list[list[Column]]:
@@ -54,8 +45,8 @@ def help_pages(keys: Lines, viewport: Viewport, unit: float, theme: Theme) -> li
 @lru_cache(maxsize=4)
 def _pages(keys: Lines, viewport: Viewport, u: float, theme: Theme, _: str) -> list[list[Column]]:
     glossary = sorted(
-        (Term(*map(tr, entry)) for entry in terms()),
-        key=lambda entry: unicodedata.normalize("NFKD", entry.term.casefold()),
+        (tuple(map(tr, entry)) for entry in terms()),
+        key=lambda entry: unicodedata.normalize("NFKD", entry[0].casefold()),
     )  # in the alphabetical order of the present language
     known = [(f"{term} ({also})" if also else term, meaning) for term, meaning, also in glossary]
     joined = _joined(keys)

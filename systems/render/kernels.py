@@ -10,7 +10,7 @@ import math
 
 import numpy as np
 
-from pinjoint.systems.kernels import compiled
+from pinjoint.systems.program.kernel import compiled
 
 BLOCK = 32  # pixels side by side that are blended at once if any is covered
 _EVEN = np.uint32(0x00FF00FF)  # every second channel of a pixel

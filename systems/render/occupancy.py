@@ -86,23 +86,14 @@ class Occupancy:
         return bool(self.taken[self._cells(left, top, width, height)].any())
 
     def are_free(self, cells: Rows, covering: int) -> Truths:
-        """For each box of `cells` (n, 4), whether nothing takes any and no line in it is stronger than `covering`.
-
-        A box is covered by four whose sides are powers of two, and what is in those of one size is found by halves.
-        """
+        """For each box of `cells` (n, 4), whether nothing takes any and no line in it is stronger than `covering`."""
         left, top, right, bottom = cells.T
-        free: Truths = np.ones(len(cells), dtype=bool)
-        blocked = self.taken | (self.lined > covering)
-        wide, tall = (np.frexp(size)[1] - 1 for size in (right - left, bottom - top))  # -1: it is not seen
-        for columns in range(wide.max(initial=-1) + 1):
-            blocked = _doubled(blocked, columns)
-            there = blocked.T
-            for rows in range(tall[wide == columns].max(initial=-1) + 1):
-                there = _doubled(there, rows)
-                some = np.flatnonzero((wide == columns) & (tall == rows))
-                first, last = left[some], right[some] - (1 << columns)
-                high, low = top[some], bottom[some] - (1 << rows)
-                free[some] = ~(there[first, high] | there[last, high] | there[first, low] | there[last, low])
+        blocked, (height, width) = self.taken | (self.lined > covering), self.taken.shape
+        before = np.zeros(
+            (height + 1, width + 1), dtype=np.int32
+        )  # how many are above and to the left of each corner
+        blocked.cumsum(axis=0, dtype=np.int32).cumsum(axis=1, out=before[1:, 1:])
+        free: Truths = before[bottom, right] - before[top, right] == before[bottom, left] - before[top, left]
         return free
 
     def may_be_of(self, cells: Rows, *owners: Codes) -> Truths:
@@ -145,9 +136,3 @@ class Occupancy:
         x, y = left - self.viewport.left, top - self.viewport.top
         columns = slice(max(int(x / self.cell), 0), max(int((x + width) / self.cell) + 1, 0))
         return slice(max(int(y / self.cell), 0), max(int((y + height) / self.cell) + 1, 0)), columns
-
-
-def _doubled(blocked: Truths, power: int) -> Truths:
-    """Whether something is in the 2 ** power cells of a row from each on, which is known of half as many."""
-    half = 1 << power >> 1
-    return blocked[:, :-half] | blocked[:, half:] if half else blocked

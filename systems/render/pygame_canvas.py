@@ -24,7 +24,6 @@ from pinjoint.systems.render.raster import (
     Raster,
     load_raster,
     stroke_coverage,
-    stroke_pixels_estimate,
 )
 from pinjoint.systems.render.symbols import RIM, turned_parts
 from pinjoint.systems.render.theme import Colour
@@ -92,8 +91,8 @@ class Canvas:
     # --- lines and areas -----------------------------------------------------------------------------
 
     def _strokes(self, surface: pygame.Surface, mark: Strokes) -> None:
-        many = len(mark.start) > _MANY
-        many = many or stroke_pixels_estimate(mark.start, mark.end, mark.width) > 50 * _MANY
+        across = np.abs(mark.end - mark.start).max(axis=1, initial=0.0).sum() + 2.0 * len(mark.start)
+        many = len(mark.start) > _MANY or across * (1.42 * mark.width + 2.0) > 50 * _MANY
         if many and (raster := self._raster()):
             raster.strokes(_pixels(surface), _clip(surface), mark, _pixel(surface, mark.colour))
         else:
@@ -256,16 +255,14 @@ def _small_rounded(size: tuple[int, int], mark: Panel) -> pygame.Surface:
 # --- files, without a display ---------------------------------------------------------------------------
 
 
-def as_image(pictures: Sequence[Picture], size: tuple[int, int], suffix: str) -> bytes:
-    """Pictures, each in its viewport of an image of that size in pixels, as the contents of a file of that suffix."""
-    return encoded(_drawn(pictures, size), suffix)
+def as_image(pictures: Sequence[Picture], size: tuple[int, int], suffix: str, *, clear: bool) -> bytes:
+    """Pictures, each in its viewport of an image of that size in pixels, as the contents of a file of that suffix.
 
-
-def as_clear_png(pictures: Sequence[Picture], size: tuple[int, int]) -> bytes:
-    """The same without a background, as colours with opacities.
-
-    A pixel of a colour c and an opacity a shows a c over black and a c + 255 (1 − a) over white.
+    clear: a PNG without a background, in colours with opacities. A pixel of a colour c and an opacity a shows a c over black
+    and a c + 255 (1 − a) over white.
     """
+    if not clear:
+        return encoded(_drawn(pictures, size), suffix)
     frame = Viewport(0, 0, *size)
     over_black, over_white = (
         as_colours([Picture(frame, ground), *pictures], size).astype(np.int64) for ground in (_BLACK, _WHITE)

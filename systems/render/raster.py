@@ -90,7 +90,7 @@ def load_raster() -> Raster:
 
 
 def _contents() -> tuple[str, dict[str, Callable[..., Any]]]:
-    lines = ["from pinjoint.systems.kernels import kept", ""]
+    lines = ["from pinjoint.systems.program.kernel import kept", ""]
     for name, signature in SIGNATURES.items():
         parameters = ", ".join(inspect.signature(getattr(kernels, name)).parameters)
         lines += [
@@ -106,11 +106,6 @@ RASTER = GeneratedModule("raster", _contents)
 
 
 # --- few strokes, without compiled code ---------------------------------------------------------------
-
-
-def stroke_pixels_estimate(start: Points, end: Points, width: float) -> float:
-    """An estimate of the pixels that stroke_coverage visits."""
-    return float(np.abs(end - start).max(axis=1, initial=0.0).sum() + 2.0 * len(start)) * (1.42 * width + 2.0)
 
 
 def stroke_coverage(

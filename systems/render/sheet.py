@@ -17,7 +17,7 @@ from pinjoint.components.rod import rigid_joints
 from pinjoint.components.tags import Hovered
 from pinjoint.components.toolbar import Toolbar
 from pinjoint.components.view import View, drawn_positions
-from pinjoint.systems.render.clip import clip_rods, clip_segments
+from pinjoint.systems.render.clip import clip_segments
 from pinjoint.systems.render.labels import Label, Placed
 from pinjoint.systems.render.marks import Mark, Points, Rows, Truths, Values
 from pinjoint.systems.render.occupancy import Occupancy
@@ -176,7 +176,8 @@ def measure(model: Model, view: View, theme: Theme, placed: Placed | None = None
     if frame:
         sag = largest_sag(model) * model.settings.displacement_scale * camera.scale
         reach += min(2.0 * sag, float((high - low).max()))
-    start, end, rods = clip_rods(centres, ends, low - reach, high + reach)
+    first, last = centres[ends.T]
+    start, end, rods = clip_segments(first, last, low - reach, high + reach)
     if frame:
         lines = curved_lines(model, FLAT / camera.scale, rods)
     curved = _visible(lines, rods, view, (low - margin, high + margin)) if lines is not None else None
@@ -196,13 +197,10 @@ def measure(model: Model, view: View, theme: Theme, placed: Placed | None = None
 def _visible(lines: Lines, rods: Rows, view: View, within: tuple[Points, Points]) -> Lines:
     """The pieces of rods that can be seen, in pixels, by the place of their rod among `rods`, which are in order."""
     start, end = view.camera.to_pixels(lines.start), view.camera.to_pixels(lines.end)
-    of, (low, high) = np.searchsorted(rods, lines.rods), within
-    if (start < low).any() or (start > high).any() or (end < low).any() or (end > high).any():
-        start, end, kept = clip_segments(start, end, low, high)
-        of = of[kept]
+    start, end, kept = clip_segments(start, end, *within)
     way = end - start
     overlap = 0.5 * way / np.maximum(np.hypot(*way.T), 1e-9)[:, None]  # pixel, so that pieces close
-    return Lines(start - overlap, end + overlap, of)
+    return Lines(start - overlap, end + overlap, np.searchsorted(rods, lines.rods[kept]))
 
 
 def typical_length(start: Points, end: Points) -> float:

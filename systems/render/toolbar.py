@@ -7,9 +7,10 @@ from collections.abc import Sequence
 import numpy as np
 
 from pinjoint.components.camera import Rectangle
+from pinjoint.components.language import begun, tr
 from pinjoint.components.toolbar import BUTTON, EDGE, GAP, Tool, Toolbar
 from pinjoint.components.view import Hit, View
-from pinjoint.systems.render.buttons import button, titled, tool_icon, written_key
+from pinjoint.systems.render.buttons import button, tool_icon, written_key
 from pinjoint.systems.render.help import put_help
 from pinjoint.systems.render.layout import Column, Gap, Paper, Part, Plate, Row, Text
 from pinjoint.systems.render.marks import Panel, Picture
@@ -57,7 +58,7 @@ def _put_tip(paper: Paper, place: Hit, view: View, theme: Theme, below: Sequence
     """The title and the key of a button, near by where they cover nothing that is said."""
     tool = place.item
     key = [Text(written_key(tool.key), 12.0, theme.muted, "semibold")] if tool.key else []
-    row = Row((Text(titled(tool), 12.0, theme.text), *key), 14.0, (10.0, 5.0, 5.0))
+    row = Row((Text(begun(tr(tool.title)), 12.0, theme.text), *key), 14.0, (10.0, 5.0, 5.0))
     size = row.width(paper.unit), row.height(paper.unit, np.inf)
     at = _free_place(place.middle[1] - size[1] / 2, *size, view, below)
     paper.put(Plate(row, theme.background, theme.line, radius=6.0), Rectangle(*at, *size))

@@ -15,7 +15,6 @@ from pinjoint.systems.render.theme import Colour, faded
 
 SMALLEST = 1e-4  # kN or kN·m; smaller forces and moments are drawn as none
 FEW_VALUES = 24  # values up to which each carries its unit and keeps clear of rods
-GAP = 1.0  # points between a rod and a value beside it
 BACKING = 0.86  # opacity behind a value
 FIRST = -1e9  # rank of values of arrows, which are few and say little without them: before those of rods
 _KEPT = 1.5  # factor by which a new value must be larger to replace one of the last picture
@@ -46,14 +45,6 @@ def reach(way: Points, half: Points) -> Values:
 def off(at: Points, way: Points, gap: Values | float, half: Points) -> Points:
     """Middles of labels that stand off points (…, 2) by a gap (…), in the direction of unit vectors (…, 2)."""
     return at + way * (gap + reach(way, half))[..., None]
-
-
-def in_rows(at: Points, way: Points, across: Sequence[Values], along: Points, slides: Values) -> Points:
-    """Places of values by points (n, 2): at distances (n,) each along unit vectors `way` (n, 2), and in each of these
-    rows shifted by `slides` (n, k) along others, (n, rows, k, 2)."""
-    offset = np.stack(across, axis=1)[:, :, None, None] * way[:, None, None, :]
-    places: Points = at[:, None, None, :] + offset + slides[:, None, :, None] * along[:, None, None, :]
-    return places
 
 
 def beside(

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 from pinjoint.components.field import Column
 from pinjoint.components.model import Model
-from pinjoint.systems.entries import Measure
+from pinjoint.systems.program.entries import Measure
 
 ENERGIES = (Measure.KINETIC, Measure.ELASTIC, Measure.POTENTIAL)  # the measures that enter the account
 DISSIPATED = ("dissipated_damping", "dissipated_plastic", "dissipated_impact")

@@ -11,7 +11,7 @@ from pinjoint.components.field import Column
 from pinjoint.components.rod import bends
 from pinjoint.components.snapshot import Snapshot
 from pinjoint.systems.base import REVIEW_INTERVAL
-from pinjoint.systems.entries import SMALLEST_ENERGY
+from pinjoint.systems.program.entries import SMALLEST_ENERGY
 from pinjoint.systems.program.program import Program
 from pinjoint.systems.run.simulation import STUCK, Simulation
 

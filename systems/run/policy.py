@@ -10,8 +10,8 @@ from pinjoint.components import written
 from pinjoint.components.language import plural, tr
 from pinjoint.components.model import Model
 from pinjoint.systems.base import Integrator, StopReason
-from pinjoint.systems.entries import SMALLEST_ENERGY
 from pinjoint.systems.physics.automatic import SMALL
+from pinjoint.systems.program.entries import SMALLEST_ENERGY
 
 FAILURES = (StopReason.DIVERGED, StopReason.UNRESOLVED, StopReason.FAILED)
 ENDING = (StopReason.EVENT, *FAILURES)  # reasons that end a step early

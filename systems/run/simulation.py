@@ -24,9 +24,9 @@ from pinjoint.systems.collision.driven.stepper import DrivenCollisions
 from pinjoint.systems.collision.free.flight import Flight
 from pinjoint.systems.collision.impacts import Impacts
 from pinjoint.systems.collision.overlaps import PARTING, part_overlaps, work_ahead
-from pinjoint.systems.entries import Measure
 from pinjoint.systems.physics.rest import may_rest, rests_unseen
 from pinjoint.systems.program.compiler import Choice, Unfinished
+from pinjoint.systems.program.entries import Measure
 from pinjoint.systems.program.program import OBSERVED
 from pinjoint.systems.run.checkpoint import Checkpoint
 from pinjoint.systems.run.energy import Account, Energy

@@ -16,9 +16,9 @@ from pinjoint.components.field import Role
 from pinjoint.components.load import load_ends
 from pinjoint.components.model import Model
 from pinjoint.systems.collision.system import persistent_contacts
-from pinjoint.systems.entries import ASLEEP
 from pinjoint.systems.islands import IMMOVABLE, Rows, islands
 from pinjoint.systems.physics.rest import Array, Mask, RestMeasure
+from pinjoint.systems.program.entries import ASLEEP
 from pinjoint.systems.program.program import Program
 from pinjoint.systems.program.reordered import ReorderedProgram, make_program
 from pinjoint.systems.run.programs import Dynamics

@@ -13,7 +13,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from pinjoint.components.field import LARGEST, FieldError
-from pinjoint.components.language import joined, plural, tr
+from pinjoint.components.language import joined, marked, plural, tr
 from pinjoint.components.mistake import WrongValue
 from pinjoint.components.model import Model
 from pinjoint.components.numeric_range import incomputable
@@ -87,7 +87,7 @@ class Settlement:
         """The status where laws of mods, these by name, are left out, and the sentence that names them; "" if none are."""
         if not left_out:
             return self.status, ""
-        status = "equilibrium without mods" if self.status == "equilibrium" else self.status
+        status = marked("equilibrium without mods") if self.status == "equilibrium" else self.status
         return status, tr("The equilibrium leaves out the laws of mods: {laws}.", laws=", ".join(left_out))
 
 

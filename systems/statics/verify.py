@@ -22,14 +22,14 @@ from pinjoint.systems.statics.settle import Settlement, settle
 from pinjoint.systems.statics.state import Start, StaticState
 from pinjoint.systems.statics.theory import linear
 
-QUANTITIES = {
-    "axial_force": ("rods", "kN"),
-    "displacement": ("particles", "m"),
-    "reaction": ("particles", "kN"),
-    "rotation": ("particles", "rad"),
-    "reaction_moment": ("particles", "kN·m"),
-    "shear": ("rods", "kN"),
-    "bending_moment": ("rods", "kN·m"),
+QUANTITIES = {  # table, unit, title
+    "axial_force": ("rods", "kN", marked("axial force")),
+    "displacement": ("particles", "m", marked("displacement")),
+    "reaction": ("particles", "kN", marked("reaction")),
+    "rotation": ("particles", "rad", marked("rotation")),
+    "reaction_moment": ("particles", "kN·m", marked("reaction moment")),
+    "shear": ("rods", "kN", marked("shear force")),
+    "bending_moment": ("rods", "kN·m", marked("bending moment")),
 }
 JUMPS = (marked("snap-through"), marked("bifurcation"))
 DEPARTURES = {  # of a run from the path of a slowly growing load, by kind of event
@@ -79,7 +79,7 @@ class Theories:
         """The three answers side by side, that of a simulation being the present state; simulated: there is one at rest."""
         present = {
             f"{table}.{name}": model.tables[table].column(name).copy()
-            for name, (table, _) in QUANTITIES.items()
+            for name, (table, *_) in QUANTITIES.items()
         }
         by_theory = {"linear": self.linear, "exact": self.exact}
         found = {way: None if state is None else state.columns for way, state in by_theory.items()}
@@ -190,13 +190,13 @@ class Comparison:
 
     def of(self, table: str, row: int) -> Iterator[tuple[str, tuple[int, ...]]]:
         """The quantities of one element, and the place of each value."""
-        for quantity in (name for name, (of, _) in QUANTITIES.items() if of == table):
+        for quantity in (name for name, (of, *_) in QUANTITIES.items() if of == table):
             for place in np.argwhere(self._concerned(quantity)[row]).tolist():
                 yield quantity, (row, *place)
 
     def row(self, quantity: str, place: tuple[int, ...]) -> Row:
         """One quantity of one element: (row,), of a vector (row, axis) and at an end of a rod (row, end)."""
-        table, unit = QUANTITIES[quantity]
+        table, unit, _ = QUANTITIES[quantity]
         found = {way: float(values[place]) for way, values in self._values[quantity].items()}
         errors = {f"{way}_error": float(values[place]) for way, values in self._errors[quantity].items()}
         name, component = (
@@ -255,7 +255,7 @@ class Comparison:
         }
         of_strain_1 = float(at_strain_1[unit].max(initial=0.0))
         own = self._largest(quantity)
-        alike = max(self._largest(name) for name, (_, other) in QUANTITIES.items() if other == unit)
+        alike = max(self._largest(name) for name, (_, other, _) in QUANTITIES.items() if other == unit)
         scale = own if own > ROUNDING * alike else alike
         return scale if scale > ROUNDING * of_strain_1 else 0.0
 
@@ -269,7 +269,7 @@ class Comparison:
         given = {way: answer for way, answer in self.answers.items() if answer is not None}
         return {
             name: {way: answer[f"{table}.{name}"] for way, answer in given.items()}
-            for name, (table, _) in QUANTITIES.items()
+            for name, (table, *_) in QUANTITIES.items()
         }
 
     @cached_property

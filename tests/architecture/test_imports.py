@@ -21,10 +21,9 @@ RESOURCES = "assets"
 # of folders
 NAMES = {top: f"pinjoint.{top}" for top in ("components", "systems", RESOURCES)} | {"game": "pinjoint"}
 WINDOW = ("systems/render/pygame_*.py", "systems/input/pygame_*.py", "game/app.py")
-COMPILER = "systems/machine_code.py"  # numba is imported as soon as it is
+COMPILER = "systems/program/machine_code.py"  # numba is imported as soon as it is
 COMPILED = (COMPILER, "systems/program/*.py")
-FORMS = ("interpreter", "kernels", "machine_code")
-SHARED = ("is_ours", "base", "broad_phase", "cache", "entries", "islands", *FORMS, "program")  # by all systems
+SHARED = ("is_ours", "base", "broad_phase", "islands", "program")  # by all systems
 COMPOSED = ("program", "run", "catalogue.py")  # of what other folders of systems hold
 MODULES_OF = {"pygame-ce": "pygame", "pillow": "PIL"}  # distributions whose module has another name
 

@@ -41,7 +41,11 @@ FOR_PROGRAMMERS = {
     "AssertionError",
     "RuntimeError",
 }
-IN_PROGRAMS = ("systems/program/templates/", "systems/machine_code.py", "systems/interpreter.py")
+IN_PROGRAMS = (
+    "systems/program/templates/",
+    "systems/program/machine_code.py",
+    "systems/program/interpreter.py",
+)
 NAMES = {"limit reached"}  # statuses, which scripts compare
 PHRASE = re.compile(r"[A-Za-z]{2,}[,.:;]? [a-zA-Z]{2,}|[a-z]{3,}\.$")
 

@@ -5,7 +5,7 @@ import time
 from collections.abc import Callable
 from typing import Any
 
-from pinjoint.commands.reports.report import Analysis
+from pinjoint.commands.analysis import Analysis
 from pinjoint.sweeps.execution import VariantRunner, compute_all
 from pinjoint.sweeps.plan import Plan, plan_of
 from pinjoint.sweeps.run import sweep

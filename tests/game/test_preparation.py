@@ -23,8 +23,8 @@ from pinjoint.editor.view_model import COMPILING
 from pinjoint.elsewhere import UNITS, Job, parts_of, problem_of
 from pinjoint.preparation import Preparation, _job, _jobs_of, is_live
 from pinjoint.session import Session
-from pinjoint.systems import cache
 from pinjoint.systems.input import pygame_input
+from pinjoint.systems.program import cache
 from pinjoint.systems.program import compiler as programs
 from pinjoint.systems.program.compiler import Choice, Compile, GeneratedModule, forget_unused
 from pinjoint.systems.program.program import module_of
@@ -583,7 +583,7 @@ def test_where_it_is_not_known_what_was_compiled_it_is_compiled_anew(
 
 
 def test_without_numba_all_jobs_have_the_same_problem(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setitem(sys.modules, "pinjoint.systems.machine_code", None)
+    monkeypatch.setitem(sys.modules, "pinjoint.systems.program.machine_code", None)
     problems = {problem_of(job, b"") for job in [("raster",), ("dop853", FEW, "physics.elasticity")]}
     assert len(problems) == 1
     assert "numba cannot be imported" in problems.pop()
@@ -593,7 +593,7 @@ SMALL = """
 from numba import njit
 from pinjoint.systems.program.compiler import generated
 double = njit(lambda x: 2.0 * x)
-source = "from pinjoint.systems.kernels import kept\\n\\n@kept()\\ndef answer(x):\\n    return kernel(x)\\n"
+source = "from pinjoint.systems.program.kernel import kept\\n\\n@kept()\\ndef answer(x):\\n    return kernel(x)\\n"
 print(generated("test", source, {"kernel": double}).load().answer(21.0))
 """
 

@@ -11,8 +11,8 @@ import numpy as np
 import pytest
 
 from pinjoint import Session
+from pinjoint.commands.analysis import Analysis
 from pinjoint.commands.command_line import main
-from pinjoint.commands.reports.report import Analysis
 from pinjoint.documents import models
 from pinjoint.paths import apply_override
 from pinjoint.sweeps import SweepError, sweep

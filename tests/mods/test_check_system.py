@@ -26,8 +26,8 @@ from pinjoint.systems.collision.system import Collision
 from pinjoint.systems.edit.hover import Hover
 from pinjoint.systems.edit.pull import Hand, Pull
 from pinjoint.systems.input.pygame_input import PygameInput
-from pinjoint.systems.kernels import compiled
 from pinjoint.systems.physics.integrators import INTEGRATORS, VelocityVerlet
+from pinjoint.systems.program.kernel import compiled
 from pinjoint.systems.render.pygame_render import PygameRender
 from tests.mods.conftest import Write
 

@@ -6,7 +6,7 @@ from typing import Any
 import pytest
 
 from pinjoint import Session, check_system, mods
-from pinjoint.commands.reports.report import Analysis
+from pinjoint.commands.analysis import Analysis
 from pinjoint.scripts.lines import perform
 from pinjoint.sweeps import sweep
 from pinjoint.systems.render.picture import compose

@@ -6,8 +6,7 @@ from typing import Any
 import pytest
 
 from pinjoint import Session, mods
-from pinjoint.systems import cache
-from pinjoint.systems.program import compiler
+from pinjoint.systems.program import cache, compiler
 from pinjoint.systems.program.compiler import Choice, Compile
 from tests.mods.conftest import Write
 from tests.mods.test_isolation import TRUSS
@@ -121,7 +120,7 @@ def test_where_the_compiler_is_damaged_a_law_is_interpreted_and_that_is_told(
     opened: Any, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     session = opened(Compile.SOON, COMPILED[-1])
-    monkeypatch.setitem(sys.modules, "pinjoint.systems.machine_code", None)
+    monkeypatch.setitem(sys.modules, "pinjoint.systems.program.machine_code", None)
     monkeypatch.setattr(compiler, "_modules", {})
     monkeypatch.setattr(cache, "SAID", told := [])
     assert session.run(steps=5) == "time reached"

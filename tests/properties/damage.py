@@ -22,8 +22,7 @@ from pinjoint import Session
 from pinjoint.commands.command_line import main
 from pinjoint.documents import library, models, preferences
 from pinjoint.documents.autosave import Autosave
-from pinjoint.systems import cache
-from pinjoint.systems.program import compiler
+from pinjoint.systems.program import cache, compiler
 from tests.properties.limits import within
 from tests.reference.models import triangle
 
@@ -42,7 +41,7 @@ WORDS = (
     b"\0" * 99,
 )
 SETTINGS = b'{"theme": "dark", "magnification": 1.25, "keys": {"pause": {"w": "undo"}}}'
-SOURCE = "from pinjoint.systems.kernels import kept\n\n@kept()\ndef answer(x):\n    return kernel(x)\n"
+SOURCE = "from pinjoint.systems.program.kernel import kept\n\n@kept()\ndef answer(x):\n    return kernel(x)\n"
 
 
 @njit

@@ -10,8 +10,8 @@ from tests.properties.test_fuzz import PERSONS
 
 READS = """
 import numpy as np
-from pinjoint.systems.kernels import kept
-from pinjoint.systems.machine_code import addressed, machine_code
+from pinjoint.systems.program.kernel import kept
+from pinjoint.systems.program.machine_code import addressed, machine_code
 
 @kept("float64(float64[:], int64)")
 def at(values, row):

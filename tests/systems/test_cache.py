@@ -11,11 +11,10 @@ from typing import Any
 import pytest
 from numba import njit
 
-from pinjoint.systems import cache
-from pinjoint.systems.program import compiler
+from pinjoint.systems.program import cache, compiler
 
 SOURCE = """
-from pinjoint.systems.kernels import kept
+from pinjoint.systems.program.kernel import kept
 
 @kept()
 def answer(x):
@@ -228,7 +227,7 @@ resource.setrlimit(resource.RLIMIT_FSIZE, (0, 0))  # every write to a file fails
 from numba import njit
 from pinjoint.systems.program.compiler import generated
 
-source = "from pinjoint.systems.kernels import kept\\n\\n@kept()\\ndef answer(x):\\n    return kernel(x)\\n"
+source = "from pinjoint.systems.program.kernel import kept\\n\\n@kept()\\ndef answer(x):\\n    return kernel(x)\\n"
 module = generated("test", source, {"kernel": njit(lambda x: 2 * x)}).load()
 print(module.answer(21.0), module.answer(21))
 """

@@ -9,7 +9,7 @@ import pytest
 from numba import njit
 
 from pinjoint import Session
-from pinjoint.commands.reports.report import Analysis
+from pinjoint.commands.analysis import Analysis
 from pinjoint.components.handle import Handle
 from pinjoint.components.model import Model
 from pinjoint.systems.base import EVENT_INTERVAL, Event, Phase, System

@@ -5,8 +5,8 @@ from collections.abc import Callable
 import numpy as np
 from numba import njit
 
-from pinjoint.systems.kernels import part
-from pinjoint.systems.machine_code import machine_code
+from pinjoint.systems.program.kernel import part
+from pinjoint.systems.program.machine_code import machine_code
 
 
 @part()
@@ -43,7 +43,7 @@ def test_a_part_is_interpreted_where_python_calls_it() -> None:
 
 DIGEST = """
 from pinjoint import Session
-from pinjoint.systems.kernels import PLAIN
+from pinjoint.systems.program.kernel import PLAIN
 from tests.reference import bits
 
 session = Session.open("isostatic")

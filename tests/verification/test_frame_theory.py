@@ -8,7 +8,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from pinjoint.commands.reports.verify import influence
+from pinjoint.commands.influence import influence
 from pinjoint.components.model import Model
 from pinjoint.documents.models import parse
 from pinjoint.systems.statics.counting import Count

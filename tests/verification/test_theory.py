@@ -11,9 +11,9 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from scipy.linalg import eigh
 
+from pinjoint.commands import comparison
 from pinjoint.commands.command_line import main
-from pinjoint.commands.reports import verify as reports
-from pinjoint.commands.reports.verify import influence
+from pinjoint.commands.influence import influence
 from pinjoint.components.model import Model
 from pinjoint.components.particle import Particle
 from pinjoint.components.rod import Rod
@@ -434,7 +434,7 @@ def test_an_empty_model_has_no_theory_to_fail() -> None:
 def test_verify_leaves_out_a_simulation_that_takes_long_unless_it_is_asked_for(
     capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(reports, "MOST_WORK", 100)
+    monkeypatch.setattr(comparison, "MOST_WORK", 100)
     status, found = verify(capsys, "hyperstatic")
     assert (status, found["status"], found["simulation"]["status"]) == (0, "theory only", "left out")
     assert "--limit SECONDS lets it go on" in found["message"]

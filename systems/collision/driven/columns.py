@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from pinjoint.components.obstacles import Floats
 from pinjoint.systems.collision.columns import NONE, Detail, Grid, Group, Integers, Places, zeros
-from pinjoint.systems.entries import Account, Control
+from pinjoint.systems.program.entries import Account, Control
 
 
 class Order(Places):

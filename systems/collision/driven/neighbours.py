@@ -19,9 +19,9 @@ from pinjoint.systems.collision.columns import NONE, Grid, Integers, partners_of
 from pinjoint.systems.collision.driven.columns import Driven, Listing, Order, Phase, Real, Whole
 from pinjoint.systems.collision.driven.kernels.neighbours import list_pairs
 from pinjoint.systems.collision.driven.kernels.steps import collide
-from pinjoint.systems.collision.system import persistent_contacts
-from pinjoint.systems.entries import Account, Control
+from pinjoint.systems.collision.system import fall_time, persistent_contacts
 from pinjoint.systems.program.compiler import Between, GeneratedModule, entries_to
+from pinjoint.systems.program.entries import Account, Control
 
 CONTACTS = 8  # room at first
 STEP_SHARE = 0.04  # longest step of crowds: of the time in which a disc falls through its diameter
@@ -70,8 +70,7 @@ class NeighbourList:
         whole[Whole.DAMPED] = self.model.rods.damping.any() or self.model.environment.drag > 0.0
         real[Real.LONGEST] = np.inf
         pull = self.driven.pull
-        fall = np.sqrt(4.0 * particles.radius[pull > 0.0] / pull[pull > 0.0])
-        real[Real.CROWD_STEP] = STEP_SHARE * float(np.median(fall)) if len(fall) else np.inf
+        real[Real.CROWD_STEP] = STEP_SHARE * fall_time(particles.radius, pull)
         real[Real.STRONGEST] = pull.max(initial=0.0)
 
     def _of_document(self) -> dict[str, Any]:

@@ -36,7 +36,7 @@ from pinjoint.systems.collision.columns import (
     partners_of,
     zeros,
 )
-from pinjoint.systems.collision.system import REST_HEIGHT
+from pinjoint.systems.collision.system import REST_HEIGHT, fall_time
 from pinjoint.systems.program.compiler import Choice, GeneratedModule, entries_to
 
 SAME_PLACE = 1e-12  # of the largest coordinate: ends of obstacles nearer than this are one
@@ -100,7 +100,9 @@ class Discs:
         self.counts[Count.RENEW], self.counts[Count.LISTED] = 1, NONE
         self.counts[Count.DISCS] = self.count
         self.numbers[Number.SMALLEST] = self.rows[: self.count, Disc.RADIUS].min(initial=np.inf)
-        self.numbers[Number.STEP_LENGTH] = PILE_STEP_SHARE * self._fall_time()
+        self.numbers[Number.STEP_LENGTH] = PILE_STEP_SHARE * fall_time(
+            self.rows[: self.count, Disc.RADIUS], np.hypot(*self._columns(Disc.GX).T)
+        )
         self.numbers[Number.WORK_SINCE] = time
         self.numbers[[Number.LOSS, Number.MOST_LOSS]] = lost
         self.numbers[Number.STOP] = np.inf
@@ -122,12 +124,6 @@ class Discs:
     def _columns(self, first: int) -> Floats:
         """The x and y columns of the discs that begin with one."""
         return self.rows[: self.count, first : first + 2]
-
-    def _fall_time(self) -> float:
-        """Median time (s) in which discs that are pulled fall through their diameters; ∞ without any."""
-        pull = np.hypot(*self._columns(Disc.GX).T)
-        radius, pull = self.rows[: self.count][pull > 0.0, Disc.RADIUS], pull[pull > 0.0]
-        return float(np.median(np.sqrt(4.0 * radius / pull))) if len(pull) else np.inf
 
     # --- time -------------------------------------------------------------------------------------
 

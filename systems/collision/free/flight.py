@@ -21,8 +21,8 @@ from pinjoint.systems.base import REVIEW_INTERVAL, Event, Law, StopReason
 from pinjoint.systems.collision.columns import FLIGHT, PILE_COUNTS, PILE_NUMBERS, Number, Reason
 from pinjoint.systems.collision.free.discs import EVENTS, HORIZONS, Discs, state_on
 from pinjoint.systems.collision.impacts import MOST_KEPT, Impacts, TooManyImpacts
-from pinjoint.systems.entries import Measure
 from pinjoint.systems.program.compiler import Choice, Unfinished
+from pinjoint.systems.program.entries import Measure
 
 EVENTS_AT_ONCE = 2**18  # of which the impacts are gathered
 CHECK_INTERVAL = 128  # steps, at multiples of which a run may end at rest

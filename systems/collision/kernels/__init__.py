@@ -4,6 +4,6 @@ References to arrays are not counted: kernels are given many arrays at once and 
 would only double the time of an impact.
 """
 
-from pinjoint.systems.kernels import part
+from pinjoint.systems.program.kernel import part
 
 compiled = part(_nrt=False)

@@ -27,7 +27,7 @@ compile.
     predicted                velocity at which dampers and drag act in a fixed step (m/s)
     power, gained            what each account gains per second, as a step begins and over it (kW)
     account, measures, control, search, marks
-                             arrays with the entries of systems/entries.py
+                             arrays with the entries of systems/program/entries.py
 
 D is 2, or 3 in models that bend. The third coordinate is a rotation θ as a way ℓθ (m): per_arm[0] = 1/ℓ turns it into an
 angle again, and a moment into the force that belongs to it; its mass is J/ℓ². ℓ is a power of two, about the longest rod

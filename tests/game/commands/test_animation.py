@@ -8,8 +8,8 @@ import numpy as np
 import pytest
 from PIL import Image
 
-from pinjoint.commands.animation import FRAME, HELD, LONGEST
 from pinjoint.commands.command_line import main
+from pinjoint.commands.render import FRAME, HELD, LONGEST
 from pinjoint.session import Session
 
 

@@ -4,6 +4,7 @@ import contextlib
 import itertools
 import math
 import time
+import warnings
 from pathlib import Path
 from typing import Any
 
@@ -23,9 +24,9 @@ from pinjoint.systems.collision.driven.neighbours import DRIVEN, NeighbourList
 from pinjoint.systems.collision.kernels.impact import respond
 from pinjoint.systems.collision.system import persistent_contacts
 from pinjoint.systems.edit.pull import Hand
-from pinjoint.systems.entries import Account, Control
 from pinjoint.systems.physics.integrators import INTEGRATORS
 from pinjoint.systems.program.compiler import Compile, GeneratedModule, entries_to
+from pinjoint.systems.program.entries import Account, Control
 from pinjoint.systems.program.program import Program
 from tests.benchmarks.models import touching
 from tests.reference import bits
@@ -608,3 +609,16 @@ def test_a_step_that_time_cannot_halve_ends() -> None:
     session = Session.open(document)
     session.step(3)
     assert session.model.clock.time > 314521029806417.44
+
+
+@pytest.mark.parametrize("drag", [0.0, 1.0])
+def test_discs_that_are_hardly_pulled_raise_no_warning(drag: float) -> None:
+    discs = [
+        particle("A", 0.0, 0.0, velocity=[1.0, 0.0]),
+        particle("B", 9.0, 0.0, force=[5e-324, 0.0], mass=1.0),
+    ]
+    session = Session.open(model(discs, [], environment={"drag": drag}))
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        session.run(steps=3)
+    assert session.particles["A"].displacement[0] > 0.0

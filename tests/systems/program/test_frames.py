@@ -13,8 +13,8 @@ from pinjoint.commands.command_line import main
 from pinjoint.components.model import Model
 from pinjoint.documents.document import parse
 from pinjoint.systems.base import Law
-from pinjoint.systems.kernels import compiled
 from pinjoint.systems.physics.integrators import INTEGRATORS
+from pinjoint.systems.program.kernel import compiled
 from pinjoint.systems.program.program import Program
 from pinjoint.systems.program.reordered import make_program
 from pinjoint.systems.program.writer import FEW, MANY, VERY_MANY

@@ -7,11 +7,11 @@ from types import FunctionType
 import numpy as np
 import pytest
 
-from pinjoint.systems.kernels import compiled
 from pinjoint.systems.program.compiler import generated
+from pinjoint.systems.program.kernel import compiled
 
 SOURCE = """
-from pinjoint.systems.kernels import kept
+from pinjoint.systems.program.kernel import kept
 
 @kept()
 def second(row):
@@ -30,7 +30,7 @@ def second(row):
 
 
 def test_a_column_with_another_number_is_compiled_anew(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("pinjoint.systems.cache.folder", lambda: tmp_path)
+    monkeypatch.setattr("pinjoint.systems.program.cache.folder", lambda: tmp_path)
     answers = []
     for number in (1, 2):
         names = {"Column": IntEnum("Column", {"FIRST": 0, "SECOND": number}), "__name__": __name__}

@@ -15,10 +15,10 @@ from pinjoint import Session
 from pinjoint.components.field import Field, Role
 from pinjoint.documents import models
 from pinjoint.systems.base import Commit, Law
-from pinjoint.systems.kernels import compiled
 from pinjoint.systems.program import loops, writer
 from pinjoint.systems.program.binding import ProgramError
 from pinjoint.systems.program.compiler import generated
+from pinjoint.systems.program.kernel import compiled
 from tests.reference import bits
 from tests.reference.elements import Model
 from tests.reference.models import model, oscillator, particle, rod, square
@@ -523,7 +523,7 @@ def test_an_unwritable_cache_folder_is_done_without(fresh_process: Callable[...,
     assert list(temporary.rglob("pinjoint_program_*.code"))
 
 
-SOURCE = "from pinjoint.systems.kernels import kept\n\n\n@kept()\ndef answer(x):\n    return kernel(x)\n"
+SOURCE = "from pinjoint.systems.program.kernel import kept\n\n\n@kept()\ndef answer(x):\n    return kernel(x)\n"
 CALLER = "from numba import njit\nimport edited_helpers as helpers\n\n@njit\ndef kernel(x):\n    return helpers.twice(x)\n"
 CALLEE = "from numba import njit\n\nFACTOR = 2.0\n\n@njit\ndef twice(x):\n    return FACTOR * x\n"
 
@@ -531,7 +531,7 @@ CALLEE = "from numba import njit\n\nFACTOR = 2.0\n\n@njit\ndef twice(x):\n    re
 def test_an_edited_kernel_is_noticed_in_what_it_calls_too(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr("pinjoint.systems.cache.folder", lambda: tmp_path)
+    monkeypatch.setattr("pinjoint.systems.program.cache.folder", lambda: tmp_path)
     answers = []
     for factor in ("2.0", "5.0"):
         (tmp_path / "edited_helpers.py").write_text(CALLEE.replace("2.0", factor))
@@ -553,7 +553,7 @@ def test_a_kernel_that_moved_to_another_module_is_compiled_anew(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """What is cached may know what it calls by its module, and cannot be loaded where that is gone."""
-    monkeypatch.setattr("pinjoint.systems.cache.folder", lambda: tmp_path)
+    monkeypatch.setattr("pinjoint.systems.program.cache.folder", lambda: tmp_path)
     for name in ("kernels_before", "kernels_after"):
         spec = importlib.util.spec_from_loader(name, loader=None)
         assert spec is not None

@@ -9,10 +9,10 @@ import pytest
 
 from pinjoint import Session
 from pinjoint.systems.base import StopReason
-from pinjoint.systems.entries import ACCOUNTS, Account, Control, Mark, Measure, Search, Side
-from pinjoint.systems.kernels import part
 from pinjoint.systems.program.binding import StepRole, bind, by_role
+from pinjoint.systems.program.entries import ACCOUNTS, Account, Control, Mark, Measure, Search, Side
 from pinjoint.systems.program.identity import meaning_of
+from pinjoint.systems.program.kernel import part
 from pinjoint.systems.program.pasting import expanded, fragment, pasted
 from pinjoint.systems.program.program import _writer
 from pinjoint.systems.program.writer import FEW, MANY, VERY_MANY

@@ -13,11 +13,11 @@ from pinjoint import Session
 from pinjoint.documents import models
 from pinjoint.systems.base import StopReason
 from pinjoint.systems.edit.pull import Hand
-from pinjoint.systems.entries import ACCOUNT
 from pinjoint.systems.islands import islands
-from pinjoint.systems.machine_code import machine_code
 from pinjoint.systems.physics.kernels import judge
 from pinjoint.systems.physics.rest import RestMeasure
+from pinjoint.systems.program.entries import ACCOUNT
+from pinjoint.systems.program.machine_code import machine_code
 from pinjoint.systems.run import sleep
 from tests.reference import bits
 from tests.reference.elements import Model

@@ -21,7 +21,7 @@ from pinjoint.systems.collision.driven.kernels.pairs import chain_groups, end_gr
 from pinjoint.systems.collision.driven.kernels.paths import foresee, take_back
 from pinjoint.systems.collision.kernels import compiled
 from pinjoint.systems.collision.kernels.projection import coupling
-from pinjoint.systems.entries import Account, Control
+from pinjoint.systems.program.entries import Account, Control
 
 CLOSED_GAP = 1e-13  # of the smaller radius: contacts with a smaller gap are closed
 LOOSELY_CLOSED_GAP = 1e-11  # instead, after STRICT_TRIES: gaps in a row between walls hardly follow forces

@@ -25,7 +25,7 @@ from pinjoint.systems.collision.driven.kernels.pairs import gap_of, opening
 from pinjoint.systems.collision.driven.kernels.paths import take_back
 from pinjoint.systems.collision.kernels import compiled
 from pinjoint.systems.collision.kernels.projection import copy_motion, push_apart, separate_motion
-from pinjoint.systems.entries import Account, Control
+from pinjoint.systems.program.entries import Account, Control
 
 CROWD_CONTACTS = 24  # persistent contacts and impacts in the next step, from which on particles are a crowd
 CROWD_PARTICLES = 8  # particles that are no nodes, below which they are no crowd

@@ -11,7 +11,7 @@ from pinjoint.systems.collision.kernels import compiled
 from pinjoint.systems.collision.kernels.impact import respond
 from pinjoint.systems.collision.kernels.projection import compliance
 from pinjoint.systems.collision.system import REST_HEIGHT
-from pinjoint.systems.entries import Account, Control
+from pinjoint.systems.program.entries import Account, Control
 
 SHORT_BOUNCE = 1.0 / 32.0  # of a step: half of how long a bounce lasts
 ROUND_OFF = 1e-14  # of the fastest speed: slower approaches are none; and of an energy

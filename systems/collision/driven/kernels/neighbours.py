@@ -13,7 +13,7 @@ from pinjoint.systems.collision.kernels import compiled
 from pinjoint.systems.collision.kernels.grid import list_pairs as all_pairs
 from pinjoint.systems.collision.kernels.grid import set_box
 from pinjoint.systems.collision.kernels.horizon import is_joined
-from pinjoint.systems.entries import Control
+from pinjoint.systems.program.entries import Control
 
 LISTED_AROUND = 0.5  # of the radius of a particle: the least margin within which others are listed
 FEWEST_STEPS = 512  # for which the list is to last, at the present speed of a particle,

@@ -9,7 +9,7 @@ from pinjoint.systems.collision.driven.kernels.pairs import gap_of, opening
 from pinjoint.systems.collision.kernels import compiled
 from pinjoint.systems.collision.kernels.projection import copy_motion
 from pinjoint.systems.collision.kernels.time_of_impact import INFINITY, ROUND_OFF, first_touch
-from pinjoint.systems.entries import Control
+from pinjoint.systems.program.entries import Control
 
 TOUCHING_GAP = 1e-12  # of the reach of two particles, below which they touch
 DOUBT = 1e-3  # of a radius, by which a path may differ from a parabola where particles collide

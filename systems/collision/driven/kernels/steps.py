@@ -41,7 +41,7 @@ from pinjoint.systems.collision.driven.kernels.paths import (
     went_too_far,
 )
 from pinjoint.systems.collision.kernels import compiled
-from pinjoint.systems.entries import Control
+from pinjoint.systems.program.entries import Control
 
 MOST_ENDS_TRIED = 60  # for a step that ends at an impact
 

@@ -39,8 +39,9 @@ from numba.core.types import WrapperAddressProtocol, unliteral
 from numba.extending import typeof_impl
 
 from pinjoint.components.language import tr
-from pinjoint.systems import cache, is_ours
-from pinjoint.systems.kernels import PLAIN, Kernel, Use
+from pinjoint.systems import is_ours
+from pinjoint.systems.program import cache
+from pinjoint.systems.program.kernel import PLAIN, Kernel, Use
 
 _PROCESSOR = repr(cpu_target.target_context.codegen().magic_tuple())
 

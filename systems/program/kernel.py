@@ -9,7 +9,7 @@ A kernel is declared by one of these decorators; declaring needs no compiler.
     shared     one whose loops over a `prange` are shared among cores
 
 All of them: IEEE division (no exceptions), no fastmath, so that the same input gives the same bits. The plain form is
-in systems/interpreter.py, machine code in systems/machine_code.py.
+in systems/program/interpreter.py, machine code in systems/program/machine_code.py.
 """
 
 from __future__ import annotations
@@ -20,7 +20,7 @@ from enum import Enum
 from functools import cached_property, partial, update_wrapper
 from typing import Any
 
-from pinjoint.systems.interpreter import interpreted
+from pinjoint.systems.program.interpreter import interpreted
 
 PLAIN = os.environ.get("PINJOINT_PLAIN_NUMBA", "") == "1"
 
@@ -46,9 +46,8 @@ class Kernel:
         self.use = use
         self.signature = signature
         self.targetoptions = options
-        self.machine: Any = (
-            None  # what numba makes of it, by itself and as a part of others: see machine_code.py
-        )
+        # what numba makes of it, by itself and as a part of others: see machine_code.py
+        self.machine: Any = None
         self.machine_part: Any = None
         update_wrapper(self, function)
 

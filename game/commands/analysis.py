@@ -1,39 +1,139 @@
-"""Analyses: runs of a model without a window, with their results as plain data; see results.py."""
+"""Analyses: what is asked of a model without a window, and what comes of it as plain data, for commands and sweeps."""
 
 from __future__ import annotations
 
 import math
 import time
-from collections.abc import Sequence
+from collections.abc import Callable, Mapping
 from dataclasses import asdict, dataclass
 from typing import TYPE_CHECKING, Any
 
-from pinjoint.commands.output import ResultError
-from pinjoint.commands.reports.results import Read, Run, State, state
+import numpy as np
+
+from pinjoint.commands.output import ResultError, plain
+from pinjoint.components.field import Column, Field
+from pinjoint.components.handle import Handle
 from pinjoint.components.language import joined, marked, tr
 from pinjoint.components.mistake import Mistake
 from pinjoint.components.model import Model
-from pinjoint.components.rod import bends
+from pinjoint.components.particle import Particle
+from pinjoint.components.rod import Rod, bends
 from pinjoint.components.settings import AUTOMATIC
+from pinjoint.components.table import fields_of
 from pinjoint.mods.mod import ModError, check_mods, heeding_mods
 from pinjoint.paths import ENERGIES
 from pinjoint.systems.base import DEFAULT_LIMIT, StopReason
 from pinjoint.systems.catalogue import all_systems, left_out_of_statics
 from pinjoint.systems.schedule import Schedule
-from pinjoint.systems.statics.events import Event
 
 if TYPE_CHECKING:  # statics needs no session, and a run no scipy
     from pinjoint.headless import Headless
     from pinjoint.systems.run.simulation import Simulation
     from pinjoint.systems.statics.state import StaticState
 
+State = dict[str, Any]
+Run = Mapping[str, Any]
+Read = Callable[[Model, State], State]  # what is kept of a model and its `facts`
+
 INTERRUPTED = marked("interrupted")  # the status of a run that Ctrl+C ended
-MOD_FAILED = marked("mod failed")
 FOUND = (  # statuses of a run that found what was asked for
     marked("equilibrium"),
     marked("at rest"),
     marked("time reached"),
 )
+
+
+def _facts(kind: type[Handle], *names: str) -> tuple[Field[Any], ...]:
+    fields = {field.name: field for field in fields_of(kind)}
+    return tuple(fields[name] for name in names)
+
+
+# Reported facts of every element, by key in a state, under their names and in their units.
+_OWN: Mapping[str, tuple[Field[Any], ...]] = {
+    "particles": _facts(Particle, "position", "displacement", "velocity", "reaction", "mass"),
+    "rods": _facts(Rod, "axial_force", "length", "strain", "plastic_strain", "yielding"),
+}
+# Further ones of models that bend, or bear distributed forces.
+_OF_BENDING: Mapping[str, tuple[Field[Any], ...]] = {
+    "particles": _facts(Particle, "rotation", "angular_velocity", "reaction_moment", "inertia"),
+    "rods": _facts(Rod, "end_axial_force", "shear", "bending_moment", "end_rotation", "largest_moment"),
+}
+
+# --- states --------------------------------------------------------------------------------------------
+
+
+def reported(model: Model, group: str) -> tuple[Field[Any], ...]:
+    """The fields of a table that results report: Pinjoint's own, then those of mods' components."""
+    bent = bends(model) or model.rods.distributed_force.any()
+    fields = model.tables[group].fields.values()
+    of_mods = (field for field in fields if field.component and field.dtype in (float, int, bool))
+    return (*_OWN[group], *(_OF_BENDING[group] if bent else ()), *of_mods)
+
+
+def facts(
+    model: Model,
+    energy: Mapping[str, float],
+    load_factor: float | None = None,
+    residual: float | None = None,
+    columns: Mapping[str, Column] | None = None,
+) -> State:
+    """The present state of a model: whole columns by name, in which NaN stands for no value; SI units with kN.
+
+    energy: J, with the keys of ENERGIES. load_factor: of statics. residual: the largest
+    force out of balance, relative to the largest force. columns: by "table.field", columns that are reported
+    in place of the model's own. `position` is the original one. Raises ResultError.
+    """
+    made = {
+        "time": model.clock.time,
+        "load_factor": load_factor,
+        **{group: _columns(model, group, columns or {}) for group in _OWN},
+        "energy": {name: energy[name] for name in ENERGIES},
+        "residual": residual,
+        "collisions": model.clock.collisions,
+    }
+    return made | {key: plain(made[key], key) for key in ("time", "load_factor", "energy", "residual")}
+
+
+def _columns(model: Model, group: str, given: Mapping[str, Column]) -> dict[str, Column]:
+    table, columns = model.tables[group], {}
+    for field in reported(model, group):
+        key = f"{group}.{field.name}"
+        columns[field.name] = column = given[key] if key in given else table.column(field.name)
+        finite = np.isfinite(column) | np.isnan(column) if field.nullable else np.isfinite(column)
+        if not finite.all():
+            row = int(np.argwhere(~finite)[0, 0])
+            element, value = model.describe(table[row]), field.loaded(column, row)
+            raise ResultError(
+                "{where} is {value}, not a finite number; report an earlier state.",
+                where=joined([element, field.named()], ": "),
+                value=str(value),
+            )
+    return columns
+
+
+def static_facts(model: Model, found: StaticState) -> State:
+    """Those of an equilibrium; its work is the energy stored and dissipated on the path of equilibria."""
+    energy = dict.fromkeys(ENERGIES, 0.0) | {
+        "elastic": found.elastic_energy,
+        "dissipated_plastic": found.dissipated_plastic,
+        "work": found.elastic_energy + found.dissipated_plastic,
+    }
+    return facts(model, energy, found.load_factor, found.residual, found.columns)
+
+
+def by_element(model: Model, found: State) -> State:
+    """Facts as plain data, those of particles and of rods by name: vectors as [x, y], None for no value."""
+    made = dict(found)
+    for group in _OWN:
+        keys, rows = found[group], zip(*(column.tolist() for column in found[group].values()), strict=True)
+        made[group] = {
+            name: {key: None if value != value else value for key, value in zip(keys, row, strict=True)}
+            for name, row in zip(model.tables[group].names, rows, strict=True)
+        }
+    return made
+
+
+# --- analyses ------------------------------------------------------------------------------------------
 
 
 @dataclass(frozen=True)
@@ -50,7 +150,7 @@ class Analysis:
     measures_error: bool = False
 
     def run(
-        self, simulation: Simulation, name: str, reported: list[State] | None = None, read: Read = state
+        self, simulation: Simulation, name: str, reported: list[State] | None = None, read: Read = by_element
     ) -> Run:
         """The result of the analysis, in which `name` is the model. reported: gets the states at `times`, one by one.
 
@@ -81,7 +181,7 @@ class Analysis:
                 return _run(simulation, name, "diverged", states)
         return _run(simulation, name, "time reached", states)
 
-    def settled(self, model: Model, name: str, read: Read = state) -> Run:
+    def settled(self, model: Model, name: str, read: Read = by_element) -> Run:
         """The equilibrium of a model at each load factor in turn, with the yielding of those before.
 
         Raises ModError if a mod has failed or fails meanwhile.
@@ -93,14 +193,14 @@ class Analysis:
         started = time.perf_counter()
         settlement = settle(model, self.load_factors or (1.0,))
         seconds = time.perf_counter() - started
-        states = [static_state(model, found, read) for found in settlement.states]
+        states = [read(model, static_facts(model, found)) for found in settlement.states]
         status, note = settlement.beside(left_out)
         check_mods(time=model.clock.time)
         return _result(model, name, status, states) | {
             "message": joined([settlement.message, note]),
             "left_out": left_out,
             "wall_seconds": seconds,
-            "events": _records(model, settlement.events),
+            "events": [event.record(model) for event in settlement.events],
         }
 
     def settled_in(self, model: Model, name: str) -> Run:
@@ -126,12 +226,13 @@ class Analysis:
         except ModError as failure:
             return _failed(session.simulation, name, failure)
         happened = [asdict(event) for event in session.simulation.events]
+        remarks = [event.record(session.model) for event in session.document.assessment.remarks]
         error = session.document.assessment.error(math.inf if self.measures_error else IN_A_COMMAND)
         unknown = "" if error is not None else _uncontrolled(session.simulation)
         return {
             **found,
             "message": joined([session.message, unknown]),
-            "events": [*happened, *_records(session.model, session.document.assessment.remarks)],
+            "events": [*happened, *remarks],
             "error_estimate": error.record(bent=bends(session.model)) if error is not None else None,
         }
 
@@ -149,7 +250,7 @@ def _interrupted(simulation: Simulation, name: str, states: list[State]) -> Run:
 
 def _failed(simulation: Simulation, name: str, error: ModError) -> Run:
     """The result of a run that stopped because a mod failed, with the state in which it did."""
-    return {**_run(simulation, name, MOD_FAILED, [_state(simulation)]), "message": str(error)}
+    return {**_run(simulation, name, marked("mod failed"), [_state(simulation)]), "message": str(error)}
 
 
 def _uncontrolled(simulation: Simulation) -> str:
@@ -167,25 +268,12 @@ def _uncontrolled(simulation: Simulation) -> str:
     )
 
 
-def static_state(model: Model, found: StaticState, read: Read = state) -> State:
-    """An equilibrium as a state; its work is the energy stored and dissipated on the path of equilibria."""
-    energy = dict.fromkeys(ENERGIES, 0.0) | {
-        "elastic": found.elastic_energy,
-        "dissipated_plastic": found.dissipated_plastic,
-        "work": found.elastic_energy + found.dissipated_plastic,
-    }
-    return read(model, energy, found.load_factor, found.residual, found.columns)
-
-
-def _state(simulation: Simulation, read: Read = state) -> State:
+def _state(simulation: Simulation, read: Read = by_element) -> State:
+    model = simulation.model
     try:
-        return read(simulation.model, simulation.energy.as_dict(), None, simulation.residual)
+        return read(model, facts(model, simulation.energy.as_dict(), residual=simulation.residual))
     except ResultError as error:
         raise ResultError(simulation.message or str(error)) from None
-
-
-def _records(model: Model, events: Sequence[Event]) -> list[dict[str, Any]]:
-    return [event.record(model) for event in events]
 
 
 def _run(simulation: Simulation, name: str, status: str, states: list[State]) -> dict[str, Any]:

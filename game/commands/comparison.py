@@ -1,71 +1,49 @@
-"""`pinjoint verify`: simulation, linear and exact theory side by side; indeterminacy, mechanisms, frequencies."""
+"""Simulation, linear and exact theory side by side, and what theory says of a structure: what `pinjoint verify` prints."""
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator
 from dataclasses import asdict
 from typing import Any
 
 import numpy as np
 
-from pinjoint.commands import output
-from pinjoint.commands.output import aligned, as_written
-from pinjoint.commands.reports.report import static_state
-from pinjoint.components.field import ENDS
+from pinjoint.commands.analysis import by_element, static_facts
+from pinjoint.commands.influence import NOTHING
+from pinjoint.commands.output import Row, aligned, as_written
 from pinjoint.components.language import decimals, joined, marked, plural, tr
 from pinjoint.components.model import Model
 from pinjoint.headless import Headless
 from pinjoint.systems.base import DEFAULT_LIMIT
 from pinjoint.systems.catalogue import left_out_of_statics
 from pinjoint.systems.statics.counting import Count
-from pinjoint.systems.statics.equations import AXES
-from pinjoint.systems.statics.events import NoEquilibrium
 from pinjoint.systems.statics.explain import describe_motion
-from pinjoint.systems.statics.theory import Indeterminacy, influence_line, mechanisms, self_stress
-from pinjoint.systems.statics.unknowns import ForceMethodError, Unknown
-from pinjoint.systems.statics.verify import (
-    DEPARTURES,
-    ELSEWHERE,
-    QUANTITIES,
-    Comparison,
-    Row,
-    Theories,
-)
+from pinjoint.systems.statics.theory import Indeterminacy, mechanisms, self_stress
+from pinjoint.systems.statics.verify import DEPARTURES, ELSEWHERE, QUANTITIES, Comparison, Theories
+from pinjoint.systems.statics.verify import Row as Compared
 from pinjoint.systems.statics.vibration import Vibrations
 
-VERIFIED, DIFFERS = marked("verified"), marked("differs from static theory")
-THEORY_ONLY, NOT_VERIFIED = marked("theory only"), marked("not verified")
+VERIFIED, NOT_VERIFIED = marked("verified"), marked("not verified")
 LEFT_OUT = marked("left out")  # of a simulation
-TAKES_LONG = marked(
-    "Not at rest after {steps} steps, so the simulation is left out here; --limit SECONDS lets it go on."
-)
 MOST_WORK = 200_000  # steps × elements of a simulation that nobody asked for: some seconds, interpreted
 PORTIONS = 10  # in which they are taken
-DEGREES = ("static", "internal", "external", "mechanisms")
 SHOWN = 6  # mechanisms and frequencies in a table
-NOTHING = 1e-12  # of the largest value beside it: round-off
 _IN_TABLES = {"m": ("mm", 1000.0)}  # else units as in files
-_TITLES = {
-    "axial_force": marked("axial force"),
-    "displacement": marked("displacement"),
-    "reaction": marked("reaction"),
-    "rotation": marked("rotation"),
-    "reaction_moment": marked("reaction moment"),
-    "shear": marked("shear force"),
-    "bending_moment": marked("bending moment"),
+_ANSWERS = {
     "simulation": marked("simulation"),
     "linear": marked("linear theory"),
     "exact": marked("exact theory"),
+}
+_ERRORS = {
     "simulation_error": marked("error of simulation"),
     "linear_error": marked("error of linear theory"),
 }
-
-_VALUES = ("simulation", "linear", "exact", "simulation_error", "linear_error")
+_VALUES = _ANSWERS | _ERRORS  # of a quantity of an element, with their titles
 
 Found = dict[str, Any]
 
 
-def verify(session: Headless, name: str, limit: float | None, *, simulate: bool = True) -> Found:
+def compare(session: Headless, name: str, limit: float | None, *, simulate: bool = True) -> Found:
     """Theory beside the simulation run to rest (at most `limit` s of simulated time), as plain data.
 
     limit: None: DEFAULT_LIMIT, and the simulation is left out where it takes more than MOST_WORK.
@@ -80,9 +58,13 @@ def verify(session: Headless, name: str, limit: float | None, *, simulate: bool 
     at_rest = False
     if simulate and model.rods.count:
         status = _run_to_rest(session, limit)
+        takes_long = tr(
+            "Not at rest after {steps} steps, so the simulation is left out here; --limit SECONDS lets it go on.",
+            steps=model.clock.steps,
+        )
         found["simulation"] = {
             "status": status,
-            "message": session.message if status != LEFT_OUT else tr(TAKES_LONG, steps=model.clock.steps),
+            "message": session.message if status != LEFT_OUT else takes_long,
             "time": model.clock.time,
             "steps": model.clock.steps,
             "integrator": session.simulation.integrator.key,
@@ -96,8 +78,9 @@ def verify(session: Headless, name: str, limit: float | None, *, simulate: bool 
     found["remarks"] = [event.record(model) for event in session.document.assessment.remarks]
     if theory.exact is not None and (at_rest or not simulate) and model.rods.count:
         departed = any(remark["kind"] in DEPARTURES for remark in found["remarks"])
-        agreed = VERIFIED if not comparison.differs else DIFFERS if departed else NOT_VERIFIED
-        found["status"] = agreed if simulate else THEORY_ONLY
+        differs = marked("differs from static theory") if departed else NOT_VERIFIED
+        agreed = differs if comparison.differs else VERIFIED
+        found["status"] = agreed if simulate else marked("theory only")
     found["message"] = "\n".join([*_left_out(session), *_messages(found)])
     return found
 
@@ -144,7 +127,9 @@ def _found_by_theory(model: Model, name: str, theory: Theories) -> Found:
         "model": name,
         "status": NOT_VERIFIED,
         "message": "",
-        "indeterminacy": {name: getattr(degrees, name) for name in DEGREES},
+        "indeterminacy": {
+            name: getattr(degrees, name) for name in ("static", "internal", "external", "mechanisms")
+        },
         "count": {
             **{name: number for name, number in asdict(count).items() if number is not None},
             "degree": count.degree,
@@ -159,7 +144,7 @@ def _found_by_theory(model: Model, name: str, theory: Theories) -> Found:
         ],
         **_self_stress(model),
         "states": {
-            way: static_state(model, state) if state is not None else None
+            way: by_element(model, static_facts(model, state)) if state is not None else None
             for way, state in (("linear", theory.linear), ("exact", theory.exact))
         },
         "frequencies": {"unloaded": free.hertz.tolist(), "loaded": loaded},
@@ -203,111 +188,28 @@ def _messages(found: Found) -> Iterator[str]:
             " {error:.1e}. Statics applies lack of fit and moved supports first, and then all loads together, slowly."
             " Where rods yield or the structure snaps through, the end may differ if loads act suddenly or one after"
             " another, or if the model starts in motion.",
-            quantity=Row(**worst).title,
+            quantity=Compared(**worst).title,
             error=worst["simulation_error"],
         )
-    for way in ("simulation", "linear", "exact"):
+    for way, said in {
+        "simulation": marked("Simulation: {message}"),
+        "linear": marked("Linear theory: {message}"),
+        "exact": marked("Exact theory: {message}"),
+    }.items():
         if found[way] is not None and found[way]["message"] and found[way]["status"] != "at rest":
-            message = found[way]["message"]
-            if way == "simulation":
-                yield tr("Simulation: {message}", message=message)
-            elif way == "linear":
-                yield tr("Linear theory: {message}", message=message)
-            else:
-                yield tr("Exact theory: {message}", message=message)
+            yield tr(said, message=found[way]["message"])
     for remark in found["remarks"]:
         if remark["kind"] not in DEPARTURES and remark["message"] not in found["exact"]["message"]:
             yield remark["message"]
 
 
-# --- influence lines -----------------------------------------------------------------------------------
-
-
-def influence(model: Model, names: Sequence[str]) -> Found:
-    """Influence lines by linear theory: the effect of 1 kN along x and y on each particle in turn.
-
-    names: a rod "AB" (its axial force), where it bends "AB.start", "AB.end" (bending moments) or "AB.shear"; a constraint
-    "A.y" or "A.rotation" (its reaction, kN per kN), or a free direction (its displacement, m per kN, by the unit-load
-    method). Raises ForceMethodError for other names, and NoEquilibrium for a mechanism.
-    """
-    if Indeterminacy.of(model).mechanisms:
-        moving = describe_motion(model, mechanisms(model))
-        raise NoEquilibrium(
-            "mechanism",
-            tr(
-                "A mechanism has no influence lines: {moving} can move. Add rods or supports there.",
-                moving=moving,
-            ),
-        )
-    found = {}
-    for name in names:
-        quantity, row, axis = _influenced(model, name)
-        field = influence_line(model, quantity, row, axis)[:, :2]
-        cleared = np.where(np.abs(field) > NOTHING * np.abs(field).max(), field, 0.0)
-        of = dict(zip(model.particles.names, cleared.tolist(), strict=True))
-        found[name] = {"quantity": quantity, "unit": f"{QUANTITIES[quantity][1]}/kN", "of": of}
-    return {"influence": found}
-
-
-def _influenced(model: Model, name: str) -> tuple[str, int, int]:
-    """The quantity, row and axis (or end of a rod) that a name means. Raises ForceMethodError."""
-    place, _, what = name.rpartition(".")
-    if name in model.rods:
-        return "axial_force", model.rods[name].row, 0
-    if place in model.rods and what in (*ENDS, "shear"):
-        row = model.rods[place].row
-        rigid = (model.rods.turning_shares[row] > 0.0).tolist()
-        if not any(rigid):
-            raise ForceMethodError(
-                "{rod} does not bend, so it has no bending moments and no shear force.", rod=place
-            )
-        if what == "shear":
-            return "shear", row, 0
-        if not rigid[ENDS.index(what)]:
-            raise ForceMethodError("{end} is hinged, so there is no bending moment.", end=name)
-        return "bending_moment", row, ENDS.index(what)
-    if place in model.particles and what in AXES:
-        row, axis = model.particles[place].row, AXES.index(what)
-        if axis == 2 and model.particles.inertia[row] == 0.0:
-            raise ForceMethodError(
-                "{particle} has no rotation, because no rod that bends is rigidly joined to it; choose another one.",
-                particle=place,
-            )
-        fixed = (*model.particles.fixed[row], model.particles.fixed_rotation[row])
-        kinds = ("reaction", "reaction_moment") if fixed[axis] else ("displacement", "rotation")
-        return kinds[axis == 2], row, axis
-    return "axial_force", Unknown.named(model, name).element.row, 0
-
-
 # --- as text -------------------------------------------------------------------------------------------
 
 
-def lines(found: Found) -> Iterator[str]:
-    """What `verify` or `influence` found, as aligned tables to read."""
-    if "influence" not in found:
-        yield from _verify_lines(found)
-        return
-    for name, line in found["influence"].items():
-        yield tr(
-            "{quantity} of {name} in {unit}, for a force of 1 kN at",
-            quantity=tr(_TITLES[line["quantity"]]),
-            name=name,
-            unit=line["unit"],
-        )
-        heads = tr("particle"), tr("along x"), tr("along y")
-        yield from aligned([heads, *((particle, *pair) for particle, pair in line["of"].items())])
-        yield ""
-
-
-def rows(found: Found) -> Iterator[output.Row]:
-    """The same as rows, headings first: one of each quantity of an element, or of each influence on a particle."""
-    if "influence" in found:
-        yield "of", "quantity", "unit", "particle", "along x", "along y"
-        for name, line in found["influence"].items():
-            yield from ((name, line["quantity"], line["unit"], at, *pair) for at, pair in line["of"].items())
-        return
+def rows(found: Found) -> Iterator[Row]:
+    """One row for each quantity of an element, headings first."""
     yield "element", "name", "quantity", "component", "unit", *_VALUES
-    for quantity, (table, unit) in QUANTITIES.items():
+    for quantity, (table, unit, _) in QUANTITIES.items():
         for name, component, values in _values(found, quantity):
             yield table[:-1], name, quantity, component, unit, *(values[way] for way in _VALUES)
 
@@ -350,7 +252,8 @@ def _formula(found: Found) -> str:
     return tr("{rule}; by matrix rank: {said}", rule=rule, said=said) if said else rule
 
 
-def _verify_lines(found: Found) -> Iterator[str]:
+def lines(found: Found) -> Iterator[str]:
+    """What `compare` found, as aligned tables to read."""
     yield f"{found['model']}: {_verdict(found)}"
     yield from filter(None, [found["message"]])
     if found["rods"]:
@@ -358,32 +261,31 @@ def _verify_lines(found: Found) -> Iterator[str]:
         yield _degrees(found)
     for mechanism in found["mechanisms"][:SHOWN]:
         yield tr("mechanism: {description}", description=mechanism["description"])
-    for when, frequencies in found["frequencies"].items():
-        if frequencies:
+    for when, said in {
+        "unloaded": marked("natural frequencies without load, Hz: {values}"),
+        "loaded": marked("natural frequencies under load, Hz: {values}"),
+    }.items():
+        if frequencies := found["frequencies"][when]:
             values = [*map(as_written, frequencies[:SHOWN]), *(["…"] if len(frequencies) > SHOWN else [])]
-            if when == "unloaded":
-                yield tr("natural frequencies without load, Hz: {values}", values="  ".join(values))
-            else:
-                yield tr("natural frequencies under load, Hz: {values}", values="  ".join(values))
+            yield tr(said, values="  ".join(values))
     if found["frequencies_note"]:
         yield tr(
             "Rods vibrate with their masses at their ends, which is coarse here: {note}",
             note=found["frequencies_note"],
         )
-    for quantity, (_, unit) in QUANTITIES.items():
+    for quantity, (_, unit, title) in QUANTITIES.items():
         shown, factor = _IN_TABLES.get(unit, (unit, 1.0))
         rows = {f"{name} {tr(axis)}".rstrip(): values for name, axis, values in _values(found, quantity)}
         if rows:
             yield ""
-            yield from aligned(_cells(f"{tr(_TITLES[quantity])}, {shown}", factor, rows))
-    for way, row in found["worst"].items():
-        if row is not None:
+            yield from aligned(_cells(f"{tr(title)}, {shown}", factor, rows))
+    for way, said in {
+        "simulation": marked("largest error of the simulation: {error:.1e}, in the {quantity}"),
+        "linear": marked("largest error of linear theory: {error:.1e}, in the {quantity}"),
+    }.items():
+        if row := found["worst"].get(way):
             yield ""
-            told = {"error": row[f"{way}_error"], "quantity": Row(**row).title}
-            if way == "simulation":
-                yield tr("largest error of the simulation: {error:.1e}, in the {quantity}", **told)
-            else:
-                yield tr("largest error of linear theory: {error:.1e}, in the {quantity}", **told)
+            yield tr(said, error=row[f"{way}_error"], quantity=Compared(**row).title)
 
 
 def _verdict(found: Found) -> str:
@@ -399,14 +301,14 @@ def _verdict(found: Found) -> str:
     return tr("verified, simulation and exact theory agree to {simulation:.1e}", **worst)
 
 
-def _cells(title: str, factor: float, rows: dict[str, Found]) -> list[output.Row]:
-    largest = max(abs(values[way] or 0.0) for values in rows.values() for way in _VALUES[:3])
-    cells: list[output.Row] = [[title, *(tr(_TITLES[way]) for way in _VALUES)]]
+def _cells(title: str, factor: float, rows: dict[str, Found]) -> list[Row]:
+    largest = max(abs(values[way] or 0.0) for values in rows.values() for way in _ANSWERS)
+    cells: list[Row] = [[title, *(tr(_VALUES[way]) for way in _VALUES)]]
     for name, values in rows.items():
         numbers = [
             "—" if v is None else factor * v if abs(v) > NOTHING * largest else 0.0
-            for v in (values[way] for way in _VALUES[:3])
+            for v in (values[way] for way in _ANSWERS)
         ]
-        errors = ["—" if values[w] is None else decimals(f"{values[w]:.1e}") for w in _VALUES[3:]]
+        errors = ["—" if values[w] is None else decimals(f"{values[w]:.1e}") for w in _ERRORS]
         cells.append([name, *numbers, *errors])
     return cells
