@@ -12,9 +12,7 @@ from contextlib import nullcontext, suppress
 from pathlib import Path
 from typing import Any
 
-import numpy as np
 import pygame
-from numpy.typing import NDArray
 
 from pinjoint.boundary import Boundary
 from pinjoint.components.camera import Viewport
@@ -45,10 +43,10 @@ from pinjoint.session import Session
 from pinjoint.systems.base import System
 from pinjoint.systems.edit.hover import Hover
 from pinjoint.systems.input.pygame_input import PygameInput
+from pinjoint.systems.render.backends.pygame_canvas import encoded
+from pinjoint.systems.render.backends.raster import load_raster
 from pinjoint.systems.render.picture import symbol_at
-from pinjoint.systems.render.pygame_canvas import encoded
 from pinjoint.systems.render.pygame_render import PygameRender
-from pinjoint.systems.render.raster import load_raster
 
 FRAME_RATE = 60  # Hz
 FIRST_SIZE = (1000, 720)  # points
@@ -61,8 +59,6 @@ DISPLAYS = ("DISPLAY", "WAYLAND_DISPLAY")  # where Linux says what to draw on
 UNSEEN = ("offscreen", "dummy")  # drivers of SDL without a visible window
 
 Place = tuple[int, int, int, int]  # left, top, width and height of a window (points)
-Points = NDArray[np.float64]
-Colours = NDArray[np.uint8]
 
 
 class NoDisplay(Explained, RuntimeError):
@@ -342,7 +338,9 @@ class App:
     def _choices(self) -> dict[str, str]:
         """What the person has chosen; not what a script that is performed shows."""
         view = self.session.view
-        shown = {} if self.session.performing else {"language": language(), "convention": view.convention}
+        shown = (
+            {} if self.session.footer is not None else {"language": language(), "convention": view.convention}
+        )
         return {"theme": view.theme, **shown}
 
     def _follow_choices(self) -> None:

@@ -156,7 +156,7 @@ class Headless(Context):
     @contextmanager
     def _time_passing(self) -> Iterator[Simulation]:
         """Time passes inside: it is one run in the log, which stops, by ModError, where a mod fails."""
-        self.act_in_scene()
+        self._act_in_scene()
         document, simulation = self.document, self.simulation
         document.note_beginning()
         document.history.begin_run()
@@ -173,7 +173,7 @@ class Headless(Context):
     def without_frames(self) -> Iterator[None]:
         """While time passes inside, systems of phase EVENTS run every EVENT_INTERVAL steps, and when it has passed."""
         simulation, frame = self.simulation, HeadlessFrame(self, 0.0)
-        if self.performing or not self.schedule.runs_headless(Phase.EVENTS, frame.scene, self.model):
+        if self.footer is not None or not self.schedule.runs_headless(Phase.EVENTS, frame.scene, self.model):
             yield
             return
 

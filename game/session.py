@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Iterable, Sequence
 from pathlib import Path
 from typing import Any, NoReturn
 
@@ -18,11 +18,10 @@ from pinjoint.components.model import Model
 from pinjoint.components.rod import Rod
 from pinjoint.components.view import View, lesson_share
 from pinjoint.components.wording import missing
-from pinjoint.documents import models
 from pinjoint.documents.format import ModelError
-from pinjoint.documents.open_documents import ModelFile, file_of
+from pinjoint.documents.open_documents import ModelFile
 from pinjoint.editor.frame import Actions, Exaggerate, Frame, ShowView
-from pinjoint.editor.routing import for_tools, hit_at, meaning
+from pinjoint.editor.routing import Press
 from pinjoint.editor.scenes import all_scenes, scene_systems
 from pinjoint.editor.scenes.files import FileScene
 from pinjoint.editor.sliders import slider_stack, sliders_of
@@ -75,14 +74,12 @@ class Session(Headless):
     ) -> None:
         seen = [Exaggerate(), Actions(), ShowView(), Time(), *scene_systems()]
         super().__init__(model, systems, view, file, all_scenes(), seen)
-        # Called with every press and after every change of size; set by a recorder.
-        self.on_press: Callable[[str, Vector | None], None] | None = None
-        self.on_resize: Callable[[], None] | None = None
+        self.recorder: Any = None  # pinjoint.scripts.playing.Recorder, told of every press and change of size
         self._clicked: tuple[object, ...] | None = None  # what took the last press, if that was a click
         # Of the window (pixels).
         self.extent = self.view.camera.viewport.width, self.view.camera.viewport.height
         self.offer_tools()
-        self.begin_document()
+        self._begin_document()
 
     def __reduce_ex__(self, protocol: object) -> NoReturn:
         raise TypeError(
@@ -111,13 +108,12 @@ class Session(Headless):
 
     # --- lessons -------------------------------------------------------------------------------------
 
-    def begin_lesson(self, script: Script) -> None:
+    def _begin_lesson(self, script: Script) -> None:
         """Begin a lesson with tasks, where the person left it. Raises ScriptError."""
-        course = Course(self, Lesson(script))
-        self.course, self.beside = course, self.beside or View()
+        self.course = course = Course(self, Lesson(script))
         self.resize(*self.extent, self.view.pixel_ratio)
         course.begin()
-        self._show_card()
+        course.show_card()
 
     def leave_lesson(self) -> None:
         """Leave the lesson for the document that was open before it."""
@@ -128,17 +124,11 @@ class Session(Headless):
         self.leave_gesture()
         while self.document.practice and self.documents.can_move(-1):
             self.documents.move(-1)
-        self.begin_document()
+        self._begin_document()
 
     def _put_away_lesson(self) -> None:
-        self.course = self.beside = None
+        self.course = None
         self.resize(*self.extent, self.view.pixel_ratio)
-
-    def answer(self, value: Any) -> None:
-        """Answer the task of a lesson: names of elements to select, a number, or the text of a choice."""
-        if self.course is None:
-            raise WrongValue("There is no lesson to answer; begin one from the start page.")
-        self.course.answer(value)
 
     def take_up_lesson(self) -> None:
         """Begin the lesson with tasks that a person chose; one to watch puts that away which was begun."""
@@ -149,16 +139,10 @@ class Session(Headless):
             return
         self.lesson = None
         try:
-            self.begin_lesson(script)
+            self._begin_lesson(script)
         except ScriptError as error:
             self.leave_lesson()
             self.notice = str(error)
-
-    def _show_card(self) -> None:
-        """Bring the card of the lesson up to date."""
-        if self.course is not None and self.beside is not None:
-            self.course.look()
-            self.beside.card, self.beside.pointer = self.course.card(), self.view.pointer
 
     # --- scenes and actions --------------------------------------------------------------------------
 
@@ -187,12 +171,12 @@ class Session(Headless):
         self.scenes.apply(self)
         self.take_up_lesson()
         self.offer_tools()
-        self.make_room()
+        self._make_room()
 
-    def begin_document(self) -> None:
+    def _begin_document(self) -> None:
         """Show the document that is open now, with its sliders, from the first frame on."""
         self.view.sliders = sliders_of(self)
-        super().begin_document()
+        super()._begin_document()
 
     def offer_tools(self) -> None:
         """Let toolbar, sliders and help show what can be done now; what is not seen stays as it was."""
@@ -203,8 +187,7 @@ class Session(Headless):
     def follow(self) -> None:
         """Fit the view in a window that what moves has left; recorded as the key that does so."""
         if follows(self):
-            if self.on_press is not None:
-                self.on_press("home", None)
+            self._record("home", None)
             self.act("fit")
 
     def press(self, key: str, pixel: Vector | None = None) -> None:
@@ -221,30 +204,31 @@ class Session(Headless):
             return
         if key.startswith(FILES):
             self.notice = ""
-            if self.on_press is not None:
-                self.on_press(key, pixel)
-            self.open_files(key.removeprefix(FILES).splitlines())
+            self._record(key, pixel)
+            self._open_files(key.removeprefix(FILES).splitlines())
             return
         pixel = self.pointer if pixel is None else _near(pixel)
-        hit = hit_at(self, key, pixel)
-        here = self.scene, self.view.menu is not None, self.view.help > 0, hit and hit.action
+        press = Press(self, key, pixel)
+        here = self.scene, self.view.menu is not None, self.view.help > 0, press.hit and press.hit.action
         if key == "double click" and self._clicked not in (None, here):
             return  # its first click led here, and the second is not meant for what is here
-        (name, at), pressed = meaning(self, key, pixel, hit), pixel
         if key == "escape" and self.fault and self.scene not in FORMS:
             self.faults_seen = len(EXTENSIONS.faults)
-        elif name is not None:
+        elif press.action is not None:
             self.notice, self._clicked = "", here if key == "click" else None
-            if self.on_press is not None:
-                self.on_press(key, pressed)
+            self._record(key, pixel)
             if self.time_passes:
                 self.get_ready()
-            self.view.pressed = hit
-            left = self._left_for_tools() if for_tools(self, key, pixel) else ""
-            if name != left:  # the tool that opens a scene closes it, too
-                self.act(name, at)
+            self.view.pressed = press.hit
+            left = self._left_for_tools() if press.for_tools else ""
+            if press.action != left:  # the tool that opens a scene closes it, too
+                self.act(press.action, press.at)
         elif self.scene == SIMULATION and (found := ACTIONS.at(PAUSE, key)) and not ACTIONS.at(self.scene, key):
             self.notice = tr("{action}: press Space to pause first.", action=begun(tr(found[1].title)))
+
+    def _record(self, key: str, pixel: Vector | None) -> None:
+        if self.recorder is not None:
+            self.recorder.press(key, pixel)
 
     def _left_for_tools(self) -> str:
         """Leave a scene in which tools do not act, for the one in which they do; returns its name, or ""."""
@@ -256,7 +240,7 @@ class Session(Headless):
         self.offer_tools()
         return scene
 
-    def open_files(self, paths: Iterable[str | Path]) -> None:
+    def _open_files(self, paths: Iterable[str]) -> None:
         """Open model files and play recorded sessions, as when they are dropped on the window; undo goes back.
 
         What is wrong with a file is said in `notice`, and the others are opened.
@@ -298,7 +282,7 @@ class Session(Headless):
         script = Script(path) if path.suffix.lower() == SCRIPT else None
         if script is None or not script.has_tasks:  # a lesson opens its models itself
             source = path if script is None else script.source
-            self.adopt(models.load(source), file_of(source), keep=self.model.particles.count > 0)
+            self.open_here(source, keep=self.model.particles.count > 0)
         self.lesson = script or self.lesson
 
     def resize(self, width: int, height: int, pixel_ratio: float = 1.0) -> None:
@@ -316,24 +300,22 @@ class Session(Headless):
                 largest=LARGEST_RATIO,
             )
         self.extent = width, height
-        taken_right, taken_below = (
-            lesson_share(width, height, pixel_ratio) if self.beside is not None else (0, 0)
-        )
+        card = self.course.view if self.course is not None else None
+        taken_right, taken_below = lesson_share(width, height, pixel_ratio) if card is not None else (0, 0)
         left, top = width - taken_right, height - taken_below
         self.view.camera.viewport, self.view.pixel_ratio = Viewport(0, 0, left, top), pixel_ratio
-        if self.beside is not None:
+        if card is not None:
             place = (left, 0, taken_right, height) if taken_right else (0, top, width, taken_below)
-            self.beside.camera.viewport, self.beside.pixel_ratio = Viewport(*place), pixel_ratio
+            card.camera.viewport, card.pixel_ratio = Viewport(*place), pixel_ratio
         if self.view.fitted:
             self.view.fit(self.model)
-        if self.on_resize is not None:
-            self.on_resize()
+        if self.recorder is not None:
+            self.recorder.resize()
         self.scenes.active.resized(self)
 
     def type(self, text: str) -> None:
         """Type text into the selected box of properties, save and load."""
-        if self.on_press is not None:
-            self.on_press(TEXT + text, None)
+        self._record(TEXT + text, None)
         if self.course is not None and self.course.awaits_number and self.scene in LIVE:
             self.course.type(text)
         else:
@@ -372,21 +354,12 @@ class Session(Headless):
         self.press(button, self.point(x, y))
 
     def drag(self, start: Vector, end: Vector, button: str = "click") -> None:
-        """Drag from one point of the model (m) to another; `button` may be "ctrl+click"."""
-        self.grab(*start, button)
-        self.drag_to(*end)
-        self.drop()
+        """Drag from one point of the model (m) to another; `button` may be "ctrl+click".
 
-    def grab(self, x: float, y: float, button: str = "click") -> None:
-        """Begin to drag at a point of the model (m); time may pass until `drop`."""
-        self.press(button.replace("click", "drag"), self.point(x, y))
-
-    def drag_to(self, x: float, y: float) -> None:
-        """Drag what is held to a point of the model (m)."""
-        self.press("drag to", self.point(x, y))
-
-    def drop(self) -> None:
-        """Let go of what is held."""
+        For time to pass meanwhile, press "drag", "drag to" and "drop" one by one, each at a `point`.
+        """
+        self.press(button.replace("click", "drag"), self.point(*start))
+        self.press("drag to", self.point(*end))
         self.press("drop")
 
     # --- frames --------------------------------------------------------------------------------------
@@ -406,7 +379,8 @@ class Session(Headless):
         """Bring what the view says about the run up to date, so many seconds after the last time."""
         show(self, elapsed)
         self.offer_tools()
-        self._show_card()
+        if self.course is not None:
+            self.course.show_card()
 
 
 def _near(pixel: Sequence[float]) -> Vector:

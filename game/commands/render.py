@@ -25,7 +25,8 @@ from pinjoint.documents.models import replace
 from pinjoint.documents.shapes import numbered
 from pinjoint.session import Session
 from pinjoint.systems.base import DEFAULT_LIMIT
-from pinjoint.systems.render.labels import Placed
+from pinjoint.systems.physics.pace import natural_pace
+from pinjoint.systems.render.labels.placing import Placed
 from pinjoint.systems.render.theme import load_theme, theme_names
 
 _PICTURES = (".png", ".svg", ".pdf", ".gif", ".jpg", ".bmp")
@@ -198,7 +199,7 @@ def _run(session: Session, until: float | None, limit: float) -> tuple[str, list
 def _times(session: Session, until: float | None, limit: float) -> Iterator[float]:
     """The simulated times of the pictures (s)."""
     begin, most = session.time, math.floor(LONGEST / FRAME)
-    step = FRAME * session.pace
+    step = FRAME * natural_pace(session.model)
     if until is None:
         count = min(most, math.ceil(limit / step))
     else:

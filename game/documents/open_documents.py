@@ -69,11 +69,12 @@ class OpenDocument:
     beginning: the state from which time began to pass. undeformed: that in which it was neither run nor settled yet;
     None until then, or if its file does not say. saved: the revision of what its file holds.
     recovery: the file that keeps unsaved work against a crash. practice: it belongs to a lesson, and asks for no saving.
+    pull: the hand on a particle.
     """
 
     def __init__(self, model: Model, schedule: Schedule, pull: Pull, file: ModelFile) -> None:
         self.model = model
-        self._schedule, self._pull = schedule, pull
+        self.pull = pull
         self.simulation = Simulation(model, schedule)
         self.timeline = Timeline(self.simulation, pull)
         self.history = History(model, self.simulation, on_change=self._changed)
@@ -208,7 +209,7 @@ class OpenDocument:
 
     def leave(self) -> None:
         """End the run and the pull of a hand, and drop the checkpoints."""
-        if self._pull.hand is not None:
+        if self.pull.hand is not None:
             self.timeline.hold(None)
         self.history.end_run()
         self.timeline.clear()
@@ -269,9 +270,9 @@ class OpenDocuments:
         return tr("opening {name}", name=opened) if opened else tr("opening a new model")
 
 
-def file_of(source: Source) -> ModelFile:
+def file_of(source: Source | Model) -> ModelFile:
     """The file that a source of a model is; examples and documents have none."""
-    if isinstance(source, Mapping):
+    if isinstance(source, Mapping | Model):
         return ModelFile()
     if isinstance(source, str) and source in models.bundled():
         return ModelFile(None, source)

@@ -20,7 +20,6 @@ from pinjoint.components.mistake import NotFound, WrongValue
 from pinjoint.components.model import Model
 from pinjoint.components.rod import bends
 from pinjoint.components.settings import NO_DIAGRAMS, Settings
-from pinjoint.components.slider import Place
 from pinjoint.components.tags import Selected
 from pinjoint.components.view import Preview, Readout, View
 from pinjoint.documents import models
@@ -31,8 +30,7 @@ from pinjoint.scripts.script import Script
 from pinjoint.systems.base import Mod
 from pinjoint.systems.collision.impacts import Impacts
 from pinjoint.systems.edit.pull import Pull
-from pinjoint.systems.physics.pace import natural_pace
-from pinjoint.systems.render.sheet import Stage
+from pinjoint.systems.render.model.sheet import Stage
 from pinjoint.systems.run.energy import Energy
 from pinjoint.systems.run.simulation import Simulation
 from pinjoint.systems.run.system import Time
@@ -252,17 +250,16 @@ class Context:
     schedule: all systems. notice: the last sentence said. window, autosave: of a window; None without one.
     waits_for: what a simulation waits for, None if it can go on. awaited: the one that is too large to go on before its
     step program is compiled.
-    scenes: the mode, and its transitions. gesture: what is being drawn or dragged. performing: a script is shown in the
-    window, so input is not for the scenes and no time passes by itself. footer: the strip below the picture meanwhile.
-    lesson: the script that a person asked for. course: the lessons.course.Course that a person is in; beside: its card, in
-    the part of the window that it takes. faults_seen: how many faults of mods were shown and taken away.
+    scenes: the mode, and its transitions. gesture: what is being drawn or dragged. footer: the strip below the picture while
+    a script is shown in the window; then input is not for the scenes, and no time passes by itself.
+    lesson: the script that a person asked for. course: the lessons.course.Course that a person is in.
+    faults_seen: how many faults of mods were shown and taken away.
     """
 
     def __init__(
         self, model: Model, schedule: Schedule, pull: Pull, scenes: Sequence[Scene], view: View, file: ModelFile
     ) -> None:
         self.schedule = schedule
-        self.pull = pull
         self.documents = OpenDocuments(model, schedule, pull, file)
         self._clipboard = ""
         self.notice = ""
@@ -273,12 +270,10 @@ class Context:
         self.scenes = Scenes(scenes)
         self.view = view
         self.gesture: Gesture | None = None
-        self.performing = False
         self.footer: View | None = None
         self.lesson: Script | None = None
         self.course: Any = None
-        self.beside: View | None = None
-        self.blank = Model()
+        self._blank = Model()
         self.faults_seen = len(EXTENSIONS.faults)
 
     # --- documents ---------------------------------------------------------------------------------
@@ -336,23 +331,20 @@ class Context:
         """What happened in the run so far, in order of time: rods that yield, cables that go slack, collapse, rest."""
         return self.document.chronicle.happenings
 
-    def open_here(self, source: Source | None) -> None:
-        """Open another model, an empty one if None; undo goes back to this one. Raises ModelError."""
-        if source is None:
-            self.adopt(Model())
-        else:
-            self.adopt(models.load(source), file_of(source))
+    def open_here(self, source: Source | Model, file: ModelFile | None = None, *, keep: bool = False) -> None:
+        """Open another model, of its own file unless another is given. Raises ModelError.
 
-    def adopt(self, model: Model, file: ModelFile = ModelFile(), *, keep: bool = False) -> None:  # noqa: B008
-        """Open a model. A document with unsaved work, or any to `keep`, stays open, and undo goes back to it."""
+        A document with unsaved work, or any to `keep`, stays open, and undo goes back to it.
+        """
+        model = source if isinstance(source, Model) else models.load(source)
         self.leave_gesture()
-        self.documents.add(model, file, keep=keep)
+        self.documents.add(model, file_of(source) if file is None else file, keep=keep)
         self.view.all_diagrams = False
-        self.begin_document()
+        self._begin_document()
 
-    def begin_document(self) -> None:
+    def _begin_document(self) -> None:
         """Show the document that is open now, from the first frame on."""
-        self.make_room()
+        self._make_room()
         self.view.fit(self.model)
         if self.model.settings.diagrams != NO_DIAGRAMS:
             self.view.all_diagrams, self.view.quantity = True, self.model.settings.diagrams
@@ -367,11 +359,6 @@ class Context:
         return EXTENSIONS.faults[-1] if len(EXTENSIONS.faults) > self.faults_seen else ""
 
     # --- time --------------------------------------------------------------------------------------
-
-    @property
-    def pace(self) -> float:
-        """Simulated seconds per second shown that suit the model as it is now, whatever a person chose."""
-        return natural_pace(self.model)  # found anew: the clock's may be from any earlier frame
 
     def settle(self, factors: Sequence[float] | float = (1.0,)) -> str:
         """Go to the static equilibrium at each load factor in turn, without letting time pass.
@@ -407,7 +394,7 @@ class Context:
         steps = operator.index(steps)
         begun, (whole, _) = self.model.clock.steps, self.simulation.moment
         target = (whole if steps > 0 else begun) + steps  # a step that is under way is the first
-        self.act_in_scene()
+        self._act_in_scene()
         self.document.note_beginning()
         if not self.has_program(self.simulation):
             return False
@@ -431,11 +418,9 @@ class Context:
         if self.time_passes:
             self.document.history.begin_run()
 
-    def act_in_scene(self) -> None:
-        """Let time pass under the systems of the active scene; where time stands still, under those of simulation."""
-        scene = self.scene if self.time_passes else "simulation"
-        if scene != self.simulation.programs.scene:
-            self.simulation.act_in(scene)
+    def _act_in_scene(self) -> None:
+        """Steps that are no frame's are taken as in the active scene; where time stands still, as in simulation."""
+        self.simulation.act_in(self.scene if self.time_passes else "simulation")
 
     def get_ready(self) -> None:
         """Account for edits as if a frame had begun, so that what follows does not depend on when frames do."""
@@ -443,27 +428,7 @@ class Context:
         if not self.simulation.halted and self.has_program(self.simulation):
             self.simulation.advance(0)
 
-    def advance(self, elapsed: float) -> None:
-        """Let the time of one frame pass in the model, under the laws that act in the active scene."""
-        self.act_in_scene()
-        self.document.note_beginning()
-        if self.simulation.halted or not self.has_program(self.simulation):
-            return
-        with self.document.timeline.recording():
-            self.document.live.frame(elapsed)
-        self.document.chronicle.look()
-
     # --- editing -----------------------------------------------------------------------------------
-
-    @property
-    def can_undo(self) -> bool:
-        """True if there is something to take back."""
-        return self.document.history.can_undo or self.documents.can_move(-1)
-
-    @property
-    def can_redo(self) -> bool:
-        """True if there is something to repeat."""
-        return self.document.history.can_redo or self.documents.can_move(1)
 
     @property
     def selected(self) -> list[Handle]:
@@ -520,7 +485,7 @@ class Context:
             return ""
         opening = self.documents.move(by)
         if opening:
-            self.begin_document()
+            self._begin_document()
         return opening
 
     def leave_gesture(self) -> None:
@@ -528,17 +493,6 @@ class Context:
         gesture, self.gesture = self.gesture, None
         if gesture is not None:
             gesture.leave(self)
-
-    def cancel_gesture(self) -> bool:
-        """Take back what is being drawn or dragged, else put the tool away; False if there is neither."""
-        gesture, self.gesture = self.gesture, None
-        if gesture is not None:
-            gesture.cancel(self)
-        elif self.view.tool:
-            self.view.tool = ""
-        else:
-            return False
-        return True
 
     def take_up(self, tool: str) -> None:
         """Let clicks use a tool from now on; if they use it already, put it away."""
@@ -568,13 +522,8 @@ class Context:
         stages = list(self.scenes.active.stages(self))
         if not self.scenes.active.covers(self):
             stages.append((self.view.toolbar, self.view))
-        stages += [(self.blank, view) for view in (self.footer, self.beside) if view is not None]
-        return stages
-
-    def slider_at(self, pixel: Vector) -> Place | None:
-        """The slider at a pixel, of whichever model that the scene shows."""
-        models = (view for shown, view in self.scenes.active.stages(self) if isinstance(shown, Model))
-        return next(filter(None, (view.slider_at(pixel) for view in models)), None)
+        card = self.course.view if self.course is not None else None
+        return stages + [(self._blank, view) for view in (self.footer, card) if view is not None]
 
     @property
     def pointer(self) -> Vector:
@@ -591,7 +540,7 @@ class Context:
         if self.gesture is None and self.document.exaggeration.review(still=still) and still:
             self.view.follow(self.model)
 
-    def make_room(self) -> None:
+    def _make_room(self) -> None:
         """Fit the model beside panels that are large enough to cover it.
 
         Called after actions, never because of time or frames, so that a recording is replayed in the same picture.

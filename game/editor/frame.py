@@ -72,7 +72,7 @@ class Actions(System):
         """Let the view follow, perform the actions of the frame in their order, then let the scene change."""
         session = frame.session
         session.follow()
-        for key, pixel in frame.pressed if not session.performing else ():
+        for key, pixel in frame.pressed if session.footer is None else ():
             if not key.startswith(TEXT):
                 self._keyed = session.scene
             elif self._keyed != session.scene:  # the key that led here; it is not meant for a box

@@ -13,7 +13,6 @@ from pinjoint.components.language import begun, decimals, joined, marked, tr
 from pinjoint.components.load import Load, factor_at
 from pinjoint.components.model import Model
 from pinjoint.components.numeric_range import incomputable
-from pinjoint.components.particle import Particle
 from pinjoint.components.rod import Rod
 from pinjoint.components.round_numbers import round_up
 from pinjoint.components.settings import Settings
@@ -206,30 +205,6 @@ def _around(model: Model, field: Field[Any], value: float, aims: tuple[Aim, ...]
         return Slider(aims, 0.0, math.copysign(round_up(2.0 * abs(value)), value))
     reach = round_up(usual(model, "force")) if field.name == "force" else NOTHING.get(field.unit, 1.0)
     return Slider(aims, -reach, reach)
-
-
-def add_usual_slider(context: Context) -> None:
-    """A slider for what is moved most of the selected elements: their load, their stiffness. Raises Refusal."""
-    chosen = context.selected
-    for kind in (Load, Particle, Rod):
-        elements = [handle for handle in chosen if isinstance(handle, kind)]
-        if elements:
-            add_slider(context, *_usual(context.model, elements))
-            return
-    raise Refusal("Select a particle or a rod first; then this makes a slider for its load or its stiffness.")
-
-
-def _usual(model: Model, elements: Sequence[Handle]) -> tuple[Sequence[Handle], str, str]:
-    """Elements, and their Field and axis that people move most."""
-    first = elements[0]
-    if isinstance(first, Rod) and not any(first.distributed_force):
-        return elements, "bending_stiffness" if first.bending_stiffness else "stiffness", ""
-    if isinstance(first, Particle) and not any(first.force):
-        loads = [load for load in model.loads if load.on == first.row]
-        elements, first = (loads[:1], loads[0]) if loads else (elements, first)
-    field = "distributed_force" if isinstance(first, Rod) else "force"
-    x, y = getattr(first, field)
-    return elements, field, "x" if abs(x) > abs(y) else "y"
 
 
 def remove_slider(context: Context, key: int) -> None:

@@ -7,20 +7,23 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import NDArray
 
+from pinjoint.components.field import Vector
 from pinjoint.components.language import begun, english, joined, listed, marked, plural, tr
 from pinjoint.components.model import Model
 from pinjoint.components.tags import Hovered
-from pinjoint.components.view import MARGIN, Preview, Readout, Status, drawn_places, drawn_positions
+from pinjoint.components.view import BETWEEN, MARGIN, Preview, Readout, Status, drawn_places, drawn_positions
 from pinjoint.editor.context import Context, Waiting
-from pinjoint.editor.gestures.drawing import end_pointed_at, hint_of_tool
+from pinjoint.editor.gestures.drawing import DrawRod
 from pinjoint.editor.readouts import own_readouts
 from pinjoint.systems.base import StopReason
 from pinjoint.systems.edit import Refusal
+from pinjoint.systems.edit.picking import pick_end, pick_particle, ring_of
+from pinjoint.systems.edit.rods import is_rigid
 from pinjoint.systems.forms.results import told
 from pinjoint.systems.input.actions import ACTIONS, LIVE
-from pinjoint.systems.render.help import help_pages
-from pinjoint.systems.render.overlays import BAR
 from pinjoint.systems.render.theme import load_theme
+from pinjoint.systems.render.ui.help import help_pages
+from pinjoint.systems.render.ui.overlays import BAR
 
 COMPILING = marked("Compiling the program for this model, once: about {seconds:.0f} s left.")
 STILL = ("pause", "properties")  # scenes of the model in which time stands still
@@ -56,7 +59,7 @@ def show(context: Context, elapsed: float) -> None:
     view.swing = context.document.shapes.swing(elapsed) if view.shape is not None else 1.0
     _show_readouts(context)
     _point_out(context)
-    drawing = tr(context.gesture.hint) if context.gesture is not None else hint_of_tool(context)
+    drawing = tr(context.gesture.hint) if context.gesture is not None else _hint_of_tool(context)
     drawing = drawing if context.scene in LIVE else ""
     view.status = Status(
         time=context.time,
@@ -137,7 +140,7 @@ def follows(context: Context) -> bool:
     Scripts and recordings fit the view by lines of their own. What goes too far is not followed: nothing would be seen.
     """
     view, model = context.view, context.model
-    by_itself = context.window is not None and context.busy and not context.performing
+    by_itself = context.window is not None and context.busy and context.footer is None
     busy = context.gesture is not None or view.menu is not None or view.tool or view.help
     if not by_itself or busy or not view.fitted or not _gone(context):
         return False
@@ -189,11 +192,37 @@ def _flashes(context: Context) -> NDArray[np.float64]:
 def _preview(context: Context) -> Preview | None:
     try:
         if context.gesture is None:
-            return end_pointed_at(context, context.pointer) if context.scene in LIVE else None
+            return _end_pointed_at(context, context.pointer) if context.scene in LIVE else None
         return context.gesture.preview(context, context.pointer)
     except Refusal as error:
         context.gesture, context.notice = None, str(error)
         return None
+
+
+def _hint_of_tool(context: Context) -> str:
+    """The status line while clicks use the tool in hand."""
+    tool = context.view.tool
+    if tool == DrawRod.tool:
+        steps = tr("rods: click from place to place, or drag"), DrawRod.kind(context)
+        return joined([*steps, tr("double click ends the chain     Esc done")], BETWEEN)
+    return tr(ACTIONS[tool].hint) if tool else ""
+
+
+def _end_pointed_at(context: Context, pixel: Vector) -> Preview | None:
+    """With the tool for hinges in hand: what a click would make of the end under the pointer."""
+    model, view = context.model, context.view
+    if view.tool != "hinge" or pick_particle(model, view, pixel) is not None:
+        return None
+    end = pick_end(model, view, pixel)
+    if end is None:
+        return None
+    at, rod, particle = ring_of(model, view, end), end.rod.name, end.rod.ends[end.number].name
+    label = (
+        tr("hinge {rod} at {particle}", rod=rod, particle=particle)
+        if is_rigid(end.rod, end.number)
+        else tr("make {rod} rigid at {particle}", rod=rod, particle=particle)
+    )
+    return Preview("hinge", at, at, label)
 
 
 def _state_word(context: Context) -> str:

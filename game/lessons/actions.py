@@ -43,7 +43,7 @@ def _next(session: Session, pixel: Vector) -> None:
             return
         following = after(course.lesson.script)
         if following is not None:
-            session.begin_lesson(following)
+            session.lesson = following
             return
     except ScriptError as error:
         session.notice = str(error)

@@ -10,7 +10,7 @@ from pinjoint.components.card import Card
 from pinjoint.components.language import decimals, joined, marked, tr
 from pinjoint.components.mistake import WrongValue
 from pinjoint.components.toolbar import Tool
-from pinjoint.components.view import Shape
+from pinjoint.components.view import Shape, View
 from pinjoint.documents.document import document
 from pinjoint.documents.models import ModelError, load
 from pinjoint.documents.open_documents import ModelFile
@@ -31,11 +31,13 @@ FINISHED = marked("This lesson is done.")
 class Course:
     """A lesson that a person is in.
 
-    at: the number of the task, from 0. accepted: it is done. answer: the choice that was made, or what was typed.
+    view: of its card, in the part of the window that it takes. at: the number of the task, from 0. accepted: it is done.
+    answer: the choice that was made, or what was typed.
     """
 
     def __init__(self, session: Any, lesson: Lesson) -> None:
         self._session, self.lesson = session, lesson
+        self.view = View()
         self.at = 0
         self.accepted = False
         self.choice: str | None = None
@@ -124,7 +126,7 @@ class Course:
             session.scenes.request("pause")
             session.scenes.apply(session)
         own = not session.document.practice and session.model.particles.count > 0
-        session.adopt(model, ModelFile(None, name), keep=own)
+        session.open_here(model, ModelFile(None, name), keep=own)
         self._opened = name
         session.document.practice = True
         session.notice = ""
@@ -262,7 +264,7 @@ class Course:
     def look(self) -> None:
         """Accept a state as soon as it is reached and nobody is in the middle of something, or say anew what is wrong."""
         session, task = self._session, self.task
-        if session.gesture is not None or session.performing or (session.busy and task.after):
+        if session.gesture is not None or session.footer is not None or (session.busy and task.after):
             return
         seen = self._looks()
         if seen == self._seen or (self.accepted and not task.score):
@@ -290,7 +292,12 @@ class Course:
 
     # --- the card ----------------------------------------------------------------------------------
 
-    def card(self) -> Card:
+    def show_card(self) -> None:
+        """Bring the card up to date."""
+        self.look()
+        self.view.card, self.view.pointer = self._card(), self._session.view.pointer
+
+    def _card(self) -> Card:
         """The task as it stands."""
         task, count = self.task, len(self.lesson.tasks)
         shown = [str(entry["say"]) for _, entry in task.setup if "say" in entry]

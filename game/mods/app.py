@@ -24,7 +24,7 @@ from pinjoint.mods.mod import INCLUDED, Mod, ModError
 from pinjoint.systems.base import Integrator, System
 from pinjoint.systems.input.actions import ACTIONS, LIVE, Action, Binding, Perform
 from pinjoint.systems.physics.integrators import INTEGRATORS
-from pinjoint.systems.render.sheet import Layer
+from pinjoint.systems.render.model.sheet import Layer
 from pinjoint.systems.render.symbols import Part, check_icon
 
 if TYPE_CHECKING:  # a command needs no editor
@@ -98,9 +98,9 @@ class App:
         name = f"{self.name}.{kind.noun}"
 
         def drawing() -> Any:
-            from pinjoint.editor.gestures.drawing import drawing_of
+            from pinjoint.editor.gestures.drawing import DrawElement
 
-            return drawing_of(kind, name, key)
+            return DrawElement.of(kind, name, key)
 
         hint = tr(
             "{table}: click two points, or drag from one to the other     {key} or Esc done",

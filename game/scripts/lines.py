@@ -139,6 +139,13 @@ def perform(session: Session, entry: Mapping[str, Any]) -> Iterator[tuple[str, A
             _VERBS[verb](session, value)
 
 
+def _answer(session: Session, value: Any) -> None:
+    """Answer the task of a lesson: names of elements to select, a number, or the text of a choice."""
+    if session.course is None:
+        raise WrongValue("There is no lesson to answer; begin one from the start page.")
+    session.course.answer(value)
+
+
 _VERBS: dict[str, Callable[[Session, Any], Any]] = {
     "press": lambda session, key: session.press(key),
     "click": lambda session, value: session.click(*value),
@@ -151,6 +158,6 @@ _VERBS: dict[str, Callable[[Session, Any], Any]] = {
     "run": lambda session, time: session.run(until="rest") if time == "rest" else session.run(time=time),
     "steps": lambda session, count: session.run(steps=count),
     "say": lambda session, text: None,
-    "answer": lambda session, value: session.answer(value),
+    "answer": _answer,
     "resize": lambda session, size: session.resize(int(size[0]), int(size[1]), float(size[2])),
 }

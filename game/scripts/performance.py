@@ -17,6 +17,7 @@ from pinjoint.scripts.lines import Failure, play_line
 from pinjoint.scripts.script import Script
 from pinjoint.session import Session
 from pinjoint.systems.base import REVIEW_INTERVAL
+from pinjoint.systems.physics.pace import natural_pace
 
 FOOTER = 112.0  # points, height of the strip for the words of a script below the picture
 LARGER = 1.25  # factor of the type in that strip
@@ -79,7 +80,7 @@ class Performance:
 
     def _perform_all(self) -> list[Failure]:
         session, failures = self._screen.session, list[Failure]()
-        session.performing, session.footer = True, View()
+        session.footer = View()
         grown = min(round(FOOTER), self._screen.room_below)
         self._grow(grown)
         self._say(tr(self._script.title))
@@ -92,7 +93,7 @@ class Performance:
                 failures += self._perform(number, entry)
                 self._watch(entry)
         finally:
-            session.performing, session.footer = False, None
+            session.footer = None
             self._grow(-grown)
         if not self._ended and session.course is None:  # where a task was shown, its card says what to do next
             session.notice = tr(DONE)
@@ -185,7 +186,7 @@ class Performance:
         """Show the state of a run; returns its steps until the next picture."""
         simulation = self._screen.session.simulation
         if self._running_since is None:
-            self._running_since, self._natural = time.monotonic(), self._screen.session.pace
+            self._running_since, self._natural = time.monotonic(), natural_pace(simulation.model)
         clock = simulation.model.clock
         now, end = clock.time, clock.time + clock.step_size
         simulation.before_steps.remove(self._watch_time)  # the run stands still during the picture

@@ -85,14 +85,15 @@ class Recorder:
     def __init__(self, session: Session, file: TextIO, model: Any) -> None:
         self._file = file
         self._session = session
-        session.on_press, session.on_resize = self._pressed, self._resized
+        session.recorder = self
         spoken = {"language": language()} if language() != ENGLISH else {}
         self._write({**HEADER, "model": model, "mods": _loaded_mods(), **spoken})
-        self._resized()
+        self.resize()
         session.act("fit")  # what is fitted as a model is opened may differ
         self._write({"action": "fit"})
 
-    def _resized(self) -> None:
+    def resize(self) -> None:
+        """Write down the size of the window."""
         size = [*self._session.extent, self._session.view.pixel_ratio]
         self._write({**self._now, "resize": size})
 
@@ -102,7 +103,8 @@ class Recorder:
         steps, within = self._session.simulation.moment
         return {"at": steps} if within is None else {"at": steps, "within": within}
 
-    def _pressed(self, key: str, pixel: Vector | None) -> None:
+    def press(self, key: str, pixel: Vector | None) -> None:
+        """Write down that a key or button was pressed at a pixel, or a text typed."""
         entry: dict[str, Any] = {**self._now, "input": key}
         if pixel is not None:
             entry["pixel"] = list(pixel)
@@ -120,7 +122,7 @@ class Recorder:
         except OSError as error:
             with suppress(OSError):
                 self._file.close()  # else its end would try again
-            self._session.on_press = self._session.on_resize = None
+            self._session.recorder = None
             said = tr(
                 "The recording ends here: {file} cannot be written: {reason}.",
                 file=self._file.name,

@@ -76,7 +76,7 @@ class PygameInput(System):
         """Collect the events since the last frame; sleep a little if nothing can happen without one."""
         session, events = frame.session, pygame.event.get()
         waiting = session.awaited is not None
-        if not events and not session.performing and (waiting or not session.busy):
+        if not events and session.footer is None and (waiting or not session.busy):
             events = _awaited(WAITING_LOOKS if waiting else IDLE_LOOKS)
         for event in events:
             self._handle(event, frame)

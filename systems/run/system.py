@@ -20,6 +20,17 @@ class Time(System):
     writes = ("state",)
 
     def process(self, frame: Any) -> None:
-        """Take the steps of the frame. While a script is shown in a window, only its own lines let time pass."""
-        if not frame.session.performing:
-            frame.session.advance(frame.elapsed)
+        """Take the steps of the frame, by the plan of its scene as the model is in each of them.
+
+        While a script is shown in a window, only its own lines let time pass.
+        """
+        session, document = frame.session, frame.session.document
+        if session.footer is not None:
+            return
+        document.simulation.act_in(frame.scene)
+        document.note_beginning()
+        if document.simulation.halted or not session.has_program(document.simulation):
+            return
+        with document.timeline.recording():
+            document.live.frame(frame.elapsed)
+        document.chronicle.look()

@@ -201,8 +201,8 @@ def _add_a_rod(session: Any) -> None:
 
 def _pull(session: Any) -> None:
     x, y = session.particles[1].position
-    session.grab(x, y)
-    session.drag_to(x + 0.1, y)
+    session.press("drag", session.point(x, y))
+    session.press("drag to", session.point(x + 0.1, y))
 
 
 _ACTS: dict[str, Callable[[Any], Callable[[], object]]] = {

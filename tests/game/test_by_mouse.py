@@ -15,8 +15,8 @@ from pinjoint.editor.scenes.properties import Properties
 from pinjoint.editor.toolbar import of_mods
 from pinjoint.scripts.playing import Recorder, play, session_of
 from pinjoint.scripts.script import Script
-from pinjoint.systems.render.menu import pointed_at
 from pinjoint.systems.render.theme import load_theme
+from pinjoint.systems.render.ui.menu import pointed_at
 from tests.reference import bits
 from tests.reference.hits import hits_in, push
 
@@ -409,16 +409,16 @@ def test_files_that_are_dropped_are_opened_and_wrong_ones_explained(session: Ses
         '{"format": "pinjoint model", "version": 1, "rodz": []}', encoding="utf-8"
     )
     session.press("s")
-    session.press("files " + str(tmp_path / "photo.png"))
+    session.press(f"files {tmp_path / 'photo.png'}")
     assert session.scene == "save"
     assert session.message == (
         "'photo.png' is not a model: Pinjoint opens model files (.json) and recorded sessions (.jsonl)."
     )
-    session.open_files([tmp_path / "broken.json", tmp_path, tmp_path / "gone.json"])
+    session.press(f"files {tmp_path / 'broken.json'}\n{tmp_path}\n{tmp_path / 'gone.json'}")
     assert "rodz" in session.message
     assert "is a folder" in session.message
     assert "gone.json" in session.message
-    session.open_files([tmp_path / "isostatic.json", tmp_path / "photo.png", tmp_path / "tower.json"])
+    session.press(f"files {tmp_path}/isostatic.json\n{tmp_path}/photo.png\n{tmp_path}/tower.json")
     assert (session.scene, session.document.file.name) == ("pause", "tower")
     assert session.notice.endswith("Opened isostatic and tower. Ctrl+Z goes back.")
     assert "photo.png" in session.notice
@@ -434,7 +434,7 @@ def test_a_recorded_session_that_is_dropped_is_played(session: Session, tmp_path
         '{"format": "pinjoint session", "version": 1, "model": "tower", "title": "T"}\n', encoding="utf-8"
     )
     session.press("space")
-    session.open_files([path])
+    session.press(f"files {path}")
     assert session.lesson is not None
     assert session.lesson.title == "T"
     assert (session.scene, session.document.file.name) == ("pause", "tower")

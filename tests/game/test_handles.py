@@ -80,7 +80,7 @@ def test_every_cross_and_knob_that_is_drawn_works(name: str, window: Window) -> 
         session = (EVERYWHERE | MORE)[name](window)
         if session.view.menu is not None or session.view.help:
             session.press("escape")  # which take clicks first
-        session.performing = False  # while a lesson is played, clicks are its own
+        session.footer = None  # while a lesson is played, clicks are its own
         done: set[str] = set()
         while left := [(what, at) for what, at in handles(session) if what not in done]:
             what, at = left[0]

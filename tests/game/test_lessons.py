@@ -34,9 +34,16 @@ def session() -> Session:
 
 def begun(session: Session, name: str, task: int = 1) -> Course:
     """A lesson, at one of its tasks."""
-    session.begin_lesson(Script(name))
+    course = taken_up(session, name)
+    course.begin(task - 1)
+    return course
+
+
+def taken_up(session: Session, name: str) -> Course:
+    """A lesson, where the person left it."""
+    session.lesson = Script(name)
+    session.take_up_lesson()
     assert session.course is not None
-    session.course.begin(task - 1)
     return session.course
 
 
@@ -178,7 +185,6 @@ def test_choices_are_made_by_key_mouse_and_script(session: Session) -> None:
     session.press("2")
     assert (course.accepted, course.mood) == (False, "wrong")
     session.update_view()
-    assert session.beside is not None
     push(session, "answer 1")
     assert course.accepted
 
@@ -293,7 +299,7 @@ def test_a_task_begins_undeformed_and_without_a_mode(session: Session) -> None:
     course = begun(session, "04_supports_and_reactions", 1)
     session.press("e")
     session.press("b")
-    session.answer(30)
+    session.course.answer(30)
     session.press("f5")
     session.update_view()
     assert course.at == 1
@@ -328,16 +334,12 @@ def test_the_lightest_bridge_keeps_its_best_score(session: Session) -> None:
 
 def test_progress_survives_a_restart_and_a_damaged_file(session: Session) -> None:
     course = begun(session, "06_statically_indeterminate", 1)
-    session.answer(1)
+    session.course.answer(1)
     again = Session(Model())
-    again.begin_lesson(Script("06_statically_indeterminate"))
-    assert again.course is not None
-    assert again.course.at == 1
+    assert taken_up(again, "06_statically_indeterminate").at == 1
     progress.path().write_text('{"06_statically_indeterminate": {"tasks": "all"', encoding="utf-8")
-    third = Session(Model())
-    third.begin_lesson(Script("06_statically_indeterminate"))
-    assert third.course is not None
-    assert third.course.at == 0
+    third = taken_up(Session(Model()), "06_statically_indeterminate")
+    assert third.at == 0
     third.answer(1)
     assert progress.done("06_statically_indeterminate").tasks == {1}
     assert progress.path().with_name("lessons-unreadable.json").is_file()
@@ -354,7 +356,7 @@ def test_own_work_is_kept_and_that_of_a_lesson_asks_for_nothing() -> None:
     session = Session.open("isostatic")
     session.particles["B"].force = (1.0, 2.0)
     mine = session.model
-    session.begin_lesson(Script("03_stable_or_mechanism"))
+    taken_up(session, "03_stable_or_mechanism")
     session.press("f7")
     session.press("f5")
     session.press("l", session.point(0, 0))
@@ -473,12 +475,12 @@ def test_every_task_is_legible_in_windows_of_all_sizes(session: Session, name: s
             course.begin(task)
             session.press("f6")
         session.update_view()
-        assert session.beside is not None
-        main, card = session.view.camera.viewport, session.beside.camera.viewport
+        main, card = session.view.camera.viewport, course.view.camera.viewport
         assert main.width * main.height + card.width * card.height == size[0] * size[1]
-        shown = compose(session.blank, session.beside, load_theme("light"))
+        shown = compose(Model(), course.view, load_theme("light"))
         assert not list(problems([shown], Window(*size)))
-        for button in course.card().buttons:
+        assert course.view.card is not None
+        for button in course.view.card.buttons:
             [place] = hits_for(session, button.action)
             assert card.left <= place.left < place.right <= card.right, button
             assert card.top <= place.top < place.bottom <= card.bottom, button

@@ -136,8 +136,8 @@ def test_a_lesson_is_chosen_from_the_pictures() -> None:
 @pytest.mark.usefixtures("config")
 def test_after_a_task_was_shown_only_its_card_says_what_to_do(app: App) -> None:
     session = app.session
-    session.begin_lesson(Script("03_stable_or_mechanism"))
-    assert session.course is not None
+    session.lesson = Script("03_stable_or_mechanism")
+    session.take_up_lesson()
     session.course.begin(1)
     session.press("f7")
     script, session.lesson = session.lesson, None

@@ -29,7 +29,7 @@ from pinjoint.systems.program import compiler as programs
 from pinjoint.systems.program.compiler import Choice, Compile, GeneratedModule, forget_unused
 from pinjoint.systems.program.program import module_of
 from pinjoint.systems.program.writer import FEW
-from pinjoint.systems.render.raster import RASTER
+from pinjoint.systems.render.backends.raster import RASTER
 from tests.benchmarks.models import lattice, mesh, overlapping, touching
 
 RAW_LOAD = GeneratedModule.load_kept
@@ -205,7 +205,7 @@ def test_what_is_needed_comes_before_what_may_be(app: App, compiler: Compiler) -
 
 
 def test_free_particles_need_piles_once_something_pulls(app: App) -> None:
-    app.session.adopt(models.load("collision_i"))
+    app.session.open_here(models.load("collision_i"))
     assert _jobs_of(app.session.simulation) == [("fly",), ("open_horizon",)]
     app.session.environment.acceleration = (0.0, -9.81)
     assert _jobs_of(app.session.simulation) == [("fly",), ("open_horizon",), ("take_steps",)]

@@ -86,7 +86,7 @@ def test_keys_of_pause_lead_to_scenes_and_escape_leads_back(session: Session, ke
         session.press("escape")
     assert session.scene == "pause"
     assert bits.different(bits.columns(session.model), before) == []
-    assert not session.can_undo
+    assert not session.document.history.can_undo
 
 
 def test_time_passes_in_simulation_only(session: Session) -> None:

@@ -28,7 +28,7 @@ def test_a_whole_column_is_assigned_as_one_command(session: Session) -> None:
     session.undo()
     assert session.rods["AB"].damping == 100.0
     assert session.particles["B"].force == (120.0, -160.0)
-    assert not session.can_undo
+    assert not session.document.history.can_undo
 
 
 @pytest.mark.parametrize(
@@ -48,7 +48,7 @@ def test_a_column_that_cannot_be_assigned_says_why(
         setattr(session.particles, column, value)
     assert session.particles.names == ["A", "B", "C"]
     assert session.particles.name == "particles"
-    assert not session.can_undo
+    assert not session.document.history.can_undo
 
 
 @pytest.mark.parametrize(
@@ -71,7 +71,7 @@ def test_a_run_that_has_no_end_is_refused(session: Session, how: dict[str, Any])
     with pytest.raises(ValueError, match=r"how far|must be|only runs forward"):
         session.run(**how)
     assert session.time == 0.0
-    assert not session.can_undo
+    assert not session.document.history.can_undo
 
 
 def test_numbers_of_numpy_say_how_far_to_run(session: Session) -> None:

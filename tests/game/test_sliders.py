@@ -1,5 +1,6 @@
 """Sliders on the canvas: what they move, live and undoable, how they are made, removed, saved and refused."""
 
+from types import SimpleNamespace
 from typing import Any
 
 import pytest
@@ -111,7 +112,7 @@ def test_a_slider_moves_its_number_and_one_drag_is_one_edit() -> None:
     assert session.particles["B"].force == (240.0, -160.0)
     assert session.undo() == "B: load x"
     assert session.particles["B"].force == (120.0, -160.0)
-    assert not session.can_undo
+    assert not session.document.history.can_undo
     session.redo()
     assert session.particles["B"].force == (240.0, -160.0)
 
@@ -146,7 +147,7 @@ def test_a_drag_while_time_passes_acts_live_and_is_one_edit() -> None:
         session.undo()
     assert (session.particles["B"].force, session.time) == ((120.0, -160.0), time)
     assert session.particles["B"].displacement == before
-    while session.can_redo:
+    while session.document.history.can_redo:
         session.redo()
     assert session.particles["B"].force == (240.0, -160.0)
     assert session.time == late
@@ -229,7 +230,7 @@ def test_any_number_can_have_a_slider(table: str, field: str, axis: str, range_:
     offset = element.position[0] if field == "position" else 0.0
     assert (slider.first, slider.last) == pytest.approx([end * start + offset for end in range_])
     slide(session, session.view.slider_places[-1].control.title, 0.75)
-    assert session.can_undo
+    assert session.document.history.can_undo
 
 
 def test_a_box_of_properties_makes_one_for_its_number() -> None:
@@ -322,7 +323,7 @@ def test_wrong_sliders_are_refused_by_their_path(sliders: Any, message: str) -> 
 def test_a_recording_replays_what_was_dragged() -> None:
     first, second = opened(FORCE), opened(FORCE)
     presses: list[Any] = []
-    first.on_press = lambda key, pixel: presses.append((key, pixel))
+    first.recorder = SimpleNamespace(press=lambda key, pixel: presses.append((key, pixel)))
     slide(first, "B: load x", 0.3, 0.9)
     slide(first, "displacements", 0.2)
     for key, pixel in presses:

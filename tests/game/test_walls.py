@@ -16,7 +16,7 @@ from pinjoint.documents.format import ModelError
 from pinjoint.systems.broad_phase import gaps
 from pinjoint.systems.render.marks import Strokes
 from pinjoint.systems.render.theme import load_theme
-from pinjoint.systems.render.thumbnails import thumbnail
+from pinjoint.systems.render.ui.thumbnails import thumbnail
 from tests.reference.hits import push
 from tests.reference.models import model
 
@@ -292,13 +292,13 @@ def test_a_hand_cannot_pull_a_ball_through_it() -> None:
     session = room(wall, particles=[{"name": "ball", "position": [0.5, 0.5]}], environment={})
     session.press("space")
     session.frame(FRAME)
-    session.grab(0.5, 0.5)
+    session.press("drag", session.point(0.5, 0.5))
     for k in range(40):
-        session.drag_to(0.5 + 0.05 * k, 0.5)
+        session.press("drag to", session.point(0.5 + 0.05 * k, 0.5))
         session.frame(FRAME)
     ball = session.particles["ball"]
     assert ball.position[0] + ball.displacement[0] == pytest.approx(0.95, abs=1e-6)
-    session.drop()
+    session.press("drop")
 
 
 def test_a_saved_run_goes_on_bit_for_bit() -> None:

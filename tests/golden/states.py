@@ -180,7 +180,7 @@ def _plots(window: Window) -> Session:
 def _lesson(window: Window) -> Session:
     """A lesson is played: its words stand below."""
     session = opened(window)
-    session.performing, session.footer = True, View()
+    session.footer = View()
     low = round(min(112.0 * window.ratio, window.height - 1))
     session.footer.page = Page((f"Now {SENTENCE} {SENTENCE}",))
     session.footer.status = Status(time=None, state="Lesson", hint="Space goes on     Esc ends it")
@@ -206,16 +206,16 @@ def _drawn(key: str, *points: tuple[float, float], source: object = "hyperstatic
 
 def _pulled(window: Window) -> Session:
     session = pressed(window, "space")
-    session.grab(1.0, 1.0)
-    session.drag_to(1.6, 1.3)
+    session.press("drag", session.point(1.0, 1.0))
+    session.press("drag to", session.point(1.6, 1.3))
     session.frame(1.0 / 60.0)
     return session
 
 
 def _boxed(window: Window) -> Session:
     session = opened(window, "warren_bridge")
-    session.grab(-0.5, -0.5)
-    session.drag_to(3.0, 2.0)
+    session.press("drag", session.point(-0.5, -0.5))
+    session.press("drag to", session.point(3.0, 2.0))
     return session
 
 

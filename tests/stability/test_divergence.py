@@ -431,10 +431,10 @@ def test_numbers_that_are_too_large_are_said_in_the_window_only(properties: dict
     for key in ("j", "i", "space"):
         session.press(key)
     session.frame(0.01)
-    session.grab(0.0, 0.0)
-    session.drag_to(0.5, 0.5)
+    session.press("drag", session.point(0.0, 0.0))
+    session.press("drag to", session.point(0.5, 0.5))
     session.frame(0.01)
-    session.drop()
+    session.press("drop")
     session.frame(0.01)
     assert np.isfinite(session.particles.velocity).all()
     assert "too large" in session.view.status.problem

@@ -125,7 +125,7 @@ def test_a_break_is_taken_back_by_undo_and_comes_again_at_the_same_time() -> Non
     session = Session.open(pulled(), [breaking])
     session.run(time=0.1)
     broken = bits.state(session.model)
-    while session.can_undo:
+    while session.document.history.can_undo:
         session.undo()
     assert (session.rods.count, session.time) == (1, 0.0)
     session.run(time=0.1)
@@ -215,10 +215,10 @@ def test_what_happened_is_listed_without_what_was_taken_back() -> None:
     session = Session.open(pulled(), [Breaking()])
     session.run(time=0.1)
     (event,) = session.simulation.events
-    while session.can_undo:
+    while session.document.history.can_undo:
         session.undo()
     assert session.simulation.events == []
-    while session.can_redo:
+    while session.document.history.can_redo:
         session.redo()
     assert session.simulation.events == [event]
     session.restart()

@@ -79,6 +79,15 @@ def _open(context: Context, pixel: Vector) -> None:
         ACTIONS["properties"].perform(context, pixel)
 
 
+def _cancel(context: Context) -> bool:
+    """Take back what is being drawn or dragged, else put the tool away; False if there is neither."""
+    gesture, context.gesture = context.gesture, None
+    tool, context.view.tool = context.view.tool, context.view.tool if gesture is not None else ""
+    if gesture is not None:
+        gesture.cancel(context)
+    return bool(gesture or tool)
+
+
 @action("open menu", "shift+f10", where=IN_PICTURES)
 @action("open menu", "menu", "open the menu at the pointer", IN_PICTURES)
 @action(
@@ -86,7 +95,7 @@ def _open(context: Context, pixel: Vector) -> None:
 )
 def _open_menu(context: Context, pixel: Vector) -> None:
     """The menu of what is under the pointer, which is selected; a drawing, or a tool in hand, is ended instead."""
-    if context.cancel_gesture():
+    if _cancel(context):
         return
     if context.scene in LIVE:
         model, view = context.model, context.view
@@ -159,7 +168,7 @@ def _draw(context: Context, tool: str, pixel: Vector) -> None:
 @action("escape", "escape", "put the tool away, or pause", (SIMULATION,), while_drawing=True)
 def _escape(context: Context, pixel: Vector) -> None:
     """Cancel the drawing, else put the tool away, else hide a shape, else end the run or deselect."""
-    if context.cancel_gesture():
+    if _cancel(context):
         return
     if context.document.shapes.shown is not None:
         context.document.shapes.hide()
@@ -248,13 +257,19 @@ for _held, _name, _title in (
             action(f"{_name} {_way}", _held + _way, _title, (PAUSE,), repeats=True)(_act)
 
 
-@action("undo", "ctrl+z", "undo", repeats=True, enabled=attrgetter("can_undo"))
+def _can_go(by: int, context: Context) -> bool:
+    """True if there is something to take back (-1), or to repeat (1)."""
+    history = context.document.history
+    return (history.can_undo if by < 0 else history.can_redo) or context.documents.can_move(by)
+
+
+@action("undo", "ctrl+z", "undo", repeats=True, enabled=partial(_can_go, -1))
 def _undo(context: Context, pixel: Vector) -> None:
     title = context.undo()
     context.notice = tr("Undone: {title}", title=tr(title)) if title else tr("There is nothing to undo.")
 
 
-@action("redo", ("ctrl+y", "ctrl+shift+z"), "redo", repeats=True, enabled=attrgetter("can_redo"))
+@action("redo", ("ctrl+y", "ctrl+shift+z"), "redo", repeats=True, enabled=partial(_can_go, 1))
 def _redo(context: Context, pixel: Vector) -> None:
     title = context.redo()
     context.notice = tr("Redone: {title}", title=tr(title)) if title else tr("There is nothing to redo.")

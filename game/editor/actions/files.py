@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import replace
 
 from pinjoint.components.field import Vector
+from pinjoint.components.model import Model
 from pinjoint.documents.models import ModelError
 from pinjoint.documents.open_documents import stamp_of
 from pinjoint.editor.context import Context
@@ -41,4 +42,4 @@ def _save_again(context: Context, pixel: Vector) -> None:
 
 action("load", "d", "open a model", (PAUSE,))(lambda context, pixel: context.scenes.request_from_pause("load"))
 action("load", "ctrl+o", "open a model")(ACTIONS["load"].perform)
-action("new", "ctrl+n", "start a new model")(lambda context, pixel: context.open_here(None))
+action("new", "ctrl+n", "start a new model")(lambda context, pixel: context.open_here(Model()))

@@ -2,21 +2,25 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from operator import attrgetter
 
 from pinjoint.components.bent import AXIAL, QUANTITIES, is_frame
 from pinjoint.components.field import Vector
+from pinjoint.components.handle import Handle
 from pinjoint.components.language import begun, marked, tr
+from pinjoint.components.load import Load
+from pinjoint.components.model import Model
 from pinjoint.components.particle import Particle
 from pinjoint.components.rod import Rod, has_strength
 from pinjoint.components.tags import DiagramShown
 from pinjoint.documents.shapes import NoShape
 from pinjoint.editor.actions.view import toggle
 from pinjoint.editor.context import Context
-from pinjoint.editor.sliders import add_usual_slider
+from pinjoint.editor.sliders import add_slider
 from pinjoint.systems.edit import Refusal
 from pinjoint.systems.input.actions import PAUSE, actions_of
-from pinjoint.systems.render.diagrams import NAMES
+from pinjoint.systems.render.model.diagrams import NAMES
 
 action = actions_of("Results", while_drawing=True)
 
@@ -127,9 +131,29 @@ def _next_shape(context: Context, pixel: Vector) -> None:
     context.view.shape = context.document.shapes.shown
 
 
-action("new slider", "ctrl+l", "add a slider for selected load or stiffness", while_drawing=False)(
-    lambda context, pixel: add_usual_slider(context)
-)
+@action("new slider", "ctrl+l", "add a slider for selected load or stiffness", while_drawing=False)
+def _new_slider(context: Context, pixel: Vector) -> None:
+    """A slider for what is moved most of the selected elements: their load, their stiffness."""
+    chosen = context.selected
+    for kind in (Load, Particle, Rod):
+        elements = [handle for handle in chosen if isinstance(handle, kind)]
+        if elements:
+            add_slider(context, *_usual(context.model, elements))
+            return
+    raise Refusal("Select a particle or a rod first; then this makes a slider for its load or its stiffness.")
+
+
+def _usual(model: Model, elements: Sequence[Handle]) -> tuple[Sequence[Handle], str, str]:
+    """Elements, and their Field and axis that people move most."""
+    first = elements[0]
+    if isinstance(first, Rod) and not any(first.distributed_force):
+        return elements, "bending_stiffness" if first.bending_stiffness else "stiffness", ""
+    if isinstance(first, Particle) and not any(first.force):
+        loads = [load for load in model.loads if load.on == first.row]
+        elements, first = (loads[:1], loads[0]) if loads else (elements, first)
+    field = "distributed_force" if isinstance(first, Rod) else "force"
+    x, y = getattr(first, field)
+    return elements, field, "x" if abs(x) > abs(y) else "y"
 
 
 @action(

@@ -6,6 +6,7 @@ from functools import partial
 
 from pinjoint.components.field import Vector
 from pinjoint.components.language import marked, tr
+from pinjoint.components.model import Model
 from pinjoint.components.slider import Place
 from pinjoint.editor.context import Context
 from pinjoint.editor.gestures.moving import Placing
@@ -38,9 +39,15 @@ class Slide(Placing):
         return ""
 
 
+def _slider_at(context: Context, pixel: Vector) -> Place | None:
+    """The slider at a pixel, of whichever model that the scene shows."""
+    models = (view for shown, view in context.scenes.active.stages(context) if isinstance(shown, Model))
+    return next(filter(None, (view.slider_at(pixel) for view in models)), None)
+
+
 @action("drag slider")
 def _drag_slider(context: Context, pixel: Vector) -> None:
-    place = context.slider_at(pixel)
+    place = _slider_at(context, pixel)
     if place is not None and not place.button.contains(pixel):
         context.gesture = Slide(context, place, pixel)
 
@@ -48,7 +55,7 @@ def _drag_slider(context: Context, pixel: Vector) -> None:
 @action("click slider")
 def _click_slider(context: Context, pixel: Vector) -> None:
     """Take the knob to a pixel on its line; on the button, remove the slider, or let the scale be automatic."""
-    place = context.slider_at(pixel)
+    place = _slider_at(context, pixel)
     if place is None:
         return
     if not place.button.contains(pixel):
@@ -63,7 +70,7 @@ def _click_slider(context: Context, pixel: Vector) -> None:
 @action("double click slider")
 def _double_click_slider(context: Context, pixel: Vector) -> None:
     """The second click of two lets the displacement scale be automatic; of others it is another click."""
-    place = context.slider_at(pixel)
+    place = _slider_at(context, pixel)
     if place is not None and place.control.key == SCALE and not place.button.contains(pixel):
         scale_to(context, None)
     else:
@@ -78,7 +85,7 @@ def automatic(context: Context) -> None:
 
 
 def _step(by: float, context: Context, pixel: Vector) -> None:
-    place = context.slider_at(pixel)
+    place = _slider_at(context, pixel)
     if place is not None and place.control.share is not None:
         value = slider_of(context, place.control.key).value_at(place.control.share + by)
         with context.document.history.as_one(("slider", place.control.key)):

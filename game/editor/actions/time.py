@@ -14,6 +14,7 @@ from pinjoint.editor.context import Context
 from pinjoint.systems.collision.impacts import TooManyImpacts
 from pinjoint.systems.edit import Refusal
 from pinjoint.systems.input.actions import PAUSE, actions_of
+from pinjoint.systems.physics.pace import natural_pace
 
 action = actions_of("Time")
 
@@ -44,7 +45,7 @@ def _arrow(way: float, far: bool, context: Context, pixel: Vector) -> None:
         elements = model.particles.count + model.rods.count + 1
         steps = max(MOST_WORK // elements, 1)
         if elements <= MANY:
-            steps = min(max(round(FAR * context.pace / size), 1), steps)
+            steps = min(max(round(FAR * natural_pace(model) / size), 1), steps)
     _step(context, round(way) * steps)
 
 

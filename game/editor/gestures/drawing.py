@@ -20,12 +20,11 @@ from pinjoint.systems.edit.arrows import (
     arrow_value,
     usual,
 )
-from pinjoint.systems.edit.picking import PARTICLE_REACH, pick_end, pick_particle, pick_rod, ring_of
+from pinjoint.systems.edit.picking import PARTICLE_REACH, pick_particle, pick_rod
 from pinjoint.systems.edit.placing import place, snapped, snapped_to_points
-from pinjoint.systems.edit.rods import check_ends, distance, is_rigid, join
+from pinjoint.systems.edit.rods import check_ends, distance, join
 from pinjoint.systems.edit.supports import SUPPORTS, Held, next_support, support, support_towards
 from pinjoint.systems.forms.properties import heading
-from pinjoint.systems.input.actions import ACTIONS
 
 CLAMPED_BEYOND = 60.0  # points from a particle to its ground, which then holds its rotation, too
 SMALLEST_RIM = 5.0  # points, of a particle as it is drawn
@@ -106,7 +105,12 @@ class DrawRod(Drawing):
             else tr("rod: click where it ends (or L)")
         )
         done = tr("double click ends the chain     Esc done") if self.goes_on else tr("Esc cancel")
-        self.hint = joined([step, kind_of_rods(context), done], BETWEEN)
+        self.hint = joined([step, self.kind(context), done], BETWEEN)
+
+    @staticmethod
+    def kind(context: Context) -> str:
+        """What rods are drawn with now, and how to change that, for the status line."""
+        return tr("rigid ends (Ctrl+R: pinned)") if context.view.rigid else tr("pinned (Ctrl+R: rigid ends)")
 
     @classmethod
     def begin_anywhere(cls, context: Context, pixel: Vector) -> Drawing | None:
@@ -294,6 +298,11 @@ class DrawElement(Drawing):
     kind: ClassVar[type[Handle]]
     key: ClassVar[str]
 
+    @classmethod
+    def of(cls, kind: type[Handle], tool: str, key: str) -> type[DrawElement]:
+        """The drawing of elements of a kind, by a tool and its key."""
+        return type(f"Draw{kind.__name__}", (cls,), {"kind": kind, "tool": tool, "key": key})
+
     def __init__(self, context: Context, origin: Particle | Vector) -> None:
         super().__init__(context, origin)
         self.hint = tr(
@@ -330,11 +339,6 @@ class DrawElement(Drawing):
 def _length_and_angle(start: Vector, end: Vector) -> str:
     angle = math.degrees(math.atan2(end[1] - start[1], end[0] - start[0])) + 0.0
     return f"{written.length(math.dist(start, end), written.DIGITS)}, {written.given(angle, 4)}°"
-
-
-def drawing_of(kind: type[Handle], tool: str, key: str) -> type[DrawElement]:
-    """The drawing of elements of a kind with two points, by a tool and its key."""
-    return type(f"Draw{kind.__name__}", (DrawElement,), {"kind": kind, "tool": tool, "key": key})
 
 
 def drawn_at(context: Context, particle: Particle) -> Vector:
@@ -402,37 +406,6 @@ class DrawSupport(Drawing):
         return along if math.hypot(*along) > max(reach, self.particle.radius) else None
 
 
-def kind_of_rods(context: Context) -> str:
-    """What rods are drawn with now, and how to change that, for the status line."""
-    return tr("rigid ends (Ctrl+R: pinned)") if context.view.rigid else tr("pinned (Ctrl+R: rigid ends)")
-
-
-def hint_of_tool(context: Context) -> str:
-    """The status line while clicks use the tool in hand."""
-    tool = context.view.tool
-    if tool == DrawRod.tool:
-        steps = tr("rods: click from place to place, or drag"), kind_of_rods(context)
-        return joined([*steps, tr("double click ends the chain     Esc done")], BETWEEN)
-    return tr(ACTIONS[tool].hint) if tool else ""
-
-
 def tool_in_hand(context: Context) -> str:
     """The tool with which clicks draw, or ""."""
     return context.gesture.tool if isinstance(context.gesture, Drawing) else context.view.tool
-
-
-def end_pointed_at(context: Context, pixel: Vector) -> Preview | None:
-    """With the tool for hinges in hand: what a click would make of the end under the pointer."""
-    model, view = context.model, context.view
-    if view.tool != "hinge" or pick_particle(model, view, pixel) is not None:
-        return None
-    end = pick_end(model, view, pixel)
-    if end is None:
-        return None
-    at, rod, particle = ring_of(model, view, end), end.rod.name, end.rod.ends[end.number].name
-    label = (
-        tr("hinge {rod} at {particle}", rod=rod, particle=particle)
-        if is_rigid(end.rod, end.number)
-        else tr("make {rod} rigid at {particle}", rod=rod, particle=particle)
-    )
-    return Preview("hinge", at, at, label)

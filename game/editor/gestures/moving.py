@@ -18,6 +18,7 @@ from pinjoint.systems.edit import Refusal
 from pinjoint.systems.edit.picking import Grip, inside
 from pinjoint.systems.edit.placing import Movable, check_free, snapped, snapped_to_points
 from pinjoint.systems.edit.pull import hand_on
+from pinjoint.systems.physics.pace import natural_pace
 
 
 class Placing(Gesture):
@@ -114,12 +115,14 @@ class PullParticle(Gesture):
         self._particle = particle
         context.simulation.advance(0)
         context.document.assessment.disturb("pulled")
-        context.document.timeline.hold(hand_on(context.model, context.view, particle, lambda: context.pace))
+        context.document.timeline.hold(
+            hand_on(context.model, context.view, particle, lambda: natural_pace(context.model))
+        )
 
     def move(self, context: Context, pixel: Vector) -> None:
         x, y = context.view.camera.to_model(pixel)
         original, scale = self._particle.position, context.model.settings.displacement_scale
-        hand = context.pull.hand
+        hand = context.document.pull.hand
         if hand is not None:
             anchor = ((x - original[0]) / scale, (y - original[1]) / scale)
             context.document.timeline.hold(hand.at(anchor))
@@ -131,7 +134,7 @@ class PullParticle(Gesture):
         context.document.timeline.hold(None)
 
     def preview(self, context: Context, pixel: Vector) -> Preview | None:
-        hand = context.pull.hand
+        hand = context.document.pull.hand
         if hand is None or not self._particle.exists:
             return None
         scale = context.model.settings.displacement_scale
@@ -139,7 +142,7 @@ class PullParticle(Gesture):
             (self._particle.position[0] + scale * u[0], self._particle.position[1] + scale * u[1])
             for u in (self._particle.displacement, hand.anchor)
         )
-        return Preview("pull", start, end, written.force(math.hypot(*context.pull.force)))
+        return Preview("pull", start, end, written.force(math.hypot(*context.document.pull.force)))
 
 
 class BoxSelect(Gesture):

@@ -112,7 +112,7 @@ class Load(FileScene):
                 context.open_here(source.source)
                 context.lesson = source
             elif context.autosave is not None and source in context.autosave.left():
-                context.adopt(models.load(source), ModelFile(None, recovered_name(source)))
+                context.open_here(source, ModelFile(None, recovered_name(source)))
                 context.autosave.take_over(source, context.document)
             else:
                 context.open_here(source)

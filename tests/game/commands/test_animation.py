@@ -11,6 +11,7 @@ from PIL import Image
 from pinjoint.commands.command_line import main
 from pinjoint.commands.render import FRAME, HELD, LONGEST
 from pinjoint.session import Session
+from pinjoint.systems.physics.pace import natural_pace
 
 
 def opened(path: Path) -> Any:
@@ -32,7 +33,7 @@ def test_a_run_to_a_time_moves_from_the_first_picture_to_the_last(tmp_path: Path
     assert main(["render", "collision_iii", "--at", "0.5", "--output", str(path), "--size", "160x80"]) == 0
     pictures = frames(path)
     session = Session.open("collision_iii")
-    assert len(pictures) == 1 + round(0.5 / session.pace / FRAME)
+    assert len(pictures) == 1 + round(0.5 / natural_pace(session.model) / FRAME)
     assert {picture.shape for picture in pictures} == {(80, 160, 3)}
     changed = [np.abs(after - before).max() for before, after in pairwise(pictures)]
     assert min(changed) > 50

@@ -25,6 +25,7 @@ from pinjoint.systems.collision.kernels.impact import respond
 from pinjoint.systems.collision.system import persistent_contacts
 from pinjoint.systems.edit.pull import hand_on
 from pinjoint.systems.physics.integrators import INTEGRATORS
+from pinjoint.systems.physics.pace import natural_pace
 from pinjoint.systems.program.compiler import Compile, GeneratedModule, entries_to
 from pinjoint.systems.program.entries import Account, Control
 from pinjoint.systems.program.program import Program
@@ -416,7 +417,7 @@ def test_a_hand_presses_a_disc_onto_a_node() -> None:
     """From aside, then from above; it never passes, and all work is accounted for, in impacts and contact."""
     session = Session.open(truss({"position": [0.2, 1.5]}))
     session.simulation.advance(0)
-    hand = hand_on(session.model, session.view, session.particles["ball"], lambda: session.pace)
+    hand = hand_on(session.model, session.view, session.particles["ball"], lambda: natural_pace(session.model))
     for k in range(20):
         session.document.timeline.hold(hand.at((0.8, -0.8 if k < 10 else -1.1)))
         session.run(time=0.1)

@@ -15,10 +15,10 @@ def selected_names(session: Session) -> set[str]:
 
 
 def test_a_drag_on_empty_space_selects_in_a_box(triangle: Session) -> None:
-    triangle.grab(-0.4, 1.3)
-    triangle.drag_to(1.2, -0.2)
+    triangle.press("drag", triangle.point(-0.4, 1.3))
+    triangle.press("drag to", triangle.point(1.2, -0.2))
     assert preview(triangle).kind == "box"
-    triangle.drop()
+    triangle.press("drop")
     assert selected_names(triangle) == {"A", "B", "AB"}
     triangle.drag((1.8, 0.3), (2.3, -0.3), button="ctrl+click")
     assert selected_names(triangle) == {"A", "B", "C", "AB"}
@@ -77,10 +77,10 @@ def test_nothing_selected_nothing_deleted(triangle: Session) -> None:
 
 
 def test_dragging_a_particle_in_pause_moves_its_original_position_as_one_entry(triangle: Session) -> None:
-    triangle.grab(1.0, 1.0)
+    triangle.press("drag", triangle.point(1.0, 1.0))
     for step in range(1, 9):
-        triangle.drag_to(1.0 + 0.05 * step, 1.0)
-    triangle.drop()
+        triangle.press("drag to", triangle.point(1.0 + 0.05 * step, 1.0))
+    triangle.press("drop")
     b = triangle.particles["B"]
     assert b.position == (1.4, 1.0)
     assert triangle.rods["AB"].rest_length == pytest.approx(math.hypot(1.4, 1.0), rel=1e-15)
@@ -91,11 +91,11 @@ def test_dragging_a_particle_in_pause_moves_its_original_position_as_one_entry(t
 
 
 def test_esc_puts_back_what_is_being_dragged(triangle: Session) -> None:
-    triangle.grab(1.0, 1.0)
-    triangle.drag_to(1.5, 1.5)
+    triangle.press("drag", triangle.point(1.0, 1.0))
+    triangle.press("drag to", triangle.point(1.5, 1.5))
     assert triangle.particles["B"].position == (1.5, 1.5)
     triangle.press("escape")
-    triangle.drop()
+    triangle.press("drop")
     assert triangle.particles["B"].position == (1.0, 1.0)
     assert not triangle.document.history.can_undo
 
@@ -129,10 +129,10 @@ def test_a_dragged_particle_snaps_and_is_not_dropped_on_another(triangle: Sessio
     triangle.press("g")
     triangle.drag((1.0, 1.0), (1.46, 1.2))
     assert triangle.particles["B"].position == (1.5, 1.2)
-    triangle.grab(1.5, 1.2)
-    triangle.drag_to(2.0, 0.01)
+    triangle.press("drag", triangle.point(1.5, 1.2))
+    triangle.press("drag to", triangle.point(2.0, 0.01))
     assert "C is here already" in triangle.notice
-    triangle.drop()
+    triangle.press("drop")
     assert triangle.particles["B"].position == (1.5, 1.2)
 
 

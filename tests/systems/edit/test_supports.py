@@ -42,12 +42,12 @@ def test_a_support_is_dragged_to_its_ground(
     press_at(two, "c", 5.0, 5.0)
     first, second = two.particles
     x, y = first.position
-    two.grab(x, y)
-    two.drag_to(x + to[0], y + to[1])
+    two.press("drag", two.point(x, y))
+    two.press("drag to", two.point(x + to[0], y + to[1]))
     assert preview(two).kind == symbol
     assert "held in" in two.view.status.hint
     assert first.fixed == (False, False)
-    two.drop()
+    two.press("drop")
     assert first.fixed == fixed
     assert second.fixed == (False, False)
     assert two.view.tool == "support"
@@ -61,8 +61,8 @@ def test_a_support_dragged_back_or_hardly_is_the_next_kind_and_escape_leaves_it(
     x, y = first.position
     two.drag((x, y), (x + 0.02, y))
     assert first.fixed == (True, True)
-    two.grab(x, y)
-    two.drag_to(x, y - 0.5)
+    two.press("drag", two.point(x, y))
+    two.press("drag to", two.point(x, y - 0.5))
     two.press("escape")
     assert first.fixed == (True, True)
 

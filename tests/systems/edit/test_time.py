@@ -59,10 +59,10 @@ def test_stepping_back_after_a_pull_does_not_pull_again(
 ) -> None:
     triangle.press("space")
     run_frames(triangle, 20)
-    triangle.grab(1.0, 1.0)
-    triangle.drag_to(1.2, 1.0)
+    triangle.press("drag", triangle.point(1.0, 1.0))
+    triangle.press("drag to", triangle.point(1.2, 1.0))
     run_frames(triangle, 10)
-    triangle.drop()
+    triangle.press("drop")
     triangle.frame(FRAME)
     triangle.press("space")
     triangle.press("right")  # to the end of the step that is under way
@@ -71,7 +71,7 @@ def test_stepping_back_after_a_pull_does_not_pull_again(
         triangle.press("right")
         states.append(Snapshot.take(triangle.model))
     taken: list[Hand | None] = []
-    monkeypatch.setattr(triangle.pull, "take", taken.append)
+    monkeypatch.setattr(triangle.document.pull, "take", taken.append)
     for step in (3, 1, 0):
         while triangle.model.clock.steps > states[step].columns["clock.steps"][0]:
             triangle.press("left")
@@ -91,7 +91,7 @@ def test_going_back_stops_where_something_was_edited_and_undo_goes_on(triangle: 
 
 def test_moments_are_thinned_out_within_a_memory_bound(triangle: Session) -> None:
     timeline = Timeline(
-        triangle.simulation, triangle.pull, memory=20 * triangle.simulation.checkpoint().state.nbytes
+        triangle.simulation, triangle.document.pull, memory=20 * triangle.simulation.checkpoint().state.nbytes
     )
     with timeline.recording():
         triangle.simulation.advance(20_000)
@@ -111,12 +111,10 @@ def test_pace_goes_from_a_hundred_thousandth_to_fast(triangle: Session) -> None:
         triangle.press("-")
     assert triangle.document.live.clock.factor == pytest.approx(1e-5, rel=1e-12)
     triangle.press("space")
-    for _ in range(5):
-        triangle.frame(FRAME)
+    run_frames(triangle, 5)
     # Less than one step in five frames, yet time does not stand still: what is due is carried over.
     triangle.press("0")
-    for _ in range(5):
-        triangle.frame(FRAME)
+    run_frames(triangle, 5)
     assert triangle.model.clock.steps > 0
     for _ in range(40):
         triangle.press("+")

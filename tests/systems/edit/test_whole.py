@@ -18,8 +18,8 @@ def test_no_key_leads_to_two_actions() -> None:
 
 
 def test_another_action_ends_a_drag_but_a_look_does_not(triangle: Session) -> None:
-    triangle.grab(1.0, 1.0)
-    triangle.drag_to(1.2, 1.0)
+    triangle.press("drag", triangle.point(1.0, 1.0))
+    triangle.press("drag to", triangle.point(1.2, 1.0))
     triangle.press("tab")
     assert triangle.gesture is not None
     triangle.press("space")

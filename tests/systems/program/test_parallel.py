@@ -157,9 +157,10 @@ def test_a_hand_that_moves_is_followed(small_blocks: None) -> None:
     session = run(on=8, steps=10)
     row = session.particles["P3"].row
     session.simulation.before_change()
-    session.pull.take(Hand(session.particles["P3"], 1e3, 0.0, tuple(session.particles.displacement[row])))
+    held, pull = session.particles["P3"], session.document.pull
+    pull.take(Hand(held, 1e3, 0.0, tuple(session.particles.displacement[row])))
     session.simulation.advance(1)
-    session.pull.move(session.model, (5.0, 0.0))
+    pull.move(session.model, (5.0, 0.0))
     session.simulation.advance(200)
     assert session.particles.displacement[row, 0] > 0.01
 

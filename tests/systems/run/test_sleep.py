@@ -248,7 +248,7 @@ def test_a_hand_wakes_what_it_pulls() -> None:
     assert "soon" in asleep(session)
     particle_held = session.particles["Bsoon"]
     session.simulation.before_change()
-    session.pull.take(Hand(particle_held, 1e3, 0.0, (0.01, 0.0)))
+    session.document.pull.take(Hand(particle_held, 1e3, 0.0, (0.01, 0.0)))
     before = session.particles.displacement[particle_held.row].copy()
     session.simulation.advance(1)
     assert asleep(session) == set()
