@@ -576,13 +576,13 @@ def test_what_is_asked_is_read_in_full_in_a_small_window(session: Session) -> No
 def test_lessons_stand_in_full_rows_with_their_titles_inside(session: Session, width: int) -> None:
     session.resize(width, 1080)
     session.press("d")
-    for tile in [tile for tile in scene_of(session).form.tiles if tile.rest]:
-        scene_of(session).choose(session, tile)
+    unfold(session)
     picture = compose_all(session.stages, load_theme("light"))[0]
     cards = [hit for hit in picture.hits if isinstance(hit.item, Tile) and isinstance(hit.item.source, Script)]
     rows = [len(list(row)) for _, row in itertools.groupby(cards, lambda card: card.top)]
     assert len(set(rows[1:-1])) == 1
-    for mark in marks_of(picture, Text):
-        for card in cards:
-            if card.contains((mark.x, mark.y)):
-                assert mark.x + text_width(mark.text, mark.size, mark.weight) <= card.left + card.width - 6.0
+    titles = [
+        (mark, card) for mark in marks_of(picture, Text) for card in cards if card.contains((mark.x, mark.y))
+    ]
+    for mark, card in titles:
+        assert mark.x + text_width(mark.text, mark.size, mark.weight) <= card.left + card.width - 6.0
