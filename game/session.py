@@ -108,13 +108,6 @@ class Session(Headless):
 
     # --- lessons -------------------------------------------------------------------------------------
 
-    def _begin_lesson(self, script: Script) -> None:
-        """Begin a lesson with tasks, where the person left it. Raises ScriptError."""
-        self.course = course = Course(self, Lesson(script))
-        self.resize(*self.extent, self.view.pixel_ratio)
-        course.begin()
-        course.show_card()
-
     def leave_lesson(self) -> None:
         """Leave the lesson for the document that was open before it."""
         self._put_away_lesson()
@@ -131,7 +124,7 @@ class Session(Headless):
         self.resize(*self.extent, self.view.pixel_ratio)
 
     def take_up_lesson(self) -> None:
-        """Begin the lesson with tasks that a person chose; one to watch puts that away which was begun."""
+        """Begin the lesson with tasks that a person chose, where it was left; one to watch puts that away."""
         script = self.lesson
         if script is not None and not script.has_tasks and self.course is not None and script.name:
             self._put_away_lesson()
@@ -139,7 +132,10 @@ class Session(Headless):
             return
         self.lesson = None
         try:
-            self._begin_lesson(script)
+            self.course = course = Course(self, Lesson(script))
+            self.resize(*self.extent, self.view.pixel_ratio)
+            course.begin()
+            course.show_card()
         except ScriptError as error:
             self.leave_lesson()
             self.notice = str(error)

@@ -7,8 +7,8 @@ import math
 from pinjoint.components.model import Model
 from pinjoint.systems.base import REVIEW_INTERVAL, StopReason
 from pinjoint.systems.program.program import Program
-from pinjoint.systems.run.policy import ENDING
 from pinjoint.systems.run.programs import Programs
+from pinjoint.systems.run.recovery import FAILURES
 from pinjoint.systems.run.sleep import Sleep
 from pinjoint.systems.run.step_size import StepSize
 
@@ -50,6 +50,6 @@ class ProgramSteps:
     def land(self, target: float) -> StopReason:
         """Take the last, short step, to exactly the time `target` (s)."""
         clock, reason = self._model.clock, StopReason.DONE
-        while clock.time < target and reason not in ENDING:
+        while clock.time < target and reason not in (StopReason.EVENT, *FAILURES):
             _, reason = self.program.advance(REVIEW_INTERVAL, target, target)
         return reason
