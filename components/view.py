@@ -13,12 +13,11 @@ from numpy.typing import NDArray
 from pinjoint.components.additions import outlines
 from pinjoint.components.bent import AXIAL, middles
 from pinjoint.components.camera import LEAST_MARGIN, Camera, Rectangle, Viewport
-from pinjoint.components.card import Card
 from pinjoint.components.field import Vector
 from pinjoint.components.model import Model
 from pinjoint.components.rod import bends
 from pinjoint.components.slider import ARROW, SUPPORT, Place, SliderStack
-from pinjoint.components.toolbar import Menu, Toolbar
+from pinjoint.components.toolbar import Menu, Tool, Toolbar
 
 CONVENTIONS = TEXTBOOK, THESIS = ("textbook", "thesis")  # of the force method
 
@@ -145,6 +144,30 @@ class Readout:
     def is_large(self) -> bool:
         """True if it does not fit into a corner of the picture."""
         return self.plot is not None or len(self.rows) > 1
+
+
+@dataclass(frozen=True)
+class Card:
+    """A task of a lesson as it stands, for drawing and clicking.
+
+    title: of the lesson. progress: which task of how many, and done: those that were done. paragraphs: the task.
+    choices: (text, chosen) of possible answers, with the action of each in `answers`. entry: what was typed, with its unit;
+    None: nothing is to be typed. said: what is said of the last check, or a hint, and its `mood`: "right", "wrong", "hint".
+    buttons: the first is the next thing to do. first: by how many lines it is scrolled on, or back if negative.
+    """
+
+    title: str
+    progress: str = ""
+    count: int = 0
+    at: int = 0
+    done: frozenset[int] = frozenset()
+    paragraphs: tuple[str, ...] = ()
+    choices: tuple[tuple[str, bool], ...] = ()
+    entry: str | None = None
+    said: tuple[str, ...] = ()
+    mood: str = ""
+    buttons: tuple[Tool, ...] = ()
+    first: int = 0
 
 
 @dataclass(frozen=True)

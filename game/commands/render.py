@@ -17,8 +17,8 @@ from pinjoint.commands.analysis import FOUND
 from pinjoint.commands.arguments import Parser, UsageError, positive
 from pinjoint.commands.options import ANSWERED, NOT_ANSWERED, add_model, session_of
 from pinjoint.commands.output import writable, writing
-from pinjoint.components.bent import QUANTITIES
 from pinjoint.components.language import tr
+from pinjoint.components.settings import DIAGRAMS
 from pinjoint.components.snapshot import Snapshot
 from pinjoint.components.view import drawn_places
 from pinjoint.documents.models import replace
@@ -79,7 +79,7 @@ def _parser() -> Parser:
     parser.add_argument("--diagrams", action="store_true", help=tr("draw all force diagrams"))
     parser.add_argument(
         "--diagrams-of",
-        choices=QUANTITIES,
+        choices=DIAGRAMS,
         help=tr(
             "draw all diagrams of one quantity: the axial force N, or where rods bend the bending moment M or the shear"
             " force V"

@@ -6,11 +6,10 @@ import math
 from collections.abc import Sequence
 from typing import Any
 
-from pinjoint.components.card import Card
-from pinjoint.components.language import decimals, joined, marked, tr
+from pinjoint.components.language import decimals, joined, tr
 from pinjoint.components.mistake import WrongValue
 from pinjoint.components.toolbar import Tool
-from pinjoint.components.view import Shape, View
+from pinjoint.components.view import Card, Shape, View
 from pinjoint.documents.document import document
 from pinjoint.documents.models import ModelError, load
 from pinjoint.documents.open_documents import ModelFile
@@ -24,8 +23,6 @@ RIGHT, WRONG, HINT = "right", "wrong", "hint"  # moods of what is said
 IN_NUMBERS = frozenset("0123456789.,-−+")  # not e, which is a key
 MOST_LINES = 40  # by which a card is scrolled
 LONGEST = 16  # characters of a number that is typed
-SOLVED = marked("That was one way to do it. Now try it: “Again” starts the task once more; “Next” goes on.")
-FINISHED = marked("This lesson is done.")
 
 
 class Course:
@@ -304,9 +301,12 @@ class Course:
         said = tuple(text for text in (self.said, self._scored) if text)
         last = self.at + 1 == count
         if self.accepted and self._shown:
-            said += (tr(SOLVED),)
+            how = tr(
+                "That was one way to do it. Now try it: “Again” starts the task once more; “Next” goes on."
+            )
+            said += (how,)
         elif self.accepted and last:
-            said += (tr(FINISHED),)
+            said += (tr("This lesson is done."),)
         return Card(
             title=tr(self.lesson.title),
             progress=tr("Task {number} of {count}", number=self.at + 1, count=count),

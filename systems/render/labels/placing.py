@@ -142,12 +142,11 @@ def _beside(
     boxes, found = Boxes(middle, half, of), np.full(len(ranked), -1)
     tried = _attempts(ranked, of, held, cells, occupancy)
     number = np.arange(len(tried)) - np.searchsorted(of[tried], of[tried])
-    taken = [0] * len(occupancy.taken)
     for begin, end in pairwise(_STAGES):
         now = tried[(number >= begin) & (number < end) & (found[of[tried]] < 0)]
         now = now[(own[of[now]] == NOBODY) | occupancy.may_be_of(cells[now], own[of[now]], kin[of[now]])]
         now = now[occupancy.parts.own_is_nearest(boxes.some(now), own, kin, clearly[now])]
-        _take(now, of[now], cells[now], taken, found, occupancy)
+        _take(now, of[now], cells[now], found, occupancy)
     settled = np.flatnonzero(found >= 0)
     at = found[settled]
     return dict(
@@ -183,27 +182,17 @@ def _attempts(
     return tried[np.argsort(of[tried], kind="stable")]
 
 
-def _take(
-    places: Rows,
-    of: Rows,
-    cells: Rows,
-    taken: list[int],
-    found: Rows,
-    occupancy: Occupancy,
-) -> None:
+def _take(places: Rows, of: Rows, cells: Rows, found: Rows, occupancy: Occupancy) -> None:
     """Let each label have the first of its places, one label's after the other's, that no label has taken.
 
-    of, cells: of these places. taken: by labels so far, the columns of each row as bits of one number; updated.
-    found: the place of each label, or -1; updated.
+    of, cells: of these places. found: the place of each label, or -1; updated.
     """
     settled = -1
     for index, place, (left, top, right, bottom) in zip(
         of.tolist(), places.tolist(), cells.tolist(), strict=True
     ):
-        bits = (1 << right) - (1 << left)
-        if index == settled or any(row & bits for row in taken[top:bottom]):
+        if index == settled or occupancy.taken[top:bottom, left:right].any():
             continue
-        taken[top:bottom] = [row | bits for row in taken[top:bottom]]
         occupancy.taken[top:bottom, left:right] = True
         found[index] = place
         settled = index

@@ -12,17 +12,7 @@ from typing import Literal
 
 import numpy as np
 
-from pinjoint.components.bent import (
-    AXIAL,
-    MOMENT,
-    SHEAR,
-    Axes,
-    axes,
-    derivative,
-    inner_forces,
-    values,
-    zeros,
-)
+from pinjoint.components.bent import AXIAL, MOMENT, SHEAR, Axes, derivative, inner_forces, values, zeros
 from pinjoint.components.language import marked, tr
 from pinjoint.components.load import CONSTANT
 from pinjoint.components.model import Model
@@ -277,7 +267,7 @@ def _baseline(sheet: Sheet, rows: Rows) -> Axes:
         ends = model.particles.position[sheet.ends[rows]]
         found = Axes(ends[:, 0], ends[:, 1], np.zeros((len(rows), 2)), np.zeros((len(rows), 5)))
     else:
-        found = axes(model, rows)
+        found = Axes.of(model, rows)
     left = found.left * [
         camera.scale,
         -camera.scale,

@@ -8,7 +8,6 @@ from typing import Any
 
 import numpy as np
 
-from pinjoint.components.camera import Rectangle
 from pinjoint.components.field import Vector
 from pinjoint.components.language import begun, language, tr, tr_in
 from pinjoint.components.toolbar import Tool
@@ -65,16 +64,11 @@ def tool_icon(tool: Tool, theme: Theme, wide: float) -> Drawn:
 
 def closing(action: str | None, theme: Theme, side: float, item: Any = None, size: float = 1.0) -> Plate:
     """The button with a cross that closes something."""
-    sign = Drawn(lambda at, u: [_cross(at, size * u, theme.muted)], side)
+    ends = np.array([[-4.5, -4.5], [-4.5, 4.5]]) * size
+    sign = Drawn(
+        lambda at, u: [Strokes(at.middle + u * ends, at.middle - u * ends, 1.6 * size * u, theme.muted)], side
+    )
     return button(sign, action, theme, item=item, inset=0.0)
-
-
-def _cross(place: Rectangle, unit: float, colour: Colour) -> Strokes:
-    """The sign on a button that closes something."""
-    (x, y), reach = place.middle, 4.5 * unit
-    start = np.array([[x - reach, y - reach], [x - reach, y + reach]])
-    end = np.array([[x + reach, y + reach], [x + reach, y - reach]])
-    return Strokes(start, end, 1.6 * unit, colour)
 
 
 def written_key(key: str) -> str:

@@ -8,7 +8,8 @@ import numpy as np
 import pytest
 
 from pinjoint import Session
-from pinjoint.components.bent import AXIAL, MOMENT, QUANTITIES, SHEAR
+from pinjoint.components.bent import AXIAL, MOMENT, SHEAR
+from pinjoint.components.settings import DIAGRAMS
 from pinjoint.components.tags import DiagramShown
 from pinjoint.systems.render.marks import Bars, Discs, Fills, Picture, Strokes, Text
 from pinjoint.systems.render.picture import compose
@@ -192,7 +193,7 @@ def bundled_at_rest(width: int, height: int) -> Session:
 @pytest.mark.parametrize("size", SIZES)
 def test_all_values_of_a_portal_are_told(size: tuple[int, int]) -> None:
     session = bundled_at_rest(*size)
-    for session.view.quantity in QUANTITIES:
+    for session.view.quantity in DIAGRAMS:
         said = [mark.text for mark in picture_of(session).marks if isinstance(mark, Text)]
         assert not [text for text in said if "hidden" in text], session.view.quantity
         assert {"2.600 kN", "32.40 kN", "20.58 kN·m"} <= set(said)
@@ -201,7 +202,7 @@ def test_all_values_of_a_portal_are_told(size: tuple[int, int]) -> None:
 @pytest.mark.parametrize("size", SIZES)
 def test_diagrams_keep_off_the_legend(size: tuple[int, int]) -> None:
     session = bundled_at_rest(*size)
-    for session.view.quantity in QUANTITIES:
+    for session.view.quantity in DIAGRAMS:
         picture = picture_of(session)
         rows = {mark.y for mark in picture.marks if isinstance(mark, Text) and mark.text in MEANINGS.values()}
         tops = [
@@ -238,7 +239,7 @@ def test_unknown_forces_are_not_drawn() -> None:
     assert not [m for m in picture.marks if isinstance(m, Fills) and m.corners.shape[1] > 4]
 
 
-@pytest.mark.parametrize("quantity", QUANTITIES)
+@pytest.mark.parametrize("quantity", DIAGRAMS)
 def test_a_truss_shows_axial_forces_whatever_is_chosen(quantity: str) -> None:
     session = Session.open("isostatic")
     session.get_ready()

@@ -9,7 +9,7 @@ from hypothesis import strategies as st
 from pinjoint.components.camera import Camera, Viewport
 from pinjoint.components.model import Model
 from pinjoint.components.particle import Particle
-from pinjoint.components.rod import spawn_rods
+from pinjoint.components.rod import Rod
 from pinjoint.components.tags import Selected
 from pinjoint.components.view import Status, View
 from pinjoint.systems.render.backends.pygame_canvas import Canvas, _rounded, _small_rounded
@@ -31,7 +31,7 @@ def triangle() -> Model:
     model = Model()
     fixed = [(False, True), (False, False), (True, True)]
     model.create(Particle, 3, name=["A", "B", "C"], position=[(0, 0), (1, 1), (2, 0)], fixed=fixed)
-    spawn_rods(model, [(0, 1), (1, 2), (2, 0)], name=["AB", "BC", "CA"])
+    model.create(Rod, 3, between=[(0, 1), (1, 2), (2, 0)], name=["AB", "BC", "CA"])
     return model
 
 

@@ -3,9 +3,9 @@
 import pytest
 
 from pinjoint import Session
-from pinjoint.components.bent import QUANTITIES
 from pinjoint.components.camera import Viewport
 from pinjoint.components.extensions import EXTENSIONS
+from pinjoint.components.settings import DIAGRAMS
 from pinjoint.components.tags import DiagramShown
 from pinjoint.components.toolbar import Tool
 from pinjoint.components.view import Hit, drawn_positions
@@ -56,7 +56,7 @@ def test_every_tool_is_an_action_with_a_key_and_an_icon() -> None:
         *offered,
         *of_mods(draw=False),
         "pause",
-        *(f"diagram {quantity}" for quantity in QUANTITIES),
+        *(f"diagram {quantity}" for quantity in DIAGRAMS),
     }
 
 
