@@ -24,6 +24,7 @@ from pinjoint.components.view import drawn_places
 from pinjoint.documents.models import replace
 from pinjoint.documents.shapes import numbered
 from pinjoint.session import Session
+from pinjoint.streams import tell
 from pinjoint.systems.base import DEFAULT_LIMIT
 from pinjoint.systems.physics.pace import natural_pace
 from pinjoint.systems.render.labels.placing import Placed
@@ -56,7 +57,10 @@ def command(words: Sequence[str]) -> int:
     draw = _animate if options.output.lower().endswith(".gif") else _draw
     with writing(options.output):
         status = draw(session, options, (width, height))
-    return ANSWERED if status in FOUND else NOT_ANSWERED
+    if status in FOUND:
+        return ANSWERED
+    tell(session.simulation.message)
+    return NOT_ANSWERED
 
 
 def _parser() -> Parser:

@@ -24,7 +24,7 @@ from pinjoint.documents import models
 from pinjoint.documents.format import Upgrade
 from pinjoint.mods.declared import check
 from pinjoint.mods.guard import Guard, Panel
-from pinjoint.mods.mod import INCLUDED, Mod, ModError
+from pinjoint.mods.mod import Mod, ModError
 from pinjoint.systems.base import Integrator, System
 from pinjoint.systems.input.actions import ACTIONS, LIVE, Action, Binding, Perform
 from pinjoint.systems.physics.integrators import INTEGRATORS
@@ -350,7 +350,7 @@ class App:
 
     def _keeps_data(self) -> None:
         """Note the version, which files state that hold data of the mod."""
-        if self._mod.source != INCLUDED and self.name not in EXTENSIONS.versions:
+        if not self._mod.included and self.name not in EXTENSIONS.versions:
             self._put(EXTENSIONS.versions, self.name, self._mod.version)
 
     # --- all or nothing ------------------------------------------------------------------------------------

@@ -29,7 +29,7 @@ from pinjoint.components.wording import printable, quoted
 from pinjoint.documents import models
 from pinjoint.mods.declared import check, check_fields, check_has_run, result_of
 from pinjoint.mods.limit import T, check_limit
-from pinjoint.mods.mod import INCLUDED, LONGEST, Mod, ModError
+from pinjoint.mods.mod import LONGEST, Mod, ModError
 from pinjoint.paths import PathError
 from pinjoint.systems.base import Commit, Event, Integrator, Law, StepSystem, System
 from pinjoint.systems.edit import Refusal
@@ -125,7 +125,7 @@ class Guard:
 
         def changed() -> bool:
             with model.transaction(system.name):
-                if self.mod.source == INCLUDED:
+                if self.mod.included:
                     change()
                 else:
                     interruptible(change, model)
@@ -250,7 +250,7 @@ class Guard:
         called = tr("what the layer draws")
 
         def drawn(sheet: Sheet) -> list[Mark]:
-            if self.mod.source == INCLUDED:
+            if self.mod.included:
                 return list(draw(sheet))
             made = draw(replace(sheet, marks=list(sheet.marks), labels=[], legend=[], notes=[]))
             check(made, Iterable[Mark], called)

@@ -5,12 +5,14 @@ from dataclasses import replace
 from typing import Any
 
 import numpy as np
+import pygame
 import pytest
 
 from pinjoint import Session
 from pinjoint.components.bent import AXIAL, MOMENT, SHEAR
 from pinjoint.components.settings import DIAGRAMS
 from pinjoint.components.tags import DiagramShown
+from pinjoint.systems.render.backends.pygame_canvas import Canvas
 from pinjoint.systems.render.marks import Bars, Discs, Fills, Picture, Strokes, Text
 from pinjoint.systems.render.picture import compose
 from pinjoint.systems.render.theme import faded
@@ -222,6 +224,13 @@ def test_diagrams_grow_as_a_person_wants() -> None:
     far = np.ptp(areas(picture_of(session), session, "CD")[:, 0])
     session.settings.diagram_scale *= 2.0
     assert np.ptp(areas(picture_of(session), session, "CD")[:, 0]) > 1.5 * far
+
+
+def test_the_largest_scale_that_a_model_can_have_leaves_numbers_to_draw_with() -> None:
+    picture, _ = shown(portal_at_rest(), MOMENT, diagram_scale=1e30)
+    for corners in all_areas(picture).values():
+        assert np.abs(corners).max() < 1e8
+    Canvas().draw(pygame.Surface((1000, 720), 0, 32), picture)
 
 
 def test_only_tagged_rods_if_only_these_are_wanted() -> None:
