@@ -286,10 +286,11 @@ class View:
         return tuple((vars(self) | copies | {"flashes": self.flashes.tobytes()}).values())
 
     def fit(self, model: Model) -> None:
-        """Let the camera show the whole model, clear of the sliders, and with room for diagrams below the legend."""
+        """Let the camera show the whole model, clear of the sliders, and with room for arrows or diagrams above it."""
         room = self.room
-        if self.legend and bends(model):
-            missing = min(ABOVE * self.pixel_ratio - LEAST_MARGIN * room.height, LEAST_MARGIN / 2 * room.height)
+        if self.legend:
+            above = ABOVE if bends(model) else SUPPORT + ARROW
+            missing = min(above * self.pixel_ratio - LEAST_MARGIN * room.height, LEAST_MARGIN / 2 * room.height)
             top, kept = round(max(missing, 0.0)), 1.0 - LEAST_MARGIN  # the margin shrinks with the room
             room = replace(room, top=room.top + top, height=max(room.height - round(top / kept), 1))
         self.camera.fit(drawn_places(model), MARGIN, room, self.pixel_ratio)
