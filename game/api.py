@@ -103,7 +103,7 @@ from pinjoint.systems.render.marks import Points as Points
 from pinjoint.systems.render.marks import Stamps as Stamps
 from pinjoint.systems.render.marks import Strokes as Strokes
 from pinjoint.systems.render.marks import Text as Text
-from pinjoint.systems.render.sheet import Sheet as Sheet
+from pinjoint.systems.render.model.sheet import Sheet as Sheet
 from pinjoint.systems.render.symbols import Part as Part
 from pinjoint.systems.render.theme import Colour as Colour
 from pinjoint.systems.render.theme import Theme as Theme

@@ -43,10 +43,10 @@ from pinjoint.session import Session
 from pinjoint.systems.base import System
 from pinjoint.systems.edit.hover import Hover
 from pinjoint.systems.input.pygame_input import PygameInput
+from pinjoint.systems.render.backends.pygame_canvas import encoded
+from pinjoint.systems.render.backends.raster import load_raster
 from pinjoint.systems.render.picture import symbol_at
-from pinjoint.systems.render.pygame_canvas import encoded
 from pinjoint.systems.render.pygame_render import PygameRender
-from pinjoint.systems.render.raster import load_raster
 
 FRAME_RATE = 60  # Hz
 FIRST_SIZE = (1000, 720)  # points

@@ -41,7 +41,7 @@ from pinjoint.systems.program.compiler import (
 )
 from pinjoint.systems.program.reordered import make_program
 from pinjoint.systems.program.writer import read_sources
-from pinjoint.systems.render.raster import RASTER
+from pinjoint.systems.render.backends.raster import RASTER
 from pinjoint.systems.schedule import Schedule
 
 UNITS = {unit.name: unit for unit in (RASTER, PARTING, EVENTS, HORIZONS, PILES, DRIVEN)}

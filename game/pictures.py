@@ -18,13 +18,13 @@ from pinjoint.components.toolbar import Toolbar
 from pinjoint.components.view import MARGIN, Plot, Status, View
 from pinjoint.documents import models
 from pinjoint.session import Session
-from pinjoint.systems.render.labels import Placed
+from pinjoint.systems.render.backends.pdf import as_pdf
+from pinjoint.systems.render.backends.svg import as_svg
+from pinjoint.systems.render.labels.placing import Placed
 from pinjoint.systems.render.marks import Owner, Picture, Points
-from pinjoint.systems.render.pdf import as_pdf
 from pinjoint.systems.render.picture import compose, compose_all
-from pinjoint.systems.render.plots import draw_plot
-from pinjoint.systems.render.svg import as_svg
 from pinjoint.systems.render.theme import load_theme
+from pinjoint.systems.render.ui.plots import draw_plot
 
 Size = tuple[int, int]
 Background = Literal["theme", "white", "transparent"]
@@ -92,7 +92,7 @@ def write(
 
 def _as_image(pictures: Sequence[Picture], size: Size, suffix: str, *, clear: bool) -> bytes:
     """Pictures as pixels."""
-    from pinjoint.systems.render.pygame_canvas import as_image  # pygame takes a while to import
+    from pinjoint.systems.render.backends.pygame_canvas import as_image  # pygame takes a while to import
 
     return as_image(pictures, size, suffix, clear=clear)
 
@@ -110,7 +110,7 @@ def frame(
 
     placed: where labels were in the last of several pictures, see compose().
     """
-    from pinjoint.systems.render.pygame_canvas import as_colours
+    from pinjoint.systems.render.backends.pygame_canvas import as_colours
 
     session.update_view()
     status = replace(session.view.status, hint="")  # a picture takes no keys

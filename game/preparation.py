@@ -44,7 +44,7 @@ from pinjoint.systems.program.compiler import (
 )
 from pinjoint.systems.program.program import module_of
 from pinjoint.systems.program.writer import kind_of
-from pinjoint.systems.render.raster import RASTER, Raster, load_raster
+from pinjoint.systems.render.backends.raster import RASTER, Raster, load_raster
 from pinjoint.systems.run.simulation import Simulation
 
 LONGEST_IMPACT = 2**20  # operations, about a second: a window waits half a minute to compile what takes longer

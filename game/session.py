@@ -108,13 +108,6 @@ class Session(Headless):
 
     # --- lessons -------------------------------------------------------------------------------------
 
-    def _begin_lesson(self, script: Script) -> None:
-        """Begin a lesson with tasks, where the person left it. Raises ScriptError."""
-        self.course = course = Course(self, Lesson(script))
-        self.resize(*self.extent, self.view.pixel_ratio)
-        course.begin()
-        course.show_card()
-
     def leave_lesson(self) -> None:
         """Leave the lesson for the document that was open before it."""
         self._put_away_lesson()
@@ -131,15 +124,18 @@ class Session(Headless):
         self.resize(*self.extent, self.view.pixel_ratio)
 
     def take_up_lesson(self) -> None:
-        """Begin the lesson with tasks that a person chose; one to watch puts that away which was begun."""
+        """Begin the lesson with tasks that a person chose, where it was left; one to watch puts that away."""
         script = self.lesson
-        if script is not None and not script.has_tasks and self.course is not None and script.name:
+        if script is not None and not script.task_count and self.course is not None and script.name:
             self._put_away_lesson()
-        if script is None or not script.has_tasks:
+        if script is None or not script.task_count:
             return
         self.lesson = None
         try:
-            self._begin_lesson(script)
+            self.course = course = Course(self, Lesson(script))
+            self.resize(*self.extent, self.view.pixel_ratio)
+            course.begin()
+            course.show_card()
         except ScriptError as error:
             self.leave_lesson()
             self.notice = str(error)
@@ -280,7 +276,7 @@ class Session(Headless):
                 script=SCRIPT,
             )
         script = Script(path) if path.suffix.lower() == SCRIPT else None
-        if script is None or not script.has_tasks:  # a lesson opens its models itself
+        if script is None or not script.task_count:  # a lesson opens its models itself
             source = path if script is None else script.source
             self.open_here(source, keep=self.model.particles.count > 0)
         self.lesson = script or self.lesson

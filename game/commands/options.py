@@ -6,11 +6,11 @@ import argparse
 import os
 from collections.abc import Iterable, Sequence
 from functools import partial
-from typing import TYPE_CHECKING, TypeVar
+from typing import TYPE_CHECKING
 
 from pinjoint.commands.analysis import Analysis
 from pinjoint.commands.arguments import Parser, UsageError, count, numbers, positive, times
-from pinjoint.commands.progress import follow
+from pinjoint.commands.progress import Progress, follow
 from pinjoint.components.extensions import EXTENSIONS
 from pinjoint.components.language import tr
 from pinjoint.components.model import Model
@@ -25,8 +25,6 @@ from pinjoint.systems.base import CORES, DEFAULT_LIMIT, System
 if TYPE_CHECKING:  # statics needs no session
     from pinjoint.headless import Headless
     from pinjoint.session import Session
-
-H = TypeVar("H", bound="Headless")
 
 ANSWERED, NOT_ANSWERED, NO_DISPLAY, STOPPED = 0, 1, 3, 130  # exit statuses; BAD_INPUT is 2
 
@@ -71,7 +69,9 @@ def session_of(options: argparse.Namespace, systems: Iterable[System] = ()) -> S
     """A session with the model of `add_model`, and further systems. Raises ModelError, PathError, FieldError."""
     from pinjoint.session import Session
 
-    return _prepared(Session.open(options.model, systems), options)
+    session = Session.open(options.model, systems)
+    _prepare(session.model, options, session.simulation.progress)
+    return session
 
 
 def headless_of(options: argparse.Namespace) -> Headless:
@@ -80,24 +80,21 @@ def headless_of(options: argparse.Namespace) -> Headless:
         return session_of(options)
     from pinjoint.headless import Headless
 
-    return _prepared(Headless.open(options.model), options)
-
-
-def _prepared(session: H, options: argparse.Namespace) -> H:
-    follow(session.simulation.progress)
-    _change(session.model, options)
+    session = Headless.open(options.model)
+    _prepare(session.model, options, session.simulation.progress)
     return session
 
 
 def model_of(options: argparse.Namespace) -> Model:
     """The model of `add_model`, for what no time passes in. Raises ModelError, PathError, FieldError."""
     model = models.load(options.model)
-    follow()
-    _change(model, options)
+    _prepare(model, options)
     return model
 
 
-def _change(model: Model, options: argparse.Namespace) -> None:
+def _prepare(model: Model, options: argparse.Namespace, *progress: Progress) -> None:
+    """Tell how far a run of the model is, and change it as the options ask."""
+    follow(*progress)
     tell(missing_mods(model))  # which would change the result
     for override in options.set:
         apply_override(model, override)

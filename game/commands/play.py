@@ -31,7 +31,7 @@ def command(words: Sequence[str]) -> int:
             "Play a recorded or written session, or a lesson, in the real program. Of a lesson with tasks, all"
             " solutions and wrong answers are checked."
         ),
-        epilog=tr("Lessons: {names}", names=", ".join([*script.lessons_with_tasks(), *script.lessons()])),
+        epilog=tr("Lessons: {names}", names=", ".join([*script.lessons(script.TO_DO), *script.lessons()])),
     )
     parser.add_argument("script", metavar="SCRIPT", help=tr("a file of JSON lines, or the name of a lesson"))
     parser.add_argument(
@@ -55,9 +55,9 @@ def command(words: Sequence[str]) -> int:
             loaded.has_data = True
         if options.window:
             tell(playing.check_mods(loaded))
-            source = EMPTY if loaded.has_tasks else loaded.source  # tasks open their models themselves
+            source = EMPTY if loaded.task_count else loaded.source  # tasks open their models themselves
             failures = in_window(models.load(source), file_of(source), lesson=loaded)
-        elif loaded.has_tasks:
+        elif loaded.task_count:
             playing.check_mods(loaded)
             kept.enter_context(library.data_apart())
             failures = check_lesson(loaded)

@@ -13,11 +13,11 @@ from pinjoint.streams import tell
 SILENT = 5.0  # s; what takes less says nothing
 FURTHER = 10.0  # s between two sentences
 
-# Of the runs of the command, the last one being told of: up to which time (s) it is, steps and impacts.
-_followed: list[Callable[[], tuple[float, int, int]]] = []
+Progress = Callable[[], tuple[float, int, int]]  # of a run: up to which time (s) it is, steps and impacts
+_followed: list[Progress] = []  # the runs of the command, the last one being told of
 
 
-def follow(progress: Callable[[], tuple[float, int, int]] = lambda: (0.0, 0, 0)) -> None:
+def follow(progress: Progress = lambda: (0.0, 0, 0)) -> None:
     """From now on tell how far a run is; by default that it takes no steps."""
     _followed.append(progress)
 
@@ -32,9 +32,8 @@ def told() -> Iterator[None]:
         wait = SILENT
         while not done.wait(wait):
             wait = FURTHER
-            if not _followed:
-                continue
-            tell(how_far(time.monotonic() - began))
+            if _followed:
+                tell(_how_far(time.monotonic() - began, *_followed[-1]()))
 
     voice = threading.Thread(target=speak, daemon=True)
     voice.start()
@@ -45,9 +44,7 @@ def told() -> Iterator[None]:
         _followed.clear()
 
 
-def how_far(seconds: float) -> str:
-    """How far the command is after some seconds."""
-    passed, steps, impacts = _followed[-1]()
+def _how_far(seconds: float, passed: float, steps: int, impacts: int) -> str:
     if steps == 0 and impacts == 0:
         return tr("after {seconds:.0f} s: preparing, no step was made yet. Ctrl+C stops it.", seconds=seconds)
     return tr(

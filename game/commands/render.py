@@ -26,7 +26,7 @@ from pinjoint.documents.shapes import numbered
 from pinjoint.session import Session
 from pinjoint.systems.base import DEFAULT_LIMIT
 from pinjoint.systems.physics.pace import natural_pace
-from pinjoint.systems.render.labels import Placed
+from pinjoint.systems.render.labels.placing import Placed
 from pinjoint.systems.render.theme import load_theme, theme_names
 
 _PICTURES = (".png", ".svg", ".pdf", ".gif", ".jpg", ".bmp")

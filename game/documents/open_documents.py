@@ -32,7 +32,6 @@ from pinjoint.systems.run.simulation import Simulation
 from pinjoint.systems.schedule import Schedule
 
 Source = str | Path | Mapping[str, Any]  # of a model: a file, the name of a bundled one, or its content
-Stamp = tuple[int, ...]
 
 SETTLED = ("particles.displacement", "particles.rotation", "rods.plastic_strain")  # what settling changes
 
@@ -41,26 +40,21 @@ SETTLED = ("particles.displacement", "particles.rotation", "rods.plastic_strain"
 class ModelFile:
     """The file of a model and its name. path: None if the model was never saved.
 
-    stamp: identifies the content of the file when it was opened or saved.
+    stamp: of the content when it was opened or saved; another one whenever the file is written.
     """
 
     path: Path | None = None
     name: str = ""
-    stamp: Stamp = ()
+    stamp: tuple[int, ...] = ()
 
     @classmethod
     def at(cls, path: Path) -> ModelFile:
-        """The file at a path with its present stamp."""
-        return cls(path, models.name_of(path), stamp_of(path))
-
-
-def stamp_of(path: Path) -> Stamp:
-    """A stamp that changes whenever the file is written; () if there is no file."""
-    try:
-        found = path.stat()
-    except OSError:
-        return ()
-    return found.st_ino, found.st_mtime_ns, found.st_size
+        """The file at a path with its present stamp, () if there is none."""
+        try:
+            found = path.stat()
+        except OSError:
+            return cls(path, models.name_of(path))
+        return cls(path, models.name_of(path), (found.st_ino, found.st_mtime_ns, found.st_size))
 
 
 class OpenDocument:

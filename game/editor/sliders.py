@@ -1,4 +1,4 @@
-"""Sliders of a session: what they show, what moving them does, and new ones for any number of an element."""
+"""Sliders of a session: what they show, and new ones for any number of an element."""
 
 from __future__ import annotations
 
@@ -49,7 +49,7 @@ def sliders_of(context: Context) -> SliderStack:
     """The sliders of the open document: the displacement scale at the bottom, then those of the model."""
     model = context.model
     scale = [scale_control(model.settings)] if model.rods.count else []
-    own = (_control(model, key, slider) for key, slider in enumerate(model.sliders))
+    own = (control_of(model, key, slider) for key, slider in enumerate(model.sliders))
     return SliderStack((*scale, *(control for control in own if control is not None)), ABOVE)
 
 
@@ -67,7 +67,7 @@ def scales(settings: Settings) -> Slider:
     return Slider((), SCALES.first, 10.0 ** math.ceil(math.log10(most) - 1e-9), logarithmic=True)
 
 
-def _control(model: Model, key: int, slider: Slider) -> Control | None:
+def control_of(model: Model, key: int, slider: Slider) -> Control | None:
     """What a slider of a model shows; None if nothing that it moves exists (any more)."""
     found = [(aim, handle) for aim in slider.aims for handle in aim.handles(model.tables)[:1]]
     if not found:
@@ -118,41 +118,7 @@ def _value(aim: Aim, handle: Handle) -> float | None:
     return float(value["xy".index(aim.axis)] if aim.axis else value)
 
 
-# --- moving --------------------------------------------------------------------------------------------------
-
-
-def slider_of(context: Context, key: int) -> Slider:
-    """The slider with a key. Raises Refusal if it was removed meanwhile."""
-    if key == SCALE:
-        return scales(context.scenes.active.scaled(context)[0])
-    if key >= len(context.model.sliders):
-        raise Refusal("This slider has been removed.")
-    return context.model.sliders[key]
-
-
-def move_to(context: Context, key: int, value: float) -> None:
-    """Give what a slider moves a value, as one edit. Raises FieldError for a value that cannot be."""
-    model = context.model
-    if key == SCALE:
-        scale_to(context, value)
-        return
-    slider = slider_of(context, key)
-    control = _control(model, key, slider)
-    with model.transaction(control.title if control is not None else marked("slider")):
-        for aim in slider.aims:
-            handles, values = aim.handles(model.tables), list[Any]()
-            for x, y in (getattr(handle, aim.field) for handle in handles if aim.axis):
-                values.append((value, y) if aim.axis == "x" else (x, value))
-            model.assign(handles, aim.field, values or [value] * len(handles))
-
-
-def scale_to(context: Context, scale: float | None) -> None:
-    """Draw displacements to a scale; None: to the automatic one."""
-    for settings in context.scenes.active.scaled(context):
-        settings.displacement_scale = scale
-
-
-# --- making and removing -------------------------------------------------------------------------------------
+# --- making ----------------------------------------------------------------------------------------------
 
 
 def add_slider(context: Context, elements: Sequence[Handle], field: str, axis: str = "") -> Slider:
@@ -181,7 +147,8 @@ def add_slider(context: Context, elements: Sequence[Handle], field: str, axis: s
     high = math.inf if found.maximum is None else found.maximum
     first_end, last_end = (min(max(end, low), high) for end in (slider.first, slider.last))
     slider = replace(slider, first=first_end, last=last_end)
-    _set(context, (*model.sliders, slider), marked("new slider"))
+    with model.transaction(marked("new slider")):
+        model.execute(SetSliders((*model.sliders, slider)))
     context.view.legend = True  # it is hidden with the toolbar and the legend
     context.view.sliders = sliders_of(context)
     if context.view.fitted:
@@ -205,14 +172,3 @@ def _around(model: Model, field: Field[Any], value: float, aims: tuple[Aim, ...]
         return Slider(aims, 0.0, math.copysign(round_up(2.0 * abs(value)), value))
     reach = round_up(usual(model, "force")) if field.name == "force" else NOTHING.get(field.unit, 1.0)
     return Slider(aims, -reach, reach)
-
-
-def remove_slider(context: Context, key: int) -> None:
-    """Take a slider off the canvas; what it moved stays as it is."""
-    sliders = context.model.sliders
-    _set(context, sliders[:key] + sliders[key + 1 :], marked("slider removed"))
-
-
-def _set(context: Context, sliders: tuple[Slider, ...], title: str) -> None:
-    with context.model.transaction(title):
-        context.model.execute(SetSliders(sliders))

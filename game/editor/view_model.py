@@ -21,9 +21,7 @@ from pinjoint.systems.edit.picking import pick_end, pick_particle, ring_of
 from pinjoint.systems.edit.rods import is_rigid
 from pinjoint.systems.forms.results import told
 from pinjoint.systems.input.actions import ACTIONS, LIVE
-from pinjoint.systems.render.help import help_pages
-from pinjoint.systems.render.overlays import BAR
-from pinjoint.systems.render.theme import load_theme
+from pinjoint.systems.render.ui.overlays import BAR
 
 COMPILING = marked("Compiling the program for this model, once: about {seconds:.0f} s left.")
 STILL = ("pause", "properties")  # scenes of the model in which time stands still
@@ -69,15 +67,6 @@ def show(context: Context, elapsed: float) -> None:
         problem=_problem(context),
         notice=said or joined([lately, *lasting]),
         share=min(awaited.seconds / awaited.expected, 0.99) if awaited is not None else None,
-    )
-
-
-def count_of_pages(context: Context) -> int:
-    """How many pages the keys of the active scene take; where view.help is more, the last one is shown."""
-    scene, view = context.scenes.active, context.view
-    theme = load_theme(view.theme)
-    return len(
-        help_pages(tuple(ACTIONS.help_lines(scene.name)), scene.helped(context), view.pixel_ratio, theme)
     )
 
 

@@ -22,8 +22,7 @@ from pinjoint.force_method.copies import base_structure, loaded, still, unloaded
 from pinjoint.force_method.guide import scale_to
 from pinjoint.force_method.tables import PRODUCTS, Table, Tables
 from pinjoint.force_method.words import EXACT
-from pinjoint.systems.render.arrows import largest_force
-from pinjoint.systems.render.paper import (
+from pinjoint.systems.render.backends.paper import (
     GUTTER,
     LAYOUTS,
     PIXEL,
@@ -35,6 +34,7 @@ from pinjoint.systems.render.paper import (
     in_rows,
     matrices,
 )
+from pinjoint.systems.render.model.arrows import largest_force
 from pinjoint.systems.render.picture import compose
 from pinjoint.systems.render.theme import load_theme
 from pinjoint.systems.statics.counting import Count

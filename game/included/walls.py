@@ -13,13 +13,13 @@ from pinjoint.components.language import marked
 from pinjoint.components.tags import Hovered
 from pinjoint.mods import App
 from pinjoint.systems.render.clip import clip_segments
-from pinjoint.systems.render.labels import Label
+from pinjoint.systems.render.labels.occupancy import STRONG
+from pinjoint.systems.render.labels.placing import Label
 from pinjoint.systems.render.marks import Discs, Mark, Points, Rows, Strokes
-from pinjoint.systems.render.occupancy import STRONG
-from pinjoint.systems.render.sheet import Sheet
-from pinjoint.systems.render.structure import HALO_OPACITY
+from pinjoint.systems.render.model.sheet import Sheet
+from pinjoint.systems.render.model.structure import HALO_OPACITY
+from pinjoint.systems.render.model.values import BACKING, beside, half_sizes
 from pinjoint.systems.render.theme import Colour, faded
-from pinjoint.systems.render.values import BACKING, beside, half_sizes
 
 WIDTH = 4.0  # points, of the line that is drawn
 

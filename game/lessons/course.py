@@ -7,7 +7,7 @@ from collections.abc import Sequence
 from typing import Any
 
 from pinjoint.components.card import Card
-from pinjoint.components.language import decimals, joined, marked, tr
+from pinjoint.components.language import decimals, joined, tr
 from pinjoint.components.mistake import WrongValue
 from pinjoint.components.toolbar import Tool
 from pinjoint.components.view import Shape, View
@@ -24,8 +24,6 @@ RIGHT, WRONG, HINT = "right", "wrong", "hint"  # moods of what is said
 IN_NUMBERS = frozenset("0123456789.,-−+")  # not e, which is a key
 MOST_LINES = 40  # by which a card is scrolled
 LONGEST = 16  # characters of a number that is typed
-SOLVED = marked("That was one way to do it. Now try it: “Again” starts the task once more; “Next” goes on.")
-FINISHED = marked("This lesson is done.")
 
 
 class Course:
@@ -304,9 +302,12 @@ class Course:
         said = tuple(text for text in (self.said, self._scored) if text)
         last = self.at + 1 == count
         if self.accepted and self._shown:
-            said += (tr(SOLVED),)
+            how = tr(
+                "That was one way to do it. Now try it: “Again” starts the task once more; “Next” goes on."
+            )
+            said += (how,)
         elif self.accepted and last:
-            said += (tr(FINISHED),)
+            said += (tr("This lesson is done."),)
         return Card(
             title=tr(self.lesson.title),
             progress=tr("Task {number} of {count}", number=self.at + 1, count=count),

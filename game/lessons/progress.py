@@ -9,7 +9,7 @@ from typing import NamedTuple
 
 from pinjoint.documents import preferences
 from pinjoint.documents.library import data_folder
-from pinjoint.scripts.script import Script, ScriptError, lessons_with_tasks
+from pinjoint.scripts.script import TO_DO, Script, ScriptError, lessons
 
 FILE = "lessons.json"
 
@@ -72,22 +72,17 @@ def keep(lesson: str, task: int, score: float | None = None) -> None:
 
 def shelf() -> list[Script]:
     """Ours, then the person's own; what cannot be read is left out, and says why when it is opened."""
-    found = [Script(name) for name in lessons_with_tasks()]
+    found = [Script(name) for name in lessons(TO_DO)]
     with suppress(OSError):  # of the folder
         for path in sorted((data_folder() / "lessons").glob("[!.]*.jsonl")):
             with suppress(ScriptError):
-                found += [script] if (script := Script(path)).has_tasks else []
+                found += [script] if (script := Script(path)).task_count else []
     return found
-
-
-def count_of(script: Script) -> int:
-    """The number of tasks."""
-    return sum("task" in entry for _, entry in script.lines)
 
 
 def is_done(script: Script) -> bool:
     """True if all its tasks were done."""
-    return done(script.name).tasks >= set(range(1, count_of(script) + 1))
+    return done(script.name).tasks >= set(range(1, script.task_count + 1))
 
 
 def after(script: Script) -> Script | None:

@@ -24,7 +24,7 @@ from pinjoint.mods.mod import INCLUDED, Mod, ModError
 from pinjoint.systems.base import Integrator, System
 from pinjoint.systems.input.actions import ACTIONS, LIVE, Action, Binding, Perform
 from pinjoint.systems.physics.integrators import INTEGRATORS
-from pinjoint.systems.render.sheet import Layer
+from pinjoint.systems.render.model.sheet import Layer
 from pinjoint.systems.render.symbols import Part, check_icon
 
 if TYPE_CHECKING:  # a command needs no editor

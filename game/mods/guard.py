@@ -37,7 +37,7 @@ from pinjoint.systems.input.actions import ACTIONS, Perform
 from pinjoint.systems.physics.integrators import VelocityVerlet
 from pinjoint.systems.render.framing import framed
 from pinjoint.systems.render.marks import Mark
-from pinjoint.systems.render.sheet import Layer, Sheet
+from pinjoint.systems.render.model.sheet import Layer, Sheet
 
 if TYPE_CHECKING:  # a command needs no editor
     from pinjoint.editor.context import Context, Scene

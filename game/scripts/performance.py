@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 import time
 from collections.abc import Mapping
+from contextlib import nullcontext
 from typing import Any, Protocol
 
 from pinjoint.components.field import Vector
@@ -65,18 +66,13 @@ class Performance:
 
         The script saves in a folder of its own; afterwards its models count as unsaved work.
         """
-        if self._script.has_data:
-            return self._play()
-        with library.data_apart() as folder:
-            failures = self._play()
+        apart = nullcontext() if self._script.has_data else library.data_apart()
+        with apart as folder, spoken(self._script.language):
+            failures = self._perform_all()
         for document in self._screen.session.documents:
             if document.file.path is not None and folder in document.file.path.parents:
                 document.file, document.saved = ModelFile(None, document.file.name), -1
         return failures
-
-    def _play(self) -> list[Failure]:
-        with spoken(self._script.language):
-            return self._perform_all()
 
     def _perform_all(self) -> list[Failure]:
         session, failures = self._screen.session, list[Failure]()

@@ -45,23 +45,18 @@ from pinjoint.components.wording import as_json, cut, remedy
 HEADER = {"format": "pinjoint session", "version": 1}
 _HEADER_KEYS = (*HEADER, "model", "title", "description", "mods", "language")
 EMPTY = {"format": "pinjoint model", "version": 1}
+TO_WATCH, TO_DO = (
+    "lessons",
+    "lessons/tasks",
+)  # folders of bundled lessons; those to do ask a student for something
 
 
 class ScriptError(Mistake, ValueError):
     """A script that cannot be played; the message names the line, the reason and the remedy."""
 
 
-def lessons() -> list[str]:
-    """Names of the bundled lessons to watch, in order."""
-    return _names_in("lessons")
-
-
-def lessons_with_tasks() -> list[str]:
-    """Names of the bundled lessons that ask a student to do something, in order."""
-    return _names_in("lessons/tasks")
-
-
-def _names_in(folder: str) -> list[str]:
+def lessons(folder: str = TO_WATCH) -> list[str]:
+    """Names of the bundled lessons TO_WATCH or TO_DO, in order."""
     names = sorted(entry.name for entry in files("pinjoint.assets").joinpath(folder).iterdir())
     return [name.removesuffix(".jsonl") for name in names if name.endswith(".jsonl")]
 
@@ -72,8 +67,8 @@ def _are_mods(value: object) -> bool:
 
 def _found(source: str | Path) -> Path | Traversable:
     """The lesson of that name, or else a file."""
-    for folder, names in (("lessons", lessons), ("lessons/tasks", lessons_with_tasks)):
-        if isinstance(source, str) and source in names():
+    for folder in (TO_WATCH, TO_DO):
+        if isinstance(source, str) and source in lessons(folder):
             return files("pinjoint.assets").joinpath(folder, f"{source}.jsonl")
     return Path(source)
 
@@ -143,7 +138,7 @@ class Script:
         try:
             text = self.path.read_text(encoding="utf-8-sig")
         except FileNotFoundError:
-            near = remedy(str(self.path), [*lessons_with_tasks(), *lessons()])
+            near = remedy(str(self.path), [*lessons(TO_DO), *lessons()])
             raise ScriptError(
                 "There is no file and no lesson '{file}'; {remedy}", file=self.path, remedy=near
             ) from None
@@ -188,6 +183,6 @@ class Script:
         return self.path.name.removesuffix(".jsonl")
 
     @property
-    def has_tasks(self) -> bool:
-        """True if it is a lesson that asks a student to do something."""
-        return any("task" in entry for _, entry in self.lines)
+    def task_count(self) -> int:
+        """How many tasks it has: 0 if it is no lesson that asks a student to do something."""
+        return sum("task" in entry for _, entry in self.lines)

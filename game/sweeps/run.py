@@ -59,7 +59,6 @@ def sweep(
     if path is not None:
         check_output(path)
     journal = Journal(path, plan)
-    journal.open()
     failed = sum(map(_is_failure, journal.finished.values()))
     missing = [number for number in range(plan.size) if number not in journal.finished]
     progress(len(journal.finished), plan.size, failed)
@@ -87,15 +86,12 @@ class Journal:
     """
 
     def __init__(self, output: Path | None, plan: Plan) -> None:
-        self.path = None if output is None else output.with_name(output.name + ".journal")
-        self._plan = plan
-        self.finished: dict[int, list[Any]] = {}  # records by number of variant
-
-    def open(self) -> None:
         """Read what is finished already; begin the file if there is none. Raises SweepError, OSError."""
+        self.path = None if output is None else output.with_name(output.name + ".journal")
+        self.finished: dict[int, list[Any]] = {}  # records by number of variant
         if self.path is None:
             return
-        title = msgspec.json.encode({"pinjoint sweep": self._plan.fingerprint()})
+        title = msgspec.json.encode({"pinjoint sweep": plan.fingerprint()})
         with open(self.path, "a+b") as file:
             file.seek(0)
             kept = file.read()

@@ -24,9 +24,8 @@ SPEED_NOISE = 16.0 * EPSILON  # round-off of a speed, as a share of the speeds t
 NONE = -1  # no entry, no member
 DIRECT = 48  # contacts up to which a projection is solved directly; larger groups are solved by sweeps
 SHARED_START, SHARED_END = 1.0, 2.0  # flags of Disc.SHARED
-SHORTEST_SHARE = (
-    1.0 / 16.0
-)  # shortest step of piles and crowds, where discs are fast, as a share of the longest
+# shortest step of piles and crowds, where discs are fast, as a share of the longest
+SHORTEST_SHARE = 1.0 / 16.0
 TINY = 1e-300  # more than none, in any unit
 
 
@@ -184,7 +183,7 @@ class Group(NamedTuple):
     curve, CX and CY.
     noise: rate below which a contact closes by round-off only.
     active: the contacts of a projection; state: of each contact in the active-set method; chosen: those whose rates are now
-    brought to 0. matrix: work space.
+    brought to 0. matrix: work space. cut_short: how many impacts had more reflections than are followed.
     """
 
     members: Annotated[Integers, "n"]
@@ -204,6 +203,7 @@ class Group(NamedTuple):
     state: Annotated[Integers, "contacts"]
     chosen: Annotated[Integers, "contacts"]
     matrix: Annotated[Floats, DIRECT + 1, DIRECT]
+    cut_short: Annotated[Integers, 1]
 
     @classmethod
     def empty(cls, n: int, contacts: int) -> Group:

@@ -13,6 +13,7 @@ from pinjoint.components.language import tr
 from pinjoint.components.model import Model
 from pinjoint.components.obstacles import obstacles
 from pinjoint.components.table import read_only
+from pinjoint.systems.collision.columns import Group
 
 MOST_KEPT = 2**22  # impacts; of longer runs the earliest are forgotten
 _COLUMNS = ("time", "first", "second", "impulse", "energy_lost", "x", "y")
@@ -28,9 +29,11 @@ class Impacts:
     time: s. first, second: rows of the two particles; the rows of obstacles, such as walls, follow those of the
     particles. impulse: N·s along the line of centres. energy_lost: J; of a joint impact, a share. x, y: the point of
     contact, m. Each is an array. most_awaited: of free discs in one call, beyond which it raises TooManyImpacts.
+    cut_short: joint impacts of more reflections than are followed.
     """
 
     most_awaited = math.inf
+    cut_short = 0
 
     def __init__(self, model: Model) -> None:
         self._model = model
@@ -59,9 +62,15 @@ class Impacts:
         self._table[kept : kept + len(rows)] = rows
         self._count += len(rows)
 
+    def count_cut_short(self, group: Group) -> None:
+        """Count what a kernel has counted in a group since the last call."""
+        self.cut_short += int(group.cut_short[0])
+        group.cut_short[0] = 0
+
     def _take_back(self) -> None:
         """Remove impacts that going back in time has undone."""
         counted = self._model.clock.collisions
+        self.cut_short = self.cut_short if counted else 0
         if counted < self._first or counted > self._count:
             self._first = self._count = counted
         self._count = counted

@@ -16,24 +16,15 @@ from pinjoint.components.rod import Rod
 from pinjoint.components.toolbar import Toolbar
 from pinjoint.components.view import Hit, View
 from pinjoint.systems.broad_phase import distance_to_segments
-from pinjoint.systems.render.arrows import draw_loads, draw_particle_diagrams, draw_velocities
-from pinjoint.systems.render.cuts import draw_cuts
-from pinjoint.systems.render.diagrams import draw_diagrams
-from pinjoint.systems.render.empty_card import put_card
-from pinjoint.systems.render.form import compose_form
-from pinjoint.systems.render.free_bodies import draw_free_bodies
-from pinjoint.systems.render.labels import Placed, place_labels
-from pinjoint.systems.render.layout import Paper
-from pinjoint.systems.render.lesson_card import compose_lesson
+from pinjoint.systems.render.labels.placing import Placed, place_labels
 from pinjoint.systems.render.marks import Fills, Mark, Owners, Picture, Points, Stamps, Strokes
-from pinjoint.systems.render.members import draw_distributed_forces, draw_hinges, draw_moments
-from pinjoint.systems.render.overlays import BAR, draw_notice, draw_overlays, draw_scale, place_scale
-from pinjoint.systems.render.page import draw_page
-from pinjoint.systems.render.pointed import draw_pointed
-from pinjoint.systems.render.readouts import put_readouts
-from pinjoint.systems.render.sheet import DIRECTIONS, MANY, Sheet, Stage, measure
-from pinjoint.systems.render.sliders import SLIDER, put_sliders
-from pinjoint.systems.render.structure import (
+from pinjoint.systems.render.model.arrows import draw_loads, draw_particle_diagrams, draw_velocities
+from pinjoint.systems.render.model.cuts import draw_cuts
+from pinjoint.systems.render.model.diagrams import draw_diagrams
+from pinjoint.systems.render.model.free_bodies import draw_free_bodies
+from pinjoint.systems.render.model.members import draw_distributed_forces, draw_hinges, draw_moments
+from pinjoint.systems.render.model.sheet import DIRECTIONS, MANY, Sheet, Stage, measure
+from pinjoint.systems.render.model.structure import (
     draw_ghost,
     draw_grid,
     draw_halos,
@@ -42,11 +33,27 @@ from pinjoint.systems.render.structure import (
     draw_shape,
     label_names,
 )
-from pinjoint.systems.render.supports import draw_supports, support_sides
+from pinjoint.systems.render.model.supports import draw_supports, support_sides
+from pinjoint.systems.render.model.tools import draw_flashes, draw_preview
+from pinjoint.systems.render.model.utilisation import shade_rods
 from pinjoint.systems.render.theme import Theme, load_theme
-from pinjoint.systems.render.toolbar import compose_toolbar
-from pinjoint.systems.render.tools import draw_flashes, draw_preview
-from pinjoint.systems.render.utilisation import shade_rods
+from pinjoint.systems.render.ui.empty_card import put_card
+from pinjoint.systems.render.ui.form import compose_form
+from pinjoint.systems.render.ui.layout import Paper
+from pinjoint.systems.render.ui.lesson_card import compose_lesson
+from pinjoint.systems.render.ui.overlays import (
+    BAR,
+    draw_notice,
+    draw_overlays,
+    draw_scale,
+    place_scale,
+    taken_by_heading,
+)
+from pinjoint.systems.render.ui.page import draw_page
+from pinjoint.systems.render.ui.pointed import draw_pointed
+from pinjoint.systems.render.ui.readouts import put_readouts
+from pinjoint.systems.render.ui.sliders import SLIDER, put_sliders
+from pinjoint.systems.render.ui.toolbar import compose_toolbar
 
 REACH = 6.0  # points from the lines of an arrow
 
@@ -126,7 +133,7 @@ def _put_controls(paper: Paper, model: Model, view: View, theme: Theme) -> None:
 
 def _draw_structure(sheet: Sheet) -> None:
     """Rods, supports and particles, with diagrams, loads and velocities."""
-    draw_diagrams(sheet)
+    draw_diagrams(sheet, taken_by_heading(sheet))
     draw_ghost(sheet)
     draw_halos(sheet)
     sides = support_sides(sheet)

@@ -13,10 +13,10 @@ from pinjoint.components.model import Model
 from pinjoint.components.toolbar import Toolbar
 from pinjoint.components.view import View
 from pinjoint.systems.base import Phase, System
-from pinjoint.systems.render.labels import Placed
+from pinjoint.systems.render.backends.pygame_canvas import Canvas
+from pinjoint.systems.render.backends.raster import Raster
+from pinjoint.systems.render.labels.placing import Placed
 from pinjoint.systems.render.picture import compose_all
-from pinjoint.systems.render.pygame_canvas import Canvas
-from pinjoint.systems.render.raster import Raster
 from pinjoint.systems.render.theme import load_theme
 
 

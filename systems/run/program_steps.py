@@ -7,8 +7,8 @@ import math
 from pinjoint.components.model import Model
 from pinjoint.systems.base import MOST_PARTS, StopReason
 from pinjoint.systems.program.program import Program
-from pinjoint.systems.run.policy import ENDING
 from pinjoint.systems.run.programs import Programs
+from pinjoint.systems.run.recovery import FAILURES
 from pinjoint.systems.run.sleep import Sleep
 from pinjoint.systems.run.step_size import StepSize
 
@@ -53,6 +53,6 @@ class ProgramSteps:
         """
         clock, reason = self._model.clock, StopReason.DONE
         last = clock.steps + MOST_PARTS
-        while clock.time < target and clock.steps < last and reason not in ENDING:
+        while clock.time < target and clock.steps < last and reason not in (StopReason.EVENT, *FAILURES):
             _, reason = self.program.advance(last - clock.steps, target, target)
         return reason

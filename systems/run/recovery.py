@@ -14,11 +14,11 @@ from pinjoint.components.snapshot import Snapshot
 from pinjoint.systems.base import REVIEW_INTERVAL, StopReason
 from pinjoint.systems.program.faults import blame_mod
 from pinjoint.systems.program.program import MOTION, TURNING, Program
-from pinjoint.systems.run.policy import FAILURES
 from pinjoint.systems.run.programs import Programs
 from pinjoint.systems.run.sleep import Sleep
 from pinjoint.systems.run.step_size import StepSize
 
+FAILURES = (StopReason.DIVERGED, StopReason.UNRESOLVED, StopReason.FAILED)
 MOST_HALVINGS = 6  # of an automatic step before a run is given up
 
 MOVING = *MOTION, *TURNING, "rods.plastic_strain"

@@ -30,19 +30,18 @@ from pinjoint.systems.program.entries import Measure
 from pinjoint.systems.program.program import OBSERVED
 from pinjoint.systems.run.checkpoint import Checkpoint
 from pinjoint.systems.run.energy import Account, Energy
-from pinjoint.systems.run.policy import (
-    FAILURES,
+from pinjoint.systems.run.notes import (
     at_rest_since,
-    begin_steps,
     contact_warning,
     energy_warning,
     overlap_warning,
+    reflection_warning,
 )
 from pinjoint.systems.run.program_steps import ProgramSteps
 from pinjoint.systems.run.programs import Dynamics, Programs
-from pinjoint.systems.run.recovery import Recovery
+from pinjoint.systems.run.recovery import FAILURES, Recovery
 from pinjoint.systems.run.sleep import Sleep
-from pinjoint.systems.run.step_size import StepSize
+from pinjoint.systems.run.step_size import StepSize, begin_steps
 from pinjoint.systems.schedule import Plan, Schedule
 
 # Of the clock, as a run begins.
@@ -106,9 +105,8 @@ class Simulation:
         self._account = Account(model, self._measured)
         self._recovery = Recovery(model, self.programs, self._sleep, self.step_size)
         self._announces = True
-        self._parting: tuple[int, Generator[None, None, str]] | None = (
-            None  # that a frame left, at this revision
-        )
+        # that a frame left, at this revision
+        self._parting: tuple[int, Generator[None, None, str]] | None = None
         self._present: tuple[int, Snapshot] | None = None  # the state at this revision
         self.armed = False
         self.armed_revision = self._sound_at = -1
@@ -565,9 +563,18 @@ class Simulation:
         told = "" if warning else energy_warning(clock.largest_imbalance, clock.energy_scale)
         if told:
             warning = joined([told, self.step_size.remedy(clock.step_size)])
+        return joined([warning, *self._of_collisions(), self.note])
+
+    def _of_collisions(self) -> list[str]:
+        """What a person should know of impacts and contacts."""
         flying = self.programs.flying
-        overlap = overlap_warning(flying.deepest) if flying is not None else ""
-        return joined([warning, overlap, contact_warning(*self._driven_collisions.unclosed), self.note])
+        told = [contact_warning(*self._driven_collisions.unclosed), reflection_warning(self.impacts.cut_short)]
+        if flying is not None:
+            told.append(overlap_warning(flying.deepest))
+            if flying.created > 0.0:
+                energy = self.energy
+                told.append(energy_warning(-flying.created, max(abs(energy.initial), abs(energy.work))))
+        return told
 
     @property
     def said(self) -> str:

@@ -20,7 +20,15 @@ LAYERS = ("components", "systems", "game", "tests")  # each may import itself an
 RESOURCES = "assets"
 # of folders
 NAMES = {top: f"pinjoint.{top}" for top in ("components", "systems", RESOURCES)} | {"game": "pinjoint"}
-WINDOW = ("systems/render/pygame_*.py", "systems/input/pygame_*.py", "game/app.py")
+WINDOW = ("systems/render/*pygame_*.py", "systems/input/pygame_*.py", "game/app.py")
+# The folders of systems/render, each with those that it must not import: what it is made for.
+ROOMS = {
+    "labels": ("model", "ui", "backends"),
+    "model": ("ui", "backends"),
+    "ui": ("backends",),
+    "backends": ("labels", "model", "ui"),
+}
+COMPOSING = ("picture", "pygame_render")  # beside them, of all that they hold
 COMPILER = "systems/program/machine_code.py"  # numba is imported as soon as it is
 COMPILED = (COMPILER, "systems/program/*.py")
 SHARED = ("is_ours", "base", "broad_phase", "islands", "program")  # by all systems
@@ -90,6 +98,9 @@ def broken_order(path: str, layer: str, top: str, name: str) -> str | None:
         shared = other in SHARED or rest[:1] == ["kernels"] or own in COMPOSED
         if own.removesuffix(".py") != other and not shared:
             return f"systems meet in columns and events; they import only {', '.join(SHARED)} and kernels of each other"
+        inside = own == other == "render" and path.split("/")[2].removesuffix(".py")
+        if inside and inside not in COMPOSING and {*ROOMS.get(inside, ROOMS), *COMPOSING} & {*rest[:1]}:
+            return "no arrow runs up inside systems/render: what a picture needs is handed down"
     return None
 
 
@@ -246,6 +257,9 @@ def test_ours_are_told_from_others_by_name(module: str, ours: bool) -> None:
         ("systems/physics/system.py", "from ..plasticity import system"),
         ("systems/physics/system.py", "import pygame.gfxdraw"),
         ("systems/render/scene.py", "import pygame"),
+        ("systems/render/marks.py", "from pinjoint.systems.render.ui.layout import Row"),
+        ("systems/render/model/sheet.py", "from pinjoint.systems.render.ui.overlays import BAR"),
+        ("systems/render/ui/form.py", "from pinjoint.systems.render import picture"),
         ("systems/base.py", "from pinjoint.systems.physics.system import Elasticity"),
         ("game/session.py", "import systems.base"),
         ("tests/unit/test_rod.py", "from game import Session"),
@@ -265,9 +279,10 @@ def test_a_forbidden_import_is_found(path: str, line: str) -> None:
         ("systems/physics/system.py", "from pinjoint.systems.base import Law"),
         ("systems/physics/system.py", "from pinjoint.systems.plasticity.kernels import limited"),
         ("systems/physics/system.py", "from pinjoint.systems.plasticity import kernels\nfrom . import kernels"),
-        ("systems/render/pygame_canvas.py", "import pygame.gfxdraw"),
+        ("systems/render/backends/pygame_canvas.py", "import pygame.gfxdraw"),
         ("game/app.py", "import pygame\nfrom pinjoint.systems.physics.system import Elasticity"),
         ("systems/program/compiler.py", "import numba"),
+        ("systems/render/ui/overlays.py", "from pinjoint.systems.render.model.sheet import Sheet"),
         ("game/documents/models.py", "import msgspec, pinjoint.assets"),
         ("tests/unit/test_rod.py", "import pinjoint.systems.base, hypothesis"),
     ],

@@ -55,9 +55,8 @@ def test_the_readme_is_short() -> None:
 # --- what is shown is what comes out ---------------------------------------------------------------------
 
 NUMBER = re.compile(r"[-+]?\d+(?:\.\d+)?(?:e[-+]?\d+)?…?")
-NOISE = (
-    1e-7  # a smaller number is an error of rounding or of a tolerance: only its order of magnitude is compared
-)
+# a smaller number is an error of rounding or of a tolerance: only its order of magnitude is compared
+NOISE = 1e-7
 
 
 def alike(shown: str, found: str) -> bool:

@@ -14,7 +14,7 @@ FUNCTION = ast.FunctionDef | ast.AsyncFunctionDef
 
 MOST = {
     "lines": 61_655,
-    "files": 354,
+    "files": 358,
     "names": 3_484,  # functions, classes and constants of modules
     "public names": 2_144,
     "numbers": 1_331,  # other than 0, 1 and 2, in constants and defaults

@@ -13,10 +13,10 @@ from pinjoint.app import App
 from pinjoint.components.camera import Viewport
 from pinjoint.components.model import Model
 from pinjoint.components.view import View
-from pinjoint.systems.render.labels import Placed
+from pinjoint.systems.render.backends.pygame_canvas import Canvas
+from pinjoint.systems.render.backends.raster import load_raster
+from pinjoint.systems.render.labels.placing import Placed
 from pinjoint.systems.render.picture import compose
-from pinjoint.systems.render.pygame_canvas import Canvas
-from pinjoint.systems.render.raster import load_raster
 from pinjoint.systems.render.theme import load_theme
 from tests.benchmarks.models import mesh
 

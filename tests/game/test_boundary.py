@@ -16,7 +16,7 @@ from pinjoint.documents import models
 from pinjoint.documents.autosave import Autosave
 from pinjoint.documents.open_documents import ModelFile
 from pinjoint.systems.input.actions import ACTIONS, FILES
-from pinjoint.systems.render.pygame_canvas import Canvas
+from pinjoint.systems.render.backends.pygame_canvas import Canvas
 from tests.reference.models import triangle
 
 ERRORS = (np.linalg.LinAlgError("singular"), MemoryError(), RecursionError("too deep"), OSError(28, "no room"))

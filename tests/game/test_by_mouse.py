@@ -15,8 +15,8 @@ from pinjoint.editor.scenes.properties import Properties
 from pinjoint.editor.toolbar import of_mods
 from pinjoint.scripts.playing import Recorder, play, session_of
 from pinjoint.scripts.script import Script
-from pinjoint.systems.render.menu import pointed_at
 from pinjoint.systems.render.theme import load_theme
+from pinjoint.systems.render.ui.menu import pointed_at
 from tests.reference import bits
 from tests.reference.hits import hits_in, push
 

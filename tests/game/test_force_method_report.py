@@ -12,7 +12,7 @@ from pinjoint.components.view import TEXTBOOK, THESIS
 from pinjoint.documents import models
 from pinjoint.force_method.report import contents, report
 from pinjoint.force_method.tables import Column, Tables
-from pinjoint.systems.render.paper import LAYOUTS, WIDTH, Layout
+from pinjoint.systems.render.backends.paper import LAYOUTS, WIDTH, Layout
 from pinjoint.systems.statics.force_method import solve
 from pinjoint.systems.statics.theory import linear
 from pinjoint.systems.statics.unknowns import Unknown, redundants

@@ -14,11 +14,11 @@ from pinjoint.force_method import PARTS, words
 from pinjoint.force_method.copies import elastic_copy
 from pinjoint.force_method.guide import Guide
 from pinjoint.systems.render.marks import Text
-from pinjoint.systems.render.overlays import MEANINGS, meanings_of
-from pinjoint.systems.render.page import draw_page
+from pinjoint.systems.render.model.sheet import measure
 from pinjoint.systems.render.picture import compose_all
-from pinjoint.systems.render.sheet import measure
 from pinjoint.systems.render.theme import load_theme
+from pinjoint.systems.render.ui.overlays import MEANINGS, meanings_of
+from pinjoint.systems.render.ui.page import draw_page
 from pinjoint.systems.statics.theory import linear
 from tests.benchmarks.models import lattice
 from tests.reference.models import model

@@ -16,7 +16,7 @@ from pinjoint.lessons import progress
 from pinjoint.lessons.checking import check_lesson
 from pinjoint.lessons.course import Course
 from pinjoint.scripts.lines import perform
-from pinjoint.scripts.script import Script, ScriptError, lessons_with_tasks
+from pinjoint.scripts.script import TO_DO, Script, ScriptError, lessons
 from pinjoint.systems.render.marks import Text
 from pinjoint.systems.render.picture import compose, compose_all
 from pinjoint.systems.render.theme import load_theme
@@ -47,7 +47,7 @@ def taken_up(session: Session, name: str) -> Course:
     return session.course
 
 
-@pytest.mark.parametrize("name", lessons_with_tasks())
+@pytest.mark.parametrize("name", lessons(TO_DO))
 def test_a_lesson_is_as_its_author_means(name: str) -> None:
     script = Script(name)
     assert [str(failure) for failure in check_lesson(script)] == []
@@ -452,7 +452,7 @@ def test_the_start_page_offers_to_continue_what_was_begun(session: Session) -> N
         session.press("escape")
         return next(title for title in titles if title.startswith(("Learn: ", "Continue: ")))
 
-    names = lessons_with_tasks()
+    names = lessons(TO_DO)
     assert first() == "Learn: 1 Draw a structure"
     progress.keep(names[4], 1)
     assert first() == "Learn: 1 Draw a structure"
@@ -466,7 +466,7 @@ def test_the_start_page_offers_to_continue_what_was_begun(session: Session) -> N
 # --- the card --------------------------------------------------------------------------------------------
 
 
-@pytest.mark.parametrize("name", lessons_with_tasks())
+@pytest.mark.parametrize("name", lessons(TO_DO))
 def test_every_task_is_legible_in_windows_of_all_sizes(session: Session, name: str) -> None:
     course, sizes = begun(session, name), ((640, 480), (1280, 800))
     for task, size in itertools.product(range(len(course.lesson.tasks)), sizes):

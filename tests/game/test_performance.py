@@ -121,7 +121,7 @@ def test_a_lesson_is_chosen_from_the_pictures() -> None:
     session.act("load")
     tiles = [tile for tile in session.scenes.active.form.tiles if tile.section == LESSONS]  # type: ignore[attr-defined]
     shown = [
-        tile.source.title for tile in tiles if isinstance(tile.source, Script) and not tile.source.has_tasks
+        tile.source.title for tile in tiles if isinstance(tile.source, Script) and not tile.source.task_count
     ]
     assert shown == [Script(name).title for name in lessons()]
     session.type("two in")

@@ -29,7 +29,7 @@ from pinjoint.systems.program import compiler as programs
 from pinjoint.systems.program.compiler import Choice, Compile, GeneratedModule, forget_unused
 from pinjoint.systems.program.program import module_of
 from pinjoint.systems.program.writer import FEW
-from pinjoint.systems.render.raster import RASTER
+from pinjoint.systems.render.backends.raster import RASTER
 from tests.benchmarks.models import lattice, mesh, overlapping, touching
 
 RAW_LOAD = GeneratedModule.load_kept
@@ -591,10 +591,9 @@ def test_without_numba_all_jobs_have_the_same_problem(monkeypatch: pytest.Monkey
 
 SMALL = """
 from numba import njit
-from pinjoint.systems.program.compiler import generated
+from pinjoint.systems.program.compiler import entries_to, generated
 double = njit(lambda x: 2.0 * x)
-source = "from pinjoint.systems.program.kernel import kept\\n\\n@kept()\\ndef answer(x):\\n    return kernel(x)\\n"
-print(generated("test", source, {"kernel": double}).load().answer(21.0))
+print(generated("test", *entries_to({"answer": double})).load().answer(21.0))
 """
 
 

@@ -19,7 +19,7 @@ from pinjoint.documents import library, models
 from pinjoint.editor.scenes import files
 from pinjoint.editor.scenes.files import FileScene
 from pinjoint.editor.scenes.load import Load
-from pinjoint.scripts.script import Script, lessons, lessons_with_tasks
+from pinjoint.scripts.script import TO_DO, Script, lessons
 from pinjoint.systems.render.marks import Text
 from pinjoint.systems.render.picture import compose
 from pinjoint.systems.render.theme import load_theme
@@ -283,9 +283,7 @@ def test_typing_filters_by_title_and_name(session: Session) -> None:
     # Tiles that stand for those for which one row has no room.
     folded = [tile.title for tile in scene_of(session).form.tiles if tile.rest]
     assert {"All 1", "All lessons"} < {*folded}
-    assert len(everything) == len(models.bundled()) + len(lessons()) + len(lessons_with_tasks()) + 2 + len(
-        folded
-    )
+    assert len(everything) == len(models.bundled()) + len(lessons()) + len(lessons(TO_DO)) + 2 + len(folded)
     assert {*folded} <= {*everything}
     session.type("TOWER")
     assert shown_tiles(session) == ["my tower", "Lattice tower in the wind"]

@@ -11,7 +11,7 @@ from pinjoint.components.language import english, language, spoken
 from pinjoint.documents import library
 from pinjoint.lessons.checking import check_lesson
 from pinjoint.scripts.playing import Recorder, play, session_of
-from pinjoint.scripts.script import Script, ScriptError, lessons, lessons_with_tasks
+from pinjoint.scripts.script import TO_DO, Script, ScriptError, lessons
 from pinjoint.session import Session
 from pinjoint.systems.render.marks import Stamps
 from pinjoint.systems.render.picture import compose_all
@@ -27,7 +27,7 @@ def test_scripts_play_where_every_word_differs(source):
         assert not play(Script(source))
 
 
-@pytest.mark.parametrize("name", lessons_with_tasks())
+@pytest.mark.parametrize("name", lessons(TO_DO))
 def test_tasks_of_lessons_are_solved_where_every_word_differs(name):
     with pseudo(), library.data_apart():
         assert not check_lesson(Script(name))

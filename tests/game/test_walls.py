@@ -16,7 +16,7 @@ from pinjoint.documents.format import ModelError
 from pinjoint.systems.broad_phase import gaps
 from pinjoint.systems.render.marks import Strokes
 from pinjoint.systems.render.theme import load_theme
-from pinjoint.systems.render.thumbnails import thumbnail
+from pinjoint.systems.render.ui.thumbnails import thumbnail
 from tests.reference.hits import push
 from tests.reference.models import model
 

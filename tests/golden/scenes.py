@@ -16,9 +16,9 @@ from pinjoint import Session
 from pinjoint.components.tags import Hovered
 from pinjoint.components.view import drawn_positions, magnified
 from pinjoint.documents.library import data_in
+from pinjoint.systems.render.backends.pygame_canvas import Canvas
 from pinjoint.systems.render.marks import Picture
 from pinjoint.systems.render.picture import compose_all
-from pinjoint.systems.render.pygame_canvas import Canvas
 from pinjoint.systems.render.theme import load_theme
 from tests.systems.render.frame_models import all_supports, portal_at_rest
 

@@ -11,7 +11,7 @@ from pinjoint.components.model import Model
 from pinjoint.components.rod import bends
 from pinjoint.components.written import DIGITS, given, number
 from pinjoint.documents import models
-from pinjoint.systems.render.labels import LEADER_OPACITY
+from pinjoint.systems.render.labels.placing import LEADER_OPACITY
 from pinjoint.systems.render.marks import Picture, Points, Strokes, Text
 from pinjoint.systems.render.picture import compose
 from pinjoint.systems.render.theme import faded, load_theme

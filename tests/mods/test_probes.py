@@ -15,8 +15,8 @@ from pinjoint.included.probes import ENERGIES, probes_of, record
 from pinjoint.paths import quantity
 from pinjoint.systems.render.marks import Strokes, Text
 from pinjoint.systems.render.picture import compose
-from pinjoint.systems.render.plots import draw_plot, round_ticks
 from pinjoint.systems.render.theme import load_theme
+from pinjoint.systems.render.ui.plots import draw_plot, round_ticks
 from tests.systems.render.frame_models import portal_at_rest
 
 LIGHT = load_theme("light")

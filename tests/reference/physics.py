@@ -45,9 +45,8 @@ class Simulation:
         self.plastic_strain = [rod.plastic_strain for rod in self.elements.rods]
         self.dissipated_damping = self.dissipated_drag = self.dissipated_plastic = self.work = 0.0
         self.commit_plasticity(self.u)
-        self.dissipated_plastic = (
-            0.0  # the account begins after an initial state beyond the strength has yielded
-        )
+        # the account begins after an initial state beyond the strength has yielded
+        self.dissipated_plastic = 0.0
         self.forces = self.evaluate(self.time, self.u, self.v)
         self.initial_energy = self.kinetic_energy() + self.elastic_energy()
 

@@ -26,9 +26,8 @@ class Kind:
     title: str
     moves: bool = True
     rests: bool = False  # followed until it is at rest
-    shape: str = (
-        "truss"  # truss: stiff; graph: anything; chain: hanging; lattice: hundreds of rods; discs; on a truss
-    )
+    # truss: stiff; graph: anything; chain: hanging; lattice: hundreds of rods; discs; on a truss
+    shape: str = "truss"
     sizes: tuple[int, int] = (3, 8)
     islands: int = 1
     histories: tuple[str, ...] = ()

@@ -225,10 +225,10 @@ import signal
 signal.signal(signal.SIGXFSZ, signal.SIG_IGN)
 resource.setrlimit(resource.RLIMIT_FSIZE, (0, 0))  # every write to a file fails
 from numba import njit
-from pinjoint.systems.program.compiler import generated
+from pinjoint.systems.program.compiler import entries_to, generated
 
-source = "from pinjoint.systems.program.kernel import kept\\n\\n@kept()\\ndef answer(x):\\n    return kernel(x)\\n"
-module = generated("test", source, {"kernel": njit(lambda x: 2 * x)}).load()
+double = njit(lambda x: 2 * x)
+module = generated("test", *entries_to({"answer": double})).load()
 print(module.answer(21.0), module.answer(21))
 """
 

@@ -2,12 +2,10 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
-
 from pinjoint.components.field import Vector
 from pinjoint.components.model import Model
 from pinjoint.documents.models import ModelError
-from pinjoint.documents.open_documents import stamp_of
+from pinjoint.documents.open_documents import ModelFile
 from pinjoint.editor.context import Context
 from pinjoint.systems.edit import Refusal
 from pinjoint.systems.input.actions import ACTIONS, PAUSE, actions_of
@@ -26,9 +24,9 @@ def _save_again(context: Context, pixel: Vector) -> None:
     if file.path is None:
         context.scenes.request_from_pause("save")
         return
-    there = stamp_of(file.path)
-    if there not in ((), file.stamp):
-        context.document.file = replace(file, stamp=there)
+    there = ModelFile.at(file.path)
+    if there.stamp not in ((), file.stamp):
+        context.document.file = there
         raise Refusal(
             "Another window or program has changed '{file}'. Press Ctrl+S again to replace it, or S to save under"
             " another name.",

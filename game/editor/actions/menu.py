@@ -20,8 +20,8 @@ from pinjoint.systems.edit.placing import snapped
 from pinjoint.systems.edit.rods import share_at, weigh_along
 from pinjoint.systems.edit.supports import SUPPORTS, Held, held, support
 from pinjoint.systems.input.actions import ACTIONS, MENU, PAUSE, actions_of
-from pinjoint.systems.render.menu import entry_beside, pointed_at
 from pinjoint.systems.render.theme import load_theme
+from pinjoint.systems.render.ui.menu import entry_beside, pointed_at
 
 action = actions_of("Menu", (MENU,), while_drawing=True, in_menu=True)
 offer = actions_of("Menu")  # without a key

@@ -20,7 +20,7 @@ from pinjoint.editor.context import Context
 from pinjoint.editor.sliders import add_slider
 from pinjoint.systems.edit import Refusal
 from pinjoint.systems.input.actions import PAUSE, actions_of
-from pinjoint.systems.render.diagrams import NAMES
+from pinjoint.systems.render.model.diagrams import NAMES
 
 action = actions_of("Results", while_drawing=True)
 

@@ -3,19 +3,45 @@
 from __future__ import annotations
 
 from functools import partial
+from typing import Any
 
 from pinjoint.components.field import Vector
 from pinjoint.components.language import marked, tr
 from pinjoint.components.model import Model
-from pinjoint.components.slider import Place
+from pinjoint.components.slider import Place, SetSliders
 from pinjoint.editor.context import Context
 from pinjoint.editor.gestures.moving import Placing
-from pinjoint.editor.sliders import SCALE, move_to, remove_slider, scale_to, slider_of
+from pinjoint.editor.sliders import SCALE, control_of, scales
+from pinjoint.systems.edit import Refusal
 from pinjoint.systems.input.actions import actions_of
 
 action = actions_of("More")
 WHEEL = 0.02  # of its length, by which the wheel moves a slider
 KNOB_REACH = 9.0  # points from the knob's middle within which a drag holds it where it was gripped
+
+
+def _scale_to(context: Context, scale: float | None) -> None:
+    """Draw displacements to a scale; None: to the automatic one."""
+    for settings in context.scenes.active.scaled(context):
+        settings.displacement_scale = scale
+
+
+def _slide(context: Context, key: int, share: float) -> None:
+    """Take a slider to a share of its length, as one edit. Raises FieldError, and Refusal if it was removed meanwhile."""
+    model = context.model
+    if key == SCALE:
+        _scale_to(context, scales(context.scenes.active.scaled(context)[0]).value_at(share))
+        return
+    if key >= len(model.sliders):
+        raise Refusal("This slider has been removed.")
+    slider = model.sliders[key]
+    control, value = control_of(model, key, slider), slider.value_at(share)
+    with model.transaction(control.title if control is not None else marked("slider")):
+        for aim in slider.aims:
+            handles, values = aim.handles(model.tables), list[Any]()
+            for x, y in (getattr(handle, aim.field) for handle in handles if aim.axis):
+                values.append((value, y) if aim.axis == "x" else (x, value))
+            model.assign(handles, aim.field, values or [value] * len(handles))
 
 
 class Slide(Placing):
@@ -34,8 +60,7 @@ class Slide(Placing):
             self.move(context, pixel)
 
     def place(self, context: Context, pixel: Vector) -> str:
-        share = self._place.share_at(pixel[0] + self._grip)
-        move_to(context, self._key, slider_of(context, self._key).value_at(share))
+        _slide(context, self._key, self._place.share_at(pixel[0] + self._grip))
         return ""
 
 
@@ -52,6 +77,14 @@ def _drag_slider(context: Context, pixel: Vector) -> None:
         context.gesture = Slide(context, place, pixel)
 
 
+@action("automatic displacement scale")
+def _automatic(context: Context, pixel: Vector) -> None:
+    """Let the displacement scale follow from the model, or keep it as it is from now on."""
+    [settings, *_] = context.scenes.active.scaled(context)
+    is_automatic = settings.prescribed_displacement_scale is None
+    _scale_to(context, settings.displacement_scale if is_automatic else None)
+
+
 @action("click slider")
 def _click_slider(context: Context, pixel: Vector) -> None:
     """Take the knob to a pixel on its line; on the button, remove the slider, or let the scale be automatic."""
@@ -61,9 +94,11 @@ def _click_slider(context: Context, pixel: Vector) -> None:
     if not place.button.contains(pixel):
         Slide(context, place, pixel)
     elif place.control.key == SCALE:
-        automatic(context)
+        _automatic(context, pixel)
     else:
-        remove_slider(context, place.control.key)
+        model, key = context.model, place.control.key
+        with model.transaction(marked("slider removed")):
+            model.execute(SetSliders(model.sliders[:key] + model.sliders[key + 1 :]))
         context.notice = tr("Slider removed: {title}. Ctrl+Z brings it back.", title=place.control.title)
 
 
@@ -72,26 +107,17 @@ def _double_click_slider(context: Context, pixel: Vector) -> None:
     """The second click of two lets the displacement scale be automatic; of others it is another click."""
     place = _slider_at(context, pixel)
     if place is not None and place.control.key == SCALE and not place.button.contains(pixel):
-        scale_to(context, None)
+        _scale_to(context, None)
     else:
         _click_slider(context, pixel)
-
-
-def automatic(context: Context) -> None:
-    """Let the displacement scale follow from the model, or keep it as it is from now on."""
-    [settings, *_] = context.scenes.active.scaled(context)
-    is_automatic = settings.prescribed_displacement_scale is None
-    scale_to(context, settings.displacement_scale if is_automatic else None)
 
 
 def _step(by: float, context: Context, pixel: Vector) -> None:
     place = _slider_at(context, pixel)
     if place is not None and place.control.share is not None:
-        value = slider_of(context, place.control.key).value_at(place.control.share + by)
         with context.document.history.as_one(("slider", place.control.key)):
-            move_to(context, place.control.key, value)
+            _slide(context, place.control.key, place.control.share + by)
 
 
 action("slider up")(partial(_step, WHEEL))
 action("slider down")(partial(_step, -WHEEL))
-action("automatic displacement scale")(lambda context, pixel: automatic(context))

@@ -8,10 +8,10 @@ from operator import attrgetter
 from pinjoint.components.field import Vector
 from pinjoint.components.language import LANGUAGES, language, speak, tr
 from pinjoint.editor.context import Context
-from pinjoint.editor.view_model import count_of_pages
 from pinjoint.systems.edit import Refusal
 from pinjoint.systems.input.actions import ACTIONS, EVERY, IN_PICTURES, Perform, actions_of
 from pinjoint.systems.render.theme import load_theme
+from pinjoint.systems.render.ui.help import help_pages
 
 action = actions_of("View", EVERY, while_drawing=True)
 
@@ -69,16 +69,23 @@ action("smaller", "ctrl+-", "make text larger or smaller", repeats=True)(partial
 action("usual size", "ctrl+0", "reset the size of text")(partial(_magnify, 0))
 
 
+def _count_of_pages(context: Context) -> int:
+    """How many pages the keys of the active scene take; where view.help is more, the last one is shown."""
+    scene, view = context.scenes.active, context.view
+    lines = tuple(ACTIONS.help_lines(scene.name))
+    return len(help_pages(lines, scene.helped(context), view.pixel_ratio, load_theme(view.theme)))
+
+
 @action("toggle help", "f1", "show help: keys and glossary", pressed=attrgetter("view.help"))
 def _toggle_help(context: Context, pixel: Vector) -> None:
     """Show the next page of keys; after the last, none."""
-    count = count_of_pages(context)
+    count = _count_of_pages(context)
     context.view.help = (min(context.view.help, count) + 1) % (count + 1)
 
 
 def _turn(by: int, context: Context, pixel: Vector) -> None:
     """Another page of the keys, if there is one."""
-    count = count_of_pages(context)
+    count = _count_of_pages(context)
     context.view.help = min(max(min(context.view.help, count) + by, 1), count)
 
 

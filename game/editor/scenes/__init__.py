@@ -9,7 +9,7 @@ from pinjoint.editor.scenes.force_method import ForceMethod, Sets
 from pinjoint.editor.scenes.load import Load
 from pinjoint.editor.scenes.properties import Properties
 from pinjoint.systems.base import System
-from pinjoint.systems.render.sheet import Stage
+from pinjoint.systems.render.model.sheet import Stage
 
 __all__ = ["PHYSICS", "Scene", "Scenes", "Stage", "all_scenes", "scene_systems"]
 

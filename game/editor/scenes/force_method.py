@@ -20,10 +20,10 @@ from pinjoint.editor.context import Context, Scene
 from pinjoint.editor.sliders import scale_control
 from pinjoint.force_method import PARTS, words
 from pinjoint.systems.base import Phase, System
-from pinjoint.systems.render.arrows import largest_force
-from pinjoint.systems.render.overlays import heading_height
-from pinjoint.systems.render.page import page_height
+from pinjoint.systems.render.model.arrows import largest_force
 from pinjoint.systems.render.theme import load_theme
+from pinjoint.systems.render.ui.overlays import heading_height
+from pinjoint.systems.render.ui.page import page_height
 
 if TYPE_CHECKING:  # it imports scipy
     from pinjoint.force_method.guide import Guide, Mechanism, Set

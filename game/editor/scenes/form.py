@@ -13,11 +13,11 @@ from pinjoint.components.language import decimals, english, joined, marked, tr
 from pinjoint.components.wording import missing
 from pinjoint.editor.context import Context, Scene
 from pinjoint.systems.forms.typing import YES_NO, Typing
-from pinjoint.systems.render.form import FormLayout
-from pinjoint.systems.render.form_box import caret_at
-from pinjoint.systems.render.layout import Paper
-from pinjoint.systems.render.sheet import Stage
+from pinjoint.systems.render.model.sheet import Stage
 from pinjoint.systems.render.theme import load_theme
+from pinjoint.systems.render.ui.form import FormLayout
+from pinjoint.systems.render.ui.form_box import caret_at
+from pinjoint.systems.render.ui.layout import Paper
 
 
 class FormScene(Scene):

@@ -14,7 +14,7 @@ from pinjoint.documents.open_documents import ModelFile
 from pinjoint.editor.context import Context
 from pinjoint.editor.scenes.files import FileScene, saved_models
 from pinjoint.lessons import progress
-from pinjoint.lessons.progress import count_of, is_done, shelf
+from pinjoint.lessons.progress import is_done, shelf
 from pinjoint.scripts.script import Script, lessons
 
 LESSONS = marked("Begin here")
@@ -106,7 +106,7 @@ class Load(FileScene):
 
     def _open(self, context: Context, source: Any) -> None:
         try:
-            if isinstance(source, Script) and source.has_tasks:
+            if isinstance(source, Script) and source.task_count:
                 context.lesson = source  # it opens its models itself
             elif isinstance(source, Script):
                 context.open_here(source.source)
@@ -167,7 +167,7 @@ def _tasks() -> list[Tile]:
     """The lessons with tasks, from the first that is not done on; then those that are done."""
     offers, scripts = [], shelf()
     for script in sorted(scripts, key=is_done):
-        count, done = count_of(script), len(progress.done(script.name).tasks)
+        count, done = script.task_count, len(progress.done(script.name).tasks)
         caption = tr("a lesson of {count} tasks", count=count)
         if is_done(script):
             caption = tr("done: all {count} tasks", count=count)

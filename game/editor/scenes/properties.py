@@ -18,8 +18,8 @@ from pinjoint.editor.context import Context
 from pinjoint.editor.scenes.form import FormScene
 from pinjoint.systems.edit.picking import pick
 from pinjoint.systems.forms import answers, properties, results
-from pinjoint.systems.render.form import FormLayout
-from pinjoint.systems.render.sheet import Stage
+from pinjoint.systems.render.model.sheet import Stage
+from pinjoint.systems.render.ui.form import FormLayout
 
 
 class Properties(FormScene):

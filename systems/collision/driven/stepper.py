@@ -102,3 +102,4 @@ class DrivenCollisions:
             clock = self.model.clock
             self.model.writable("clock.collisions")[0] = clock.collisions + count
             whole[Whole.REPORTED] = 0
+        self._impacts.count_cut_short(driven.group)

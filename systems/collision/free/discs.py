@@ -42,9 +42,8 @@ from pinjoint.systems.program.compiler import Choice, GeneratedModule, entries_t
 SAME_PLACE = 1e-12  # of the largest coordinate: ends of obstacles nearer than this are one
 REPORTED_AT_ONCE = 512  # impacts; fetched before more are reported
 PILE_STEP_SHARE = 0.03  # longest step of piles: of the time in which a disc falls through its diameter
-WORK_AT_ONCE = (
-    2**22
-)  # discs × events, or pairs × sweeps, after which a kernel returns: Python heeds Ctrl+C, a window draws
+# discs × events, or pairs × sweeps, after which a kernel returns: Python heeds Ctrl+C, a window draws
+WORK_AT_ONCE = 2**22
 MORE_PATIENCE = 64  # calm steps between two searches for the equilibrium of a pile
 
 
@@ -178,7 +177,8 @@ class Discs:
             self.counts[Count.LISTED] = NONE
         elif reason is Reason.GROUP_FULL:
             size = 2 * len(self.group.links)
-            self.group, self.pile = Group.empty(n, size), Pile.empty(n, size)
+            group = Group.empty(n, size)._replace(cut_short=self.group.cut_short)
+            self.group, self.pile = group, Pile.empty(n, size)
             self.counts[Count.LISTED] = NONE
             self.report = np.zeros((max(REPORTED_AT_ONCE, size), len(Detail)))
             self.constraints = self.constraints.enlarged(2 * size, self.counts)
@@ -325,6 +325,11 @@ class Discs:
     def deepest(self) -> float:
         """How far discs of a pile were in one another at most so far, in radii of the smaller disc."""
         return float(self.numbers[Number.DEEPEST])
+
+    @property
+    def created(self) -> float:
+        """Energy (J) that steps of piles have given back of all that was lost, to discs that jam."""
+        return max(float(self.numbers[Number.MOST_LOSS] - self.numbers[Number.LOSS]), 0.0)
 
     def state_at(self, time: float) -> tuple[Floats, Floats]:
         """Displacements (m) and velocities (m/s) at a time (s) between the last event and the next."""

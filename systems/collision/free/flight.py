@@ -209,6 +209,7 @@ class Flight:
             kept = np.concatenate(found)
             self._impacts.record(kept, happened - len(kept))
             self.model.writable("clock.collisions")[0] = self.model.clock.collisions + happened
+        self._impacts.count_cut_short(discs.group)
         found.clear()
         self._happened = 0
         return discs

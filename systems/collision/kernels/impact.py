@@ -18,12 +18,10 @@ from pinjoint.systems.collision.kernels.projection import (
     push_apart,
 )
 
-REFLECTIONS_BEFORE_JAM_TEST = (
-    256  # after which, and after twice as many, …, a test shows whether they can ever end
-)
-MOST_REFLECTIONS = (
-    1000000  # of contacts; after these, or where they never end, the rest of the impact is plastic
-)
+# after which, and after twice as many, …, a test shows whether they can ever end
+REFLECTIONS_BEFORE_JAM_TEST = 256
+# of contacts; after these, which is counted, or where they never end, the rest is plastic
+MOST_REFLECTIONS = 1000000
 
 
 @compiled
@@ -61,11 +59,12 @@ def _respond_alone(restitution, group):
 def _reflect(members, count, group):
     """The elastic impact."""
     contacts, motion, start = group.contacts, group.motion, group.start
-    test = REFLECTIONS_BEFORE_JAM_TEST
+    test, jammed = REFLECTIONS_BEFORE_JAM_TEST, False
     for turn in range(MOST_REFLECTIONS // count):
         if turn == test:
             test = 2 * turn
-            if _is_jammed(members, count, group):
+            jammed = _is_jammed(members, count, group)
+            if jammed:
                 break
         approaching = 0
         for c in range(count):
@@ -83,6 +82,8 @@ def _reflect(members, count, group):
         for k in range(approaching):
             c = group.active[k]
             contacts[c, Contact.TOTAL_IMPULSE] += 2.0 * contacts[c, Contact.IMPULSE]
+    if not jammed:
+        group.cut_short[0] += 1
     _make_plastic(members, count, group)
     for c in range(count):
         contacts[c, Contact.TOTAL_IMPULSE] += contacts[c, Contact.IMPULSE]

@@ -50,14 +50,12 @@ SMALL_PILE = 50  # contacts; with more of them, these are enough:
 DEPTH = 9.5e-4  # of the smallest radius
 ROUGHNESS = 0.05  # of the fastest travel in the step
 NEARBY = 0.2  # of the radius of the smaller of two discs: gap below which they move on straight lines
-CALM_TRAVEL = (
-    0.004  # of the smallest radius, in a step: a disc that travels less, or than free fall gives, is calm
-)
+# of the smallest radius, in a step: a disc that travels less, or than free fall gives, is calm
+CALM_TRAVEL = 0.004
 LEAST_PATIENCE = 16  # calm steps before a pile first seeks its equilibrium
 LARGE_GROUP = 256  # contacts at one instant, above which weights that press on them make steps cheaper
-LEAST_WORK = (
-    300  # contacts, and one for each disc, dealt with in WORK_STEPS steps before events give way to steps
-)
+# contacts, and one for each disc, dealt with in WORK_STEPS steps before events give way to steps
+LEAST_WORK = 300
 WORK_STEPS = 10.0
 
 

@@ -14,9 +14,8 @@ from pinjoint.systems.collision.columns import EPSILON, SHARED_END, SHARED_START
 from pinjoint.systems.collision.kernels import compiled
 
 INFINITY = math.inf
-ROUND_OFF = (
-    1e-9  # of a distance: more than that of the sums that tell which discs stay apart, or move far in a step
-)
+# of a distance: more than that of the sums that tell which discs stay apart, or move far in a step
+ROUND_OFF = 1e-9
 PLACE_NOISE = 64.0 * EPSILON  # of both positions and paths: discs this near touch
 TURN_PRECISION = 1e-10
 MOST_ROOT_ITERATIONS = 2200  # what bisection alone needs across all exponents and bits of a double; others: 5

@@ -7,7 +7,7 @@ import pytest
 
 from pinjoint import Session
 from pinjoint.systems.collision.kernels.pile import DEPTH
-from pinjoint.systems.run.policy import overlap_warning
+from pinjoint.systems.run.notes import overlap_warning
 from pinjoint.systems.run.simulation import Simulation
 
 JAMS = Path(__file__).parent / "jams"
@@ -56,3 +56,15 @@ def test_overlaps_that_a_pile_did_not_keep_are_told() -> None:
     run.run_to(0.5)
     assert "were in one another by up to" in run.said
     assert overlap_warning(DEPTH) == ""
+
+
+def test_energy_that_a_jam_takes_from_what_was_lost_before_is_told() -> None:
+    """Steps of this pile of light and heavy discs created a fifth of all that was supplied, without a word."""
+    run = opened("energy_from_losses")
+    run.run_to(0.49)
+    energy = run.energy
+    assert energy.imbalance < -0.2 * energy.work
+    assert "The time steps created 2" in run.said
+    once = opened("unequal_masses")
+    once.run_to(0.5)
+    assert "created" not in once.said  # less than a tenth

@@ -13,7 +13,7 @@ from pinjoint.components.rod import Rod
 from pinjoint.components.tags import Selected
 from pinjoint.editor.scenes.form import FormScene
 from pinjoint.editor.scenes.properties import Properties
-from pinjoint.systems.render.form import FormLayout
+from pinjoint.systems.render.ui.form import FormLayout
 from tests.reference.models import model, particle, rod, triangle
 
 SIZES = [(320, 240), (640, 480), (3840, 2160)]

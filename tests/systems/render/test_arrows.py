@@ -9,8 +9,8 @@ from pinjoint.components.particle import Particle
 from pinjoint.components.tags import DiagramShown
 from pinjoint.components.view import Status
 from pinjoint.session import Session
-from pinjoint.systems.render.arrows import LONGEST, MOST, SHORTEST
 from pinjoint.systems.render.marks import Fills, Strokes
+from pinjoint.systems.render.model.arrows import LONGEST, MOST, SHORTEST
 from pinjoint.systems.render.picture import compose
 from tests.systems.render.pictures import LIGHT, fill, marks_of, picture_of, triangle, view_of
 

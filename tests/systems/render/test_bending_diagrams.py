@@ -11,9 +11,9 @@ from pinjoint import Session
 from pinjoint.components.bent import AXIAL, MOMENT, QUANTITIES, SHEAR
 from pinjoint.components.tags import DiagramShown
 from pinjoint.systems.render.marks import Bars, Discs, Fills, Picture, Strokes, Text
-from pinjoint.systems.render.overlays import MEANINGS
 from pinjoint.systems.render.picture import compose
 from pinjoint.systems.render.theme import faded
+from pinjoint.systems.render.ui.overlays import MEANINGS
 from tests.systems.render.frame_models import (
     CLAMPED,
     EI,

@@ -12,10 +12,10 @@ from pinjoint.components.particle import Particle
 from pinjoint.components.rod import spawn_rods
 from pinjoint.components.tags import Selected
 from pinjoint.components.view import Status, View
+from pinjoint.systems.render.backends.pygame_canvas import Canvas, _rounded, _small_rounded
+from pinjoint.systems.render.backends.raster import stroke_coverage
 from pinjoint.systems.render.marks import Panel, Picture, Stamps, Strokes, Text
 from pinjoint.systems.render.picture import compose
-from pinjoint.systems.render.pygame_canvas import Canvas, _rounded, _small_rounded
-from pinjoint.systems.render.raster import stroke_coverage
 from pinjoint.systems.render.theme import load_theme
 from pinjoint.systems.render.typography import WEIGHTS, text_width
 from tests.properties.limits import within

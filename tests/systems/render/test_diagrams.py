@@ -8,8 +8,8 @@ from hypothesis import strategies as st
 from pinjoint.components.model import Model
 from pinjoint.components.particle import Particle
 from pinjoint.components.tags import DiagramShown
-from pinjoint.systems.render.diagrams import diagram_factor, scale_step
 from pinjoint.systems.render.marks import Bars, Fills, Picture, Strokes
+from pinjoint.systems.render.model.diagrams import diagram_factor, scale_step
 from pinjoint.systems.render.picture import compose
 from tests.systems.render.pictures import LIGHT, fill, marks_of, picture_of, triangle, view_of
 

@@ -10,9 +10,9 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from pinjoint.components.camera import Viewport
+from pinjoint.systems.render.backends.pygame_canvas import Canvas
 from pinjoint.systems.render.framing import framed
 from pinjoint.systems.render.marks import Bars, Discs, Fills, Mark, Panel, Picture, Stamps, Strokes, Text
-from pinjoint.systems.render.pygame_canvas import Canvas
 from pinjoint.systems.render.symbols import SYMBOLS
 
 INK, PALE = (20, 30, 40, 255), (200, 210, 220, 255)

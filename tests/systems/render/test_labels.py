@@ -14,9 +14,9 @@ from pinjoint.components.rod import spawn_rods
 from pinjoint.components.tags import Hovered, Selected
 from pinjoint.components.view import Status
 from pinjoint.components.written import number
-from pinjoint.systems.render.labels import Label, Placed, place_labels
+from pinjoint.systems.render.labels.occupancy import FAINT, STRONG, Occupancy
+from pinjoint.systems.render.labels.placing import Label, Placed, place_labels
 from pinjoint.systems.render.marks import Panel, Text
-from pinjoint.systems.render.occupancy import FAINT, STRONG, Occupancy
 from pinjoint.systems.render.picture import compose
 from tests.reference.boxes import overlapping, text_boxes
 from tests.systems.render.pictures import LIGHT, fill, marks_of, picture_of, triangle, view_of

@@ -1,8 +1,8 @@
 """What the window draws in another language: keys with their names, and the glossary. Nothing is kept from before."""
 
 from pinjoint.session import Session
-from pinjoint.systems.render.buttons import written_key
-from pinjoint.systems.render.help import terms
+from pinjoint.systems.render.ui.buttons import written_key
+from pinjoint.systems.render.ui.help import terms
 from tests.golden.scenes import composed
 from tests.pseudo import accented, pseudo
 

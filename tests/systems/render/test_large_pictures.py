@@ -8,8 +8,8 @@ from pinjoint.components.model import Model
 from pinjoint.components.tags import Selected
 from pinjoint.components.view import View
 from pinjoint.systems.render.clip import clip_segments
+from pinjoint.systems.render.labels.occupancy import FAINT, STRONG, Occupancy
 from pinjoint.systems.render.marks import Bars, Picture, Strokes
-from pinjoint.systems.render.occupancy import FAINT, STRONG, Occupancy
 from pinjoint.systems.render.picture import compose
 from pinjoint.systems.render.theme import load_theme
 from tests.benchmarks.models import lattice

@@ -11,9 +11,9 @@ from pinjoint.components.tags import Selected
 from pinjoint.components.view import Shape
 from pinjoint.systems.edit.picking import pick_rod
 from pinjoint.systems.render.marks import Discs, Fills, Picture, Stamps, Strokes
+from pinjoint.systems.render.model.sheet import measure
+from pinjoint.systems.render.model.supports import DOWN, LEFT, RIGHT
 from pinjoint.systems.render.picture import compose
-from pinjoint.systems.render.sheet import measure
-from pinjoint.systems.render.supports import DOWN, LEFT, RIGHT
 from tests.systems.render.frame_models import (
     CLAMPED,
     PINNED,

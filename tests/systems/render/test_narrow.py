@@ -7,11 +7,11 @@ import pygame
 import pytest
 
 from pinjoint import Session
-from pinjoint.systems.render.form_box import window_of
+from pinjoint.systems.render.backends.pygame_canvas import Canvas
 from pinjoint.systems.render.picture import compose
-from pinjoint.systems.render.pygame_canvas import Canvas
 from pinjoint.systems.render.theme import load_theme
 from pinjoint.systems.render.typography import fitting, shortened, text_width
+from pinjoint.systems.render.ui.form_box import window_of
 from tests.properties.limits import within
 
 SCENES = {  # what is pressed in the pause

@@ -5,7 +5,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from pinjoint.systems.render.clip import clip_segments
-from pinjoint.systems.render.labels import half_size
+from pinjoint.systems.render.labels.placing import half_size
 from pinjoint.systems.render.typography import shortened, text_width, wrapped
 
 coordinate = st.floats(-50, 50)

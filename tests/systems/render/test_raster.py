@@ -7,9 +7,9 @@ from numpy.typing import NDArray
 
 from pinjoint.components.camera import Viewport
 from pinjoint.components.field import Vector
+from pinjoint.systems.render.backends.pygame_canvas import Canvas
+from pinjoint.systems.render.backends.raster import _around, load_raster, stroke_coverage
 from pinjoint.systems.render.marks import Bars, Discs, Mark, Picture, Points, Strokes
-from pinjoint.systems.render.pygame_canvas import Canvas
-from pinjoint.systems.render.raster import _around, load_raster, stroke_coverage
 
 BLACK, WHITE = (0, 0, 0, 255), (255, 255, 255, 255)
 SIZE = 40

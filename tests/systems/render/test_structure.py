@@ -11,8 +11,8 @@ from pinjoint.components.tags import Hovered, Selected
 from pinjoint.components.view import View
 from pinjoint.components.world import Derivation
 from pinjoint.systems.render.marks import Bars, Discs, Fills, Panel, Stamps, Strokes, Text
+from pinjoint.systems.render.model.supports import DOWN, LEFT, NO_SUPPORT, RIGHT, UP, freest_sides
 from pinjoint.systems.render.picture import compose
-from pinjoint.systems.render.supports import DOWN, LEFT, NO_SUPPORT, RIGHT, UP, freest_sides
 from tests.systems.render.pictures import LIGHT, fill, marks_of, picture_of, triangle, view_of
 
 

@@ -11,10 +11,10 @@ from pinjoint.components.camera import Viewport
 from pinjoint.components.model import Model
 from pinjoint.components.tags import Selected
 from pinjoint.pictures import path_of
+from pinjoint.systems.render.backends.pdf import as_pdf
+from pinjoint.systems.render.backends.shapes import Circle, Line, grouped
+from pinjoint.systems.render.backends.svg import as_svg
 from pinjoint.systems.render.marks import Discs, Mark, Panel, Picture, Stamps, Strokes, Text
-from pinjoint.systems.render.pdf import as_pdf
-from pinjoint.systems.render.shapes import Circle, Line, grouped
-from pinjoint.systems.render.svg import as_svg
 from tests.systems.render.pictures import picture_of, triangle
 
 SVG = "{http://www.w3.org/2000/svg}"

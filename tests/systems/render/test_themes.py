@@ -5,8 +5,8 @@ import itertools
 import numpy as np
 import pytest
 
+from pinjoint.systems.render.model.utilisation import LEVELS, shade
 from pinjoint.systems.render.theme import load_theme, theme_names
-from pinjoint.systems.render.utilisation import LEVELS, shade
 from tests.systems.render.pictures import LIGHT
 
 

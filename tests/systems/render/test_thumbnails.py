@@ -10,7 +10,7 @@ from pinjoint.documents import models
 from pinjoint.documents.previews import preview, solved
 from pinjoint.systems.render.marks import Bars
 from pinjoint.systems.render.theme import load_theme
-from pinjoint.systems.render.thumbnails import extent, thumbnail
+from pinjoint.systems.render.ui.thumbnails import extent, thumbnail
 from tests.reference.models import triangle
 
 

@@ -8,8 +8,8 @@ from pinjoint.components.rod import utilisation
 from pinjoint.components.tags import Selected
 from pinjoint.session import Session
 from pinjoint.systems.render.marks import Panel, Strokes
+from pinjoint.systems.render.model.utilisation import LEVELS, first_at_limit, shade
 from pinjoint.systems.render.theme import load_theme, theme_names
-from pinjoint.systems.render.utilisation import LEVELS, first_at_limit, shade
 from tests.systems.render.pictures import LIGHT, fill, marks_of, picture_of, triangle
 from tests.systems.render.test_themes import VISIONS, lab
 

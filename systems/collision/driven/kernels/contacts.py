@@ -25,9 +25,8 @@ from pinjoint.systems.program.entries import Account, Control
 
 CLOSED_GAP = 1e-13  # of the smaller radius: contacts with a smaller gap are closed
 LOOSELY_CLOSED_GAP = 1e-11  # instead, after STRICT_TRIES: gaps in a row between walls hardly follow forces
-COMPLIANCE_GAP = (
-    2e-11  # of how far forces move particles: a gap that small is closed; see FIRM in complementarity.py
-)
+# of how far forces move particles: a gap that small is closed; see FIRM in complementarity.py
+COMPLIANCE_GAP = 2e-11
 STRICT_TRIES, MOST_FORCE_TRIES = 3, 8  # tries of the forces in a step
 STEP_CUT = 0.25  # of a step whose forces are not found: the length of the step taken instead
 MOST_STEP_CUTS = 12  # after which forces no longer matter, and those of the step before are good enough

@@ -29,9 +29,8 @@ from pinjoint.systems.program.entries import Account, Control
 
 CROWD_CONTACTS = 24  # persistent contacts and impacts in the next step, from which on particles are a crowd
 CROWD_PARTICLES = 8  # particles that are no nodes, below which they are no crowd
-DEEPEST_OVERLAP = (
-    1e-12  # of a radius, by which particles may sink in in a step; as long as tries are left, CLOSED_GAP
-)
+# of a radius, by which particles may sink in in a step; as long as tries are left, CLOSED_GAP
+DEEPEST_OVERLAP = 1e-12
 TOLD_OVERLAP = 1e-9  # of a radius: a message tells of more, where all tries leave it
 TRAVEL = 0.35  # relative travel of two particles in a longer step than the shortest, at most, in radii of the smaller
 

@@ -1,0 +1,1 @@
+"""What draws marks: in a window, as PNG, SVG and PDF."""

@@ -1,0 +1,292 @@
+"""Paper: headings, texts, tables, matrices and pictures on pages of A4, as a PDF; the same contents give the same file."""
+
+from __future__ import annotations
+
+import io
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from operator import itemgetter
+from typing import Any
+from xml.sax.saxutils import escape
+
+from reportlab.lib.colors import Color, black
+from reportlab.lib.pagesizes import A4
+from reportlab.lib.styles import ParagraphStyle
+from reportlab.lib.units import mm
+from reportlab.pdfbase.pdfmetrics import stringWidth
+from reportlab.platypus import Flowable, Paragraph, SimpleDocTemplate, Table
+
+from pinjoint.components.wording import UNPRINTABLE
+from pinjoint.systems.render.backends.pdf import draw_picture, embed_fonts
+from pinjoint.systems.render.marks import Picture
+
+embed_fonts()  # widths of texts are wanted before there is a page
+
+REGULAR, BOLD = "Inter regular", "Inter semibold"
+MARGIN = 16 * mm
+WIDTH = A4[0] - 2 * MARGIN  # points of a column of text
+PIXEL = 0.64  # points of a pixel of a picture
+GUTTER = 4 * mm  # between what stands side by side
+REST = 54 * mm  # the least width of a text that takes what is left of a row
+_FRAME = 6.0  # points that frames of reportlab leave inside margins
+_GREY = Color(0.35, 0.38, 0.45)
+_LEAST = 7.5  # points of type; wider tables are divided
+_PADDING = 2.6  # points to either side of what is in a table
+_BRACKET, _BESIDE = 2.0, 2.5  # points: how far brackets of matrices reach, and beside their numbers
+
+_STYLES = {  # font, size and leading relative to text, grey, space before and after in lines, indented
+    "title": (BOLD, 1.6, 1.9, False, 0.0, 0.0, 0.0),
+    "subtitle": (REGULAR, 0.95, 1.25, True, 0.0, 0.0, 0.0),
+    "heading": (BOLD, 1.15, 1.4, False, 0.6, 0.15, 0.0),
+    "text": (REGULAR, 1.0, 1.3, False, 0.0, 0.1, 0.0),
+    "equation": (REGULAR, 1.0, 1.35, False, 0.0, 0.05, 1.0),
+    "result": (BOLD, 1.05, 1.5, False, 0.0, 0.1, 1.0),
+    "caption": (REGULAR, 0.9, 1.2, True, 0.0, 0.2, 0.0),
+}
+
+# parts below each other, and their width in points; 0: what is left of a row
+Block = tuple[float, list[Flowable]]
+
+
+@dataclass(frozen=True)
+class Layout:
+    """How large things are: type (points), the greatest height of a figure (points), and how many times as wide as high is
+    a structure of which two figures stand in a row, not three."""
+
+    size: float
+    figure: float
+    flat: float
+
+    def text(self, words: str, style: str = "text") -> Paragraph:
+        """A paragraph: "title", "subtitle", "heading", "text", "equation", "result" or "caption"."""
+        font, size, leading, grey, before, after, indent = _STYLES[style]
+        made = ParagraphStyle(
+            style,
+            fontName=font,
+            fontSize=max(size * self.size, _LEAST),
+            leading=max(size * self.size, _LEAST) * leading / size,
+            spaceBefore=before * self.size,
+            spaceAfter=after * self.size,
+            leftIndent=indent * self.size,
+            textColor=_GREY if grey else black,
+            keepWithNext=style == "heading",
+        )
+        return Paragraph(escape(UNPRINTABLE.sub("�", words)), made)
+
+    def tables(self, head: Sequence[str], rows: Sequence[Sequence[str]], *, summed: bool) -> list[Block]:
+        """A table under a head, of which lines are parted by "\\n"; in several what is wider than a page.
+
+        summed: the last row stands below a rule.
+        """
+        whole = [list(head), *map(list, rows)]
+        found: list[Block] = []
+        for columns in _fitting(whole, WIDTH):
+            cells = [[row[at] for at in columns] for row in whole]
+            size = max(0.9 * self.size, _LEAST)
+            size = size if sum(_widths(cells, size)) <= WIDTH else _LEAST
+            shown = [["\n".join(_printable(cell)) for cell in row] for row in cells]
+            widths = _widths(cells, size)
+            made = Table(shown, colWidths=widths, repeatRows=1, hAlign="LEFT", spaceAfter=0.5 * size)
+            made.setStyle(_ruled(size, summed=summed))
+            found.append((sum(widths), [made]))
+        return found
+
+
+LAYOUTS = (  # from the most comfortable to one by which most fits on a page
+    Layout(9.2, 68 * mm, 0.0),
+    Layout(9.0, 62 * mm, 1.6),
+    Layout(8.4, 50 * mm, 1.6),
+    Layout(7.8, 40 * mm, 2.6),
+    Layout(7.5, 36 * mm, 9.0),
+)
+
+
+class Figure(Flowable):  # type: ignore[misc]
+    """A picture, with a caption below it."""
+
+    def __init__(self, picture: Picture, caption: Paragraph) -> None:
+        super().__init__()
+        self._picture, self._caption = picture, caption
+        self.width, self.height = PIXEL * picture.viewport.width, PIXEL * picture.viewport.height
+
+    def wrap(self, width: float, height: float) -> tuple[float, float]:
+        """Its size in points."""
+        _, self._below = self._caption.wrap(self.width, height)
+        return self.width, self.height + self._below
+
+    def draw(self) -> None:
+        """Draw it at the origin of the canvas."""
+        page = self.canv
+        self._caption.drawOn(page, 0, 0)
+        page.saveState()
+        page.translate(0, self._below)
+        page.scale(PIXEL, PIXEL)
+        draw_picture(page, self._picture, self._picture.viewport.height)
+        page.restoreState()
+
+
+def in_rows(blocks: Sequence[Block]) -> list[Flowable]:
+    """Blocks side by side as they fit, row below row, which no page break separates."""
+    found: list[Flowable] = []
+    row: list[Block] = []
+    for block in blocks:
+        least = block[0] or REST
+        taken = sum((width or REST) + GUTTER for width, _ in row)
+        if row and taken + least > WIDTH + 0.5:
+            found.append(_beside(row))
+            row = []
+        row.append(block)
+    if row:
+        found.append(_beside(row))
+    return found
+
+
+def _beside(row: Sequence[Block]) -> Flowable:
+    flexible = sum(not width for width, _ in row)
+    left = WIDTH - sum(width for width, _ in row) - GUTTER * (len(row) - 1)
+    widths = [width or left / flexible for width, _ in row]
+    gutter = GUTTER if flexible or len(row) < 2 else GUTTER + min(left / (len(row) - 1), 2 * GUTTER)
+    columns = [width + gutter for width in widths[:-1]] + [widths[-1]]
+    made = Table([[list(parts) for _, parts in row]], colWidths=columns, hAlign="LEFT")
+    made.setStyle(
+        [
+            *_padded(0, 2),
+            ("RIGHTPADDING", (0, 0), (-2, -1), gutter),
+            ("VALIGN", (0, 0), (-1, -1), "TOP"),
+        ]
+    )
+    return made
+
+
+def _ruled(size: float, *, summed: bool) -> list[tuple[Any, ...]]:
+    """The style of a table with a head and, perhaps, a sum at the foot."""
+    style: list[tuple[Any, ...]] = [
+        ("FONT", (0, 0), (-1, -1), REGULAR, size, 1.2 * size),
+        ("FONT", (0, 0), (-1, 0), BOLD, size, 1.2 * size),
+        ("ALIGN", (1, 0), (-1, -1), "RIGHT"),
+        ("VALIGN", (0, 0), (-1, 0), "BOTTOM"),
+        ("LEFTPADDING", (0, 0), (-1, -1), _PADDING),
+        ("RIGHTPADDING", (0, 0), (-1, -1), _PADDING),
+        ("TOPPADDING", (0, 0), (-1, -1), 0.03 * size),
+        ("BOTTOMPADDING", (0, 0), (-1, -1), 0.14 * size),
+        ("LINEABOVE", (0, 0), (-1, 0), 0.8, black),
+        ("LINEBELOW", (0, 0), (-1, 0), 0.4, black),
+        ("LINEBELOW", (0, -1), (-1, -1), 0.8, black),
+    ]
+    if summed:
+        style += [
+            ("LINEABOVE", (0, -1), (-1, -1), 0.4, black),
+            ("FONT", (0, -1), (-1, -1), BOLD, size, 1.2 * size),
+        ]
+    return style
+
+
+def _widths(cells: Sequence[Sequence[str]], size: float) -> list[float]:
+    """Of columns of cells (points)."""
+    return [
+        max(stringWidth(line, BOLD, size) for cell in column for line in _printable(cell)) + 2 * _PADDING
+        for column in zip(*cells, strict=True)
+    ]
+
+
+def _printable(cell: str) -> list[str]:
+    """The lines of a cell."""
+    return [UNPRINTABLE.sub("�", line) for line in cell.split("\n")]
+
+
+def _fitting(cells: Sequence[Sequence[str]], whole: float) -> list[list[int]]:
+    """Columns in groups that fit beside each other, each behind the first column."""
+    widths = _widths(cells, _LEAST)
+    groups, room = [[0]], whole - widths[0]
+    for at, width in enumerate(widths[1:], start=1):
+        if width > room and len(groups[-1]) > 1:
+            groups.append([0])
+            room = whole - widths[0]
+        groups[-1].append(at)
+        room -= width
+    return groups
+
+
+def matrices(parts: Sequence[str | Sequence[Sequence[str]]], layout: Layout) -> Block:
+    """Matrices and signs in one line, such as [δ]{X} + {δ₀} = {0}: a list of rows for each matrix, a text for each sign."""
+
+    def made(size: float) -> Block:
+        cells: list[Any] = []
+        widths: list[float] = []
+        for part in parts:
+            if isinstance(part, str):
+                cells.append(part)
+                widths.append(stringWidth(part, REGULAR, size) + 2 * _BESIDE)
+                continue
+            numbers = [
+                max(stringWidth(cell, REGULAR, size) for cell in column) for column in zip(*part, strict=True)
+            ]
+            columns = [_BRACKET, *(width + 2 * _BESIDE for width in numbers), _BRACKET]
+            matrix = Table([["", *row, ""] for row in part], colWidths=columns, rowHeights=1.4 * size)
+            matrix.setStyle(_in_brackets(size))
+            cells.append([matrix])
+            widths.append(sum(columns) + _BESIDE)
+        line = Table([cells], colWidths=widths, hAlign="LEFT", spaceBefore=3, spaceAfter=3)
+        font = ("FONT", (0, 0), (-1, -1), REGULAR, size, size)
+        line.setStyle([font, ("VALIGN", (0, 0), (-1, -1), "MIDDLE"), *_padded(0, 0)])
+        return sum(widths), [line]
+
+    size = max(0.92 * layout.size, _LEAST)
+    block = made(size)
+    return block if block[0] <= WIDTH else made(size * WIDTH / block[0])
+
+
+def _in_brackets(size: float) -> list[tuple[Any, ...]]:
+    """The style of a matrix, whose first and last column are its brackets."""
+    style: list[tuple[Any, ...]] = [
+        ("FONT", (0, 0), (-1, -1), REGULAR, size, size),
+        ("ALIGN", (0, 0), (-1, -1), "RIGHT"),
+        ("VALIGN", (0, 0), (-1, -1), "MIDDLE"),
+        *_padded(0, 0),
+        ("RIGHTPADDING", (1, 0), (-2, -1), _BESIDE),
+    ]
+    for column, upright in ((0, "LINEBEFORE"), (-1, "LINEAFTER")):
+        for side, first, last in ((upright, 0, -1), ("LINEABOVE", 0, 0), ("LINEBELOW", -1, -1)):
+            style.append((side, (column, first), (column, last), 0.7, black))
+    return style
+
+
+def _padded(right: float, below: float) -> list[tuple[Any, ...]]:
+    sides = {"LEFT": 0.0, "RIGHT": right, "TOP": 0.0, "BOTTOM": below}
+    return [(f"{side}PADDING", (0, 0), (-1, -1), points) for side, points in sides.items()]
+
+
+def as_paper(title: str, made_of: Callable[[Layout], Sequence[Flowable]], foot: str) -> bytes:
+    """The contents of a PDF file: what is made in a layout, in the largest with which it takes the fewest pages of A4.
+
+    foot: below every page.
+    """
+    _, made = min((_built(title, made_of(layout), foot) for layout in LAYOUTS), key=itemgetter(0))
+    return made
+
+
+def _built(title: str, parts: Sequence[Flowable], foot: str) -> tuple[int, bytes]:
+    """Parts below each other: the number of pages, and the contents of the file."""
+    made = io.BytesIO()
+
+    def number(page: Any, document: Any) -> None:
+        page.setFont(REGULAR, _LEAST)
+        page.setFillColor(_GREY)
+        page.drawString(MARGIN, 6 * mm, UNPRINTABLE.sub("�", foot))
+        if document.page > 1:
+            page.drawRightString(A4[0] - MARGIN, 6 * mm, str(document.page))
+
+    document = SimpleDocTemplate(
+        made,
+        pagesize=A4,
+        leftMargin=MARGIN - _FRAME,
+        rightMargin=MARGIN - _FRAME,
+        topMargin=10 * mm - _FRAME,
+        bottomMargin=11 * mm - _FRAME,
+        title=UNPRINTABLE.sub("�", title),
+        author="",
+        creator="Pinjoint",
+        invariant=1,
+    )
+    document.build(list(parts), onFirstPage=number, onLaterPages=number)
+    return document.page, made.getvalue()

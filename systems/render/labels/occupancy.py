@@ -1,0 +1,138 @@
+"""Occupancy: which parts of a picture are taken, crossed by lines, and whose they are."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+
+import numpy as np
+from numpy.typing import NDArray
+
+from pinjoint.components.camera import Viewport
+from pinjoint.systems.render.labels.nearness import NOBODY, Codes, Parts, within
+from pinjoint.systems.render.marks import Mark, Owners, Panel, Points, Rows, Text, Truths, Values
+from pinjoint.systems.render.typography import text_width
+
+FAINT, STRONG = 1, 2  # lines that names never cover; lines that values cover only in need
+_FAR = 1e6  # pixels
+_MANY_LINES = 4000
+_SHARES = np.linspace(0.0, 1.0, 12)[:, None]  # of a diagonal, where cells are looked at
+_CELL = 3.0  # points: how finely the picture is divided into free and taken
+
+
+class Occupancy:
+    """Which parts of a viewport are taken (by labels, panels), which are crossed by lines, and what is whose there."""
+
+    def __init__(self, viewport: Viewport, unit: float) -> None:
+        self.viewport = viewport
+        self.cell = _CELL * unit
+        shape = (int(viewport.height / self.cell) + 1, int(viewport.width / self.cell) + 1)
+        self.taken: Truths = np.zeros(shape, dtype=bool)
+        self.lined: NDArray[np.uint8] = np.zeros(shape, dtype=np.uint8)
+        self.owner: NDArray[np.int64] = np.full(shape, NOBODY)  # of the last line through each cell
+        self.parts = Parts(viewport, unit)
+
+    def block(self, left: float, top: float, width: float, height: float) -> None:
+        """Take a rectangle."""
+        self.taken[self._cells(left, top, width, height)] = True
+
+    def block_marks(self, marks: Iterable[Mark]) -> None:
+        """Take the texts among some marks, and the plates on which they stand."""
+        for mark in marks:
+            if isinstance(mark, Panel) and mark.radius:
+                self.block(*mark[:4])
+            elif isinstance(mark, Text):
+                width = text_width(mark.text, mark.size, mark.weight)
+                left = mark.x - {"left": 0.0, "centre": 0.5, "right": 1.0}[mark.anchor] * width
+                self.block(left, mark.y - mark.size / 2, width, mark.size)
+
+    def block_squares(self, centres: Points, half: Values) -> None:
+        """Take many squares of half width `half` (n,) about `centres` (n, 2)."""
+        cells = self.cells_of(centres - half[:, None], 2.0 * half[:, None])
+        for left, top, right, bottom in cells.tolist():
+            self.taken[top:bottom, left:right] = True
+
+    def line(self, start: Points, end: Points, strength: int, of: Owners | None = None) -> None:
+        """Note lines, FAINT or STRONG, from `start` to `end`, each (n, 2), inside or near the viewport; of: their keys.
+
+        Of very many lines only a sample is noted: they leave no room between them in any case. Those that begin or end
+        very far away are left out.
+        """
+        near = ((np.abs(start) < _FAR) & (np.abs(end) < _FAR)).all(axis=1)
+        some = np.flatnonzero(near)[:: int(near.sum()) // _MANY_LINES + 1]
+        start, end = start[some], end[some]
+        left, top = self.viewport.left, self.viewport.top
+        x, y = (start[:, 0] - left) / self.cell, (start[:, 1] - top) / self.cell
+        dx, dy = (end[:, 0] - start[:, 0]) / self.cell, (end[:, 1] - start[:, 1]) / self.cell
+        count = np.maximum(np.abs(dx), np.abs(dy)).astype(np.intp) + 2
+        which = np.repeat(np.arange(len(start)), count)
+        step = np.arange(len(which)) - (np.cumsum(count) - count)[which]
+        scale = 1.0 / (count - 1)
+        columns = (x[which] + step * (dx * scale)[which]).astype(np.intp)
+        rows = (y[which] + step * (dy * scale)[which]).astype(np.intp)
+        height, width = self.lined.shape
+        ok = (rows >= 0) & (columns >= 0) & (rows < height) & (columns < width)
+        cells = (rows * width + columns)[ok]
+        self.lined.ravel()[cells] = strength
+        if of is not None:
+            self.owner.ravel()[cells] = (self.parts.code((of[0], 0)) + of[1][some])[which[ok]]
+
+    def crossed(self, left: float, top: float, width: float, height: float) -> int:
+        """How much of a rectangle is taken or crossed by lines, in cells."""
+        cells = self._cells(left, top, width, height)
+        return int((self.taken[cells] | (self.lined[cells] > 0)).sum())
+
+    def is_taken(self, left: float, top: float, width: float, height: float) -> bool:
+        """Whether a label, a panel or a symbol takes any of a rectangle."""
+        return bool(self.taken[self._cells(left, top, width, height)].any())
+
+    def are_free(self, cells: Rows, covering: int) -> Truths:
+        """For each box of `cells` (n, 4), whether nothing takes any and no line in it is stronger than `covering`."""
+        left, top, right, bottom = cells.T
+        blocked, (height, width) = self.taken | (self.lined > covering), self.taken.shape
+        before = np.zeros(
+            (height + 1, width + 1), dtype=np.int32
+        )  # how many are above and to the left of each corner
+        blocked.cumsum(axis=0, dtype=np.int32).cumsum(axis=1, out=before[1:, 1:])
+        free: Truths = before[bottom, right] - before[top, right] == before[bottom, left] - before[top, left]
+        return free
+
+    def may_be_of(self, cells: Rows, *owners: Codes) -> Truths:
+        """For each box of `cells` (n, 4), False where lines through it are seen to be of others than `owners`, each (n,).
+
+        It is tested along the diagonals, which every line that parts the corners crosses.
+        """
+        left, top, right, bottom = cells.T
+        width, height = right - left - 3, bottom - top - 3
+        rows, columns = self.taken.shape
+        down = within((top + 1 + _SHARES * height).astype(np.intp), 0, rows - 1)
+        across = within((left + 1 + _SHARES * width).astype(np.intp), 0, columns - 1)
+        possible = np.ones(len(cells), dtype=bool)
+        for row in (down, down[::-1]):
+            found = self.owner[row, across]
+            strange = found != NOBODY
+            for owner in owners:
+                strange &= found != owner
+            possible &= ~strange.any(axis=0)
+        return possible
+
+    def cell_of(self, points: Points) -> Rows:
+        """Rows and columns of the cells that hold points (n, 2)."""
+        height, width = self.taken.shape
+        cells = (points - [self.viewport.left, self.viewport.top]) / self.cell
+        found: Rows = within(cells, 0.0, [width - 1, height - 1]).astype(np.intp)[:, ::-1]
+        return found
+
+    def cells_of(self, corners: Points, sizes: Points) -> Rows:
+        """First column and row, and those after the last, that boxes touch, shape (n, 4), within the picture."""
+        height, width = self.taken.shape
+        corners = corners - [self.viewport.left, self.viewport.top]
+        most = [width, height]
+        low = within(corners / self.cell, 0.0, most).astype(np.intp)
+        high = within(within((corners + sizes) / self.cell, -1.0, most).astype(np.intp) + 1, low, most)
+        return np.concatenate([low, high], axis=1)
+
+    def _cells(self, left: float, top: float, width: float, height: float) -> tuple[slice, slice]:
+        """Rows and columns of the cells that a rectangle touches; they may end beyond the last ones."""
+        x, y = left - self.viewport.left, top - self.viewport.top
+        columns = slice(max(int(x / self.cell), 0), max(int((x + width) / self.cell) + 1, 0))
+        return slice(max(int(y / self.cell), 0), max(int((y + height) / self.cell) + 1, 0)), columns

@@ -1,0 +1,556 @@
+"""Diagrams along rods: N, M on the side in tension, or V, with values, extremes and zero points.
+
+Where no rod of a model bends, N is drawn as rectangles that stand outside of the structure.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from typing import Literal
+
+import numpy as np
+
+from pinjoint.components.bent import (
+    AXIAL,
+    MOMENT,
+    SHEAR,
+    Axes,
+    axes,
+    derivative,
+    inner_forces,
+    values,
+    zeros,
+)
+from pinjoint.components.language import marked, tr
+from pinjoint.components.load import CONSTANT
+from pinjoint.components.model import Model
+from pinjoint.components.tags import DiagramShown, Selected
+from pinjoint.components.view import MARGIN
+from pinjoint.systems.render.clip import clip_segments
+from pinjoint.systems.render.labels.nearness import ranges
+from pinjoint.systems.render.labels.occupancy import FAINT
+from pinjoint.systems.render.labels.placing import ANCHORS
+from pinjoint.systems.render.marks import Bars, Discs, Fills, Points, Rows, Strokes, Truths, Values
+from pinjoint.systems.render.model.arrows import steady
+from pinjoint.systems.render.model.sheet import Sheet, typical_length
+from pinjoint.systems.render.model.values import (
+    FEW_VALUES,
+    SMALLEST,
+    half_sizes,
+    most_important,
+    reach,
+    said,
+    write,
+)
+from pinjoint.systems.render.theme import Colour, faded
+
+NAMES = {
+    AXIAL: marked("axial force N"),
+    MOMENT: marked("bending moment M"),
+    SHEAR: marked("shear force V"),
+}
+_UNITS = {AXIAL: "kN", MOMENT: "kN·m", SHEAR: "kN"}
+_BESIDE = ("load", "load per length", "load moment", "reaction", "reaction moment", "ghost")
+EXPLAINED = {  # in the legend, at most: what they show, then what stands beside them
+    AXIAL: ("tension", "compression", *_BESIDE),
+    MOMENT: ("moment", *_BESIDE),
+    SHEAR: ("shear", *_BESIDE),
+}
+_LEAST = 24.0  # points that diagrams have towards the legend and the rim, where there is less room
+_LARGEST, _FAR = 1e100, 1e6  # kN or kN·m, pixels: what is beyond is left out
+_STEPS = (8.0, 6.0, 5.0, 4.0, 3.0, 2.0, 1.5, 1.0)
+_TOO_FLAT, _ENLARGED = 0.05, 0.3  # of the room: loads (one point per kN) below which, up to which, to enlarge
+_SHORTEST, _SHORTEST_WITH_VALUE = (
+    6.0,
+    24.0,
+)  # points, of rods with a diagram; values of others would only hide them
+_MANY = 300  # rods, above which diagrams of those that bend are outlines
+_PIECES, _PIECE = 1_440, 5.0  # of all diagrams of rods that bend, at most; points, or longer
+_ROOM, _SHARE = 1.25, 0.3  # of the room of force diagrams; of the largest shear, the least that fills it with N
+_HATCH = 7.0  # points between lines across
+_NOTHING = 1e-3  # of the largest value: what is not told
+_ALIKE = 5e-3  # of the largest value: what counts as the same
+_GREAT = 0.5  # of the largest value: what is told before all else
+_ZERO = 2.5  # points, radius of the mark of a zero point
+_INSIDE = 0.02  # share of a rod, from which on a zero point or an extreme is not at its end
+_STRAIGHT = 0.9  # cosine of the turn at a joint up to which two rods are one member
+_ALONG = np.array([0.0, 0.3, -0.3, 0.6, -0.6, 0.9, -0.9])  # of how far the value of a rectangle can go along it
+_SLIDES = (
+    (0.0, 0.0),
+    (0.5, 0.5),
+    (-0.5, 1.0),
+    (1.0, 2.0),
+    (-1.0, -1.0),
+    (1.5, 4.0),
+)  # between ends, and at one
+_GAP = 1.0  # points between a rod and a value beside it
+_NEAR = 42.0  # points along a rod, or two steps: so far from its end stands a value, but for the last place
+_PLACES = 3  # of values of a rod: start, end, between
+
+
+@dataclass(frozen=True)
+class _Diagram:
+    """The diagram of some rods: rows (n,), their axes in pixels, values as polynomials, which of a rectangle have the
+    degree 0, pixels per kN or kN·m, largest value in the model.
+
+    side: 1 where positive values stand to the left, as drawn, else −1, (n,). points, normals, heights: at shares (n, k),
+    with unit normals to where positive values stand;
+    of rectangles one for both ends.
+    """
+
+    quantity: str
+    rows: Rows
+    base: Axes
+    polynomials: Values
+    scale: float
+    largest: float
+    side: Values
+    points: Points
+    normals: Points
+    heights: Values
+
+    @property
+    def is_straight(self) -> bool:
+        """Whether it consists of rectangles."""
+        return bool(self.polynomials.shape[1] == 1)
+
+    def some(self, which: Truths | Rows) -> _Diagram:
+        """The diagram of some of the rods."""
+        names = "rows", "polynomials", "side", "points", "normals", "heights"
+        columns = {name: getattr(self, name)[which] for name in names}
+        return replace(self, base=self.base.some(which), **columns)
+
+    def at(self, which: Rows, shares: Values) -> tuple[Points, Points]:
+        """Points at shares (k,) of some of its rods, and unit normals to where positive values stand."""
+        points, normals = _stations(self.base.some(which), shares[:, None], self.side[which])
+        return points[:, 0], normals[:, 0]
+
+
+def draw_diagrams(sheet: Sheet, taken: float = 0.0) -> None:
+    """The diagrams of rods; where they are too short, they themselves take the colour of tension or compression.
+
+    taken: pixels at the top, of heading and legend, off which those of rods that bend keep.
+    """
+    shown = np.full(len(sheet.rods), sheet.view.forces_known)
+    if sheet.view.forces_known and not sheet.view.all_diagrams:
+        shown = sheet.chosen(sheet.tagged(DiagramShown, "rods"), sheet.rods)
+    if not shown.any():
+        return
+    rows, start, end = sheet.rods[shown], sheet.start[shown], sheet.end[shown]
+    quantity = sheet.view.quantity if sheet.is_frame else AXIAL
+    force = np.nan_to_num(sheet.model.rods.axial_force)
+    if typical_length(start, end) < _SHORTEST * sheet.unit:
+        if quantity == AXIAL:
+            sheet.pulled, sheet.pushed = rows[force[rows] > SMALLEST], rows[force[rows] < -SMALLEST]
+        sheet.notes.append(tr("zoom in to see force diagrams"))
+        return
+    window = min(sheet.viewport.width, sheet.viewport.height)  # what leaves the structure readable:
+    room = max(min(0.15 * window, 0.6 * typical_length(start, end)), 10.0 * sheet.unit)
+    diagram = (
+        _curves(sheet, rows, quantity, min(_ROOM * room, MARGIN * sheet.unit), taken)
+        if sheet.is_frame
+        else (_rectangles(sheet, rows, force, start, end, room))
+    )
+    if diagram is not None:
+        _draw(sheet, diagram)
+        _mark_zeros(sheet, diagram)
+        _write(sheet, diagram)
+
+
+# --- rectangles, where none bends --------------------------------------------------------------------
+
+
+def _rectangles(sheet: Sheet, rows: Rows, force: Values, start: Points, end: Points, room: float) -> _Diagram:
+    """The diagram of bars of which these parts are seen, |N| × diagram scale high."""
+    largest, scale = float(np.abs(force).max()), sheet.model.settings.diagram_scale
+    factor = diagram_factor(largest, _loads(sheet.model), scale, room / sheet.unit)
+    if factor != 1.0:
+        sheet.notes.append(tr("diagrams ×{factor:g}", factor=factor))
+    value, scale = force[rows, None], scale * factor * sheet.unit
+    way = end - start
+    left = np.stack([way[:, 1], -way[:, 0]], axis=1) / np.maximum(np.hypot(*way.T), 1e-9)[:, None]
+    side = _outward(sheet, rows) * np.where(value[:, 0] < 0.0, -1.0, 1.0)
+    base = Axes(start, end, left, np.zeros((len(rows), 1)))
+    points, normals = np.stack([start, end], axis=1), (left * side[:, None])[:, None]
+    return _Diagram(AXIAL, rows, base, value, scale, largest, side, points, normals, scale * value)
+
+
+def scale_step(largest: float, scale: float, room: float) -> float:
+    """The largest of …, 2, 1.5, 1, 0.8, 0.6, 0.5, 0.4, 0.3, 0.2, 0.15, … with `largest` × `scale` × it ≤ `room`.
+
+    Changing all diagrams alike keeps them comparable; steps keep their scale steady while forces change.
+    """
+    decade = 10.0 ** math.floor(math.log10(room / (largest * scale)))
+    enough = room * (1.0 + 1e-9)  # so that round-off in the logarithm leaves a step
+    return next(decade * step for step in _STEPS if largest * scale * decade * step <= enough)
+
+
+def diagram_factor(largest: float, loads: float, scale: float, room: float) -> float:
+    """The factor of all diagrams, so that they can be seen and leave the structure readable.
+
+    largest: the largest axial force, kN; loads: the sum of what acts on the model, kN; scale: points per kN as
+    the person chose; room: points. 1 where that is readable. The loads decide whether to enlarge, since they
+    stay while the forces that they cause vibrate.
+    """
+    factor = 1.0
+    if SMALLEST < loads < _TOO_FLAT * room:
+        factor = scale_step(loads, 1.0, _ENLARGED * room)
+    if largest * scale * factor > room:
+        factor = scale_step(largest, scale, room)
+    return factor
+
+
+def _loads(model: Model) -> float:
+    """The sum of all external forces (kN), of varying ones the largest that they reach."""
+    constant, loads = model.particles.constant_force, model.loads
+    varying = [row for row, history in enumerate(loads.history) if history["kind"] != CONSTANT["kind"]]
+    return float(np.hypot(*constant.T).sum() + np.hypot(*loads.force[varying].T).sum())
+
+
+def _outward(sheet: Sheet, rows: Rows) -> Values:
+    """1 for rods whose left side, as drawn, is away from the middle of the original structure, else −1; if they go through
+    it, upwards or to the left.
+
+    Judged in the original geometry, so that a diagram does not change sides while the rod moves.
+    """
+    rods = sheet.model.rods
+    x, y = sheet.model.particles.position.T
+    first, last = sheet.ends[:, 0], sheet.ends[:, 1]
+    middle_x, middle_y = 0.5 * (x[first] + x[last]), 0.5 * (y[first] + y[last])
+    extent = max(np.ptp(middle_x), np.ptp(middle_y)) + 1e-300
+    outward_x, outward_y = middle_x[rows] - middle_x.mean(), middle_y[rows] - middle_y.mean()
+    difference_x, difference_y = rods.difference[rows].T
+    length = rods.original_length[rows]
+    side = outward_y * difference_x - outward_x * difference_y
+    upwards = np.where(np.abs(difference_x) > 1e-9 * length, difference_x, -difference_y)
+    side = np.where(np.abs(side) < 1e-6 * extent * length, upwards, side)
+    return np.where(side < 0.0, -1.0, 1.0)
+
+
+# --- curves ------------------------------------------------------------------------------------------
+
+
+def _curves(sheet: Sheet, rows: Rows, quantity: str, room: float, taken: float) -> _Diagram | None:
+    """The diagram of some rods, on the scale of all; None where there is nothing to be drawn."""
+    model = sheet.model
+    every = inner_forces(model, np.arange(model.rods.count), quantity)
+    every[~(np.abs(every) < _LARGEST).all(axis=1)] = 0.0
+    largest = float(np.abs(values(every, np.linspace(0.0, 1.0, 5))).max(initial=0.0))
+    if quantity == AXIAL:  # small ones, as bending shortens rods, look small
+        shear = np.abs(model.rods.shear)
+        largest = max(largest, _SHARE * float(shear[shear < _LARGEST].max(initial=0.0)))
+    if largest <= SMALLEST:
+        return None
+    side = np.full(len(every), -1.0 if quantity == MOMENT else 1.0)
+    fitting = max(largest, room * _crowding(sheet, every, side, taken))
+    scale = room * model.settings.diagram_scale / steady(sheet, (f"diagrams.{quantity}", 0), fitting)
+    base, polynomials, side = _baseline(sheet, rows), every[rows], side[rows]
+    most = np.clip(_PIECES // len(rows), 4, 24)  # more where rods are few and long
+    shares = np.linspace(0.0, 1.0, int(np.clip(sheet.rod_length / (_PIECE * sheet.unit), 2, most)) + 1)
+    points, normals = _stations(base, shares, side)
+    heights = scale * values(polynomials, shares)
+    found = _Diagram(quantity, rows, base, polynomials, scale, largest, side, points, normals, heights)
+    near = (np.abs(points) < _FAR) & np.isfinite(normals)
+    return found.some(np.asarray(near.all(axis=(1, 2))))
+
+
+def _crowding(sheet: Sheet, every: Values, side: Values, taken: float) -> float:
+    """The value per pixel up to which diagrams of all rods keep off the legend and the rim; 0 where the view is closer."""
+    view = sheet.view
+    if not view.shows(sheet.model):
+        return 0.0
+    shares = np.linspace(0.0, 1.0, 5)
+    points, normals = _stations(_baseline(sheet, np.arange(len(every))), shares, side)
+    low, high = view.room.corners
+    low[1] += taken
+    above = normals * values(every, shares)[..., None]
+    free = np.maximum(np.where(above < 0.0, points - low, high - points), _LEAST * sheet.unit)
+    return float(np.nan_to_num(np.abs(above) / free).max(initial=0.0))
+
+
+def _baseline(sheet: Sheet, rows: Rows) -> Axes:
+    """The axes of rods in pixels as drawn, or where they were originally, as a person wants it."""
+    model, camera = sheet.model, sheet.view.camera
+    if model.settings.original_diagrams:
+        ends = model.particles.position[sheet.ends[rows]]
+        found = Axes(ends[:, 0], ends[:, 1], np.zeros((len(rows), 2)), np.zeros((len(rows), 5)))
+    else:
+        found = axes(model, rows)
+    left = found.left * [
+        camera.scale,
+        -camera.scale,
+    ]  # pixels' y is down, and what is ahead of a left side behind it
+    drift = None if found.drift is None else -found.drift
+    return Axes(camera.to_pixels(found.start), camera.to_pixels(found.end), left, found.bow, drift)
+
+
+def _stations(base: Axes, shares: Values, side: Values) -> tuple[Points, Points]:
+    """Points of baselines in pixels, and unit normals to the left as drawn, or where `side` is −1 to the right."""
+    x, y = np.moveaxis(base.tangents(shares), -1, 0)
+    left = np.stack([y, -x], axis=-1) / np.maximum(np.hypot(x, y), 1e-300)[..., None]
+    return base.points(shares), left * side[:, None, None]
+
+
+# --- areas -------------------------------------------------------------------------------------------
+
+
+def _draw(sheet: Sheet, diagram: _Diagram) -> None:
+    """Areas with an outline; axial forces in the colours of tension and compression, and of bars without force."""
+    if diagram.quantity != AXIAL:
+        everywhere = np.ones(len(diagram.rows), dtype=bool)
+        _draw_areas(sheet, EXPLAINED[diagram.quantity][0], diagram, diagram.heights, everywhere)
+        return
+    nothing = diagram.is_straight & ~sheet.model.rods.tension_only[diagram.rows]  # a slack cable stays dashed
+    pulled, pushed = np.maximum(diagram.heights, 0.0), np.minimum(diagram.heights, 0.0)
+    for name, heights in (("tension", pulled), ("compression", pushed)):
+        drawn = np.abs(heights).max(axis=1) > SMALLEST * diagram.scale
+        _draw_areas(sheet, name, diagram, heights, drawn)
+        nothing &= ~drawn
+    _draw_areas(sheet, "zero", diagram, diagram.heights, nothing)
+
+
+def _draw_areas(sheet: Sheet, name: str, diagram: _Diagram, heights: Values, drawn: Truths) -> None:
+    """One colour of a diagram; what is curved is hatched but for moments."""
+    if not drawn.any():
+        return
+    rows, points, heights = diagram.rows[drawn], diagram.points[drawn], heights[drawn]
+    rise = heights[..., None] * diagram.normals[drawn]
+    colour, edge, u = _colour(sheet, name), points + rise, sheet.unit
+    is_outlined, of = not diagram.is_straight or sheet.rod_length > 16.0 * u, ("rods", rows)
+    if diagram.is_straight:
+        area = faded(colour, 0.16 if is_outlined else 0.5)
+        sheet.marks.append(Bars(points[:, 0], points[:, 1], rise[:, 0], area, of))
+    elif len(rows) <= _MANY:
+        corners = np.concatenate([points, edge[:, ::-1]], axis=1)
+        sheet.marks.append(Fills(corners, faded(colour, 0.13), of))
+        if name != "moment":
+            _hatch(sheet, diagram, drawn, colour, name)
+    if is_outlined:
+        outline = np.concatenate([points[:, :1], edge, points[:, -1:]], axis=1)
+        first, last = outline[:, :-1].reshape(-1, 2), outline[:, 1:].reshape(-1, 2)
+        each, width = ("rods", np.repeat(rows, outline.shape[1] - 1)), 1.25 if diagram.is_straight else 1.4
+        sheet.marks.append(Strokes(first, last, width * u, faded(colour, 0.9), each))
+        sheet.occupancy.line(first, last, FAINT)
+    if name != "zero":
+        shown = (np.concatenate([points[:, end], edge[:, end]]) for end in (0, -1))
+        sheet.explain(name, *shown)
+    if not diagram.is_straight:
+        higher = np.abs(heights[:, :-1]) > np.abs(heights[:, 1:])
+        rise = np.where(higher[..., None], rise[:, :-1], rise[:, 1:])
+    pieces = points[:, :-1].reshape(-1, 2), points[:, 1:].reshape(-1, 2), rise.reshape(-1, 2)
+    sheet.occupancy.parts.diagrams(("rods", np.repeat(rows, points.shape[1] - 1)), *pieces)
+
+
+def _colour(sheet: Sheet, name: str) -> Colour:
+    found: Colour = sheet.theme.ink if name in ("moment", "shear") else getattr(sheet.theme, name)
+    return found
+
+
+def _hatch(sheet: Sheet, diagram: _Diagram, drawn: Truths, colour: Colour, name: str) -> None:
+    """Lines across, at equal distances along each rod."""
+    some = np.flatnonzero(drawn)
+    length = np.hypot(*(diagram.points[some, -1] - diagram.points[some, 0]).T)
+    count = np.clip(length / (_HATCH * sheet.unit), 1, 200).astype(np.intp)
+    of = np.repeat(some, count)
+    shares = (ranges(np.zeros_like(count), count) + 0.5) / np.repeat(count, count)
+    start, normals = diagram.at(of, shares)
+    height = values(diagram.polynomials[of], shares[:, None])[:, 0]
+    if name in ("tension", "compression"):
+        height = np.maximum(height, 0.0) if name == "tension" else np.minimum(height, 0.0)
+    end = start + (diagram.scale * height)[:, None] * normals
+    sheet.marks.append(Strokes(start, end, 0.8 * sheet.unit, faded(colour, 0.4), ("rods", diagram.rows[of])))
+
+
+def _mark_zeros(sheet: Sheet, diagram: _Diagram) -> None:
+    """Small open circles where a curve changes sign between the ends of a rod."""
+    if len(diagram.rows) > _MANY or diagram.is_straight:
+        return
+    which, shares = zeros(diagram.polynomials)
+    large = np.abs(diagram.heights).max(axis=1) > 2.0 * sheet.unit
+    kept = (shares > _INSIDE) & (shares < 1.0 - _INSIDE) & large[which]
+    which, shares = which[kept], shares[kept]
+    if not len(which):
+        return
+    at, radius = diagram.at(which, shares)[0], np.full(len(which), _ZERO * sheet.unit)
+    colour, of = faded(sheet.theme.ink, 0.9), ("rods", diagram.rows[which])
+    sheet.above.append(Discs(at, radius, colour, sheet.theme.background, 1.25 * sheet.unit, of))
+
+
+# --- values ------------------------------------------------------------------------------------------
+
+
+def _write(sheet: Sheet, diagram: _Diagram) -> None:
+    """Values: of rectangles in the middle of what is seen of the rod, else at the ends and at the extreme between, where
+    they are not told by a neighbour already."""
+    quantity, field = diagram.quantity, f"rods.{diagram.quantity}"
+    if diagram.is_straight:
+        start, end, seen = clip_segments(diagram.base.start, diagram.base.end, *sheet.viewport.corners)
+        diagram = diagram.some(seen)
+        diagram = replace(diagram, base=replace(diagram.base, start=start, end=end))
+    selected = sheet.chosen(sheet.tagged(Selected, "rods"), diagram.rows)
+    if sheet.rod_length < _SHORTEST_WITH_VALUE * sheet.unit:
+        sheet.values[field] += int((~selected).sum())
+        diagram, selected = diagram.some(selected), selected[selected]
+    which, number, shares, value = _told(sheet, diagram)
+    keys, selected = _PLACES * diagram.rows[which] + number, selected[which]
+    seen = np.arange(len(which))
+    if not diagram.is_straight:
+        seen = seen[sheet.sees(diagram.at(which, shares)[0])]
+    shown, worth = most_important(sheet, field, keys, value, seen, np.where(selected, 1e6, 0.0))
+    if not len(shown):
+        return
+    few = len(seen) <= FEW_VALUES
+    size, which, number, value = sheet.font(12.0 if few else 11.0), which[shown], number[shown], value[shown]
+    nothing = SMALLEST if diagram.is_straight else max(_NOTHING * diagram.largest, SMALLEST)
+    texts = [_written(sheet, quantity, each, nothing, few) for each in value.tolist()]
+    lines: Literal["cover", "spare"] = "spare" if few else "cover"
+    half, height = half_sizes(sheet, texts, size), diagram.scale * np.abs(value)
+    at, normal = diagram.at(which, shares[shown])
+    along = normal[:, ::-1] * [-1.0, 1.0] * diagram.side[which, None]
+    normal = normal * np.where(value < 0.0, -1.0, 1.0)[:, None]
+    edge = at + normal * height[:, None]
+    if diagram.is_straight:
+        way = (diagram.base.end - diagram.base.start)[which]
+        places = _places_by_rectangles(at, normal, height, half, np.hypot(*way.T), sheet.unit)
+        anchors = edge[:, None] + (ANCHORS[:, None] - 0.5) * way[:, None]
+    else:
+        inward = np.array([1.0, -1.0, 0.0])[number]
+        places = _places_by_curves(at, normal, along, height, inward, half, sheet.unit)
+        anchors = np.stack([edge, at + normal * (0.5 * height)[:, None], at], axis=1)
+        worth = worth + np.where(np.abs(value) > _GREAT * diagram.largest, 2e9, 0.0)  # before arrows
+    for k, row in enumerate(diagram.rows[which].tolist()):
+        of, key, rank = ("rods", row), (field, int(keys[shown[k]])), -float(worth[k])
+        sign = "zero" if abs(value[k]) <= SMALLEST else "tension" if value[k] > 0.0 else "compression"
+        colour = _colour(sheet, sign) if quantity == AXIAL else sheet.theme.text
+        leads = anchors[k], normal[k]
+        write(
+            sheet, texts[k], places[k], colour, key, of, rank=rank, own=of, leads=leads, size=size, lines=lines
+        )
+
+
+def _written(sheet: Sheet, quantity: str, value: float, nothing: float, few: bool) -> str:
+    """A value as it is told: moments without sign, since their side says it; shear with both."""
+    size = abs(value) if quantity == MOMENT else value
+    sign = "+" if quantity == SHEAR and value > nothing else ""
+    return f"{sign}{said(sheet, size, _UNITS[quantity] if few else '', nothing)}"
+
+
+def _told(sheet: Sheet, diagram: _Diagram) -> tuple[Rows, Rows, Values, Values]:
+    """Which values are told: of which rod of the diagram, at which of its places, the share there, and the value."""
+    count, polynomials, quantity = len(diagram.rows), diagram.polynomials, diagram.quantity
+    every = np.arange(count)
+    if diagram.is_straight:
+        return every, np.full(count, 2), np.full(count, 0.5), polynomials[:, 0]
+    ends = values(polynomials, np.array([0.0, 1.0]))
+    largest = diagram.largest
+    least = max(_NOTHING * largest, SMALLEST)
+    told = np.abs(ends) > least
+    which, shares = zeros(derivative(polynomials))
+    between = values(polynomials[which], shares[:, None])[:, 0]
+    kept = (shares > _INSIDE) & (shares < 1.0 - _INSIDE) & (np.abs(between) > least)
+    kept &= (np.abs(between[:, None] - ends[which]) > _ALIKE * largest).all(axis=1)
+    which, shares, between = which[kept], shares[kept], between[kept]
+    order = np.lexsort((-np.abs(between), which))  # of several in a rod the largest
+    first = order[np.unique(which[order], return_index=True)[1]]
+    which, shares, between = which[first], shares[first], between[first]
+    same = np.abs(ends[:, 0] - ends[:, 1]) <= _ALIKE * largest
+    same[which] = False
+    middle = np.flatnonzero(same & (told.any(axis=1) | (quantity == AXIAL)))
+    middle = middle[~_continued(sheet, diagram.rows[middle], ends[middle, 0], largest)]
+    told[same] = False
+    if quantity == MOMENT:
+        told &= ~_repeated(sheet, diagram, ends, largest)
+    rod, end = np.nonzero(told)
+    return (
+        np.concatenate([rod, which, every[middle]]),
+        np.concatenate([end, np.full(len(which) + len(middle), 2)]),
+        np.concatenate([end.astype(np.float64), shares, np.full(len(middle), 0.5)]),
+        np.concatenate([ends[rod, end], between, values(polynomials[middle], np.array([0.5]))[:, 0]]),
+    )
+
+
+def _continued(sheet: Sheet, rows: Rows, constant: Values, largest: float) -> Truths:
+    """Which rods with constant values go on from another one with the same, by a joint of these two only."""
+    start, end = sheet.ends[rows].T
+    before = np.full(len(sheet.centres), np.nan)
+    before[end] = np.abs(constant)
+    joined = np.bincount(sheet.ends.ravel(), minlength=len(sheet.centres)) == 2
+    same: Truths = joined[start] & (np.abs(before[start] - np.abs(constant)) <= _ALIKE * largest)
+    return same
+
+
+def _repeated(sheet: Sheet, diagram: _Diagram, ends: Values, largest: float) -> Truths:
+    """Ends of rods whose moment another end at the same joint tells, or that are no extreme of a member, (n, 2)."""
+    rows, repeated = diagram.rows, np.zeros(ends.shape, dtype=bool)
+    joints = sheet.ends[rows]
+    at = np.bincount(sheet.ends[sheet.model.rods.turning_shares > 0.0], minlength=len(sheet.centres))
+    slope = values(derivative(diagram.polynomials), np.array([0.0, 1.0])) * [1.0, -1.0]  # away from the end
+    slope = slope / np.maximum(sheet.model.rods.rest_length[rows], 1e-300)[:, None] * np.sign(ends)
+    way = (diagram.points[:, -1] - diagram.points[:, 0])[:, None] * np.array([[1.0], [-1.0]])
+    way = way / np.maximum(np.hypot(way[..., 0], way[..., 1]), 1e-9)[..., None]
+    shared = np.flatnonzero(at[joints].ravel() == 2)
+    shared = shared[np.argsort(joints.ravel()[shared], kind="stable")]
+    pairs = np.flatnonzero(np.diff(joints.ravel()[shared]) == 0)
+    one, other = shared[pairs], shared[pairs + 1]
+    same = np.abs(np.abs(ends.ravel()[one]) - np.abs(ends.ravel()[other])) <= _ALIKE * largest
+    one, other = one[same], other[same]
+    way, slope = way.reshape(-1, 2), slope.ravel()
+    straight = (way[one] * way[other]).sum(axis=1) < -_STRAIGHT
+    repeated.ravel()[other] = True
+    repeated.ravel()[one[straight & (slope[one] * slope[other] < 0.0)]] = True  # the moment passes through
+    return repeated
+
+
+def _places_by_rectangles(
+    at: Points, normal: Points, height: Values, half: Points, length: Values, u: float
+) -> Points:
+    """Where each value may stand, (n, k, 2): in its rectangle if it fits, beyond, behind the rod, on it.
+
+    at: middles of what is seen of the rods, which is so long.
+    """
+    along = np.stack([-normal[:, 1], normal[:, 0]], axis=1)
+    across, beside = reach(normal, half), reach(normal, half) + _GAP * u
+    fits, beyond = height > 2.0 * across, height + beside
+    rows = [
+        np.where(fits, 0.5 * height, beyond),
+        beyond,
+        np.where(fits, beside, -beside),
+        -beside,
+        0.0 * height,
+    ]
+    slides = np.maximum(length / 2 - reach(along, half), 0.0)[:, None] * _ALONG
+    return _in_rows(at, normal, rows, along, slides).reshape(len(at), -1, 2)
+
+
+def _places_by_curves(
+    at: Points, normal: Points, along: Points, height: Values, inward: Values, half: Points, u: float
+) -> Points:
+    """Where each value may stand, (n, k, 2): beyond the edge of its diagram, in it if it fits, behind the rod.
+
+    inward: +1, −1: at the start, the end of a rod, whose values stand along it; 0: between.
+    """
+    across, beside = reach(normal, half), reach(normal, half) + _GAP * u
+    fits, beyond = height > 2.0 * across, height + beside
+    rows = [beyond, np.where(fits, 0.5 * height, beyond), -beside, beyond + 10.0 * u]
+    rows.append(np.where(fits, beside, -beside))
+    step = reach(along, half) + 3.0 * u
+    near = np.maximum(_NEAR * u, 2.0 * step)
+    slides = [
+        np.where(inward == 0.0, share * step, inward * np.minimum(other * step, near))
+        for share, other in _SLIDES
+    ]
+    slides.append(inward * 3.0 * step)
+    slides = slides if len(at) <= FEW_VALUES else slides[:3]
+    places = _in_rows(at, normal, rows, along, np.stack(slides, axis=1))
+    parts = [part.reshape(len(at), -1, 2) for part in (places[:, :, :5], places[:, :, 5:])]  # far ones last
+    return np.concatenate(parts, axis=1)
+
+
+def _in_rows(at: Points, way: Points, across: Sequence[Values], along: Points, slides: Values) -> Points:
+    """Places of values by points (n, 2): at distances (n,) each along unit vectors `way` (n, 2), and in each of these
+    rows shifted by `slides` (n, k) along others, (n, rows, k, 2)."""
+    offset = np.stack(across, axis=1)[:, :, None, None] * way[:, None, None, :]
+    places: Points = at[:, None, None, :] + offset + slides[:, None, :, None] * along[:, None, None, :]
+    return places

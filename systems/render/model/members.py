@@ -1,0 +1,240 @@
+"""Members that bend: hinges at their ends, distributed forces along them, and moments at their joints."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from pinjoint.components import written
+from pinjoint.components.bent import axes
+from pinjoint.components.rod import rigid_joints
+from pinjoint.components.tags import DiagramShown
+from pinjoint.systems.render.labels.occupancy import STRONG
+from pinjoint.systems.render.labels.placing import ANCHORS
+from pinjoint.systems.render.marks import Discs, Fills, Owners, Points, Rows, Strokes, Values
+from pinjoint.systems.render.model.arrows import MOST, draw_arrows, full_load, head_length
+from pinjoint.systems.render.model.sheet import Sheet
+from pinjoint.systems.render.model.values import FIRST, SMALLEST, half_sizes, off, said, write
+from pinjoint.systems.render.symbols import RIM
+from pinjoint.systems.render.theme import Colour
+
+_HINGE = 3.5  # points, radius of a hinge beside a joint
+_SHORTEST = 5.0  # times its radius: the shortest rod at which a hinge is drawn
+_ROW = (11.0, 22.0)  # points, lengths of the arrows of the smallest and the largest distributed force
+_APART = 15.0  # points between them
+_MOST_ARROWS = 40  # of a rod
+_FAR = 1e6  # pixels; what is beyond is left out
+_BESIDE = 5.0  # points between a rod and arrows along it
+_WIDEST_GAP, _GAP_SHARE = 84.0, 0.36  # between a joint and its rod drawn apart: points, and of the rod
+_ARC = {"load": 15.0, "reaction": 21.0}  # points, radii of the arrows of moments
+_SWEEP = np.radians(250.0)  # of these arrows
+_PIECES = 20
+
+
+def draw_hinges(sheet: Sheet) -> None:
+    """Open circles at the ends of rods that turn freely at joints of others that do not, beside these joints."""
+    model = sheet.model
+    if not sheet.is_frame or not len(sheet.rods):
+        return
+    rigid, u = rigid_joints(model), sheet.unit
+    free = (model.rods.turning_shares[sheet.rods] == 0.0) & rigid[sheet.ends[sheet.rods]]
+    length = np.hypot(*(sheet.end - sheet.start).T)
+    free &= (length > 2.0 * _SHORTEST * _HINGE * u)[:, None]
+    which, end = np.nonzero(free)
+    if not len(which):
+        return
+    rows = sheet.rods[which]
+    tangent = axes(model, rows).tangents(np.array([0.0, 1.0])) * np.array([1.0, -1.0])  # y down
+    out = tangent[np.arange(len(rows)), end] * np.where(end == 0, 1.0, -1.0)[:, None]
+    out /= np.maximum(np.hypot(*out.T), 1e-300)[:, None]
+    joint = sheet.ends[rows, end]
+    at = sheet.centres[joint] + (sheet.radii[joint] + (_HINGE + 0.5) * u)[:, None] * out
+    radius = np.full(len(at), _HINGE * u)
+    sheet.marks.append(Discs(at, radius, sheet.theme.ink, sheet.theme.hollow, RIM * u, ("rods", rows)))
+    sheet.occupancy.parts.symbols(("rods", rows), at, at, radius)
+    sheet.occupancy.block_squares(at, radius)
+    sheet.explain("hinge", at, at)
+
+
+def gaps(lengths: Values, unit: float) -> Values:
+    """What is left free between joints and rods of these lengths where they are drawn apart, in pixels."""
+    found: Values = np.minimum(_GAP_SHARE * lengths, _WIDEST_GAP * unit)
+    return found
+
+
+# --- distributed forces ------------------------------------------------------------------------------
+
+
+def draw_distributed_forces(sheet: Sheet) -> None:
+    """A row of arrows along each rod with a distributed force, on the side from which it pushes, and its value."""
+    force = sheet.model.rods.distributed_force
+    loaded = np.flatnonzero(force[sheet.rods].any(axis=1))
+    if not 0 < len(loaded) <= MOST:
+        return
+    size, u, colour = np.hypot(*force[sheet.rods].T), sheet.unit, sheet.theme.load
+    least, most = _ROW
+    height = (least + (most - least) * size / np.hypot(*force.T).max()) * u
+    if sheet.view.all_diagrams and sheet.view.forces_known:
+        height = np.full(len(size), least * u)  # diagrams have the room
+    told = _told(sheet, loaded)
+    for index in loaded.tolist():
+        row = int(sheet.rods[index])
+        along = force[row] * [1.0, -1.0] / size[index]
+        tips, shifted = _tips(sheet, index, along)
+        if not len(tips) or not (np.abs(tips) < _FAR).all():
+            continue
+        level = np.full(len(tips), height[index] if not shifted else _APART * u)
+        tails = tips - level[:, None] * along
+        of = "rods", np.full(len(tips), row)
+        if not shifted:  # a line through the tails
+            sheet.marks.append(Strokes(tails[:-1], tails[1:], 1.25 * u, colour, (of[0], of[1][1:])))
+            sheet.occupancy.line(tails[:-1], tails[1:], STRONG, (of[0], of[1][1:]))
+        draw_arrows(sheet, of, tails, np.tile(along, (len(tails), 1)), level, colour, of, 1.25)
+        sheet.explain("load per length", tails, tips)
+        if index in told:
+            _label_row(sheet, row, tails, along, float(size[index]), shifted)
+
+
+def _told(sheet: Sheet, loaded: Rows) -> set[int]:
+    """The rods whose value is told: of those with the same force that follow one another, the one in the middle."""
+    chains: list[tuple[set[tuple[float, ...]], list[int]]] = []  # joints of each, and rods
+    force = sheet.model.rods.distributed_force
+    for index in loaded.tolist():
+        row = sheet.rods[index]
+        joints, rods = {(*force[row].tolist(), joint) for joint in sheet.ends[row].tolist()}, [index]
+        for chain in [chain for chain in chains if chain[0] & joints]:
+            chains.remove(chain)
+            joints, rods = joints | chain[0], chain[1] + rods
+        chains.append((joints, rods))
+    return {rods[len(rods) // 2] for _, rods in chains}
+
+
+def _tips(sheet: Sheet, index: int, along: Points) -> tuple[Points, bool]:
+    """Where the arrows of a distributed force end on a rod; or, where it acts along the rod, beside it."""
+    u, row = sheet.unit, int(sheet.rods[index])
+    start, end = sheet.centres[sheet.ends[row]]
+    way = end - start
+    length = float(np.hypot(*way))
+    if length < 2.0 * _APART * u:
+        return np.empty((0, 2)), False
+    shifted = bool(abs(along @ way) > 0.97 * length)
+    apart = float(gaps(np.array(length), u)) / length if sheet.view.free_bodies else 0.0
+    seen = 1.0 - 2.0 * apart
+    count = int(np.clip(round(seen * length / (_APART * u)), 2, _MOST_ARROWS))
+    shares = np.linspace(0.0, 1.0, count + 1) if not shifted else (np.arange(count) + 1.0) / count
+    shares = apart + shares * seen
+    points = sheet.view.camera.to_pixels(axes(sheet.model, np.array([row])).points(shares)[0])
+    across = np.array([way[1], -way[0]]) / length
+    if shifted:
+        return points + _BESIDE * u * across * (1.0 if across[1] <= 0.0 else -1.0), True
+    return points - 1.5 * u * along, False
+
+
+def _label_row(sheet: Sheet, row: int, tails: Points, along: Points, size: float, shifted: bool) -> None:
+    text, u = f"{written.given(size, written.DIGITS)} kN/m", sheet.unit
+    way, out = tails[-1] - tails[0], -along
+    if shifted:
+        out = np.array([way[1], -way[0]]) / max(float(np.hypot(*way)), 1e-9)
+        out = out if out[1] <= 0.0 else -out
+    shares = ANCHORS
+    near = off(tails[0] + shares[:, None] * way, out, 2.0 * u, half_sizes(sheet, [text]))
+    places, of = np.concatenate([near, near + out * 12.0 * u]), ("rods", row)
+    at = shares * (len(tails) - 1.0)
+    anchors = np.stack([np.interp(at, np.arange(len(tails)), part) for part in tails.T], axis=1)
+    key, rank = ("rods.distributed_force", row), FIRST - size
+    write(sheet, text, places, sheet.theme.load, key, of, rank=rank, own=of, leads=(anchors, out))
+
+
+# --- moments -----------------------------------------------------------------------------------------
+
+
+def draw_moments(sheet: Sheet) -> None:
+    """Curved arrows of the moments on joints that can bear them: of loads, and in diagrams of reactions."""
+    model = sheet.model
+    if not sheet.is_frame:
+        return
+    shown = np.zeros(model.particles.count, dtype=bool)
+    if sheet.view.forces_known:
+        shown[sheet.tagged(DiagramShown, "particles")] = True
+        shown |= sheet.view.all_diagrams
+    applied = full_load(model)[:, 2]
+    if shown.any():
+        applied = np.where(shown, model.particles.applied_moment, applied)
+        _draw_moments(sheet, "reaction", np.where(shown, model.particles.reaction_moment, 0.0))
+    _draw_moments(sheet, "load", np.where(rigid_joints(model), applied, 0.0))
+
+
+def _draw_moments(sheet: Sheet, name: str, moment: Values) -> None:
+    """Arrows of moments (n,) around their particles, and their values; of many the largest."""
+    rows = sheet.particles[(np.abs(moment[sheet.particles]) > SMALLEST) & np.isfinite(moment[sheet.particles])]
+    rows = np.sort(rows[np.argsort(-np.abs(moment[rows]), kind="stable")][:MOST])
+    if not len(rows):
+        return
+    radius = sheet.radii[rows] + (_ARC[name] - 4.0) * sheet.unit
+    sheet.arcs[rows] = np.maximum(sheet.arcs[rows], radius)
+    key = "particles.applied_moment" if name == "load" else "particles.reaction_moment"
+    colour, of = getattr(sheet.theme, name), ("particles", rows)
+    draw_arcs(sheet, of, sheet.centres[rows], radius, moment[rows], colour, key)
+    sheet.explain(f"{name} moment", sheet.centres[rows], sheet.centres[rows])
+    for at, size, row, value in zip(
+        sheet.centres[rows], radius.tolist(), rows.tolist(), moment[rows].tolist(), strict=True
+    ):
+        text = said(sheet, abs(value), "kN·m") if name == "reaction" else ""
+        write_moment(sheet, at, size, value, colour, (key, row), text)
+
+
+def draw_arcs(
+    sheet: Sheet,
+    of: Owners,
+    at: Points,
+    radius: Values,
+    moment: Values,
+    colour: Colour,
+    key: str,
+    middle: float = np.pi / 2.0,
+    sweep: float = _SWEEP,
+) -> None:
+    """Curved arrows about points (n, 2), of radii (n,), that turn as moments (n,) do, counter-clockwise if positive.
+
+    They reach so far (sweep) around a middle, in radians: the usual ones are open below. key: of these parts of the
+    picture, beside the rows of their elements.
+    """
+    if not len(at):
+        return
+    table, rows = of
+    u, turn = sheet.unit, np.where(moment > 0.0, 1.0, -1.0)
+    head = head_length(radius, u)
+    angle = np.linspace(-0.5, 0.5, _PIECES + 1) * sweep
+    angle = middle + turn[:, None] * angle  # from the right, over the top
+    points = at[:, None] + radius[:, None, None] * np.stack([np.cos(angle), -np.sin(angle)], axis=2)
+    first, last = points[:, :-1].reshape(-1, 2), points[:, 1:].reshape(-1, 2)
+    every = np.repeat(rows, _PIECES)
+    forward = points[:, -1] - points[:, -2]
+    forward /= np.hypot(*forward.T)[:, None]
+    neck, across = points[:, -1], forward[:, ::-1] * [-1.0, 1.0]
+    tip, barb = neck + head[:, None] * forward, 0.5 * head[:, None] * across
+    sheet.occupancy.line(first, last, STRONG, (key, every))
+    for parts in ((first, last, every), (neck - barb, neck + barb, rows), (neck, tip, rows)):
+        sheet.occupancy.parts.symbols((key, parts[2]), *parts[:2], u)
+    sheet.marks += [
+        Strokes(first, last, 1.75 * u, colour, (table, every)),
+        Fills(np.stack([tip, neck + barb, neck - barb], axis=1), colour, (table, rows)),
+    ]
+
+
+def write_moment(
+    sheet: Sheet,
+    at: Points,
+    radius: float,
+    moment: float,
+    colour: Colour,
+    key: tuple[str, int],
+    text: str = "",
+) -> None:
+    """Write the size of a moment outside its arrow; text: in place of the number as a person gave it."""
+    text = text or f"{written.given(abs(moment), written.DIGITS)}{' kN·m' if sheet.view.has_units else ''}"
+    angle = np.radians([90.0, 52.5, 127.5, 15.0, 165.0, 0.0, 180.0, -40.0, 220.0])  # first corners of the arrow
+    out = np.stack([np.cos(angle), -np.sin(angle)], axis=1)
+    near = off(at, out, radius + 2.0 * sheet.unit, half_sizes(sheet, [text]))
+    places, of = np.concatenate([near, near + 8.0 * sheet.unit * out]), ("particles", key[1])
+    anchors, rank = at + radius * out[:5], FIRST - abs(moment)
+    write(sheet, text, places, colour, key, of, rank=rank, own=key, leads=(anchors, out[0]))

@@ -1,0 +1,103 @@
+"""Supports: their symbols, on the sides of particles with most room."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from pinjoint.components.model import Model
+from pinjoint.components.rod import rigid_joints
+from pinjoint.systems.render.marks import Points, Rows, Stamps, Truths, Values
+from pinjoint.systems.render.model.sheet import DIRECTIONS, MANY, Sheet
+from pinjoint.systems.render.symbols import SUPPORT_DEPTH
+
+RIGHT, DOWN, LEFT, UP = range(4)
+NO_SUPPORT = -1
+_RELUCTANCE = np.array([0.5, 0.0, 0.45, 0.8])  # by side, to have a support there
+
+
+def crowding(sheet: Sheet, rows: Rows) -> Values:
+    """How much the rods crowd each side of the particles in `rows`, shape (n, 4), sides as in DIRECTIONS.
+
+    Of other particles it is 0. Σ cos² of the angle between the side and the attached rods, in the original
+    geometry, so that it does not change while a structure moves.
+    """
+    rods = sheet.model.rods
+    wanted = np.zeros(len(sheet.centres), dtype=bool)
+    wanted[rows] = True
+    crowd = np.zeros((len(sheet.centres), 4))
+    for end, outward in ((0, [1.0, -1.0]), (1, [-1.0, 1.0])):
+        attached = np.flatnonzero(wanted[sheet.ends[:, end]])
+        length = np.maximum(rods.original_length[attached], 1e-300)[:, None]
+        cosine = (rods.difference[attached] / length * outward) @ DIRECTIONS.T
+        for side in range(4):
+            share = np.maximum(cosine[:, side], 0.0) ** 2
+            crowd[:, side] += np.bincount(sheet.ends[attached, end], share, len(crowd))
+    return crowd
+
+
+def support_sides(sheet: Sheet) -> NDArray[np.int64]:
+    """The side of each particle on which its support stands, shape (n,); NO_SUPPORT where it has none."""
+    fixed = sheet.model.particles.fixed
+    crowd = crowding(sheet, np.flatnonzero(fixed[:, 0] | fixed[:, 1]))
+    sides = freest_sides(fixed, crowd)
+    clamped = np.flatnonzero(fixed.all(axis=1) & clamps(sheet.model))
+    opposite = np.roll(crowd[clamped], 2, axis=1)
+    sides[clamped] = np.argmin(crowd[clamped] - opposite + _RELUCTANCE / 10.0, axis=1)
+    return sides
+
+
+def clamps(model: Model) -> Truths:
+    """Which particles hold rigid rod ends so that these cannot turn, (particles,)."""
+    held: Truths = model.particles.fixed_rotation
+    return held & rigid_joints(model) if held.any() else held
+
+
+def freest_sides(fixed: Truths, crowd: Values) -> NDArray[np.int64]:
+    """The side for the supports of particles fixed in x, y (n, 2) that are crowded so (n, 4).
+
+    Below or to the left, or the opposite side where that is clearly freer; for both directions below
+    rather than at a side, and above only where all else is crowded.
+    """
+    sides = np.full(len(fixed), NO_SUPPORT)
+    x, y = fixed[:, 0], fixed[:, 1]
+    vertical = np.where(crowd[:, UP] < crowd[:, DOWN] - 0.3, UP, DOWN)
+    horizontal = np.where(crowd[:, RIGHT] < crowd[:, LEFT] - 0.3, RIGHT, LEFT)
+    sides[y & ~x] = vertical[y & ~x]
+    sides[x & ~y] = horizontal[x & ~y]
+    sides[x & y] = np.argmin(crowd[x & y] + _RELUCTANCE, axis=1)
+    return sides
+
+
+def draw_supports(sheet: Sheet, sides: NDArray[np.int64]) -> None:
+    """Triangles on a line (one direction) or on a plate (both), touching the particles from outside.
+
+    What cannot turn either stands on hatched ground (clamped) or on a plate that rolls (guided).
+    """
+    rows = sheet.particles
+    supported, held = rows[sides[rows] != NO_SUPPORT], clamps(sheet.model)
+    kinds = 2 * held[supported] + sheet.model.particles.fixed[supported].all(axis=1)
+    size = SUPPORT_DEPTH * sheet.unit
+    for side in range(4):
+        for kind, symbol in enumerate(("roller", "pinned", "guided", "clamped")):
+            of = supported[(sides[supported] == side) & (kinds == kind)]
+            if not len(of):
+                continue
+            apex = sheet.centres[of] + DIRECTIONS[side] * (sheet.radii[of] - sheet.unit)[:, None]
+            _stamp(sheet, symbol, apex, side, of)
+            middle = apex + DIRECTIONS[side] * size / 2
+            sheet.occupancy.parts.symbols(("particles", of), middle, middle, size / 2)
+            sheet.occupancy.block_squares(middle[:MANY], np.full(len(middle[:MANY]), size / 2))
+    if len(turning := rows[held[rows] & (sides[rows] == NO_SUPPORT)]):
+        _stamp(sheet, "unturned", sheet.centres[turning], 0, turning)
+        half = np.full(len(turning), 10.0 * sheet.unit)
+        sheet.occupancy.parts.symbols(
+            ("particles", turning), sheet.centres[turning], sheet.centres[turning], half
+        )
+        sheet.occupancy.block_squares(sheet.centres[turning], half)
+
+
+def _stamp(sheet: Sheet, symbol: str, at: Points, side: int, rows: Rows) -> None:
+    """The symbol of supports."""
+    size, theme = SUPPORT_DEPTH * sheet.unit, sheet.theme
+    sheet.marks.append(Stamps(symbol, at, size, sheet.unit, theme.ink, theme.hollow, side, ("particles", rows)))

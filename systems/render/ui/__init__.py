@@ -1,0 +1,1 @@
+"""The layout, and what is laid out by it."""

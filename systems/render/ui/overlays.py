@@ -1,0 +1,433 @@
+"""Overlays: heading, status bar, problem banner, legend and scale bar."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import replace
+from functools import partial
+
+import numpy as np
+
+from pinjoint.components import written
+from pinjoint.components.camera import Rectangle, Viewport
+from pinjoint.components.language import begun, marked, plural, tr
+from pinjoint.components.round_numbers import round_down
+from pinjoint.components.view import BETWEEN, LEAST_MODEL
+from pinjoint.systems.render import marks
+from pinjoint.systems.render.marks import Mark, Panel, Stamps, Strokes
+from pinjoint.systems.render.model.diagrams import EXPLAINED
+from pinjoint.systems.render.model.sheet import Sheet
+from pinjoint.systems.render.model.structure import HALO_OPACITY
+from pinjoint.systems.render.model.utilisation import scale_bar
+from pinjoint.systems.render.symbols import dashed
+from pinjoint.systems.render.theme import Colour, Theme, faded
+from pinjoint.systems.render.typography import ALL, font_size, line_height, text_width, wrapped
+from pinjoint.systems.render.ui.layout import Column, Drawn, Gap, Paper, Part, Plate, Row, Text, icon
+
+EDGE = 14.0  # points between overlays and the edges of the viewport
+_HEADING = 20.0  # points, size of its type
+_FEW_LINES, _AROUND_NOTICE = 3, 52.0  # of a notice: lines; points at the sides of its text, its sign among them
+_NOISE = 1e-6  # pixels; smaller displacements count as none
+BAR = 28.0  # points, height of the status bar
+_ROW, _ROWS_BESIDE = 28.0, 2  # of the legend: points, and how many stand beside the heading
+_STRIP = 19.0  # points, height of the scale
+_SCALE = ("scale", 0)  # the key by which its place is kept
+
+
+def draw_overlays(sheet: Sheet) -> tuple[list[Mark], tuple[float, float]]:
+    """Marks in fixed places, kept free of labels; and the height taken at the top and the bottom."""
+    status, bottom = _status_bar(sheet)
+    v, u = sheet.viewport, sheet.unit
+    text, heading = _heading(sheet.view.heading, sheet.theme), Paper(u)
+    room = v.width - 2 * EDGE * u
+    right, top = float(v.left), float(v.top)
+    if sheet.view.heading:
+        lines = text.height(u, room)
+        heading.put(text, Rectangle(v.left + EDGE * u, v.top + 9.0 * u, room, lines))
+        right, top = v.left + EDGE * u + min(text.width(u), room), v.top + (EDGE - 4.0) * u + lines
+    sheet.occupancy.block_marks(heading.marks)
+    legend, below = _legend(sheet, right, top)
+    caption, below = _caption(sheet, top, below)
+    return status + heading.marks + legend + caption, (below, bottom)
+
+
+# --- the status bar --------------------------------------------------------------------------------
+
+
+def _status_bar(sheet: Sheet) -> tuple[list[Mark], float]:
+    """The bar at the bottom, if there is anything to say, and the height that is left above it.
+
+    The time and the pace are left out where they would leave no room for the next possible step.
+    """
+    v, u, theme, status = sheet.viewport, sheet.unit, sheet.theme, sheet.view.status
+    if not (status.state or status.hint):
+        return [], float(v.bottom)
+    top, thin = round(v.bottom - BAR * u), max(round(u), 1)
+    sheet.occupancy.block(v.left, top, v.width, BAR * u)
+    bar: list[Mark] = [
+        Panel(v.left, top, v.width, v.bottom - top, 0.0, theme.panel),
+        Panel(v.left, top, v.width, thin, 0.0, theme.line),
+    ]
+    paper, steps, parts = Paper(u, marks=bar), status.hint.split(BETWEEN), list[Part]()
+    if status.state:
+        state = Text(begun(tr(status.state)), 12.0, theme.text, "semibold")
+        moods = {"running": theme.running, "paused": theme.halted, "halted": theme.halted}
+        mood = moods.get(status.state.partition(" ")[0], theme.resting)
+        parts.append(Row((icon("disc", 3.5, theme.problem if status.problem else mood, 7.0), state), 6.0))
+        time = "" if status.time is None else f"t = {written.time(status.time)}"
+        for said in filter(None, (time, written.pace(status.speed))):
+            text = Text(said, 12.0, theme.text)
+            behind = 6.0 * u + text_width(steps[0], sheet.font(12.0))
+            whole = Row([*parts, text], 18.0, (EDGE, 0.0, 0.0)).width(u) + behind
+            parts += [text] if whole <= v.width else []
+    room = v.width - Row(parts, 18.0, (EDGE, 0.0, 0.0)).width(u) - 24.0 * u
+    while len(steps) > 1 and text_width(BETWEEN.join(steps), sheet.font(12.0)) > room:
+        steps.pop()
+    hint = Text(BETWEEN.join(steps), 12.0, theme.muted, anchor="right", grow=1.0)
+    paper.put(
+        Row([*parts, hint], 18.0, (EDGE, 0.0, 0.0)),
+        Rectangle(v.left, top + thin, v.width, v.bottom - top - thin),
+    )
+    return paper.marks, float(top)
+
+
+# --- heading and problem ---------------------------------------------------------------------------
+
+
+def _heading(said: str, theme: Theme) -> Text:
+    """The heading (the mode, or the next task), top left."""
+    return Text(said, _HEADING, theme.text, "semibold", lines=ALL)
+
+
+def heading_height(text: str, width: float, unit: float, theme: Theme, explained: Sequence[str] = ()) -> float:
+    """Pixels that a heading takes at the top of a viewport, with a legend that explains these names."""
+    heading, room = _heading(text, theme), width - 2 * EDGE * unit
+    height = heading.height(unit, room) + (EDGE + 4.0) * unit
+    if not explained:
+        return height
+    right = EDGE * unit + min(heading.width(unit), room)
+    plates, beside = _arranged(meanings_of(explained), theme, width, right, unit)
+    rows = len(plates) * _ROW * unit
+    return max(height, rows + 2 * _ABOVE * unit - 4.0 * unit) if beside else height + rows
+
+
+def taken_by_heading(sheet: Sheet) -> float:
+    """Pixels that the heading of a picture takes at the top, with the legend of diagrams of rods that bend."""
+    if not sheet.is_frame:
+        return 0.0
+    explained = EXPLAINED[sheet.view.quantity] if sheet.view.legend else ()
+    return heading_height(sheet.view.heading, sheet.viewport.width, sheet.unit, sheet.theme, explained)
+
+
+def _caption(sheet: Sheet, heading_end: float, top: float) -> tuple[list[Mark], float]:
+    """The caption of the viewport and the title of a shape, at the top between hairlines; and the lower end of all there.
+
+    They stand below the legend, which ends at `top`; a title alone beside it where it has room there.
+    """
+    v, u, theme = sheet.viewport, sheet.unit, sheet.theme
+    paper, shape, thin = Paper(u), sheet.view.shape, max(round(u), 1)
+    looks = [(line, "regular", theme.muted) for line in sheet.view.caption]
+    if looks:
+        sides = (v.width, thin), (thin, v.height)
+        paper.marks += [Panel(v.left, v.top, *size, 0.0, theme.line) for size in sides]
+        looks[0] = looks[0][0], "semibold", theme.text
+    if shape is not None:
+        looks.append((shape.title, "semibold", theme.sketch))
+    if not looks:
+        return [], top
+    room = v.width - 2 * EDGE * u
+    behind = faded(theme.background, 0.85)  # keeps lines of a grid out of the text
+    lines = [
+        Row(
+            (
+                Plate(Row((Text(line, 13.0, colour, weight),), around=(4.0, 0.0, 0.0)), behind, radius=3.0),
+                Gap(grow=1.0),
+            )
+        )
+        for said, weight, colour in looks
+        for line in wrapped(said, room, sheet.font(13.0), weight)
+    ]
+    column = Column(lines)
+    high, wide = column.height(u, room), column.width(u)
+    left, upper = v.left + EDGE * u, top
+    if not sheet.view.caption and not sheet.occupancy.is_taken(left, heading_end + 8.0 * u, wide, high):
+        upper = heading_end
+    paper.put(column, Rectangle(left - 4.0 * u, upper + 8.0 * u, room + 8.0 * u, high))
+    sheet.occupancy.block_marks(paper.marks)
+    return paper.marks, max(top, upper + 8.0 * u + high)
+
+
+def draw_notice(sheet: Sheet, ends: tuple[float, float]) -> list[Mark]:
+    """The problem or the notice, wrapped, at the bottom or the top, in the middle or aside, where it hides least."""
+    status, (top, bottom) = sheet.view.status, ends
+    said = status.problem or status.notice
+    if not said:
+        return []
+    u, theme = sheet.unit, sheet.theme
+    ink, paper = (theme.problem, theme.problem_panel) if status.problem else (theme.text, theme.panel)
+    sign = Drawn(partial(_exclaimed, "!" if status.problem else "i", ink, paper), 18.0, 18.2)
+    for v in (sheet.view.room, sheet.viewport):  # beside the panels, unless it is long
+        room = min(v.width - 2 * EDGE * u, 640.0 * u)
+        most = max(int((min(bottom, v.bottom) - top - 60.0 * u) / line_height(sheet.font(13.0))), 1)
+        text = Text(said, 13.0, ink, lines=most, grow=1.0)
+        if text.height(u, room - _AROUND_NOTICE * u) <= _FEW_LINES * line_height(sheet.font(13.0)):
+            break
+    widest = max(
+        text_width(line, sheet.font(13.0))
+        for line in wrapped(said, room - _AROUND_NOTICE * u, sheet.font(13.0))
+    )
+    inside = Row((sign, text), 10.0, (12.0, 10.0, 10.0), top=True)
+    whole = Plate(inside, paper, ink if status.problem else theme.line, radius=6.0)
+    width = widest + _AROUND_NOTICE * u
+    height = whole.height(u, width)
+    places = _for_notice(sheet, v, width, height, (top, min(bottom, v.bottom)))
+    left, upper = min(places, key=lambda at: _hidden(sheet, at, width, height))
+    sheet.occupancy.block(left, upper, width, height)
+    placed = Paper(u)
+    placed.put(whole, Rectangle(left, upper, width, height))
+    return [*placed.marks, *_progress(sheet, left + 12.0 * u, upper + height - 5.0 * u, width - 24.0 * u)]
+
+
+def _exclaimed(sign: str, ink: Colour, paper: Colour, place: Rectangle, u: float) -> list[Mark]:
+    """A sign in a disc."""
+    (x, y), size = place.middle, font_size(13.0, u)
+    disc = Stamps("disc", np.array([[x, y]]), 9.0 * u, u, ink, ink)
+    return [disc, marks.Text(sign, x, y, size, paper, "semibold", "centre")]
+
+
+def _for_notice(
+    sheet: Sheet, v: Viewport, width: float, height: float, ends: tuple[float, float]
+) -> list[tuple[float, float]]:
+    """Left and top of places for a notice: in the middle, or to the right of it, below, at the top or above sliders."""
+    gap, (top, bottom) = 10.0 * sheet.unit, ends
+    sliders = min((place.top for place in sheet.view.slider_places), default=bottom)
+    across = v.left + (v.width - width) / 2, v.right - width - gap
+    return [
+        (left, upper)
+        for upper in (bottom - height - gap, top + gap, sliders - height - gap)
+        for left in across
+        if upper >= top
+    ] or [(across[0], bottom - height - gap)]
+
+
+def _progress(sheet: Sheet, left: float, top: float, width: float) -> list[Mark]:
+    """A bar that says how much of what the notice tells of is done."""
+    status, thick, theme = sheet.view.status, 3.0 * sheet.unit, sheet.theme
+    if status.share is None or status.problem:
+        return []
+    done = max(status.share * width, thick)
+    return [
+        Panel(left, top, width, thick, thick / 2, theme.line, None),
+        Panel(left, top, done, thick, thick / 2, theme.text, None),
+    ]
+
+
+# --- legend ----------------------------------------------------------------------------------------
+
+_BAR_WIDTH = 70.0  # points, of a scale of colours
+_ABOVE, _PAD, _BETWEEN = 10.0, 9.0, 14.0  # points: to the edges, inside a row, between its entries
+MEANINGS = {
+    "tension": marked("tension (kN)"),
+    "compression": marked("compression (kN)"),
+    "moment": marked("M on the tension side (kN·m)"),
+    "shear": marked("shear force V (kN)"),
+    "yielding": marked("yielding"),
+    "utilisation": marked("utilisation 0 to 100 %"),
+    "first": marked("first to yield"),
+    "slack": marked("slack cable"),
+    "load": marked("load"),
+    "reaction": marked("reaction"),
+    "inertia": marked("inertia −m a"),
+    "velocity": marked("velocity"),
+    "hinge": marked("hinge"),
+    "ghost": marked("undeformed"),
+}
+UNITS = {
+    "load": "kN",
+    "load per length": "kN/m",
+    "load moment": "kN·m",
+    "reaction": "kN",
+    "reaction moment": "kN·m",
+    "inertia": "kN",
+    "inertia moment": "kN·m",
+}  # by what occurs of a colour
+
+
+def meanings_of(legend: Sequence[str]) -> dict[str, str]:
+    """The colours of a legend, in order, and what they mean, with the units that occur."""
+    found = {}
+    for name, meaning in MEANINGS.items():
+        units = [unit for of, unit in UNITS.items() if of.split(" ")[0] == name and of in legend]
+        if units or name in legend:
+            said = tr(meaning)
+            found[name] = f"{said} ({', '.join(units)})" if units else said
+    return found
+
+
+def _legend(sheet: Sheet, right: float, heading_end: float) -> tuple[list[Mark], float]:
+    """The colours that occur and what they mean, in rows top right; and the lower end of all at the top.
+
+    They stand beside the heading, which ends at `right`, if one or two rows have room there, else below it.
+    """
+    v, u, theme = sheet.viewport, sheet.unit, sheet.theme
+    meanings = meanings_of(sheet.legend) if sheet.view.legend else {}
+    if not meanings or v.width < LEAST_MODEL * u:
+        return [], heading_end
+    plates, beside = _arranged(meanings, theme, v.width, right - v.left, u)
+    top = v.top + _ABOVE * u if beside else heading_end + 8.0 * u
+    paper = Paper(u)
+    for plate in plates:
+        width = plate.width(u)
+        paper.put(plate, Rectangle(v.right - _ABOVE * u - width, top, width, 24.0 * u))
+        top += _ROW * u
+    sheet.occupancy.block_marks(paper.marks)
+    return paper.marks, max(top - 4.0 * u, heading_end)
+
+
+def _arranged(
+    meanings: dict[str, str], theme: Theme, width: float, heading: float, u: float
+) -> tuple[list[Plate], bool]:
+    """A legend in rows, and whether it stands beside the heading, which takes the left up to `heading`, else below it."""
+    entries = [
+        Row(
+            (
+                Drawn(partial(_swatch, name, theme), _BAR_WIDTH if name == "utilisation" else 16.0),
+                Text(said, 11.0, theme.text),
+            ),
+            6.0,
+        )
+        for name, said in meanings.items()
+    ]
+    room = width - heading - (_ABOVE + _BETWEEN + 2 * _PAD) * u
+    beside = max(entry.width(u) for entry in entries) <= room
+    rows = _rows(entries, room, u) if beside else []
+    if not rows or len(rows) > _ROWS_BESIDE:
+        rows, beside = _rows(entries, width - 2 * (_ABOVE + _PAD) * u, u), False
+    paper = faded(theme.panel, 0.94)
+    return [Plate(Row(row, _BETWEEN, (_PAD, 0.0, 0.0)), paper, theme.line, radius=6.0) for row in rows], beside
+
+
+def _rows(entries: Sequence[Row], room: float, u: float) -> list[list[Row]]:
+    """The entries in rows that fit into `room`, at least one each."""
+    rows: list[list[Row]] = [[]]
+    for entry in entries:
+        if rows[-1] and Row([*rows[-1], entry], _BETWEEN).width(u) > room:
+            rows.append([])
+        rows[-1].append(entry)
+    return rows
+
+
+def _swatch(name: str, theme: Theme, place: Rectangle, u: float) -> list[Mark]:
+    """A small sample of what a colour means: a diagram, a yielding rod, a slack cable, an arrow."""
+    x, y, width = place.left, place.middle[1], place.width
+    if name == "utilisation":
+        return scale_bar(theme, x, y, width, u)
+    in_ink = ("slack", "hinge", "moment", "shear", "velocity", "inertia")
+    colour = getattr(theme, "yielding" if name == "first" else "ink" if name in in_ink else name)
+    ends = np.array([[x, y]]), np.array([[x + width, y]])
+    if name == "hinge":
+        return [Stamps("ring", ends[0] + [width / 2, 0.0], 4.0 * u, u, theme.ink, theme.hollow)]
+    if name in ("load", "reaction", "inertia", "velocity"):
+        return [Stamps("arrow", ends[0], width, u, colour, colour)]
+    if name == "first":
+        return [Strokes(*ends, 9.0 * u, faded(colour, HALO_OPACITY))]
+    if name == "yielding":
+        return [Strokes(*ends, 3.0 * u, colour)]
+    if name in ("slack", "ghost"):
+        return [Strokes(*dashed(*ends, width / 5)[:2], 1.25 * u, colour)]
+    return [Panel(x, y - 5.0 * u, width, 10.0 * u, 1.0 * u, faded(colour, 0.18), colour)]
+
+
+# --- scale -----------------------------------------------------------------------------------------
+
+
+def place_scale(sheet: Sheet, room: tuple[float, float]) -> tuple[Rectangle, float, list[str]] | None:
+    """A place along the edges where the scale hides nothing, which is taken, the metres that its ruler means (0: none), and
+    notes; None if there is none.
+
+    There is room for how many values are hidden, before that is known; this is said alone, and over rods, in need.
+    """
+    v, u, values = sheet.viewport, sheet.unit, sheet.values.total()
+    length = round_down(min(120.0 * u, 0.25 * v.width) / sheet.view.camera.scale)
+    notes = _displacements(sheet) + sheet.notes
+    for metres, said in ((length, notes), (0.0, notes), *([(0.0, list[str]())] if values else [])):
+        whole = _scale(sheet, metres, values, said)
+        if whole is None or (width := whole.width(u)) > v.width - 2 * EDGE * u:
+            continue
+        place = Rectangle(*_freest(sheet, width, room), width, _STRIP * u)
+        in_need = not said and not sheet.occupancy.is_taken(*place.box)
+        if in_need or not sheet.occupancy.crossed(*place.box):
+            sheet.occupancy.block(*place.box)
+            return place, metres, said
+    return None
+
+
+def draw_scale(sheet: Sheet, scale: tuple[Rectangle, float, list[str]] | None) -> list[Mark]:
+    """A round length to scale, how many values are hidden, and by how much displacements and diagrams are scaled."""
+    if scale is None:
+        return []
+    place, metres, notes = scale
+    hidden = sheet.values.total() - sum(1 for field, _ in sheet.placed if field in sheet.values)
+    whole, paper = _scale(sheet, metres, hidden, notes), Paper(sheet.unit)
+    if whole is not None:
+        paper.put(whole, replace(place, width=min(whole.width(sheet.unit), place.width)))
+    return paper.marks
+
+
+def _scale(sheet: Sheet, metres: float, hidden: int, notes: list[str]) -> Plate | None:
+    """The ruler and what is said beside it, if so many values are hidden."""
+    values = plural("{count} value hidden: zoom in", "{count} values hidden: zoom in", hidden)
+    said = [*([written.length(metres)] if metres else []), *([values] if hidden else []), *notes]
+    if not said:
+        return None
+    theme = sheet.theme
+    ruler = Drawn(partial(_ruler, theme), metres * sheet.view.camera.scale / sheet.unit)
+    text = Text("   ".join(said), 11.0, theme.muted, grow=1.0)
+    row = Row((*([ruler] if metres else []), text), 8.0, (6.0, 0.0, 0.0), high=_STRIP)
+    return Plate(row, faded(theme.background, 0.8), radius=4.0)
+
+
+def _ruler(theme: Theme, at: Rectangle, u: float) -> list[Mark]:
+    """A line with a tick at both ends."""
+    x, y, length = round(at.left), round(at.top + 6.0 * u), round(at.width)
+    thin, tick = max(round(1.5 * u), 1), round(7.0 * u)
+    line, ends = (x, y + tick, length, thin), ((x, y, thin, tick), (x + length - thin, y, thin, tick))
+    return [Panel(*box, 0.0, theme.muted) for box in (line, *ends)]
+
+
+def _freest(sheet: Sheet, width: float, room: tuple[float, float]) -> tuple[float, float]:
+    """Left and top of the place along the edges where a strip hides least."""
+    v, u, (top, bottom) = sheet.viewport, sheet.unit, room
+    height = _STRIP * u
+    low, high = bottom - height - 6.0 * u, top + 6.0 * u
+    first, last = v.left + 8.0 * u, v.right - width - 8.0 * u
+    places = [(first, low), ((first + last) / 2, low), (last, low), (first, high), (last, high)]
+    places.append((first, max(high - _ROW * u, v.top)))  # beside the last row of the legend
+    stays = sheet.placed.get(_SCALE, 0)  # where it was, while that is as free as any
+    best = min(
+        (stays, *(place for place in range(len(places)) if place != stays)),
+        key=lambda place: _hidden(sheet, places[place], width, height),
+    )
+    sheet.scales[_SCALE] = best
+    return places[best]
+
+
+def _hidden(sheet: Sheet, at: tuple[float, float], width: float, height: float) -> tuple[bool, int]:
+    """Whether a box lies on something else, and how much it hides."""
+    return sheet.occupancy.is_taken(*at, width, height), sheet.occupancy.crossed(*at, width, height)
+
+
+def _displacements(sheet: Sheet) -> list[str]:
+    """The exaggeration of displacements, if no slider shows it, or a hint where a structure seems not to move."""
+    model, scale = sheet.model, sheet.model.settings.displacement_scale
+    if scale != 1.0:
+        return [] if sheet.view.slider_places else [tr("displacements ×{scale:g}", scale=scale)]
+    largest = float(np.abs(model.particles.displacement).max(initial=0.0)) if model.rods.count else 0.0
+    if not _NOISE < largest * sheet.view.camera.scale < sheet.unit:
+        return []
+    return [
+        tr(
+            "displacements up to {largest} are too small to see: enlarge them with the slider",
+            largest=written.length(largest, 2),
+        )
+    ]

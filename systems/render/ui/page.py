@@ -1,0 +1,79 @@
+"""Pages: text in place of a model, such as the working of the force method."""
+
+from __future__ import annotations
+
+import math
+
+from pinjoint.components.camera import Rectangle
+from pinjoint.components.view import Page
+from pinjoint.systems.render.marks import Mark, Panel
+from pinjoint.systems.render.model.sheet import Sheet
+from pinjoint.systems.render.typography import font_size, line_height, text_width, wrapped
+from pinjoint.systems.render.ui.layout import Column, Paper, Row, Text
+from pinjoint.systems.render.ui.overlays import BAR, EDGE, draw_notice, draw_overlays
+
+_BLOCKS, _AROUND = 34.0, 6.0  # points: between blocks of a table, above and below all
+_SIZE = 12.0  # points
+_FITTING = (_SIZE, 16.0), (_SIZE, 9.0), (10.0, 8.0)  # points of type, and between columns
+_SAMPLE = 200  # rows, enough to know how wide columns are
+
+
+def draw_page(sheet: Sheet) -> list[Mark]:
+    """Lines, a table with as many rows as there is room for from the one scrolled to, and the status line below them."""
+    overlays, room = draw_overlays(sheet)
+    overlays += draw_notice(sheet, room)
+    page, v, u, theme = sheet.view.page, sheet.viewport, sheet.unit, sheet.theme
+    if page is None or not (page.lines or page.table):
+        return overlays
+    layout = _Layout(page, v.width, u)
+    step, table, blocks = layout.step / u, page.table, []
+    high = max(int((room[1] - v.top - 2 * _AROUND * u) / layout.step - len(layout.lines) - 1 + 0.01), 1)
+    first = min(page.first, max(layout.rows - high, 0))
+    for begin in range(0, layout.blocks * layout.rows, max(layout.rows, 1)):
+        rows = table[1 + begin + first : 1 + begin + min(first + high, layout.rows)]
+        columns = []
+        for at, width in layout.columns:
+            anchor = "right" if at else "left"
+            cells = [Text(row[at], layout.type, theme.text, anchor=anchor, apart=step) for row in rows]
+            head = Text(table[0][at], layout.type, theme.muted, anchor=anchor, apart=step)
+            columns.append(Column((head, *cells), wide=width / u))
+        blocks += [Row(columns, layout.gap / u)] if rows else []
+    lines = (Text(line, _SIZE, theme.text, "semibold", apart=step) for line in layout.lines)
+    tree = Column((*lines, Row(blocks, _BLOCKS, top=True)), around=(EDGE, _AROUND, _AROUND))
+    paper = Paper(u, marks=[Panel(v.left, v.top, v.width, max(round(u), 1), 0.0, theme.line)])
+    paper.put(tree, Rectangle(v.left, v.top, v.width, tree.height(u, v.width)))
+    return [*paper.marks, *overlays]
+
+
+def page_height(page: Page, width: float, unit: float) -> int:
+    """Pixels that a page takes, its status line included."""
+    if not (page.lines or page.table):
+        return round(BAR * unit)
+    layout = _Layout(page, width, unit)
+    rows = len(layout.lines) + (layout.rows + 1 if page.table else 0)
+    return math.ceil(rows * layout.step + (2 * _AROUND + BAR) * unit)
+
+
+class _Layout:
+    """A page in lines of a width; its table in blocks side by side, each under the head.
+
+    A table that is too wide is set closer and smaller, then without the columns that follow the names. columns: the number
+    and the pixels of those that are left.
+    """
+
+    def __init__(self, page: Page, width: float, unit: float) -> None:
+        size, room = font_size(_SIZE, unit), width - 2 * EDGE * unit
+        self.step = line_height(size)
+        self.lines = [line for text in page.lines for line in wrapped(text, room, size, "semibold")]
+        for self.type, gap in _FITTING:
+            self.gap, font = gap * unit, font_size(self.type, unit)
+            columns = zip(*page.table[:_SAMPLE], strict=True)
+            widths = [max(text_width(cell, font, "semibold") for cell in column) for column in columns]
+            if sum(widths) + self.gap * (len(widths) - 1) <= room:
+                break
+        self.columns = list(enumerate(widths))
+        while len(self.columns) > 2 and sum(wide + self.gap for _, wide in self.columns) - self.gap > room:
+            self.columns.pop(1)  # the last columns are the results
+        block = sum(wide + self.gap for _, wide in self.columns) - self.gap + _BLOCKS * unit
+        self.blocks = max(int((room + _BLOCKS * unit) / block), 1) if widths else 1
+        self.rows = -(-max(len(page.table) - 1, 0) // self.blocks)

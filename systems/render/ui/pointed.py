@@ -1,0 +1,82 @@
+"""Pointed: the numbers of the element under the pointer, beside it."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from pinjoint.components.camera import Rectangle
+from pinjoint.components.handle import Handle
+from pinjoint.components.particle import Particle
+from pinjoint.components.rod import Rod
+from pinjoint.components.tags import Hovered
+from pinjoint.systems.render.clip import clip_segments
+from pinjoint.systems.render.labels.occupancy import STRONG
+from pinjoint.systems.render.marks import Mark, Points
+from pinjoint.systems.render.model.sheet import Sheet
+from pinjoint.systems.render.symbols import SUPPORT_DEPTH
+from pinjoint.systems.render.theme import faded
+from pinjoint.systems.render.ui.layout import Column, Paper, Plate, Row, Text
+
+_PAD, _GAP, _NEAR = 8.0, 14.0, 16.0  # points: inside the box, between columns, to the pointer
+_ROWS = (8, 2, 1)  # how many are told, where that many find room
+_STEP, _BESIDE = 8.0, 90.0  # points between places that are tried; within which they are to cover no lines
+
+
+def draw_pointed(sheet: Sheet) -> list[Mark]:
+    """A box with the results of the element under the pointer, near that, where it covers neither it nor what is said."""
+    pointed, tagged = (
+        sheet.view.pointed,
+        ((t, sheet.tagged(Hovered, name)) for name, t in sheet.model.tables.items()),
+    )
+    handle = next((table[int(rows[0])] for table, rows in tagged if len(rows)), None)
+    if pointed is None or handle is None or sheet.view.preview is not None or sheet.view.help:
+        return []
+    theme = sheet.theme
+    title = Text(pointed.title, 12.0, theme.text, "semibold")
+    for count in _ROWS:  # fewer where more would cover values
+        rows = [
+            Row((Text(name, 12.0, theme.muted, grow=1.0), Text(value, 12.0, theme.text, "semibold")), _GAP)
+            for name, value in pointed.rows[:count]
+        ]
+        inside = Column([title, *rows], around=(_PAD, _PAD / 2, _PAD / 2))
+        box = Plate(inside, faded(theme.panel, 0.96), theme.line)
+        width = box.width(sheet.unit)
+        place = _free_place(sheet, handle, np.array([width, box.height(sheet.unit, width)]))
+        if place is not None:
+            paper = Paper(sheet.unit)
+            paper.put(box, place)
+            return paper.marks
+    return []
+
+
+def _free_place(sheet: Sheet, handle: Handle, size: Points) -> Rectangle | None:
+    """The place nearest to the pointer where a box covers no value, name or panel; near by one where it covers no line."""
+    (low, high), pointer, u = sheet.viewport.corners, sheet.view.pointer or sheet.view.camera.middle, sheet.unit
+    x, y = (np.arange(low[axis], high[axis] - size[axis], _STEP * u) for axis in (0, 1))
+    corners = np.stack(np.meshgrid(x, y), axis=-1).reshape(-1, 2)
+    away = np.maximum(np.maximum(corners - pointer, pointer - corners - size), 0.0)
+    distance = np.hypot(*away.T)
+    corners, distance = corners[distance >= _NEAR * u], distance[distance >= _NEAR * u]
+    cells = sheet.occupancy.cells_of(corners, np.broadcast_to(size, corners.shape))
+    start, end, reach = _outline(sheet, handle)
+    for covered, farthest in ((0, _BESIDE * u), (STRONG, np.inf)):
+        free = np.flatnonzero(sheet.occupancy.are_free(cells, covered) & (distance <= farthest))
+        for index in free[np.argsort(distance[free], kind="stable")].tolist():
+            corner = corners[index]
+            if not len(clip_segments(start, end, corner - reach, corner + size + reach)[2]):
+                return Rectangle(*corner.tolist(), *size.tolist())
+    return None
+
+
+def _outline(sheet: Sheet, handle: Handle) -> tuple[Points, Points, float]:
+    """The lines of an element in pixels, from and to, and how far it reaches from them."""
+    u = sheet.unit
+    if isinstance(handle, Particle):
+        at = sheet.centres[[handle.row]]
+        return at, at, float(sheet.radii[handle.row]) + (SUPPORT_DEPTH * u if any(handle.fixed) else 2.0 * u)
+    if isinstance(handle, Rod):
+        return *sheet.lines(sheet.rods == handle.row)[:2], 4.0 * u
+    table = sheet.model.tables[handle.table]
+    points = [getattr(table, point)[handle.row] for point in handle.points]
+    places = sheet.view.camera.to_pixels(np.array(points))
+    return places, np.roll(places, -1, axis=0), 4.0 * u
